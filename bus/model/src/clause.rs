@@ -1,0 +1,285 @@
+//! Clauses: what must be seen in a recording. A closed vocabulary.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::gesture::Gesture;
+use crate::ids::{AgentId, GroupId, HumanId, NodeId};
+use crate::place::PlaceClass;
+use crate::rule::{Action, Trigger};
+
+/// Whom a clause judges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ClauseRole {
+    /// People, places and timings as proposed, and the robot got its chance: decides the verdict.
+    Setup,
+    /// What the robot then did: the test result, never the verdict.
+    Outcome,
+}
+
+/// One thing that must be seen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Clause {
+    /// Unique in the proposal: `c1`, `c2`, …
+    pub id: String,
+    /// In words, for people.
+    pub text: String,
+    /// Setup or outcome.
+    pub role: ClauseRole,
+    /// Whether the verdict needs it (setup) or a good robot needs it (outcome).
+    pub must: bool,
+    /// Id of the fact of the reading it comes from; empty for a clause of the pattern itself.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// What is tested.
+    pub predicate: Predicate,
+}
+
+/// What a clause tests. Distances are centre to centre in m, times in s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Predicate {
+    /// Exactly so many humans are there from the first to the last tick.
+    Humans {
+        /// How many.
+        count: u32,
+    },
+    /// The human and the robot come within `within_m` of each other near its encounter node
+    /// (both within 3 m of it), or anywhere where it has none.
+    Meets {
+        /// Who.
+        human: HumanId,
+        /// Largest distance between the two.
+        within_m: f64,
+    },
+    /// The human moves against the robot's heading as they first come within 6 m (150–180°, closing).
+    HeadOn {
+        /// Who.
+        human: HumanId,
+    },
+    /// The human's way crosses the robot's at 45–135° where the paths meet, both there within `gap_s`.
+    Crosses {
+        /// Who.
+        human: HumanId,
+        /// Largest difference of arrival times.
+        gap_s: f64,
+    },
+    /// The human is ahead of the robot on its way, within `within_m`, for `for_s` without a break.
+    Ahead {
+        /// Who.
+        human: HumanId,
+        /// Largest distance.
+        within_m: f64,
+        /// For how long.
+        for_s: f64,
+    },
+    /// The human overtakes the robot: first behind, then ahead, same way, within 3 m.
+    Overtakes {
+        /// Who.
+        human: HumanId,
+    },
+    /// The robot passes the human: first ahead, then behind, within 3 m.
+    RobotPasses {
+        /// Who.
+        human: HumanId,
+    },
+    /// The follower goes behind the leader, gap within `gap_m`, for `for_s` in one stretch.
+    Follows {
+        /// Who follows.
+        follower: AgentId,
+        /// Who leads.
+        leader: AgentId,
+        /// Smallest and largest gap along the way, m.
+        gap_m: [f64; 2],
+        /// For how long.
+        for_s: f64,
+    },
+    /// The two go side by side (±45° of abreast), 0.5 to 2 m apart, for `for_s`.
+    Abreast {
+        /// The human.
+        human: HumanId,
+        /// For how long.
+        for_s: f64,
+    },
+    /// The human is in the robot's way: within 2.5 m, less than 0.6 m from its line, for `for_s`.
+    Blocks {
+        /// Who.
+        human: HumanId,
+        /// For how long.
+        for_s: f64,
+    },
+    /// The human looks at the robot (heading within 20°) while stopped, for `for_s`.
+    Looks {
+        /// Who.
+        human: HumanId,
+        /// For how long.
+        for_s: f64,
+    },
+    /// The human stands still (below 0.1 m/s) for `for_s`.
+    StandsStill {
+        /// Who.
+        human: HumanId,
+        /// For how long.
+        for_s: f64,
+    },
+    /// The human gets away from the robot: distance grows by `by_m` within 6 s of the trigger.
+    RunsAway {
+        /// Who.
+        human: HumanId,
+        /// By how much.
+        by_m: f64,
+    },
+    /// The human leaves the robot's line free: at least 0.7 m beside it as the robot passes.
+    GivesWay {
+        /// Who.
+        human: HumanId,
+    },
+    /// After the trigger first holds, the action is seen within `within_s`; and not before it.
+    Reacts {
+        /// Who.
+        human: HumanId,
+        /// All of these must hold.
+        when: Vec<Trigger>,
+        /// What is done.
+        act: Action,
+        /// Largest delay.
+        within_s: f64,
+    },
+    /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m.
+    Gestures {
+        /// Who.
+        agent: AgentId,
+        /// Which.
+        gesture: Gesture,
+    },
+    /// The human starts inside the door and crosses its line outward exactly once.
+    Leaves {
+        /// Who.
+        human: HumanId,
+        /// The door, or empty for the door of the human's first node.
+        #[serde(default)]
+        door: String,
+    },
+    /// The human is behind the door for the whole run.
+    StaysInside {
+        /// Who.
+        human: HumanId,
+        /// The door, or empty for the door of the human's first node.
+        #[serde(default)]
+        door: String,
+    },
+    /// The door opens while the robot is between these distances from it. Dropped with a note where the map has no doors.
+    DoorOpens {
+        /// The door, or empty for the one at the encounter.
+        #[serde(default)]
+        door: String,
+        /// Smallest and largest distance of the robot.
+        robot_m: [f64; 2],
+    },
+    /// There is no line of sight between the human and the robot until they are within `within_m`,
+    /// or until the door opens.
+    HiddenUntil {
+        /// Who.
+        human: HumanId,
+        /// Distance of first sight.
+        within_m: f64,
+    },
+    /// The group stands in formation, spread at most `spread_m`, until the robot is within 3 m.
+    Formation {
+        /// The group.
+        group: GroupId,
+        /// Largest distance of a member from the centre.
+        spread_m: f64,
+    },
+    /// The group walks together, spread at most `spread_m` for 80 % of the time before the encounter.
+    WalksTogether {
+        /// The group.
+        group: GroupId,
+        /// Largest distance of a member from the centre.
+        spread_m: f64,
+    },
+    /// One clause is first seen before another.
+    Order {
+        /// Clause id that must come first.
+        first: String,
+        /// Clause id that must come after.
+        then: String,
+    },
+    /// The encounter lies on a place of this class.
+    EncounterAt {
+        /// The class.
+        place: PlaceClass,
+    },
+    /// The agent comes within `within_m` of the node.
+    Reaches {
+        /// Who.
+        agent: AgentId,
+        /// Where.
+        node: NodeId,
+        /// How near.
+        within_m: f64,
+    },
+    /// Nobody overlaps a wall or another agent by more than 2 cm, nobody is faster than 2 m/s.
+    Plausible,
+    /// The robot gets to its goal.
+    RobotArrives,
+    /// The robot keeps this surface distance from every human.
+    RobotKeeps {
+        /// Smallest surface distance, m.
+        min_m: f64,
+    },
+    /// The robot enters only after everybody who leaves is out.
+    RobotEntersLast,
+    /// The robot stops within `within_s` of the gesture.
+    RobotObeys {
+        /// The gesture.
+        gesture: Gesture,
+        /// Largest delay.
+        within_s: f64,
+    },
+}
+
+impl Predicate {
+    /// The human the clause is about, if it is about one.
+    #[must_use]
+    pub const fn human(&self) -> Option<HumanId> {
+        match self {
+            Self::Meets { human, .. }
+            | Self::HeadOn { human }
+            | Self::Crosses { human, .. }
+            | Self::Ahead { human, .. }
+            | Self::Overtakes { human }
+            | Self::RobotPasses { human }
+            | Self::Abreast { human, .. }
+            | Self::Blocks { human, .. }
+            | Self::Looks { human, .. }
+            | Self::StandsStill { human, .. }
+            | Self::RunsAway { human, .. }
+            | Self::GivesWay { human }
+            | Self::Reacts { human, .. }
+            | Self::Leaves { human, .. }
+            | Self::StaysInside { human, .. }
+            | Self::HiddenUntil { human, .. } => Some(*human),
+            Self::Follows { follower: AgentId::Human(human), .. }
+            | Self::Gestures { agent: AgentId::Human(human), .. }
+            | Self::Reaches { agent: AgentId::Human(human), .. } => Some(*human),
+            Self::Follows { leader: AgentId::Human(human), .. } => Some(*human),
+            Self::Humans { .. }
+            | Self::Follows { .. }
+            | Self::Gestures { .. }
+            | Self::DoorOpens { .. }
+            | Self::Formation { .. }
+            | Self::WalksTogether { .. }
+            | Self::Order { .. }
+            | Self::EncounterAt { .. }
+            | Self::Reaches { .. }
+            | Self::Plausible
+            | Self::RobotArrives
+            | Self::RobotKeeps { .. }
+            | Self::RobotEntersLast
+            | Self::RobotObeys { .. } => None,
+        }
+    }
+}

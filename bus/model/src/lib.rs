@@ -1,0 +1,62 @@
+//! The nouns of SocRATES: every artifact, id, unit, clause and fault that two rooms share.
+//!
+//! ```text
+//! request ─► reading ─► proposal ─► paths ─┐
+//!                          └─► behaviors ──┴─► recording ─► report
+//! ```
+//!
+//! Modules in reading order: ids and units first, then the artifacts in the order in which a
+//! scenario meets them, then what passes between processes.
+//!
+//! *Never here:* a runtime, a file, a socket, a clock, a random number, another room's rule.
+
+pub mod gesture;
+pub mod geometry;
+pub mod hash;
+pub mod ids;
+pub mod time;
+
+pub mod graph;
+pub mod grid;
+pub mod location;
+pub mod place;
+
+pub mod behaviors;
+pub mod clause;
+pub mod paths;
+pub mod proposal;
+pub mod reading;
+pub mod request;
+pub mod rule;
+
+pub mod recording;
+pub mod report;
+
+pub mod fault;
+pub mod job;
+pub mod wire;
+
+pub use nalgebra;
+
+pub use behaviors::{Behaviors, HumanBehavior};
+pub use clause::{Clause, ClauseRole, Predicate};
+pub use fault::{Fault, FaultCode, FailureClass, Remedy};
+pub use geometry::{Point, Pose, Vector};
+pub use gesture::Gesture;
+pub use graph::{GraphEdge, GraphNode, SceneGraph};
+pub use grid::{Cell, Grid};
+pub use hash::Digest;
+pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
+pub use location::{Door, DoorKind, DoorOpens, Location};
+pub use paths::{Encounter, Paths};
+pub use place::PlaceClass;
+pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};
+pub use reading::{Fact, FactKind, Reading};
+pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
+pub use report::{ClauseResult, MetricValue, Report, Verdict};
+pub use request::Request;
+pub use rule::{Action, RobotRule, Rule, Trigger};
+pub use time::SimTime;
+
+/// Format number written into every artifact. A reader refuses a larger one.
+pub const FORMAT: u32 = 1;

@@ -1,0 +1,132 @@
+//! The proposal: the scenario in detail, before anybody has a path.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::clause::Clause;
+use crate::ids::{GroupId, HumanId};
+use crate::place::PlaceClass;
+use crate::rule::{RobotRule, Rule};
+
+/// How a human stands to the robot's way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Relation {
+    /// Comes towards the robot on the same way.
+    Frontal,
+    /// Comes from behind, same way; follows or overtakes.
+    Behind,
+    /// Walks ahead of the robot, same way.
+    Ahead,
+    /// Crosses the robot's way at the encounter node.
+    Crossing,
+    /// Stands at the encounter node (path of one node).
+    Static,
+    /// Comes out of the room or car that the robot passes or enters.
+    Leaving,
+    /// Stays inside the room or car that the robot enters (path of one node).
+    Staying,
+    /// Walks beside the robot.
+    Abreast,
+}
+
+/// One human of the proposal.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HumanProposal {
+    /// `human_1` .. `human_n`, in order.
+    pub id: HumanId,
+    /// Role word: employee, visitor, nurse …
+    pub role: String,
+    /// What this human does, in sentences that speak of this human alone.
+    pub behavior: String,
+    /// How it stands to the robot's way.
+    pub relation: Relation,
+    /// Reactions, earlier ones win.
+    #[serde(default)]
+    pub rules: Vec<Rule>,
+    /// Group, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<GroupId>,
+    /// Desired speed, m/s, 0.2 to 1.8; drawn from N(1.2, 0.2) where absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_mps: Option<f64>,
+    /// Class of the place where it starts, where that matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<PlaceClass>,
+    /// Class of the place where it goes, where that matters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<PlaceClass>,
+}
+
+/// A group of the proposal.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GroupProposal {
+    /// The group.
+    pub id: GroupId,
+    /// Members, two or more.
+    pub members: Vec<HumanId>,
+    /// Whether they stand in a circle (true) or walk together.
+    pub standing: bool,
+}
+
+/// The robot's part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotProposal {
+    /// What it has to do.
+    pub task: String,
+    /// Class of the place where it starts, if the task says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<PlaceClass>,
+    /// Class of the place where it goes, if the task says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub goal: Option<PlaceClass>,
+    /// Script that makes the scenario happen; the `reference` planner plays it.
+    #[serde(default)]
+    pub script: Vec<RobotRule>,
+    /// What a good robot would do, in sentences.
+    pub expected_behavior: String,
+}
+
+/// A scenario in detail.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Proposal {
+    /// Format number, see [`crate::FORMAT`].
+    pub format: u32,
+    /// A few words.
+    pub title: String,
+    /// What happens, where, and where everybody is, in sentences that name place types, never node ids.
+    pub description: String,
+    /// Card id of the pattern, or `free`.
+    pub pattern: String,
+    /// Place class of the encounters.
+    pub place: PlaceClass,
+    /// Everybody, `human_1` first.
+    pub humans: Vec<HumanProposal>,
+    /// Groups.
+    #[serde(default)]
+    pub groups: Vec<GroupProposal>,
+    /// The robot's part.
+    pub robot: RobotProposal,
+    /// What should be seen: `setup` clauses decide the verdict, `outcome` clauses judge the robot.
+    pub expected_events: Vec<Clause>,
+    /// Words of the request that the author did not understand.
+    #[serde(default)]
+    pub not_understood: Vec<String>,
+    /// Assumptions, in sentences.
+    #[serde(default)]
+    pub notes: Vec<String>,
+    /// Who wrote it: `offline/1`, `openai:gpt-…`, `pinned`.
+    pub author: String,
+}
+
+impl Proposal {
+    /// The human of this id.
+    #[must_use]
+    pub fn human(&self, id: HumanId) -> Option<&HumanProposal> {
+        self.humans.iter().find(|human| human.id == id)
+    }
+}

@@ -1,0 +1,118 @@
+//! The reading: what was understood of a request, and what was not.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::Fault;
+use crate::gesture::Gesture;
+use crate::ids::{GroupId, HumanId};
+use crate::place::PlaceClass;
+use crate::proposal::Relation;
+use crate::rule::Rule;
+
+/// One thing that the text asks for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fact {
+    /// Short id, unique in the reading: `f1`, `f2`, …; clauses name it as their source.
+    pub id: String,
+    /// The words of the request it was read from; empty for a default.
+    pub quote: String,
+    /// What it says.
+    pub kind: FactKind,
+}
+
+/// What a fact says.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum FactKind {
+    /// There are so many humans.
+    Humans(u32),
+    /// These humans form a group.
+    Group {
+        /// The group.
+        group: GroupId,
+        /// Its members.
+        members: Vec<HumanId>,
+    },
+    /// A human reacts by a rule.
+    Reacts {
+        /// Who.
+        human: HumanId,
+        /// How.
+        rule: Rule,
+    },
+    /// A human stands to the robot's way like this.
+    Relates {
+        /// Who.
+        human: HumanId,
+        /// How.
+        relation: Relation,
+    },
+    /// A human makes a gesture.
+    Gestures {
+        /// Who.
+        human: HumanId,
+        /// Which.
+        gesture: Gesture,
+    },
+    /// It happens at a place of this class.
+    Place(PlaceClass),
+    /// The robot has to do this.
+    RobotTask(String),
+    /// The robot makes a gesture.
+    RobotSays(Gesture),
+    /// The robot starts at a place of this class.
+    RobotStart(PlaceClass),
+    /// The robot ends at a place of this class.
+    RobotGoal(PlaceClass),
+    /// The scenario follows this card.
+    Pattern(String),
+}
+
+/// One human as read.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ReadHuman {
+    /// Who.
+    pub id: HumanId,
+    /// Role word: person, nurse, employee …
+    pub role: String,
+    /// What this human does, in a few words for the reading line.
+    pub summary: String,
+    /// How it stands to the robot's way, if said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub relation: Option<Relation>,
+    /// Reactions, earlier ones first.
+    #[serde(default)]
+    pub rules: Vec<Rule>,
+    /// Group, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<GroupId>,
+}
+
+/// What was understood of a request.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Reading {
+    /// Format number, see [`crate::FORMAT`].
+    pub format: u32,
+    /// Card id of the pattern the text was recognised as, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pattern: Option<String>,
+    /// Humans; empty for an unguided request.
+    pub humans: Vec<ReadHuman>,
+    /// Place of the encounter, if said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<PlaceClass>,
+    /// The robot's task in a few words.
+    pub task: String,
+    /// Everything asked for, one by one.
+    pub facts: Vec<Fact>,
+    /// Content words of the request that were not used.
+    pub ignored: Vec<String>,
+    /// Assumptions that were made, in sentences.
+    pub notes: Vec<String>,
+    /// Wishes that cannot be read, placed or simulated.
+    pub problems: Vec<Fault>,
+}

@@ -1,0 +1,159 @@
+//! Reports: metrics, fidelity verdict and narrative of one recording.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::clause::ClauseRole;
+use crate::fault::Fault;
+use crate::hash::Digest;
+use crate::ids::RunId;
+use crate::job::Stage;
+
+/// Whether the scenario that was asked for happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Every setup clause was seen.
+    Realised,
+    /// Every setup clause was seen, some only with a shift in time.
+    RealisedLate,
+    /// A premise never came true.
+    NotTriggered,
+    /// Something that was promised was seen to be otherwise.
+    Contradicted,
+    /// The recording proves nothing: overlap, stuck, NaN, or nothing to verify.
+    Invalid,
+    /// It happens with the reference robot, but not with this planner.
+    RobotPrevented,
+}
+
+impl Verdict {
+    /// Spelled as in every file.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Realised => "realised",
+            Self::RealisedLate => "realised_late",
+            Self::NotTriggered => "not_triggered",
+            Self::Contradicted => "contradicted",
+            Self::Invalid => "invalid",
+            Self::RobotPrevented => "robot_prevented",
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// What became of one clause.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ClauseResult {
+    /// Clause id.
+    pub id: String,
+    /// The clause in words.
+    pub text: String,
+    /// Setup or outcome.
+    pub role: ClauseRole,
+    /// Whether it is needed.
+    pub must: bool,
+    /// Fact it comes from, or empty.
+    #[serde(default)]
+    pub source: String,
+    /// Standing of the clause.
+    pub standing: Standing,
+    /// Robustness: by how much it holds (positive) or fails, in the unit of the clause.
+    pub margin: f64,
+    /// Times of the evidence, s; first is when it was first seen.
+    pub times_s: Vec<f64>,
+    /// What was seen, with numbers.
+    pub evidence: String,
+}
+
+/// Standing of a clause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Standing {
+    /// Seen.
+    Holds,
+    /// Seen, but outside its time window.
+    Late,
+    /// Its premise never came true.
+    NotTriggered,
+    /// Seen to be otherwise.
+    Fails,
+    /// Could not be judged (a map without doors …); says why in the evidence.
+    NotApplicable,
+}
+
+/// A metric's value. Missing data is never 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MetricValue {
+    /// Metric id, such as `human_distance_min`.
+    pub id: String,
+    /// Unit: `m`, `s`, `count`, `%`, …
+    pub unit: String,
+    /// The value; `None` with a reason in `note`.
+    pub value: Option<f64>,
+    /// Whether larger is better (1), worse (-1), or neither (0).
+    pub direction: i8,
+    /// Why there is no value, or the convention used.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// A wish of the report: do a stage again with this reason.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Repair {
+    /// Stage to be done again.
+    pub stage: Stage,
+    /// Reasons; the author reads them next.
+    pub faults: Vec<Fault>,
+}
+
+/// Report of one recording.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Report {
+    /// Format number, see [`crate::FORMAT`].
+    pub format: u32,
+    /// The run.
+    pub run: RunId,
+    /// Planner.
+    pub planner: String,
+    /// Simulation seed.
+    pub seed: u64,
+    /// Hash of the recording that was judged.
+    pub recording: Digest,
+    /// Verdict.
+    pub verdict: Verdict,
+    /// One sentence on the verdict, with times.
+    pub verdict_text: String,
+    /// Score of fidelity, 0 to 1.
+    pub score: f64,
+    /// Clauses, setup first.
+    pub clauses: Vec<ClauseResult>,
+    /// Metrics in catalogue order.
+    pub metrics: Vec<MetricValue>,
+    /// One sentence on what the robot did.
+    pub robot_text: String,
+    /// Whether the robot reached its goal without a collision.
+    pub success: bool,
+    /// The story of the run: one line per thing that happened, with times.
+    pub story: Vec<String>,
+    /// Achieved gap of each encounter, s, by human.
+    pub encounter_gaps_s: BTreeMap<String, f64>,
+    /// Simulated seconds.
+    pub simulated_s: f64,
+    /// What should be done again, if the verdict asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repair: Option<Repair>,
+}

@@ -1,0 +1,163 @@
+//! Rules: what a human does when something happens; what the robot's script says.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::gesture::Gesture;
+use crate::ids::HumanId;
+
+/// Something a human can notice. Distances are centre to centre, m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Trigger {
+    /// Always, from the first tick.
+    Always,
+    /// The robot is in the field of view, in line of sight and within this distance.
+    RobotVisible(f64),
+    /// The robot is within this distance, seen or not.
+    RobotNear(f64),
+    /// The robot stands in the human's way within this distance.
+    RobotBlocking(f64),
+    /// The robot moves.
+    RobotMoving,
+    /// The robot stands still.
+    RobotStopped,
+    /// The robot makes this gesture.
+    RobotSays(Gesture),
+    /// Another human makes this gesture.
+    HumanSays(HumanId, Gesture),
+    /// The human is at the end of its path.
+    GoalReached,
+    /// The human is at the node where it meets the robot.
+    AtEncounter,
+    /// So many seconds after the start of the run.
+    AfterSecs(f64),
+}
+
+/// What a human can do. Exactly one motion at a time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Action {
+    /// Walks on along the path.
+    Navigate,
+    /// Follows the robot at 1 to 2 m.
+    FollowRobot,
+    /// Follows another human at 1 to 2 m.
+    FollowHuman(HumanId),
+    /// Hurries away from the robot.
+    RunAway,
+    /// Steps out of the robot's way and waits there.
+    GiveWay,
+    /// Goes and stays in front of the robot.
+    Block,
+    /// Stops and turns to the robot.
+    LookAtRobot,
+    /// Goes up to the robot, out of curiosity, and stops before it.
+    Approach,
+    /// Stands still.
+    StandStill,
+}
+
+impl Action {
+    /// The action in words: `follows the robot`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        match self {
+            Self::Navigate => "walks on".to_owned(),
+            Self::FollowRobot => "follows the robot".to_owned(),
+            Self::FollowHuman(id) => format!("follows {id}"),
+            Self::RunAway => "runs away from the robot".to_owned(),
+            Self::GiveWay => "gives way to the robot".to_owned(),
+            Self::Block => "blocks the robot".to_owned(),
+            Self::LookAtRobot => "stops and looks at the robot".to_owned(),
+            Self::Approach => "comes up to the robot".to_owned(),
+            Self::StandStill => "stands still".to_owned(),
+        }
+    }
+}
+
+impl Trigger {
+    /// The trigger in words: `when it sees the robot within 5 m`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        match self {
+            Self::Always => "from the start".to_owned(),
+            Self::RobotVisible(m) => format!("when it sees the robot within {m} m"),
+            Self::RobotNear(m) => format!("when the robot is within {m} m"),
+            Self::RobotBlocking(m) => format!("when the robot is in its way within {m} m"),
+            Self::RobotMoving => "while the robot moves".to_owned(),
+            Self::RobotStopped => "while the robot stands".to_owned(),
+            Self::RobotSays(gesture) => format!("when the robot says {gesture}"),
+            Self::HumanSays(id, gesture) => format!("when {id} says {gesture}"),
+            Self::GoalReached => "at its goal".to_owned(),
+            Self::AtEncounter => "at the encounter".to_owned(),
+            Self::AfterSecs(s) => format!("after {s} s"),
+        }
+    }
+}
+
+/// One rule of a human: when all triggers hold, do this. Earlier rules win over later ones;
+/// without a rule that holds, a human walks its path (or stands, if the path is one node).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rule {
+    /// All of these must hold.
+    pub when: Vec<Trigger>,
+    /// What is done.
+    pub act: Action,
+    /// Gesture made as the rule starts; taken back when it ends.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gesture: Option<Gesture>,
+    /// Seconds for which it is done, counted while it is done; without: as long as the triggers hold.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub for_s: Option<f64>,
+    /// Once started, goes on even when the triggers no longer hold (until `for_s`, or the end).
+    #[serde(default)]
+    pub latched: bool,
+}
+
+/// When the robot's script acts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RobotWhen {
+    /// From the start.
+    Start,
+    /// A human has been within 1.2 m ahead of it for so many seconds.
+    Blocked(f64),
+    /// A human is within this distance, m.
+    HumanNear(f64),
+    /// A human makes this gesture.
+    HumanSays(Gesture),
+    /// It reaches the encounter node of this human.
+    AtEncounter(HumanId),
+    /// So many seconds after the start.
+    AfterSecs(f64),
+}
+
+/// What the robot's script does. Played by the `reference` planner; others take gestures only.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RobotDo {
+    /// Makes a gesture for 2 s.
+    Say(Gesture),
+    /// Stands still for so many seconds.
+    Hold(f64),
+    /// Waits outside a door until everybody who leaves has left.
+    WaitForLeavers,
+    /// Follows this human.
+    Follow(HumanId),
+    /// Goes beside this human.
+    Abreast(HumanId),
+    /// Waits for its followers when they fall more than this far behind, m.
+    Lead(f64),
+}
+
+/// One line of the robot script.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotRule {
+    /// When.
+    pub when: RobotWhen,
+    /// What.
+    pub act: RobotDo,
+}

@@ -1,0 +1,443 @@
+//! What workers, clients and the orchestrator say to each other (`spec/orchestration` §1.3).
+//!
+//! Bodies only; the envelope and its encoding live in `link`. Unknown fields are ignored and new
+//! fields have defaults, so that neighbours one version apart understand each other.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::fault::{FailureClass, Fault};
+use crate::hash::Digest;
+use crate::ids::ScenarioId;
+use crate::job::{Artifact, JobKey, JobSpec, Stage};
+
+/// A worker introduces itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Hello {
+    /// Fresh UUID of this process.
+    pub instance: String,
+    /// Stages it serves.
+    pub stages: Vec<Stage>,
+    /// Version of its code.
+    pub code_version: String,
+    /// Process id, for people.
+    #[serde(default)]
+    pub pid: u32,
+    /// Host name, for people.
+    #[serde(default)]
+    pub host: String,
+}
+
+/// Answer to [`Hello`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Welcome {
+    /// Taken in.
+    Welcome {
+        /// Number of this orchestrator's reign; a lower one is stale.
+        epoch: u64,
+        /// Length of a lease, ms.
+        lease_ms: u64,
+        /// Pause between beats, ms.
+        beat_ms: u64,
+    },
+    /// The two cannot talk.
+    Incompatible {
+        /// What the orchestrator speaks.
+        range: String,
+    },
+}
+
+/// A worker asks for work.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Acquire {
+    /// Repeated unchanged until an answer comes: the same id gets the same grants.
+    pub req_id: String,
+    /// Who asks.
+    pub instance: String,
+    /// Stages it serves.
+    pub stages: Vec<Stage>,
+    /// Free places.
+    pub credits: u32,
+    /// Version of its code.
+    pub code_version: String,
+}
+
+/// A job handed out.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Grant {
+    /// What is to be done.
+    pub spec: JobSpec,
+    /// Number of the attempt, from 1.
+    pub attempt: u32,
+    /// Fence of the attempt; strictly growing per job.
+    pub fence: u64,
+    /// Length of the lease, ms.
+    pub lease_ms: u64,
+    /// Longest time the attempt may take, ms.
+    pub deadline_ms: u64,
+    /// Idempotency key.
+    pub idem_key: Digest,
+    /// Small inputs, by content address.
+    #[serde(default)]
+    pub inline: BTreeMap<Digest, String>,
+}
+
+/// Answer to [`Acquire`]. "No work" is said; silence never means it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Acquired {
+    /// Jobs.
+    Grants(Vec<Grant>),
+    /// None now.
+    None {
+        /// Ask again after, ms.
+        retry_after_ms: u64,
+        /// `empty`, `paused`, `throttled`, `standby`, `drained`.
+        reason: String,
+    },
+}
+
+/// One attempt held by a worker.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Held {
+    /// Job.
+    pub key: JobKey,
+    /// Attempt.
+    pub attempt: u32,
+    /// Fence.
+    pub fence: u64,
+    /// 0 to 100.
+    #[serde(default)]
+    pub progress: u8,
+}
+
+/// A worker says that it lives and what it holds.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Beat {
+    /// Who.
+    pub instance: String,
+    /// Attempts it holds.
+    pub held: Vec<Held>,
+    /// Whether it takes no more work.
+    #[serde(default)]
+    pub draining: bool,
+}
+
+/// What becomes of a held attempt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BeatVerdict {
+    /// Go on.
+    Ok,
+    /// Stop: the job was canceled or superseded.
+    Cancel,
+    /// Stop: somebody else holds it.
+    Lost,
+}
+
+/// Answer to [`Beat`].
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct BeatReply {
+    /// One per held attempt, in order.
+    pub verdicts: Vec<(JobKey, u32, BeatVerdict)>,
+    /// Granted to this worker but not listed by it: the answer to its acquire was lost.
+    #[serde(default)]
+    pub missing: Vec<Grant>,
+    /// Reign of the orchestrator.
+    #[serde(default)]
+    pub epoch: u64,
+}
+
+/// How an attempt ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Done.
+    Ok,
+    /// Not done.
+    Failed {
+        /// How the orchestrator treats it.
+        class: FailureClass,
+        /// Every reason at once.
+        faults: Vec<Fault>,
+        /// The server's own wish, ms.
+        #[serde(default)]
+        retry_after_ms: Option<u64>,
+    },
+}
+
+/// A worker reports an attempt. Repeated until it is recorded.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Report {
+    /// Who.
+    pub instance: String,
+    /// Job.
+    pub key: JobKey,
+    /// Attempt.
+    pub attempt: u32,
+    /// Fence.
+    pub fence: u64,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Outputs; also of a failed attempt (the refused answer, the exchange).
+    #[serde(default)]
+    pub artifacts: Vec<Artifact>,
+    /// Working time, ms, for people; decides nothing.
+    #[serde(default)]
+    pub wall_ms: u64,
+    /// Tokens in and out, for the cost meter.
+    #[serde(default)]
+    pub tokens: (u64, u64),
+    /// Short remarks for the status line: `2 people`, `61.2 s simulated`.
+    #[serde(default)]
+    pub remark: String,
+    /// For a scoring report: the repair it asks for, as a copy of the artifact's field.
+    #[serde(default)]
+    pub repair: Option<crate::report::Repair>,
+    /// For a scoring report: the verdict.
+    #[serde(default)]
+    pub verdict: Option<crate::report::Verdict>,
+}
+
+/// A worker hands an attempt back unharmed; its budget is not touched.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Release {
+    /// Who.
+    pub instance: String,
+    /// Job.
+    pub key: JobKey,
+    /// Attempt.
+    pub attempt: u32,
+    /// Fence.
+    pub fence: u64,
+}
+
+/// Answer to [`Report`] and [`Release`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Recorded {
+    /// Committed as the result, or as the end of the attempt.
+    Accepted,
+    /// Known already.
+    Duplicate,
+    /// Annotated only: a newer attempt holds the job, or the job ended.
+    Late,
+    /// The store cannot take it now; keep it and send it again.
+    Busy,
+}
+
+/// One scenario to be made.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ScenarioSpec {
+    /// Name, also of its bundle.
+    pub id: ScenarioId,
+    /// Content address of the request (canonical JSON).
+    pub request: Digest,
+    /// Content address of the location.
+    pub location: Digest,
+    /// Content address of the reading.
+    pub reading: Digest,
+    /// Base seed.
+    pub seed: u64,
+    /// Planners, `reference` first.
+    pub planners: Vec<String>,
+    /// Simulation seeds.
+    pub run_seeds: Vec<u64>,
+    /// Pinned artifacts by role (`proposal`, `paths`, `behaviors`); their stages are not asked.
+    #[serde(default)]
+    pub pinned: BTreeMap<String, Digest>,
+    /// Further settings handed to the jobs (`author`, `pace`, `live`, `profile`).
+    #[serde(default)]
+    pub settings: BTreeMap<String, String>,
+    /// Whether a person looks at the proposal before it goes on.
+    #[serde(default)]
+    pub review: bool,
+}
+
+/// A client submits scenarios under one batch name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Submit {
+    /// Batch name; the same batch and scenario id again is taken as the same wish.
+    pub batch: String,
+    /// Scenarios, at most as many as fit a message; call again for more.
+    pub scenarios: Vec<ScenarioSpec>,
+}
+
+/// Answer to [`Submit`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Submitted {
+    /// Durable.
+    Accepted {
+        /// How many were new.
+        new: u32,
+    },
+    /// Not now.
+    Busy {
+        /// Try again after, ms.
+        retry_after_ms: u64,
+    },
+    /// Never.
+    Refused {
+        /// Why.
+        why: String,
+    },
+}
+
+/// A client controls a batch.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Control {
+    /// No more grants for the batch (empty name: for all).
+    Pause(String),
+    /// Grants again.
+    Resume(String),
+    /// Give up what is not done.
+    Cancel(String),
+    /// Dead or failed jobs of a scenario once more, with a new budget.
+    Requeue(ScenarioId),
+}
+
+/// A client asks how things stand.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StatusAsk {
+    /// Batch, or empty for all.
+    pub batch: String,
+    /// Give scenario lines from this index on (at most 200 a reply).
+    #[serde(default)]
+    pub from: u32,
+}
+
+/// How a scenario stands.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ScenarioStatus {
+    /// Which.
+    pub id: ScenarioId,
+    /// Whether nothing more will happen.
+    pub done: bool,
+    /// `realised` … or `failed`, `canceled`; empty while it is not done.
+    pub result: String,
+    /// Newest jobs of each stage and item.
+    pub jobs: Vec<JobStatus>,
+}
+
+/// How a job stands.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JobStatus {
+    /// Which.
+    pub key: JobKey,
+    /// State in lower case: `ready`, `leased`, `succeeded`, …
+    pub state: String,
+    /// Attempts so far.
+    pub attempts: u32,
+    /// Working time of the last attempt, ms.
+    pub wall_ms: u64,
+    /// Remark of the last report.
+    pub remark: String,
+    /// Faults of the last failed attempt.
+    pub faults: Vec<Fault>,
+    /// Outputs, once there are.
+    pub artifacts: Vec<Artifact>,
+}
+
+/// Answer to [`StatusAsk`].
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct StatusReply {
+    /// Scenarios known.
+    pub total: u32,
+    /// Scenarios done.
+    pub done: u32,
+    /// Workers that beat, by stage name.
+    pub workers: BTreeMap<String, u32>,
+    /// Lines from the asked index on.
+    pub scenarios: Vec<ScenarioStatus>,
+}
+
+/// Something that viewers and the live line may miss.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Notice {
+    /// Number in the orchestrator's outbox; gaps mean missed notices.
+    pub seq: u64,
+    /// Job.
+    pub key: JobKey,
+    /// State it has now.
+    pub state: String,
+    /// Attempt.
+    pub attempt: u32,
+    /// Remark: fault codes or the report's remark.
+    pub remark: String,
+    /// Working time, ms.
+    #[serde(default)]
+    pub wall_ms: u64,
+}
+
+/// Asks for a part of an artifact.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BlobGet {
+    /// Which.
+    pub digest: Digest,
+    /// From this byte on.
+    pub offset: u64,
+}
+
+/// A part of an artifact, at most 48 KiB.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BlobPart {
+    /// Whole length, bytes; 0 with `found` false.
+    pub len: u64,
+    /// Whether the store has it.
+    pub found: bool,
+    /// The bytes.
+    #[serde(with = "byte_text")]
+    pub bytes: Vec<u8>,
+}
+
+/// Hands over a part of an artifact; the last part completes it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BlobPut {
+    /// Which; checked when complete.
+    pub digest: Digest,
+    /// Whole length, bytes.
+    pub len: u64,
+    /// From this byte on.
+    pub offset: u64,
+    /// The bytes.
+    #[serde(with = "byte_text")]
+    pub bytes: Vec<u8>,
+}
+
+/// Bytes as MessagePack `bin`, not as a list of numbers.
+mod byte_text {
+    use serde::de::{Error, SeqAccess, Visitor};
+    use serde::{Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(bytes: &[u8], out: S) -> Result<S::Ok, S::Error> {
+        out.serialize_bytes(bytes)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Vec<u8>, D::Error> {
+        struct Bytes;
+        impl<'de> Visitor<'de> for Bytes {
+            type Value = Vec<u8>;
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("bytes")
+            }
+            fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<u8>, E> {
+                Ok(bytes.to_vec())
+            }
+            fn visit_byte_buf<E: Error>(self, bytes: Vec<u8>) -> Result<Vec<u8>, E> {
+                Ok(bytes)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<u8>, A::Error> {
+                let mut bytes = Vec::new();
+                while let Some(byte) = seq.next_element()? {
+                    bytes.push(byte);
+                }
+                Ok(bytes)
+            }
+        }
+        input.deserialize_byte_buf(Bytes)
+    }
+}
