@@ -1,0 +1,79 @@
+//! The annotated map: ids and types on the map, for a vision model and for people.
+
+use std::collections::BTreeMap;
+
+use socrates_model::{Location, PlaceClass};
+
+use crate::label::{Area, Labels, text_width};
+use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale};
+use crate::palette;
+use crate::svg::Svg;
+
+/// Colors of node classes, for the dots and the legend.
+fn class_color(class: PlaceClass) -> &'static str {
+    match class {
+        PlaceClass::Intersection => "#D55E00",
+        PlaceClass::BlindCorner => "#CC79A7",
+        PlaceClass::Doorway => "#a8641c",
+        PlaceClass::Elevator | PlaceClass::ElevatorLobby => "#6a51a3",
+        PlaceClass::Room => "#009E73",
+        PlaceClass::OpenArea => "#56B4E9",
+        PlaceClass::Exit => "#4d9221",
+        PlaceClass::NarrowPassage => "#E69F00",
+        PlaceClass::Corridor => "#0072B2",
+        PlaceClass::Plain => "#7d8590",
+    }
+}
+
+/// The map with its scene graph, node ids and a legend of the map's own type names, as SVG.
+#[must_use]
+pub fn annotated_map(location: &Location) -> String {
+    const SIZE: f64 = 1180.0;
+    let frame = Frame::around(location, SIZE, 860.0, (20.0, 46.0));
+    let (w, h) = frame.size();
+    let mut types: BTreeMap<&str, (PlaceClass, usize)> = BTreeMap::new();
+    for node in &location.graph.nodes {
+        types.entry(node.kind.as_str()).or_insert_with(|| (PlaceClass::of_type(&node.kind), 0)).1 += 1;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
+    let rows = types.len().div_ceil(4) as f64;
+    let width = (w + 40.0).max(620.0);
+    let height = h + 46.0 + 40.0 + rows * 20.0 + 16.0;
+    let mut svg = Svg::new(width, height);
+    svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
+    let ink = palette::INK;
+    svg.text(
+        (20.0, 30.0),
+        &format!("{} · {} nodes, {} ways", location.name, location.graph.nodes.len(), location.graph.edges.len()),
+        &format!("font-size=\"18\" font-weight=\"600\" fill=\"{ink}\""),
+    );
+    draw_floor(&mut svg, location, &frame);
+    draw_graph(&mut svg, location, &frame, "#9fb4cc", 2.2);
+    draw_doors(&mut svg, location, &frame);
+    let mut labels = Labels::within(Area { x: 4.0, y: 34.0, w: width - 8.0, h: h + 24.0 });
+    for node in &location.graph.nodes {
+        let (x, y) = frame.px(location, &node.at);
+        labels.block(Area { x: x - 6.0, y: y - 6.0, w: 12.0, h: 12.0 });
+    }
+    for node in &location.graph.nodes {
+        let at = frame.px(location, &node.at);
+        let color = class_color(PlaceClass::of_type(&node.kind));
+        svg.circle(at, 5.5, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
+        let text = node.id.as_str();
+        let area = labels.place(at, (text_width(text, 13.0) + 6.0, 16.0), 8.0);
+        svg.rect((area.x, area.y), (area.w, area.h), "rx=\"3\" fill=\"#ffffff\" fill-opacity=\"0.85\"");
+        svg.text(
+            (area.x + area.w / 2.0, area.y + 12.5),
+            text,
+            &format!("font-size=\"13\" font-weight=\"600\" text-anchor=\"middle\" fill=\"{ink}\""),
+        );
+    }
+    draw_scale(&mut svg, location, &frame, 18.0);
+    for (index, (name, (class, count))) in types.into_iter().enumerate() {
+        #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
+        let (x, y) = (26.0 + (index % 4) as f64 * (width - 40.0) / 4.0, h + 46.0 + 44.0 + (index / 4) as f64 * 20.0);
+        svg.circle((x, y - 4.0), 5.0, &format!("fill=\"{}\"", class_color(class)));
+        svg.text((x + 12.0, y), &format!("{name} ({count})"), &format!("font-size=\"13\" fill=\"{ink}\""));
+    }
+    svg.finish()
+}

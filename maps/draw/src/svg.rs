@@ -1,0 +1,106 @@
+//! Small words for writing SVG text.
+
+use std::fmt::Write as _;
+
+/// Text made safe for XML content and attributes.
+#[must_use]
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\'' => out.push_str("&#39;"),
+            // XML 1.0 has no way to write these at all.
+            c if c.is_control() && !matches!(c, '\n' | '\t' | '\r') => out.push('\u{fffd}'),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// An SVG document being written.
+#[derive(Debug, Clone)]
+pub struct Svg {
+    text: String,
+}
+
+impl Svg {
+    /// A document of this size in pixels, on white.
+    #[must_use]
+    pub fn new(width: f64, height: f64) -> Self {
+        let mut svg = Self { text: String::new() };
+        svg.raw(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\">"
+        ));
+        svg
+    }
+
+    /// Adds text as it is.
+    pub fn raw(&mut self, text: &str) {
+        self.text.push_str(text);
+        self.text.push('\n');
+    }
+
+    /// A filled rectangle.
+    pub fn rect(&mut self, at: (f64, f64), size: (f64, f64), style: &str) {
+        self.raw(&format!(
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" {style}/>",
+            at.0, at.1, size.0, size.1
+        ));
+    }
+
+    /// A circle.
+    pub fn circle(&mut self, at: (f64, f64), radius: f64, style: &str) {
+        self.raw(&format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"{radius:.1}\" {style}/>", at.0, at.1));
+    }
+
+    /// A line.
+    pub fn line(&mut self, from: (f64, f64), to: (f64, f64), style: &str) {
+        self.raw(&format!(
+            "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>",
+            from.0, from.1, to.0, to.1
+        ));
+    }
+
+    /// An open line through points.
+    pub fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
+        let mut list = String::new();
+        for (x, y) in points {
+            // Writing into a String cannot fail.
+            if write!(list, "{x:.1},{y:.1} ").is_err() {
+                return;
+            }
+        }
+        self.raw(&format!("<polyline points=\"{}\" fill=\"none\" {style}/>", list.trim_end()));
+    }
+
+    /// Text at a base line point. `style` may hold anchor, size and fill.
+    pub fn text(&mut self, at: (f64, f64), words: &str, style: &str) {
+        self.raw(&format!("<text x=\"{:.1}\" y=\"{:.1}\" {style}>{}</text>", at.0, at.1, escape(words)));
+    }
+
+    /// The finished document.
+    #[must_use]
+    pub fn finish(mut self) -> String {
+        self.raw("</svg>");
+        self.text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_of_a_user_cannot_become_markup() {
+        let mut svg = Svg::new(10.0, 10.0);
+        svg.text((0.0, 0.0), "<script>\"&\u{1}", "");
+        let out = svg.finish();
+        assert!(!out.contains("<script>") && !out.contains('\u{1}'));
+        assert!(out.contains("&lt;script&gt;&quot;&amp;"));
+    }
+}
