@@ -1,1 +1,24 @@
-//! socrates-tests.
+//! Tests that need more than one room: the house rules, the main job with real processes, and chaos.
+//!
+//! ```text
+//! house/   walls, homes of foreign libraries, file cap, fault pages, links in documents
+//! life/    requests in, bundles out, with real processes
+//! chaos/   kill -9 of any process during a batch
+//! ```
+//!
+//! *Never here:* product code.
+
+use std::path::PathBuf;
+
+/// The root of the repository.
+#[must_use]
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).parent().map(PathBuf::from).unwrap_or_default()
+}
+
+/// The folder of data made by others, if this checkout has one beside it.
+#[must_use]
+pub fn shared_data() -> Option<PathBuf> {
+    let data = root().parent()?.join("shared/data");
+    data.is_dir().then_some(data)
+}

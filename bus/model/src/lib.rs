@@ -14,6 +14,7 @@ pub mod gesture;
 pub mod geometry;
 pub mod hash;
 pub mod ids;
+pub mod polyline;
 pub mod time;
 
 pub mod graph;
@@ -29,17 +30,20 @@ pub mod reading;
 pub mod request;
 pub mod rule;
 
+pub mod drive;
 pub mod recording;
 pub mod report;
 
 pub mod fault;
 pub mod job;
+pub mod schema;
 pub mod wire;
 
 pub use nalgebra;
 
 pub use behaviors::{Behaviors, HumanBehavior};
 pub use clause::{Clause, ClauseRole, Predicate};
+pub use drive::{Command, Cues, Observation, RobotDriver, RobotModel, SeenDoor, SeenPerson};
 pub use fault::{Fault, FaultCode, FailureClass, Remedy};
 pub use geometry::{Point, Pose, Vector};
 pub use gesture::Gesture;
@@ -50,6 +54,7 @@ pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
 pub use location::{Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths};
 pub use place::PlaceClass;
+pub use polyline::Polyline;
 pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};

@@ -1,1 +1,114 @@
-fn main() {}
+//! SocRATES on the command line: the one program, from `demo` to the processes of a cluster.
+//!
+//! ```text
+//! args ─► config ─► prepare ─► session (supervise: orchestrator + workers) ─► bundle ─► talk
+//! ```
+//!
+//! *Never here:* a rule of authoring, simulation, scoring or retry. Only here: the environment, arguments,
+//! printing and exit codes.
+
+mod again;
+mod args;
+mod bundle;
+mod cluster;
+mod config;
+mod dev;
+mod exit;
+mod explain;
+mod map;
+mod orchestrate;
+mod prepare;
+mod process;
+mod run;
+mod session;
+mod supervise;
+mod talk;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use crate::args::{Cli, ClusterVerb, Format, Verb};
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::talk::Talk;
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(why) => {
+            drop(why.print());
+            return ExitCode::from(if why.use_stderr() { Code::Input as u8 } else { Code::Ok as u8 });
+        }
+    };
+    let talk = Talk::new(cli.format);
+    let code = match begin(&talk, &cli) {
+        Ok(code) => code,
+        Err(complaint) => {
+            talk.warn(&format!("error: {complaint}"));
+            if cli.format == Format::Json {
+                talk.result(&serde_json::json!({ "error": complaint.what, "causes": complaint.causes, "hint": complaint.hint }));
+            }
+            complaint.code
+        }
+    };
+    ExitCode::from(code as u8)
+}
+
+fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
+    let config = Config::load(cli.config.as_deref(), std::env::vars(), &cli.set)?;
+    let key = std::env::var(config.text("author.key_variable")).ok().filter(|key| !key.is_empty());
+    start_log(&config)?;
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .map_err(|why| Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours))?;
+    let code = runtime.block_on(act(talk, cli, &config, key));
+    // A blocked reader of a child's pipe must not hold the exit.
+    runtime.shutdown_background();
+    code
+}
+
+async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Result<Code, Complaint> {
+    let key_found = key.is_some();
+    let done = |outcome: Result<(), Complaint>| outcome.map(|()| Code::Ok);
+    match &cli.verb {
+        Verb::Demo(options) => run::demo(talk, cli, config, options, key_found).await,
+        Verb::Run { requests, options } => run::run(talk, cli, config, requests, options, key_found).await,
+        Verb::New { file, location } => done(explain::new(talk, file, location)),
+        Verb::Read { request } => {
+            let prepared = prepare::prepare(request, None, config, key_found)?;
+            run::print_reading(talk, &prepared);
+            talk.result(&serde_json::json!({ "reading": prepared.reading }));
+            Ok(Code::Ok)
+        }
+        Verb::Open { bundle } => done(explain::open(talk, bundle)),
+        Verb::Simulate { bundle, planner, seed, out } => done(again::simulate(talk, bundle, planner.as_deref(), *seed, out.as_ref())),
+        Verb::Score { what, location } => done(again::score(talk, what, location.as_deref())),
+        Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
+        Verb::Status { what } => done(watch::status(talk, what).await),
+        Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),
+        Verb::Doctor => done(explain::doctor(talk, key_found)),
+        Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
+        Verb::Map { verb } => done(map::map(talk, verb)),
+        Verb::Cluster { verb } => match verb {
+            ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
+            ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),
+            ClusterVerb::Submit { requests, connect, namespace, seed } => {
+                done(cluster::submit(talk, config, requests, connect, namespace, *seed, key_found).await)
+            }
+        },
+        Verb::Dev { verb } => done(dev::dev(talk, verb)),
+        Verb::Worker(options) => done(process::worker(config, options, key).await),
+        Verb::Orchestrator(options) => done(process::orchestrator(config, options).await),
+    }
+}
+
+fn start_log(config: &Config) -> Result<(), Complaint> {
+    let filter = tracing_subscriber::EnvFilter::try_new(config.text("log.filter"))
+        .map_err(|why| Complaint::input(format!("`log.filter` is not a filter: {why}"), "for example \"warn\" or \"socrates_kit=debug\""))?;
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().compact().init();
+    Ok(())
+}

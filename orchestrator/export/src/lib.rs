@@ -1,1 +1,14 @@
-//! socrates-export.
+//! Scenario bundles in other tools' formats, one file per format.
+//!
+//! ```text
+//! Proposal + Paths + Behaviors ─► scenario.json trajectory.json bt.json, or one combined file ─► back again
+//! ```
+//!
+//! *Never here:* a file, a socket, a rule of simulation. Text in, text out.
+
+pub mod socrates_json;
+
+pub use socrates_json::{Imported, SocratesJsonError};
+
+/// Names of the formats that can be written, in order.
+pub const FORMATS: &[&str] = &["socrates-json"];

@@ -1,0 +1,125 @@
+//! `simulate` and `score`: a bundle again, or tracks of one's own.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use socrates_model::Recording;
+use socrates_scoring::Evidence;
+
+use crate::bundle::{self, Bundle};
+use crate::exit::{Code, Complaint};
+use crate::prepare::load_location;
+use crate::talk::Talk;
+
+/// Simulates a bundle again and compares hashes.
+pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Option<u64>, out: Option<&PathBuf>) -> Result<(), Complaint> {
+    let bundle = bundle::read(dir)?;
+    let mut wanted: Vec<(String, u64)> = bundle.manifest.runs.iter().map(|run| (run.planner.clone(), run.seed)).collect();
+    if planner.is_some() || seed.is_some() {
+        let first = bundle.manifest.runs.first().map_or(1, |run| run.seed);
+        wanted = vec![(planner.unwrap_or("reference").to_owned(), seed.unwrap_or(first))];
+    }
+    let mut rows = Vec::new();
+    let mut differ = 0;
+    for (planner, seed) in wanted {
+        let recording = run(&bundle, &planner, seed)?;
+        let hash = recording.hash();
+        let known = bundle.manifest.runs.iter().find(|run| run.planner == planner && run.seed == seed).map(|run| run.recording_hash);
+        let word = match known {
+            Some(known) if known == hash => "same hash as the bundle",
+            Some(_) => {
+                differ += 1;
+                "ANOTHER hash than the bundle"
+            }
+            None => "not in the bundle",
+        };
+        let last = recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
+        talk.line(&format!("simulated  {planner} seed {seed}: {last:.1} s, {} ({word})", hash.short()));
+        if let Some(folder) = out {
+            let bytes = socrates_stream::mcap::write(&recording, Some(&bundle.location)).map_err(|why| Complaint::input(why.to_string(), ""))?;
+            let path = folder.join(format!("{planner}-{seed}.mcap"));
+            let cannot = |why: std::io::Error| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder");
+            std::fs::create_dir_all(folder).map_err(cannot)?;
+            std::fs::write(&path, bytes).map_err(cannot)?;
+        }
+        rows.push(json!({ "planner": planner, "seed": seed, "recording_hash": hash, "same": known.map(|known| known == hash) }));
+    }
+    talk.result(&json!({ "bundle": dir.display().to_string(), "runs": rows }));
+    if differ > 0 {
+        return Err(Complaint::input(format!("{differ} recordings differ from the bundle's"), "the bundle was made by another version, or was changed by hand").with_code(Code::Ours));
+    }
+    Ok(())
+}
+
+/// One run of a bundle's scenario.
+fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
+    let scenario = bundle.manifest.scenario.parse().map_err(|bad: socrates_model::ids::BadId| Complaint::input(bad.to_string(), "the bundle is damaged"))?;
+    let setup = socrates_simulation::setup(
+        &scenario,
+        bundle.request.clone(),
+        bundle.location.clone(),
+        bundle.proposal.clone(),
+        bundle.paths.clone(),
+        bundle.behaviors.clone(),
+        planner,
+        seed,
+    )
+    .map_err(|faults| Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do"))?;
+    socrates_simulation::simulate(setup, planner).map_err(|faults| Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do"))
+}
+
+/// Scores a bundle again, or one file of tracks.
+pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<(), Complaint> {
+    if what.is_dir() {
+        return score_bundle(talk, what);
+    }
+    let bytes = std::fs::read(what).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", what.display()), "name a bundle folder, a CSV or an MCAP file"))?;
+    let bad = |why: String| Complaint::input(format!("`{}`: {why}", what.display()), "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …");
+    let recording = if bytes.starts_with(b"\x89MCAP") {
+        socrates_stream::mcap::read(&bytes).map_err(|why| bad(why.to_string()))?
+    } else {
+        let text = std::str::from_utf8(&bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
+        socrates_stream::csv::read_tracks(text).map_err(|why| bad(why.to_string()))?
+    };
+    let location = location.map(|name| load_location(name, Path::new("."))).transpose()?.map(|(location, _)| location);
+    let report = socrates_scoring::score(&Evidence { location: location.as_ref(), ..Evidence::of(&recording) });
+    for metric in &report.metrics {
+        let value = metric.value.map_or_else(|| format!("n/a ({})", metric.note), |value| format!("{value:.3} {}", metric.unit));
+        talk.line(&format!("{:<34} {value}", metric.id));
+    }
+    talk.line(&format!("verdict    {} · {}", report.verdict, report.verdict_text));
+    talk.result(&json!({ "verdict": report.verdict, "metrics": values(&report), "recording_hash": recording.hash() }));
+    Ok(())
+}
+
+fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
+    let bundle = bundle::read(dir)?;
+    let mut rows = Vec::new();
+    let mut differ = 0;
+    for (entry, (recording, old)) in bundle.manifest.runs.iter().zip(&bundle.runs) {
+        let reference = bundle.runs.iter().find(|(_, report)| report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference");
+        let report = socrates_scoring::score(&Evidence {
+            location: Some(&bundle.location),
+            request: Some(&bundle.request),
+            reading: Some(&bundle.reading),
+            proposal: Some(&bundle.proposal),
+            paths: Some(&bundle.paths),
+            reference: reference.map(|(recording, _)| recording),
+            ..Evidence::of(recording)
+        });
+        let same = report == *old;
+        differ += usize::from(!same);
+        talk.line(&format!("scored     {} seed {}: {} ({})", entry.planner, entry.seed, report.verdict, if same { "same report as the bundle" } else { "ANOTHER report than the bundle" }));
+        rows.push(json!({ "planner": entry.planner, "seed": entry.seed, "verdict": report.verdict, "same": same, "metrics": values(&report) }));
+    }
+    talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": bundle.manifest.verdict, "runs": rows }));
+    if differ > 0 {
+        return Err(Complaint::input(format!("{differ} reports differ from the bundle's"), "the bundle was made by another version, or was changed by hand").with_code(Code::Ours));
+    }
+    Ok(())
+}
+
+/// Metric values by id.
+pub(crate) fn values(report: &socrates_model::Report) -> serde_json::Value {
+    serde_json::Value::Object(report.metrics.iter().map(|metric| (metric.id.clone(), json!(metric.value))).collect())
+}

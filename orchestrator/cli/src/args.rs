@@ -1,0 +1,295 @@
+//! The command line, word by word.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// From a few sentences and a map to a social-navigation scenario that is simulated, checked and scored.
+#[derive(Debug, Parser)]
+#[command(name = "socrates", version, about, disable_help_subcommand = true, after_help = "First time? Run `socrates demo`.")]
+pub(crate) struct Cli {
+    /// How results are printed; with json the last line of standard output is one object.
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Configuration file; default `socrates.toml` in the current folder, if there is one.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// One configuration value, such as `--set supervisor.workers=2`; may be repeated.
+    #[arg(long, global = true, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// How results are printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Run a shipped request, with nothing to prepare.
+    Demo(RunOptions),
+    /// Write a commented request file.
+    New {
+        /// File to write.
+        file: PathBuf,
+        /// Location: a shipped name or a folder.
+        #[arg(long, default_value = "office")]
+        location: String,
+    },
+    /// Print how a request is read, and run nothing.
+    Read {
+        /// Request file.
+        request: PathBuf,
+    },
+    /// Make scenarios from requests: propose, simulate, check, score.
+    Run {
+        /// Request files, or folders of them.
+        #[arg(required = true)]
+        requests: Vec<PathBuf>,
+        /// Options.
+        #[command(flatten)]
+        options: RunOptions,
+    },
+    /// Open the page of a bundle.
+    Open {
+        /// Bundle folder.
+        bundle: PathBuf,
+    },
+    /// Simulate a bundle again and compare the recording hashes.
+    Simulate {
+        /// Bundle folder.
+        bundle: PathBuf,
+        /// Only this planner.
+        #[arg(long)]
+        planner: Option<String>,
+        /// Another seed than the bundle's own.
+        #[arg(long)]
+        seed: Option<u64>,
+        /// Folder for the recordings; default: nothing is written.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Score a bundle again, or tracks of your own (CSV with t,id,x,y[,yaw], or MCAP).
+    Score {
+        /// Bundle folder, CSV or MCAP file.
+        what: PathBuf,
+        /// Location for tracks of your own: a shipped name or a folder.
+        #[arg(long)]
+        location: Option<String>,
+    },
+    /// Watch the agent states of a run that is being made.
+    Watch {
+        /// Its bundle folder, or a zenoh endpoint such as `tcp/127.0.0.1:7447`.
+        what: String,
+        /// Run name; default: the first that is announced.
+        #[arg(long)]
+        run: Option<String>,
+    },
+    /// Show how the jobs of a folder stand.
+    Status {
+        /// Bundle or library folder, or a zenoh endpoint.
+        what: String,
+    },
+    /// Explain a fault code, such as G-DISC; without a code, list them.
+    Explain {
+        /// Fault code.
+        code: Option<String>,
+    },
+    /// Check what this machine can do, and say what is missing.
+    Doctor,
+    /// Print the effective configuration and where each value comes from.
+    Config {
+        /// Only this part, such as `author`.
+        part: Option<String>,
+    },
+    /// Check, draw and generate locations.
+    Map {
+        /// What to do.
+        #[command(subcommand)]
+        verb: MapVerb,
+    },
+    /// The same parts spread over machines.
+    Cluster {
+        /// What to do.
+        #[command(subcommand)]
+        verb: ClusterVerb,
+    },
+    /// For developers of SocRATES.
+    Dev {
+        /// What to do.
+        #[command(subcommand)]
+        verb: DevVerb,
+    },
+    /// One worker process; started by `run` and `cluster worker`.
+    #[command(hide = true)]
+    Worker(WorkerOptions),
+    /// The orchestrator process; started by `run` and `cluster up`.
+    #[command(hide = true)]
+    Orchestrator(OrchestratorOptions),
+}
+
+/// Options of `run` and `demo`.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct RunOptions {
+    /// Folder for the bundle; default `runs/<name>`. With several scenarios: the folder that holds them.
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Base seed of authoring and simulation.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Simulation seeds, `1..20` or `1,4,9`; wins over the request.
+    #[arg(long)]
+    pub(crate) seeds: Option<String>,
+    /// Planners under test, separated by commas; wins over the request.
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) planner: Vec<String>,
+    /// Scenarios to make from each request; wins over the request.
+    #[arg(long)]
+    pub(crate) variants: Option<u32>,
+    /// Author: `auto`, `offline`, `openai:MODEL`, `cassette:FILE`; wins over the request.
+    #[arg(long)]
+    pub(crate) author: Option<String>,
+    /// Pace of the simulation: `max`, or simulated seconds per second.
+    #[arg(long, default_value = "max")]
+    pub(crate) pace: String,
+    /// Exit with 3 unless the verdict is at least this.
+    #[arg(long, value_parser = ["realised", "any"], default_value = "realised")]
+    pub(crate) require: String,
+    /// Worker processes of the simulation stage.
+    #[arg(long)]
+    pub(crate) workers: Option<u32>,
+}
+
+/// Verbs of `map`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum MapVerb {
+    /// List the shipped locations and their requests.
+    List,
+    /// Check a location: everything that is wrong with it, at once.
+    Check {
+        /// A shipped name or a folder.
+        location: String,
+    },
+    /// Draw a location with its node ids.
+    Draw {
+        /// A shipped name or a folder.
+        location: String,
+        /// PNG or SVG file to write.
+        #[arg(long, short, default_value = "map.png")]
+        out: PathBuf,
+    },
+    /// Make a location folder from a floor plan (`plan.toml`).
+    Generate {
+        /// The floor plan.
+        plan: PathBuf,
+        /// Folder to write.
+        #[arg(long, short)]
+        out: PathBuf,
+    },
+}
+
+/// Verbs of `cluster`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ClusterVerb {
+    /// Start the orchestrator and listen for workers.
+    Up(OrchestratorOptions),
+    /// Serve stages on this machine.
+    Worker(WorkerOptions),
+    /// Hand requests to a running orchestrator and return.
+    Submit {
+        /// Request files, or folders of them.
+        #[arg(required = true)]
+        requests: Vec<PathBuf>,
+        /// Endpoint of the orchestrator.
+        #[arg(long)]
+        connect: String,
+        /// Namespace.
+        #[arg(long, default_value = "main")]
+        namespace: String,
+        /// Base seed.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+}
+
+/// Verbs of `dev`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum DevVerb {
+    /// Print the JSON schema of an artifact.
+    Schema {
+        /// `request`, `reading`, `proposal`, `paths`, `behaviors`, `report`, `location`, `clause`.
+        artifact: String,
+    },
+    /// Read a file of the published SocRATES tool and print what it holds.
+    Import {
+        /// Scenario, trajectory, tree or combined JSON.
+        file: PathBuf,
+    },
+    /// Write a bundle as the published tool's stage files.
+    Export {
+        /// Bundle folder.
+        bundle: PathBuf,
+        /// Folder to write.
+        #[arg(long, short)]
+        out: PathBuf,
+    },
+    /// Measure the main job on this machine.
+    Bench {
+        /// Runs to take the median of.
+        #[arg(long, default_value_t = 9)]
+        runs: u32,
+    },
+}
+
+/// Options of one worker process.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct WorkerOptions {
+    /// Stage it serves.
+    pub(crate) stage: String,
+    /// Endpoint of the orchestrator's router.
+    #[arg(long)]
+    pub(crate) connect: String,
+    /// Namespace.
+    #[arg(long, default_value = "main")]
+    pub(crate) namespace: String,
+    /// Artifact folder shared with the orchestrator; without it artifacts travel over the bus.
+    #[arg(long)]
+    pub(crate) blobs: Option<PathBuf>,
+    /// Folder for reports that are not yet recorded.
+    #[arg(long)]
+    pub(crate) spool: PathBuf,
+    /// Leave when standard input closes.
+    #[arg(long, hide = true)]
+    pub(crate) tied: bool,
+    /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
+    #[arg(long, default_value = "")]
+    pub(crate) inject: String,
+}
+
+/// Options of the orchestrator process.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct OrchestratorOptions {
+    /// Folder of the job store and the artifacts; on a local disk.
+    #[arg(long)]
+    pub(crate) dir: PathBuf,
+    /// Endpoint to listen on, such as `tcp/0.0.0.0:7447`.
+    #[arg(long)]
+    pub(crate) listen: Option<String>,
+    /// Endpoint of a router to use instead of listening.
+    #[arg(long)]
+    pub(crate) connect: Option<String>,
+    /// Namespace.
+    #[arg(long, default_value = "main")]
+    pub(crate) namespace: String,
+    /// Leave when standard input closes.
+    #[arg(long, hide = true)]
+    pub(crate) tied: bool,
+}

@@ -1,0 +1,383 @@
+//! The bundle: one folder that holds a scenario whole, and reads as a page.
+//!
+//! ```text
+//! report.html run.png run.svg story.txt metrics.csv agents.csv request.toml
+//! details/ manifest.json provenance.json location/ location.json reading.json proposal.json paths.json
+//!          behaviors.json behaviors/*.xml recordings/<planner>-<seed>.mcap reports/<planner>-<seed>.json
+//! ```
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use socrates_draw::{Page, ProvenanceRow, StageRow};
+use socrates_model::job::{Artifact, Stage};
+use socrates_model::wire::{JobStatus, ScenarioStatus};
+use socrates_model::{Behaviors, Digest, Location, Paths, Proposal, Reading, Recording, Report, Request, Verdict};
+
+use crate::exit::Complaint;
+use crate::prepare::Prepared;
+
+/// One run in the manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RunEntry {
+    /// Planner.
+    pub(crate) planner: String,
+    /// Simulation seed.
+    pub(crate) seed: u64,
+    /// Verdict.
+    pub(crate) verdict: Verdict,
+    /// Hash over decoded frames and events.
+    pub(crate) recording_hash: Digest,
+    /// Digest of the report file.
+    pub(crate) report: Digest,
+}
+
+/// What a bundle is made of; the last file written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    /// Format number.
+    pub(crate) format: u32,
+    /// Scenario id.
+    pub(crate) scenario: String,
+    /// Base seed.
+    pub(crate) seed: u64,
+    /// Digest of the request and everything it names: the same wish has the same one.
+    pub(crate) wish: Digest,
+    /// Verdict of the reference run of the first seed.
+    pub(crate) verdict: Verdict,
+    /// Runs, the reference first.
+    pub(crate) runs: Vec<RunEntry>,
+    /// Digest of every file of the bundle but this one and the provenance.
+    pub(crate) files: BTreeMap<String, Digest>,
+}
+
+/// A finished bundle.
+#[derive(Debug, Clone)]
+pub(crate) struct Bundle {
+    /// Folder.
+    pub(crate) dir: PathBuf,
+    /// Manifest.
+    pub(crate) manifest: Manifest,
+    /// The request.
+    pub(crate) request: Request,
+    /// The location.
+    pub(crate) location: Location,
+    /// The reading.
+    pub(crate) reading: Reading,
+    /// The proposal.
+    pub(crate) proposal: Proposal,
+    /// The paths.
+    pub(crate) paths: Paths,
+    /// The trees.
+    pub(crate) behaviors: Behaviors,
+    /// Runs, the reference first.
+    pub(crate) runs: Vec<(Recording, Report)>,
+}
+
+/// The digest of a wish: request, location, reading, pins, seed, author.
+pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
+    let text = json!({
+        "request": prepared.request, "location": prepared.location, "pins": prepared.pins, "seed": seed,
+        "author": prepared.author, "version": env!("CARGO_PKG_VERSION"),
+    });
+    Digest::of(text.to_string().as_bytes())
+}
+
+/// Reads the manifest of a finished bundle.
+pub(crate) fn manifest(dir: &Path) -> Option<Manifest> {
+    serde_json::from_str(&std::fs::read_to_string(dir.join("details/manifest.json")).ok()?).ok()
+}
+
+/// Where artifacts are read from.
+pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
+
+/// Writes the bundle of a finished scenario.
+pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
+    let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
+        if let Some(pinned) = prepared.pins.get(role) {
+            return Ok(pinned.clone());
+        }
+        let artifact = newest(status, stage, "").and_then(|job| job.artifacts.iter().find(|artifact| artifact.role == role));
+        string(artifact.ok_or_else(|| missing(role))?, fetch)
+    };
+    let (proposal_text, paths_text, behaviors_text) =
+        (text("proposal", Stage::Proposal)?, text("paths", Stage::Paths)?, text("behaviors", Stage::Behaviors)?);
+    let proposal: Proposal = parse("proposal", &proposal_text)?;
+    let paths: Paths = parse("paths", &paths_text)?;
+    let behaviors: Behaviors = parse("behaviors", &behaviors_text)?;
+    let mut out = Writer { dir: dir.to_path_buf(), files: BTreeMap::new() };
+    let mut runs: Vec<(Recording, Report)> = Vec::new();
+    let mut entries = Vec::new();
+    for job in scoring_jobs(status) {
+        let (Some(report_file), Some(simulation)) =
+            (job.artifacts.iter().find(|a| a.role == "report"), newest(status, Stage::Simulation, &job.key.item))
+        else {
+            continue;
+        };
+        let report_text = string(report_file, fetch)?;
+        let report: Report = parse("report", &report_text)?;
+        let recording_file = simulation.artifacts.iter().find(|a| a.role == "recording").ok_or_else(|| missing("recording"))?;
+        let bytes = fetch(&recording_file.digest)?;
+        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
+        out.put(&format!("details/recordings/{}.mcap", job.key.item), &bytes)?;
+        let report_digest = out.put(&format!("details/reports/{}.json", job.key.item), pretty(&report)?.as_bytes())?;
+        entries.push(RunEntry {
+            planner: report.planner.clone(),
+            seed: report.seed,
+            verdict: report.verdict,
+            recording_hash: recording.hash(),
+            report: report_digest,
+        });
+        runs.push((recording, report));
+    }
+    let Some((recording, report)) = runs.first() else { return Err(missing("report")) };
+    let verdict = report.verdict;
+    let title = format!("{} · {}", proposal.title, prepared.location.name);
+    let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
+    out.put("run.svg", svg.as_bytes())?;
+    out.put("run.png", &socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()))?)?;
+    out.put("story.txt", story(&title, &proposal, report).as_bytes())?;
+    out.put("metrics.csv", metrics(&runs).as_bytes())?;
+    out.put("agents.csv", socrates_stream::csv::write_agents(recording).as_bytes())?;
+    let request_text = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
+    out.put("request.toml", request_text.as_bytes())?;
+    for (name, bytes) in &prepared.location_files {
+        out.put(&format!("details/location/{name}"), bytes)?;
+    }
+    out.put("details/location.json", pretty(&prepared.location)?.as_bytes())?;
+    out.put("details/reading.json", pretty(&prepared.reading)?.as_bytes())?;
+    out.put("details/proposal.json", pretty(&proposal)?.as_bytes())?;
+    out.put("details/paths.json", pretty(&paths)?.as_bytes())?;
+    out.put("details/behaviors.json", pretty(&behaviors)?.as_bytes())?;
+    for (id, human) in &behaviors.humans {
+        out.put(&format!("details/behaviors/{id}.xml"), human.tree.as_bytes())?;
+    }
+    let stages = stage_rows(status);
+    let provenance = provenance(prepared, seed, status, fetch);
+    let rows = provenance_rows(prepared, seed, &entries);
+    let reading_line = socrates_offline::summary(&prepared.reading);
+    let page = Page {
+        title: &title,
+        request: &prepared.request,
+        reading: &prepared.reading,
+        reading_line: &reading_line,
+        location: &prepared.location,
+        proposal: &proposal,
+        paths: &paths,
+        runs: &runs,
+        stages: &stages,
+        provenance: &rows,
+    };
+    // The page shows working times, so it stands outside the bundle's digest, like the provenance.
+    out.put_outside("report.html", page.html().as_bytes())?;
+    out.put_outside("details/provenance.json", pretty(&provenance)?.as_bytes())?;
+    let manifest = Manifest {
+        format: socrates_model::FORMAT,
+        scenario: status.id.to_string(),
+        seed,
+        wish: wish(prepared, seed),
+        verdict,
+        runs: entries,
+        files: out.files.clone(),
+    };
+    out.put_outside("details/manifest.json", pretty(&manifest)?.as_bytes())?;
+    Ok(Bundle {
+        dir: dir.to_path_buf(),
+        manifest,
+        request: prepared.request.clone(),
+        location: prepared.location.clone(),
+        reading: prepared.reading.clone(),
+        proposal,
+        paths,
+        behaviors,
+        runs,
+    })
+}
+
+/// Reads a finished bundle back, here or wherever it was moved to.
+pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
+    let manifest = manifest(dir).ok_or_else(|| {
+        Complaint::input(format!("`{}` is no finished bundle: details/manifest.json is missing or broken", dir.display()), "`socrates run` makes one; the same command again finishes an unfinished one")
+    })?;
+    let load = |name: &str| -> Result<String, Complaint> {
+        let path = dir.join("details").join(name);
+        std::fs::read_to_string(&path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged; run its request.toml again"))
+    };
+    let request_text = std::fs::read_to_string(dir.join("request.toml"))
+        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", dir.join("request.toml").display()), "the bundle is damaged"))?;
+    let request: Request = toml::from_str(&request_text).map_err(|why| Complaint::input(format!("request.toml of the bundle: {why}"), "the bundle is damaged"))?;
+    let mut runs = Vec::new();
+    for entry in &manifest.runs {
+        let item = format!("{}-{}", entry.planner, entry.seed);
+        let path = dir.join(format!("details/recordings/{item}.mcap"));
+        let bytes = std::fs::read(&path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged"))?;
+        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Complaint::input(format!("`{}`: {why}", path.display()), "the bundle is damaged"))?;
+        runs.push((recording, parse("report", &load(&format!("reports/{item}.json"))?)?));
+    }
+    Ok(Bundle {
+        dir: dir.to_path_buf(),
+        manifest,
+        request,
+        location: parse("location", &load("location.json")?)?,
+        reading: parse("reading", &load("reading.json")?)?,
+        proposal: parse("proposal", &load("proposal.json")?)?,
+        paths: parse("paths", &load("paths.json")?)?,
+        behaviors: parse("behaviors", &load("behaviors.json")?)?,
+        runs,
+    })
+}
+
+struct Writer {
+    dir: PathBuf,
+    files: BTreeMap<String, Digest>,
+}
+
+impl Writer {
+    fn put(&mut self, name: &str, bytes: &[u8]) -> Result<Digest, Complaint> {
+        self.put_outside(name, bytes)?;
+        let digest = Digest::of(bytes);
+        self.files.insert(name.to_owned(), digest);
+        Ok(digest)
+    }
+
+    fn put_outside(&self, name: &str, bytes: &[u8]) -> Result<(), Complaint> {
+        let path = self.dir.join(name);
+        let cannot = |why: std::io::Error| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder");
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(cannot)?;
+        }
+        std::fs::write(&path, bytes).map_err(cannot)
+    }
+}
+
+fn ours(what: &str) -> Complaint {
+    Complaint::input(what, "this is our fault; `details/provenance.json` holds what is needed to find it").with_code(crate::exit::Code::Ours)
+}
+
+fn missing(role: &str) -> Complaint {
+    ours(&format!("the scenario ended without a {role}"))
+}
+
+fn parse<T: serde::de::DeserializeOwned>(role: &str, text: &str) -> Result<T, Complaint> {
+    serde_json::from_str(text).map_err(|why| ours(&format!("the {role} cannot be decoded: {why}")))
+}
+
+fn pretty<T: Serialize>(value: &T) -> Result<String, Complaint> {
+    serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|why| ours(&why.to_string()))
+}
+
+fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
+    if let Some(text) = &artifact.inline {
+        return Ok(text.clone());
+    }
+    String::from_utf8(fetch(&artifact.digest)?).map_err(|why| ours(&format!("the {} is no text: {why}", artifact.role)))
+}
+
+/// The newest job of a stage and item that has a result.
+fn newest<'a>(status: &'a ScenarioStatus, stage: Stage, item: &str) -> Option<&'a JobStatus> {
+    status
+        .jobs
+        .iter()
+        .filter(|job| job.key.stage == stage && job.key.item == item && job.state == "succeeded")
+        .max_by_key(|job| job.key.revision)
+}
+
+/// Newest scoring jobs, the reference first, then by planner and seed.
+fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
+    let mut items: Vec<&str> =
+        status.jobs.iter().filter(|job| job.key.stage == Stage::Scoring).map(|job| job.key.item.as_str()).collect();
+    items.sort_by_key(|item| {
+        let (planner, seed) = item.rsplit_once('-').unwrap_or((item, "0"));
+        (planner != "reference", planner.to_owned(), seed.parse::<u64>().unwrap_or(0))
+    });
+    items.dedup();
+    items.into_iter().filter_map(|item| newest(status, Stage::Scoring, item)).collect()
+}
+
+/// The request as the bundle keeps it: its location lies beside it, so it can be moved.
+fn portable(prepared: &Prepared) -> Request {
+    let mut request = prepared.request.clone();
+    if socrates_maps::shipped::files(&request.location).is_none() {
+        request.location = "details/location".to_owned();
+    }
+    for (role, slot) in [("proposal", &mut request.proposal), ("paths", &mut request.paths), ("behaviors", &mut request.behaviors)] {
+        if slot.is_some() {
+            *slot = Some(format!("details/{role}.json"));
+        }
+    }
+    request
+}
+
+fn story(title: &str, proposal: &Proposal, report: &Report) -> String {
+    let mut text = format!("{title}\nauthor {}\n\n{}\n\n", proposal.author, proposal.description);
+    for line in &report.story {
+        text.push_str(line);
+        text.push('\n');
+    }
+    text.push_str(&format!("\n{}: {}\nrobot: {}\n", report.verdict, report.verdict_text, report.robot_text));
+    text
+}
+
+fn metrics(runs: &[(Recording, Report)]) -> String {
+    let mut text = "planner,seed,metric,value,unit,direction,note\n".to_owned();
+    for (_, report) in runs {
+        for metric in &report.metrics {
+            let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
+            let note = metric.note.replace('"', "'");
+            text.push_str(&format!("{},{},{},{value},{},{},\"{note}\"\n", report.planner, report.seed, metric.id, metric.unit, metric.direction));
+        }
+    }
+    text
+}
+
+/// Stage lines of a status, in pipeline order.
+pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
+    let mut jobs: Vec<&JobStatus> = status.jobs.iter().collect();
+    jobs.sort_by(|a, b| (a.key.stage, &a.key.item, a.key.revision).cmp(&(b.key.stage, &b.key.item, b.key.revision)));
+    jobs.iter()
+        .map(|job| {
+            let item = if job.key.item.is_empty() { String::new() } else { format!(" {}", job.key.item) };
+            let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
+            let faults: Vec<String> = job.faults.iter().map(ToString::to_string).collect();
+            let remark = [job.remark.clone(), faults.join("; ")].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ");
+            StageRow { stage: format!("{}{item}{revision}", job.key.stage), state: job.state.clone(), attempts: job.attempts, wall_ms: job.wall_ms, remark }
+        })
+        .collect()
+}
+
+fn provenance_rows(prepared: &Prepared, seed: u64, runs: &[RunEntry]) -> Vec<ProvenanceRow> {
+    let mut rows = vec![
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("author", prepared.author.clone()),
+        ("seed", seed.to_string()),
+        ("request", Digest::of(serde_json::to_string(&prepared.request).unwrap_or_default().as_bytes()).to_string()),
+        ("location", Digest::of(serde_json::to_string(&prepared.location).unwrap_or_default().as_bytes()).to_string()),
+    ];
+    let names: Vec<String> = runs.iter().map(|run| format!("recording {}-{}", run.planner, run.seed)).collect();
+    rows.extend(names.iter().zip(runs).map(|(name, run)| (name.as_str(), run.recording_hash.to_string())));
+    rows.into_iter().map(|(name, value)| ProvenanceRow { name: name.to_owned(), value }).collect()
+}
+
+/// Versions, seeds, every question, answer, fault and attempt.
+fn provenance(prepared: &Prepared, seed: u64, status: &ScenarioStatus, fetch: &Fetch<'_>) -> serde_json::Value {
+    let jobs: Vec<serde_json::Value> = status
+        .jobs
+        .iter()
+        .map(|job| {
+            let exchanges: Vec<serde_json::Value> = job
+                .artifacts
+                .iter()
+                .filter(|artifact| matches!(artifact.role.as_str(), "exchange" | "refused"))
+                .filter_map(|artifact| string(artifact, fetch).ok())
+                .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+                .collect();
+            let artifacts: Vec<serde_json::Value> =
+                job.artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect();
+            json!({ "job": job.key, "state": job.state, "attempts": job.attempts, "wall_ms": job.wall_ms, "remark": job.remark,
+                    "faults": job.faults, "artifacts": artifacts, "exchanges": exchanges })
+        })
+        .collect();
+    json!({ "version": env!("CARGO_PKG_VERSION"), "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
+}

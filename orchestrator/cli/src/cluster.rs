@@ -1,0 +1,60 @@
+//! `cluster submit`: requests handed to a running orchestrator.
+
+use std::path::PathBuf;
+
+use serde_json::json;
+use socrates_kit::LocalBlobs;
+use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
+
+use crate::args::RunOptions;
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::prepare::{plural, prepare, request_files, scenario_id};
+use crate::session::{Wanted, spec, submit as send};
+use crate::talk::Talk;
+
+/// Submits requests and returns; `socrates status ENDPOINT` shows how they stand.
+pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], connect: &str, namespace: &str, seed: u64, key_found: bool) -> Result<(), Complaint> {
+    let options = RunOptions {
+        out: None,
+        seed,
+        seeds: None,
+        planner: Vec::new(),
+        variants: None,
+        author: None,
+        pace: "max".to_owned(),
+        require: "any".to_owned(),
+        workers: None,
+    };
+    let files = request_files(requests)?;
+    let prepared = files.iter().map(|file| prepare(file, Some(&options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    let bus = ZenohBus::open(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect))
+        .await
+        .map_err(|why| Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?").with_code(Code::Input))?;
+    let folder = std::env::temp_dir().join(format!("socrates-submit-{}", std::process::id()));
+    let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
+    let blobs = LocalBlobs::open(&folder).map_err(|why| ours(why.to_string()))?;
+    let mut specs = Vec::new();
+    for one in &prepared {
+        for index in 0..one.request.run.variants {
+            let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
+            specs.push(spec(&Wanted { id, seed: seed + u64::from(index), prepared: one }, config, &options, &blobs)?);
+        }
+    }
+    let mut digests: Vec<_> = specs.iter().flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied())).collect();
+    digests.sort();
+    digests.dedup();
+    let remote = socrates_kit::Blobs::Bus;
+    for digest in digests {
+        let bytes = blobs.get(&digest).map_err(|why| ours(why.to_string()))?;
+        remote.put(&bus, &bytes).await.map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
+    }
+    let count = specs.len();
+    send(&bus, "cluster", specs).await?;
+    bus.close().await;
+    drop(std::fs::remove_dir_all(&folder));
+    talk.line(&format!("submitted  {} from {}", plural(count, "scenario"), plural(prepared.len(), "request")));
+    talk.line(&format!("next       socrates status {connect}@{namespace}"));
+    talk.result(&json!({ "submitted": count }));
+    Ok(())
+}

@@ -1,0 +1,141 @@
+//! Configuration: built-in, file, environment, flag; each value remembers where it came from.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::exit::Complaint;
+
+/// The default configuration is also the manual.
+pub(crate) const BUILT_IN: &str = include_str!("../../../deploy/socrates.toml");
+
+/// Prefix of environment variables: `SOCRATES_SUPERVISOR__WORKERS=2` sets `supervisor.workers`.
+const ENV_PREFIX: &str = "SOCRATES_";
+
+/// Effective values by dotted key.
+#[derive(Debug, Clone)]
+pub(crate) struct Config {
+    values: BTreeMap<String, (toml::Value, String)>,
+}
+
+impl Config {
+    /// Reads all layers.
+    pub(crate) fn load(
+        file: Option<&Path>,
+        env: impl Iterator<Item = (String, String)>,
+        flags: &[String],
+    ) -> Result<Self, Complaint> {
+        let mut values = BTreeMap::new();
+        let built_in = parse(BUILT_IN, "built-in")?;
+        flatten("", &built_in, "built-in", &mut values);
+        let found = file.map_or_else(|| Path::new("socrates.toml"), |path| path);
+        if file.is_some() || found.is_file() {
+            let text = std::fs::read_to_string(found).map_err(|why| {
+                Complaint::input(format!("cannot read the configuration `{}`: {why}", found.display()), "check the path after --config")
+            })?;
+            let mut layer = BTreeMap::new();
+            flatten("", &parse(&text, &found.display().to_string())?, &found.display().to_string(), &mut layer);
+            for (key, entry) in layer {
+                known(&values, &key, &found.display().to_string())?;
+                values.insert(key, entry);
+            }
+        }
+        for (name, text) in env {
+            let Some(rest) = name.strip_prefix(ENV_PREFIX) else { continue };
+            let key = rest.to_lowercase().replace("__", ".");
+            if values.contains_key(&key) {
+                let value = typed(&values, &key, &text, &name)?;
+                values.insert(key, (value, format!("environment {name}")));
+            }
+        }
+        for flag in flags {
+            let (key, text) = flag.split_once('=').ok_or_else(|| {
+                Complaint::input(format!("`--set {flag}` has no value"), "write --set key=value, for example --set supervisor.workers=2")
+            })?;
+            known(&values, key, "--set")?;
+            let value = typed(&values, key, text, "--set")?;
+            values.insert(key.to_owned(), (value, "flag --set".to_owned()));
+        }
+        Ok(Self { values })
+    }
+
+    /// A text value.
+    pub(crate) fn text(&self, key: &str) -> String {
+        self.values.get(key).and_then(|(value, _)| value.as_str()).unwrap_or_default().to_owned()
+    }
+
+    /// A whole number.
+    pub(crate) fn number(&self, key: &str) -> u64 {
+        self.values.get(key).and_then(|(value, _)| value.as_integer()).and_then(|n| u64::try_from(n).ok()).unwrap_or_default()
+    }
+
+    /// Every value with its origin, in order of the keys.
+    pub(crate) fn lines(&self, part: Option<&str>) -> Vec<(String, String, String)> {
+        self.values
+            .iter()
+            .filter(|(key, _)| part.is_none_or(|part| key.starts_with(part)))
+            .map(|(key, (value, origin))| (key.clone(), value.to_string(), origin.clone()))
+            .collect()
+    }
+}
+
+fn parse(text: &str, origin: &str) -> Result<toml::Table, Complaint> {
+    text.parse::<toml::Table>()
+        .map_err(|why| Complaint::input(format!("the configuration `{origin}` is not valid TOML: {why}"), "`socrates config` prints a valid one"))
+}
+
+fn flatten(prefix: &str, table: &toml::Table, origin: &str, out: &mut BTreeMap<String, (toml::Value, String)>) {
+    for (name, value) in table {
+        let key = if prefix.is_empty() { name.clone() } else { format!("{prefix}.{name}") };
+        match value {
+            toml::Value::Table(inner) => flatten(&key, inner, origin, out),
+            toml::Value::String(_)
+            | toml::Value::Integer(_)
+            | toml::Value::Float(_)
+            | toml::Value::Boolean(_)
+            | toml::Value::Datetime(_)
+            | toml::Value::Array(_) => {
+                out.insert(key, (value.clone(), origin.to_owned()));
+            }
+        }
+    }
+}
+
+fn known(values: &BTreeMap<String, (toml::Value, String)>, key: &str, origin: &str) -> Result<(), Complaint> {
+    if values.contains_key(key) {
+        return Ok(());
+    }
+    let all = values.keys().cloned().collect::<Vec<_>>().join(", ");
+    Err(Complaint::input(format!("{origin}: unknown configuration key `{key}`"), format!("allowed keys: {all}")))
+}
+
+fn typed(values: &BTreeMap<String, (toml::Value, String)>, key: &str, text: &str, origin: &str) -> Result<toml::Value, Complaint> {
+    let wrong = |what: &str| {
+        Complaint::input(format!("{origin}: `{key}` is `{text}`"), format!("it takes {what}; `socrates config` prints the manual"))
+    };
+    match values.get(key).map(|(value, _)| value) {
+        Some(toml::Value::Integer(_)) => text.parse::<i64>().map(toml::Value::Integer).map_err(|_why| wrong("a whole number")),
+        Some(toml::Value::Float(_)) => text.parse::<f64>().map(toml::Value::Float).map_err(|_why| wrong("a number")),
+        Some(toml::Value::Boolean(_)) => text.parse::<bool>().map(toml::Value::Boolean).map_err(|_why| wrong("true or false")),
+        Some(toml::Value::String(_) | toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_)) | None => {
+            Ok(toml::Value::String(text.to_owned()))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flag_wins_over_the_environment_and_an_unknown_key_is_named() {
+        let env = || [("SOCRATES_SUPERVISOR__WORKERS".to_owned(), "3".to_owned())].into_iter();
+        let config = Config::load(None, env(), &[]).unwrap();
+        assert_eq!(config.number("supervisor.workers"), 3);
+        let config = Config::load(None, env(), &["supervisor.workers=2".to_owned()]).unwrap();
+        assert_eq!(config.number("supervisor.workers"), 2);
+        let why = Config::load(None, env(), &["supervisor.wrokers=2".to_owned()]).unwrap_err();
+        assert!(why.to_string().contains("wrokers"));
+        let why = Config::load(None, env(), &["supervisor.workers=two".to_owned()]).unwrap_err();
+        assert!(why.to_string().contains("a whole number"));
+    }
+}

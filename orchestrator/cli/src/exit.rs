@@ -1,0 +1,70 @@
+//! Exit codes, and the errors that carry them.
+
+use std::fmt;
+
+use socrates_model::Fault;
+
+/// Documented exit codes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Code {
+    /// Realised, or the verb did what was asked.
+    Ok = 0,
+    /// Our fault.
+    Ours = 1,
+    /// Bad input or usage.
+    Input = 2,
+    /// Bundle made, not realised.
+    NotRealised = 3,
+    /// Waits for a person.
+    Waits = 4,
+    /// Author unreachable.
+    Author = 5,
+}
+
+/// An error for the user: what, causes, a hint with a command that helps, and the exit code.
+#[derive(Debug)]
+pub(crate) struct Complaint {
+    /// Exit code.
+    pub(crate) code: Code,
+    /// What is wrong, with the value.
+    pub(crate) what: String,
+    /// Causes or single problems, one a line.
+    pub(crate) causes: Vec<String>,
+    /// What helps.
+    pub(crate) hint: String,
+}
+
+impl Complaint {
+    /// Bad input.
+    pub(crate) fn input(what: impl Into<String>, hint: impl Into<String>) -> Self {
+        Self { code: Code::Input, what: what.into(), causes: Vec::new(), hint: hint.into() }
+    }
+
+    /// Bad input with several problems.
+    pub(crate) fn faults(what: impl Into<String>, faults: &[Fault], hint: impl Into<String>) -> Self {
+        let causes = faults.iter().map(ToString::to_string).collect();
+        Self { code: Code::Input, what: what.into(), causes, hint: hint.into() }
+    }
+
+    /// With another exit code.
+    pub(crate) fn with_code(mut self, code: Code) -> Self {
+        self.code = code;
+        self
+    }
+}
+
+impl fmt::Display for Complaint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.what)?;
+        for cause in &self.causes {
+            write!(f, "\n  {cause}")?;
+        }
+        if !self.hint.is_empty() {
+            write!(f, "\n\nhint: {}", self.hint)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Complaint {}

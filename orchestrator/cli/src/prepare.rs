@@ -1,0 +1,248 @@
+//! From request files to prepared scenarios: everything that can be wrong is said here, before anything runs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use socrates_model::{Fault, Location, Reading, Request, ScenarioId};
+
+use crate::args::RunOptions;
+use crate::config::Config;
+use crate::exit::Complaint;
+
+/// A request file larger than this is not read.
+const MAX_REQUEST_BYTES: u64 = 256 * 1024;
+/// A pinned artifact larger than this is not read.
+const MAX_PIN_BYTES: u64 = 16 * 1024 * 1024;
+
+/// A request with everything it names, read and checked.
+#[derive(Debug, Clone)]
+pub(crate) struct Prepared {
+    /// Name of the scenario: the file's stem.
+    pub(crate) name: String,
+    /// The request, options applied.
+    pub(crate) request: Request,
+    /// The location.
+    pub(crate) location: Location,
+    /// Its files, for the bundle.
+    pub(crate) location_files: BTreeMap<String, Vec<u8>>,
+    /// The reading.
+    pub(crate) reading: Reading,
+    /// Pinned artifacts as JSON by role.
+    pub(crate) pins: BTreeMap<String, String>,
+    /// Resolved author: `offline`, `openai:MODEL`, `cassette:FILE`.
+    pub(crate) author: String,
+    /// Why this author, for the first line of a run.
+    pub(crate) author_note: String,
+}
+
+/// Every request file named on the command line, folders opened.
+pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
+                .map_err(|why| Complaint::input(format!("cannot list `{}`: {why}", path.display()), "name request files or a folder of them"))?
+                .filter_map(Result::ok)
+                .map(|entry| entry.path())
+                .filter(|file| file.extension().is_some_and(|ext| ext == "toml"))
+                .collect();
+            inside.sort();
+            if inside.is_empty() {
+                return Err(Complaint::input(format!("`{}` holds no request (*.toml)", path.display()), "`socrates new my.toml` writes one"));
+            }
+            files.extend(inside);
+        } else {
+            files.push(path.clone());
+        }
+    }
+    Ok(files)
+}
+
+/// Reads and checks one request file.
+pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config, key_found: bool) -> Result<Prepared, Complaint> {
+    let text = read_text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
+    let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
+    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config, key_found)
+}
+
+/// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
+pub(crate) fn prepare_text(
+    name: &str,
+    text: &str,
+    shown: &str,
+    folder: &Path,
+    options: Option<&RunOptions>,
+    config: &Config,
+    key_found: bool,
+) -> Result<Prepared, Complaint> {
+    let mut request: Request = toml::from_str(text).map_err(|why| {
+        let mut complaint = Complaint::input(format!("the request `{shown}` cannot be read"), "`socrates new my.toml` writes a request with every key explained");
+        complaint.causes = why.to_string().lines().map(str::to_owned).collect();
+        complaint
+    })?;
+    if let Some(options) = options {
+        apply(&mut request, options);
+    }
+    let problems = request.problems();
+    if !problems.is_empty() {
+        let mut complaint = Complaint::input(format!("the request `{shown}` has {}", plural(problems.len(), "problem")), String::new());
+        complaint.causes = problems.iter().map(|bad| format!("J-REQUEST {bad} ({})", bad.hint)).collect();
+        complaint.hint = "`socrates explain J-REQUEST`".to_owned();
+        return Err(complaint);
+    }
+    let known = socrates_planners::names();
+    for planner in &request.robot.planners {
+        if planner != "none" && !known.contains(&planner.as_str()) {
+            return Err(Complaint::input(
+                format!("J-PLANNER `robot.planners`: there is no planner `{planner}`"),
+                format!("planners: {}, none", known.join(", ")),
+            ));
+        }
+    }
+    let (mut location, location_files) = load_location(&request.location, folder)?;
+    if let Some(description) = &request.location_description {
+        location.description.clone_from(description);
+    }
+    let reading = socrates_offline::read(&request, &location);
+    let stops: Vec<Fault> = socrates_model::fault::hard(&reading.problems);
+    if !stops.is_empty() {
+        return Err(Complaint::faults(
+            format!("the request `{shown}` asks for something that cannot be made"),
+            &stops,
+            format!("correct the text, or set the fact under [expect]; `socrates read {shown}` shows the reading"),
+        ));
+    }
+    let mut pins = BTreeMap::new();
+    for (role, pinned) in [("proposal", &request.proposal), ("paths", &request.paths), ("behaviors", &request.behaviors)] {
+        if let Some(pinned) = pinned {
+            pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
+        }
+    }
+    let (author, author_note) = choose_author(&request.run.author, config, key_found);
+    Ok(Prepared { name: slug(name), request, location, location_files, reading, pins, author, author_note })
+}
+
+/// Flags win over the request.
+fn apply(request: &mut Request, options: &RunOptions) {
+    if let Some(seeds) = &options.seeds {
+        request.run.seeds.clone_from(seeds);
+    } else if request.run.seeds == "1" {
+        // A plain `--seed 7` moves authoring and simulation together.
+        request.run.seeds = options.seed.to_string();
+    }
+    if !options.planner.is_empty() {
+        request.robot.planners.clone_from(&options.planner);
+    }
+    if let Some(variants) = options.variants {
+        request.run.variants = variants;
+    }
+    if let Some(author) = &options.author {
+        request.run.author.clone_from(author);
+    }
+    if !request.robot.planners.iter().any(|planner| planner == "reference") {
+        request.robot.planners.insert(0, "reference".to_owned());
+    }
+}
+
+/// A location by shipped name or folder, with its files.
+pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
+    let wrong = |faults: Vec<Fault>| Complaint::faults(format!("the location `{name}` is not usable"), &faults, format!("`socrates map check {name}` lists everything; shipped locations: {}", socrates_maps::shipped::names().join(", ")));
+    if let Some(files) = socrates_maps::shipped::files(name) {
+        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files));
+    }
+    let beside = folder.join(name);
+    let dir = if beside.is_dir() { beside } else { PathBuf::from(name) };
+    if !dir.is_dir() {
+        return Err(Complaint::input(
+            format!("there is no location `{name}`"),
+            format!("give a folder with map.yaml and scene_graph.json, or one of: {}", socrates_maps::shipped::names().join(", ")),
+        ));
+    }
+    let location = socrates_maps::load(&dir).map_err(wrong)?;
+    let mut files = BTreeMap::new();
+    for entry in std::fs::read_dir(&dir).into_iter().flatten().filter_map(Result::ok) {
+        let file = entry.file_name().to_string_lossy().into_owned();
+        let fits = ["yaml", "pgm", "png", "json", "toml"].iter().any(|ext| file.ends_with(&format!(".{ext}")));
+        if fits && let Ok(bytes) = std::fs::read(entry.path()) {
+            files.insert(file, bytes);
+        }
+    }
+    Ok((location, files))
+}
+
+/// A pinned artifact in our own form, or out of a file of the published tool.
+fn read_pin(role: &str, path: &Path) -> Result<String, Complaint> {
+    let text = read_text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
+    let own = match role {
+        "proposal" => serde_json::from_str::<socrates_model::Proposal>(&text).map(|_| ()),
+        "paths" => serde_json::from_str::<socrates_model::Paths>(&text).map(|_| ()),
+        _ => serde_json::from_str::<socrates_model::Behaviors>(&text).map(|_| ()),
+    };
+    let Err(own) = own else { return Ok(text) };
+    let wrong = |cause: String| {
+        let mut complaint = Complaint::input(format!("the pinned {role} `{}` cannot be read", path.display()), format!("`socrates dev schema {role}` prints the form"));
+        complaint.causes = vec![format!("as our own form: {own}"), format!("as a file of the published tool: {cause}")];
+        complaint
+    };
+    let imported = socrates_export::socrates_json::read(&text).map_err(|why| wrong(why.to_string()))?;
+    let json = match role {
+        "proposal" => imported.proposal.map(|artifact| serde_json::to_string(&artifact)),
+        "paths" => imported.paths.map(|artifact| serde_json::to_string(&artifact)),
+        _ => imported.behaviors.map(|artifact| serde_json::to_string(&artifact)),
+    };
+    match json {
+        Some(Ok(json)) => Ok(json),
+        Some(Err(why)) => Err(wrong(why.to_string())),
+        None => Err(wrong(format!("it holds no {role}"))),
+    }
+}
+
+fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, String) {
+    let wish = if wish == "auto" { config.text("author.kind") } else { wish.to_owned() };
+    if wish != "auto" {
+        let note = if wish == "offline" { "offline, rules".to_owned() } else { wish.clone() };
+        return (wish, note);
+    }
+    let model = config.text("author.model");
+    if key_found && !model.is_empty() {
+        (format!("openai:{model}"), format!("openai:{model}"))
+    } else if key_found {
+        ("offline".to_owned(), "offline, rules (a key was found, but no model: `socrates config author` to change)".to_owned())
+    } else {
+        ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
+    }
+}
+
+fn read_text(path: &Path, max: u64, hint: &str) -> Result<String, Complaint> {
+    let length = std::fs::metadata(path)
+        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?
+        .len();
+    if length > max {
+        return Err(Complaint::input(format!("`{}` has {length} bytes", path.display()), format!("at most {max} bytes are read")));
+    }
+    let bytes = std::fs::read(path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?;
+    String::from_utf8(bytes).map_err(|why| {
+        Complaint::input(format!("`{}` is not UTF-8 text (byte {})", path.display(), why.utf8_error().valid_up_to()), "save it as UTF-8")
+    })
+}
+
+/// A word that is safe as folder and scenario id.
+pub(crate) fn slug(text: &str) -> String {
+    let mut out: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_') { c.to_ascii_lowercase() } else { '-' }).take(60).collect();
+    if out.trim_matches('-').is_empty() {
+        out = "scenario".to_owned();
+    }
+    out
+}
+
+/// `1 problem`, `2 problems`.
+pub(crate) fn plural(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}
+
+/// The scenario id of variant `index` of `count`.
+pub(crate) fn scenario_id(name: &str, seed: u64, index: u32, count: u32) -> Result<ScenarioId, Complaint> {
+    let id = if count == 1 { format!("{name}-{seed}") } else { format!("{name}-{seed}-{:05}", index + 1) };
+    ScenarioId::new(id).map_err(|bad| Complaint::input(bad.to_string(), "rename the request file"))
+}

@@ -1,0 +1,272 @@
+//! `run` and `demo`: the main job.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use socrates_model::Verdict;
+use socrates_model::wire::ScenarioStatus;
+
+use crate::again::values;
+use crate::args::{Cli, RunOptions};
+use crate::bundle::{self, Bundle};
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::prepare::{Prepared, plural, prepare, prepare_text, request_files, scenario_id};
+use crate::session::{Made, Wanted, make};
+use crate::talk::Talk;
+
+/// The shipped request of `demo`.
+const DEMO: (&str, &str) = ("hospital", "elevator");
+
+/// Runs the shipped request.
+pub(crate) async fn demo(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, key_found: bool) -> Result<Code, Complaint> {
+    let requests = socrates_maps::shipped::requests(DEMO.0);
+    let (name, text) = requests
+        .into_iter()
+        .find(|(stem, _)| *stem == DEMO.1)
+        .ok_or_else(|| Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours))?;
+    let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config, key_found)?;
+    single_or_batch(talk, cli, config, options, vec![prepared]).await
+}
+
+/// Runs request files.
+pub(crate) async fn run(talk: &Talk, cli: &Cli, config: &Config, requests: &[PathBuf], options: &RunOptions, key_found: bool) -> Result<Code, Complaint> {
+    let files = request_files(requests)?;
+    let prepared = files.iter().map(|file| prepare(file, Some(options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    single_or_batch(talk, cli, config, options, prepared).await
+}
+
+async fn single_or_batch(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Vec<Prepared>) -> Result<Code, Complaint> {
+    pace(&options.pace)?;
+    let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    let mut prepared = prepared;
+    match prepared.pop() {
+        Some(one) if count == 1 => single(talk, cli, config, options, one).await,
+        last => {
+            prepared.extend(last);
+            batch(talk, cli, config, options, prepared, count).await
+        }
+    }
+}
+
+/// Checks a pace.
+fn pace(text: &str) -> Result<(), Complaint> {
+    if text == "max" || text.parse::<f64>().is_ok_and(|pace| pace.is_finite() && pace > 0.0) {
+        return Ok(());
+    }
+    Err(Complaint::input(format!("`--pace {text}` is no pace"), "`max`, or simulated seconds per second such as 1"))
+}
+
+async fn single(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Complaint> {
+    let shipped = if socrates_maps::shipped::files(&prepared.request.location).is_some() { " (shipped)" } else { "" };
+    talk.line(&format!("location   {:<26}author  {}", format!("{}{shipped}", prepared.location.name), prepared.author_note));
+    print_reading(talk, &prepared);
+    let wish = bundle::wish(&prepared, options.seed);
+    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
+    let dir = match place(&base, wish) {
+        Place::Finished(dir) => {
+            talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
+            let bundle = bundle::read(&dir)?;
+            return Ok(finish(talk, options, &bundle, None));
+        }
+        Place::New(dir) => dir,
+    };
+    let work = dir.join(".socrates");
+    claim(&dir, &work, wish)?;
+    let id = scenario_id(&prepared.name, options.seed, 0, 1)?;
+    let wanted = vec![Wanted { id, seed: options.seed, prepared: &prepared }];
+    let mut made = make(talk, cli, config, options, &work, &wanted).await?;
+    let status = made.statuses.pop().ok_or_else(|| Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours))?;
+    let outcome = conclude(&dir, &prepared, options.seed, &status, &made);
+    talk.line(&stage_line(&status));
+    let result = match outcome {
+        Ok(bundle) => {
+            // The work folder is only needed to resume; the bundle holds everything now.
+            drop(std::fs::remove_dir_all(&work));
+            finish(talk, options, &bundle, Some(&status))
+        }
+        Err(complaint) => {
+            talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": stages(&status), "metrics": {}, "reading": prepared.reading }));
+            return Err(complaint);
+        }
+    };
+    Ok(result)
+}
+
+/// Writes the bundle, or says why there is none.
+fn conclude(dir: &Path, prepared: &Prepared, seed: u64, status: &ScenarioStatus, made: &Made) -> Result<Bundle, Complaint> {
+    let scored = status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
+    if scored {
+        return bundle::write(dir, prepared, seed, status, &|digest| made.fetch(digest));
+    }
+    let faults: Vec<socrates_model::Fault> = status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();
+    let author = faults.iter().any(|fault| fault.code.code().starts_with("T-"));
+    let mut complaint = Complaint::faults(
+        format!("the scenario ended as `{}` before it could be simulated", status.result),
+        &faults,
+        if author { "`socrates config author` shows which author is asked; `--author offline` needs none" } else { "`socrates explain CODE` says what each fault means; another --seed asks for another answer" },
+    );
+    complaint.code = if author { Code::Author } else { Code::NotRealised };
+    Err(complaint)
+}
+
+/// Prints verdict, robot, where to look, what to try next, and the result object.
+fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&ScenarioStatus>) -> Code {
+    let Some((_, report)) = bundle.runs.first() else { return Code::Ours };
+    talk.line(&format!("{:<10} {}", report.verdict.name(), report.verdict_text));
+    for (_, report) in &bundle.runs {
+        let seed = if bundle.runs.len() > 1 { format!(" seed {}", report.seed) } else { String::new() };
+        let verdict = if bundle.runs.len() > 1 { format!(" · {}", report.verdict) } else { String::new() };
+        talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
+    }
+    if bundle.proposal.author.starts_with("offline") {
+        talk.line("author     offline: written by rules, not by a language model");
+    }
+    let dir = bundle.dir.display().to_string();
+    talk.line(&format!("look       {dir}/report.html"));
+    let next = if report.verdict == Verdict::Realised {
+        format!("socrates run {dir}/request.toml --planner reactive --seeds 1..5")
+    } else {
+        format!("socrates explain {}; or another --seed", report.repair.as_ref().and_then(|repair| repair.faults.first()).map_or("D-SETUP", |fault| fault.code.code()))
+    };
+    talk.line(&format!("next       {next}"));
+    talk.result(&json!({
+        "bundle": dir, "verdict": report.verdict, "stages": status.map(stages), "metrics": values(report), "reading": bundle.reading,
+        "author": bundle.proposal.author,
+        "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
+    }));
+    if options.require == "any" || report.verdict == Verdict::Realised { Code::Ok } else { Code::NotRealised }
+}
+
+async fn batch(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Vec<Prepared>, count: u64) -> Result<Code, Complaint> {
+    let root = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
+    let work = root.join(".socrates");
+    let wishes: Vec<String> = prepared.iter().map(|one| bundle::wish(one, options.seed).to_string()).collect();
+    let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
+    claim(&root, &work, wish)?;
+    for one in &prepared {
+        talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
+        print_reading(talk, one);
+    }
+    let mut wanted = Vec::new();
+    for one in &prepared {
+        for index in 0..one.request.run.variants {
+            let seed = options.seed + u64::from(index);
+            wanted.push(Wanted { id: scenario_id(&one.name, options.seed, index, one.request.run.variants)?, seed, prepared: one });
+        }
+    }
+    let made = make(talk, cli, config, options, &work, &wanted).await?;
+    let mut verdicts = std::collections::BTreeMap::<String, u64>::new();
+    let mut rows = Vec::new();
+    for status in &made.statuses {
+        let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };
+        let dir = root.join(want.id.as_str());
+        let done = bundle::manifest(&dir).is_some_and(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
+        let verdict = if done {
+            bundle::manifest(&dir).map_or_else(|| "failed".to_owned(), |manifest| manifest.verdict.to_string())
+        } else {
+            match conclude(&dir, want.prepared, want.seed, status, &made) {
+                Ok(bundle) => bundle.manifest.verdict.to_string(),
+                Err(why) => {
+                    talk.warn(&format!("{}: {}", want.id, why.what));
+                    "failed".to_owned()
+                }
+            }
+        };
+        *verdicts.entry(verdict.clone()).or_default() += 1;
+        rows.push(json!({ "scenario": want.id, "bundle": dir.display().to_string(), "verdict": verdict }));
+    }
+    let realised = verdicts.get("realised").copied().unwrap_or(0);
+    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
+    talk.line(&format!("made       {} of {count} · {}", rows.len(), words.join(" · ")));
+    talk.line(&format!("look       {}", root.display()));
+    let readings: Vec<_> = prepared.iter().map(|one| &one.reading).collect();
+    talk.result(&json!({
+        "bundle": root.display().to_string(), "verdict": if realised == count { "realised" } else { "mixed" }, "stages": [], "metrics": {},
+        "reading": readings, "scenarios": rows, "verdicts": verdicts,
+    }));
+    Ok(if options.require == "any" || realised == count { Code::Ok } else { Code::NotRealised })
+}
+
+/// Prints how a request is read.
+pub(crate) fn print_reading(talk: &Talk, prepared: &Prepared) {
+    talk.line(&format!("reading    {}", socrates_offline::summary(&prepared.reading)));
+    for problem in &prepared.reading.problems {
+        talk.line(&format!("problem    {problem}"));
+    }
+    if !prepared.reading.ignored.is_empty() {
+        let words: Vec<String> = prepared.reading.ignored.iter().map(|word| format!("\"{word}\"")).collect();
+        talk.line(&format!("ignored    {}", words.join(" ")));
+    }
+    for note in &prepared.reading.notes {
+        talk.line(&format!("note       {note}"));
+    }
+}
+
+enum Place {
+    New(PathBuf),
+    Finished(PathBuf),
+}
+
+/// The folder for this wish: the same again, or the next free suffix.
+fn place(base: &Path, wish: socrates_model::Digest) -> Place {
+    for number in 1.. {
+        let dir = if number == 1 { base.to_path_buf() } else { PathBuf::from(format!("{}-{number}", base.display())) };
+        if let Some(manifest) = bundle::manifest(&dir) {
+            if manifest.wish == wish {
+                return Place::Finished(dir);
+            }
+            continue;
+        }
+        let started = std::fs::read_to_string(dir.join(".socrates/wish")).ok();
+        if started.is_none_or(|text| text.trim() == wish.to_string()) {
+            return Place::New(dir);
+        }
+    }
+    Place::New(base.to_path_buf())
+}
+
+/// Makes the work folder and marks it with the wish, so that the same command resumes it.
+fn claim(dir: &Path, work: &Path, wish: socrates_model::Digest) -> Result<(), Complaint> {
+    let cannot = |why: std::io::Error| Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder");
+    std::fs::create_dir_all(work).map_err(cannot)?;
+    std::fs::write(work.join("wish"), wish.to_string()).map_err(cannot)
+}
+
+/// Stages of a status for the result object.
+fn stages(status: &ScenarioStatus) -> Vec<serde_json::Value> {
+    bundle::stage_rows(status)
+        .into_iter()
+        .map(|row| json!({ "stage": row.stage, "state": row.state, "attempts": row.attempts, "ms": row.wall_ms, "remark": row.remark }))
+        .collect()
+}
+
+/// `proposal ✔ 3 ms   paths ✔ 11 ms (1 retry: G-MEET)   …`
+pub(crate) fn stage_line(status: &ScenarioStatus) -> String {
+    let mut parts = Vec::new();
+    for stage in socrates_model::job::Stage::WORKERS {
+        let jobs: Vec<_> = status.jobs.iter().filter(|job| job.key.stage == stage && job.state != "superseded").collect();
+        let Some(last) = jobs.iter().max_by_key(|job| job.key.revision) else { continue };
+        let mark = match last.state.as_str() {
+            "succeeded" => "✔",
+            "failed" | "dead" | "cancelled" | "canceled" => "✘",
+            _ => "…",
+        };
+        let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();
+        let what = if stage == socrates_model::job::Stage::Simulation && !last.remark.is_empty() {
+            format!("{} in {ms} ms", last.remark)
+        } else {
+            format!("{ms} ms")
+        };
+        let retries: u32 = jobs.iter().map(|job| job.attempts.saturating_sub(1)).sum::<u32>() + last.key.revision;
+        let mut codes: Vec<&str> = status.jobs.iter().filter(|job| job.key.stage == stage).flat_map(|job| job.faults.iter().map(|fault| fault.code.code())).collect();
+        codes.dedup();
+        let again = if retries > 0 { format!(" ({}{}{})", plural_retry(retries), if codes.is_empty() { "" } else { ": " }, codes.join(", ")) } else { String::new() };
+        parts.push(format!("{stage} {mark} {what}{again}"));
+    }
+    parts.join("   ")
+}
+
+fn plural_retry(count: u32) -> String {
+    if count == 1 { "1 retry".to_owned() } else { plural(count as usize, "retrie") }
+}

@@ -1,0 +1,209 @@
+//! One making: store the inputs, start the system, submit, follow, collect.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use socrates_kit::LocalBlobs;
+use socrates_link::{Bus, LinkError, Overflow, call, keys};
+use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_model::{Digest, ScenarioId};
+use tokio::time::Instant;
+
+use crate::args::{Cli, RunOptions};
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::prepare::Prepared;
+use crate::run::stage_line;
+use crate::supervise::Supervisor;
+use crate::talk::Talk;
+
+/// One scenario to be made.
+#[derive(Debug, Clone)]
+pub(crate) struct Wanted<'a> {
+    /// Its id.
+    pub(crate) id: ScenarioId,
+    /// Its seed.
+    pub(crate) seed: u64,
+    /// What it is made from.
+    pub(crate) prepared: &'a Prepared,
+}
+
+/// What was made.
+#[derive(Debug)]
+pub(crate) struct Made {
+    /// One status per scenario, in order of submission.
+    pub(crate) statuses: Vec<ScenarioStatus>,
+    blobs: LocalBlobs,
+}
+
+impl Made {
+    /// An artifact from the work folder.
+    pub(crate) fn fetch(&self, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+        self.blobs.get(digest).map_err(|why| ours(&format!("artifact {} cannot be read: {why}", digest.short())))
+    }
+}
+
+fn ours(what: &str) -> Complaint {
+    Complaint::input(what, "run the same command again; it resumes").with_code(Code::Ours)
+}
+
+/// Name of the batch of a run.
+const BATCH: &str = "run";
+/// Limit of one call.
+const CALL: Duration = Duration::from_secs(2);
+/// How long the orchestrator may be away before the run is given up.
+const AWAY: Duration = Duration::from_secs(60);
+/// Scenarios in one submit message; keeps it under 64 KiB.
+const SUBMIT_AT_ONCE: usize = 40;
+
+/// Makes the scenarios, resuming what the work folder holds.
+pub(crate) async fn make(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, work: &Path, wanted: &[Wanted<'_>]) -> Result<Made, Complaint> {
+    let blobs = LocalBlobs::open(&work.join("blobs")).map_err(|why| Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder"))?;
+    let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
+    let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
+    let mut supervisor = Supervisor::start(work, config, workers, &passed_on(cli)).await?;
+    let followed = follow(talk, &mut supervisor, specs).await;
+    talk.clear();
+    supervisor.stop().await;
+    Ok(Made { statuses: followed?, blobs })
+}
+
+/// Global flags that the children need too.
+fn passed_on(cli: &Cli) -> Vec<String> {
+    let mut args = Vec::new();
+    if let Some(file) = &cli.config {
+        args.extend(["--config".to_owned(), file.display().to_string()]);
+    }
+    for set in &cli.set {
+        args.extend(["--set".to_owned(), set.clone()]);
+    }
+    args
+}
+
+/// Stores the inputs of a scenario and names them.
+pub(crate) fn spec(want: &Wanted<'_>, config: &Config, options: &RunOptions, blobs: &LocalBlobs) -> Result<ScenarioSpec, Complaint> {
+    let prepared = want.prepared;
+    let put = |text: String| blobs.put(text.as_bytes()).map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"));
+    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
+    let mut settings = std::collections::BTreeMap::from([("author".to_owned(), prepared.author.clone()), ("pace".to_owned(), options.pace.clone())]);
+    if config.text("stream.live") != "off" {
+        settings.insert("live".to_owned(), "on".to_owned());
+    }
+    let mut pinned = std::collections::BTreeMap::new();
+    for (role, text) in &prepared.pins {
+        pinned.insert(role.clone(), put(text.clone())?);
+    }
+    Ok(ScenarioSpec {
+        id: want.id.clone(),
+        request: put(json(serde_json::to_string(&prepared.request))?)?,
+        location: put(json(serde_json::to_string(&prepared.location))?)?,
+        reading: put(json(serde_json::to_string(&prepared.reading))?)?,
+        seed: want.seed,
+        planners: prepared.request.robot.planners.clone(),
+        run_seeds: prepared.request.seeds().map_err(|why| Complaint::input(why, "\"1\", \"1..20\" or \"1,4,9\""))?,
+        pinned,
+        settings,
+        review: false,
+    })
+}
+
+/// Submits scenarios, in several messages if need be.
+pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<(), Complaint> {
+    let mut specs = specs.into_iter().peekable();
+    while specs.peek().is_some() {
+        let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
+        let wish = Submit { batch: batch.to_owned(), scenarios };
+        let started = Instant::now();
+        loop {
+            match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
+                Ok(Submitted::Accepted { .. }) => break,
+                Ok(Submitted::Refused { why }) => return Err(Complaint::input(format!("the orchestrator refuses: {why}"), "")),
+                Ok(Submitted::Busy { retry_after_ms }) => tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await,
+                Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
+                    tokio::time::sleep(Duration::from_millis(50)).await;
+                }
+                Err(why) => return Err(ours(&why.to_string())),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Submits and waits until everything is done.
+async fn follow(talk: &Talk, supervisor: &mut Supervisor, specs: Vec<ScenarioSpec>) -> Result<Vec<ScenarioStatus>, Complaint> {
+    let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
+    let bus = supervisor.bus.clone();
+    let mut notices = bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
+    submit(bus.as_ref(), BATCH, specs).await?;
+    let mut interrupted = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(|why| ours(&why.to_string()))?;
+    let mut last_heard = Instant::now();
+    // Notices hasten; the poll behind them decides.
+    let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
+    let mut looks_done = true;
+    loop {
+        tokio::select! {
+            _ = poll.tick() => looks_done = true,
+            notice = notices.next() => if let Some((_, body)) = notice
+                && let Ok(envelope) = socrates_link::decode::<Notice>("notice", &body) {
+                looks_done = ids.len() == 1 && envelope.body.key.stage == socrates_model::job::Stage::Scoring;
+                if ids.len() == 1 {
+                    talk.passing(&format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
+                }
+            },
+            gone = supervisor.gave_up() => return Err(ours(&gone.unwrap_or_else(|| "every process has ended".to_owned()))),
+            _ = tokio::signal::ctrl_c() => return Err(stopped()),
+            _ = interrupted.recv() => return Err(stopped()),
+        }
+        if !looks_done {
+            continue;
+        }
+        looks_done = false;
+        match status(bus.as_ref(), 0).await {
+            Ok(reply) => {
+                last_heard = Instant::now();
+                if ids.len() > 1 {
+                    talk.passing(&format!("making     {} of {} done", reply.done, reply.total));
+                } else if let Some(line) = reply.scenarios.first() {
+                    talk.passing(&stage_line(line));
+                }
+                if reply.done >= u32::try_from(ids.len()).unwrap_or(u32::MAX) {
+                    return all(bus.as_ref(), &ids).await;
+                }
+            }
+            Err(why) if last_heard.elapsed() > AWAY => return Err(ours(&format!("the orchestrator does not answer: {why}"))),
+            Err(_) => {}
+        }
+    }
+}
+
+fn stopped() -> Complaint {
+    Complaint::input("stopped before the end; nothing is lost", "the same command again resumes").with_code(Code::Waits)
+}
+
+/// One page of statuses.
+pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
+    call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
+}
+
+/// Every status, page by page, in the order of the ids.
+async fn all(bus: &dyn Bus, ids: &[ScenarioId]) -> Result<Vec<ScenarioStatus>, Complaint> {
+    let mut found: Vec<ScenarioStatus> = Vec::new();
+    let started = Instant::now();
+    loop {
+        let from = u32::try_from(found.len()).unwrap_or(u32::MAX);
+        match status(bus, from).await {
+            Ok(reply) if reply.scenarios.is_empty() => break,
+            Ok(reply) => found.extend(reply.scenarios),
+            Err(_) if started.elapsed() < AWAY => tokio::time::sleep(Duration::from_millis(50)).await,
+            Err(why) => return Err(ours(&why.to_string())),
+        }
+    }
+    found.retain(|status| ids.contains(&status.id));
+    found.sort_by_key(|status| ids.iter().position(|id| *id == status.id));
+    Ok(found)
+}
+
+/// The work folder of a bundle or library folder.
+pub(crate) fn work_of(dir: &Path) -> PathBuf {
+    dir.join(".socrates")
+}
