@@ -15,15 +15,68 @@ const WALLS: &[(&str, &[&str])] = &[
     ("prompts/llm", &["zenoh", "socrates-"]),
     ("prompts/offline", &["tokio", "zenoh", "reqwest", "socrates-llm", "socrates-author"]),
     ("workers/kit", &["zenoh", "iceoryx2", "socrates-orchestrator", "socrates-store", "socrates-stream"]),
-    ("workers/proposal", &["zenoh", "socrates-paths", "socrates-behaviors", "socrates-simulation", "socrates-scoring", "socrates-orchestrator", "socrates-store"]),
-    ("workers/paths", &["zenoh", "socrates-proposal", "socrates-behaviors", "socrates-simulation", "socrates-scoring", "socrates-orchestrator", "socrates-store"]),
-    ("workers/behaviors", &["zenoh", "socrates-proposal", "socrates-paths", "socrates-simulation", "socrates-scoring", "socrates-orchestrator", "socrates-store"]),
-    ("workers/behavior_tree", &["tokio", "zenoh", "rapier2d", "socrates-planners", "socrates-engine", "socrates-crowd"]),
-    ("workers/simulation", &["zenoh", "iceoryx2", "socrates-scoring", "socrates-orchestrator", "socrates-store", "socrates-author"]),
+    (
+        "workers/proposal",
+        &[
+            "zenoh",
+            "socrates-paths",
+            "socrates-behaviors",
+            "socrates-simulation",
+            "socrates-scoring",
+            "socrates-orchestrator",
+            "socrates-store",
+        ],
+    ),
+    (
+        "workers/paths",
+        &[
+            "zenoh",
+            "socrates-proposal",
+            "socrates-behaviors",
+            "socrates-simulation",
+            "socrates-scoring",
+            "socrates-orchestrator",
+            "socrates-store",
+        ],
+    ),
+    (
+        "workers/behaviors",
+        &[
+            "zenoh",
+            "socrates-proposal",
+            "socrates-paths",
+            "socrates-simulation",
+            "socrates-scoring",
+            "socrates-orchestrator",
+            "socrates-store",
+        ],
+    ),
+    (
+        "workers/behavior_tree",
+        &["tokio", "zenoh", "rapier2d", "socrates-planners", "socrates-engine", "socrates-crowd"],
+    ),
+    (
+        "workers/simulation",
+        &["zenoh", "iceoryx2", "socrates-scoring", "socrates-orchestrator", "socrates-store", "socrates-author"],
+    ),
     ("workers/simulation/crowd", &["tokio", "zenoh", "rapier2d", "socrates-"]),
-    ("workers/simulation/engine", &["tokio", "zenoh", "iceoryx2", "socrates-planners", "socrates-stream", "socrates-kit", "socrates-link"]),
+    (
+        "workers/simulation/engine",
+        &["tokio", "zenoh", "iceoryx2", "socrates-planners", "socrates-stream", "socrates-kit", "socrates-link"],
+    ),
     ("workers/simulation/planners", &["tokio", "zenoh", "rapier2d", "socrates-bt", "socrates-engine", "socrates-kit"]),
-    ("workers/scoring", &["zenoh", "iceoryx2", "socrates-simulation", "socrates-engine", "socrates-orchestrator", "socrates-store", "socrates-bt"]),
+    (
+        "workers/scoring",
+        &[
+            "zenoh",
+            "iceoryx2",
+            "socrates-simulation",
+            "socrates-engine",
+            "socrates-orchestrator",
+            "socrates-store",
+            "socrates-bt",
+        ],
+    ),
     ("orchestrator", &["tokio", "zenoh", "rusqlite", "socrates-link", "socrates-kit", "socrates-store"]),
     ("orchestrator/store", &["tokio", "zenoh", "socrates-link", "socrates-kit"]),
     ("orchestrator/export", &["tokio", "zenoh", "socrates-link", "socrates-kit", "socrates-store"]),
@@ -101,8 +154,13 @@ fn no_room_names_a_stranger() {
     for (room, strangers) in WALLS {
         let manifest = members.get(*room).unwrap_or_else(|| panic!("there is no room `{room}`"));
         for dependency in dependencies(manifest) {
-            let allowed = dependency == "socrates-model" && *room != "bus/model" && !strangers.contains(&"socrates-model");
-            if !allowed && strangers.iter().any(|stranger| dependency == *stranger || stranger.ends_with('-') && dependency.starts_with(stranger)) {
+            let allowed =
+                dependency == "socrates-model" && *room != "bus/model" && !strangers.contains(&"socrates-model");
+            if !allowed
+                && strangers.iter().any(|stranger| {
+                    dependency == *stranger || stranger.ends_with('-') && dependency.starts_with(stranger)
+                })
+            {
                 broken.push(format!("  {room} names `{dependency}`"));
             }
         }
@@ -217,7 +275,11 @@ fn only_the_command_line_reads_the_environment_or_exits() {
     let mut found = Vec::new();
     for path in files(".rs") {
         let name = shown(&path);
-        if name.starts_with("orchestrator/cli") || name.starts_with("tests/") || name.contains("/tests/") || name.contains("/benches/") {
+        if name.starts_with("orchestrator/cli")
+            || name.starts_with("tests/")
+            || name.contains("/tests/")
+            || name.contains("/benches/")
+        {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();
@@ -234,12 +296,24 @@ fn only_the_command_line_reads_the_environment_or_exits() {
 
 #[test]
 fn pure_rooms_read_no_clock_and_draw_no_hidden_number() {
-    let rooms = ["bus/model", "bus/checks", "workers/simulation/crowd", "workers/simulation/engine", "workers/simulation/planners", "workers/behavior_tree", "orchestrator/src"];
+    let rooms = [
+        "bus/model",
+        "bus/checks",
+        "workers/simulation/crowd",
+        "workers/simulation/engine",
+        "workers/simulation/planners",
+        "workers/behavior_tree",
+        "orchestrator/src",
+    ];
     let marks = ["Instant::now", "SystemTime", "thread::sleep", "thread_rng", "rand::rng", "HashMap", "HashSet"];
     let mut found = Vec::new();
     for path in files(".rs") {
         let name = shown(&path);
-        if !rooms.iter().any(|room| name.starts_with(room)) || name.contains("/benches/") || name.contains("/tests/") || name.contains("/examples/") {
+        if !rooms.iter().any(|room| name.starts_with(room))
+            || name.contains("/benches/")
+            || name.contains("/tests/")
+            || name.contains("/examples/")
+        {
             continue;
         }
         let text = std::fs::read_to_string(&path).unwrap();

@@ -8,6 +8,8 @@
 //!
 //! *Never here:* product code.
 
+pub mod program;
+
 use std::path::PathBuf;
 
 /// The root of the repository.

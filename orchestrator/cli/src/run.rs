@@ -11,6 +11,7 @@ use crate::args::{Cli, RunOptions};
 use crate::bundle::{self, Bundle};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::library;
 use crate::prepare::{Prepared, plural, prepare, prepare_text, request_files, scenario_id};
 use crate::session::{Made, Wanted, make};
 use crate::talk::Talk;
@@ -138,11 +139,25 @@ fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&Sc
     if options.require == "any" || report.verdict == Verdict::Realised { Code::Ok } else { Code::NotRealised }
 }
 
-async fn batch(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Vec<Prepared>, count: u64) -> Result<Code, Complaint> {
-    let root = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
-    let work = root.join(".socrates");
-    let wishes: Vec<String> = prepared.iter().map(|one| bundle::wish(one, options.seed).to_string()).collect();
+async fn batch(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Vec<Prepared>,
+    count: u64,
+) -> Result<Code, Complaint> {
+    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
+    let wishes: Vec<String> = prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
     let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
+    let root = match place(&base, wish) {
+        Place::Finished(root) => {
+            talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
+            return library::finish(talk, options, &root);
+        }
+        Place::New(root) => root,
+    };
+    let work = root.join(".socrates");
     claim(&root, &work, wish)?;
     for one in &prepared {
         talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
@@ -156,36 +171,28 @@ async fn batch(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, pr
         }
     }
     let made = make(talk, cli, config, options, &work, &wanted).await?;
-    let mut verdicts = std::collections::BTreeMap::<String, u64>::new();
     let mut rows = Vec::new();
     for status in &made.statuses {
         let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };
         let dir = root.join(want.id.as_str());
-        let done = bundle::manifest(&dir).is_some_and(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
-        let verdict = if done {
-            bundle::manifest(&dir).map_or_else(|| "failed".to_owned(), |manifest| manifest.verdict.to_string())
-        } else {
-            match conclude(&dir, want.prepared, want.seed, status, &made) {
+        let known = bundle::manifest(&dir).filter(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
+        let verdict = match known {
+            Some(manifest) => manifest.verdict.to_string(),
+            None => match conclude(&dir, want.prepared, want.seed, status, &made) {
                 Ok(bundle) => bundle.manifest.verdict.to_string(),
                 Err(why) => {
-                    talk.warn(&format!("{}: {}", want.id, why.what));
+                    talk.warn(&format!("{}: {why}", want.id));
                     "failed".to_owned()
                 }
-            }
+            },
         };
-        *verdicts.entry(verdict.clone()).or_default() += 1;
-        rows.push(json!({ "scenario": want.id, "bundle": dir.display().to_string(), "verdict": verdict }));
+        rows.push(library::Row { scenario: want.id.clone(), bundle: dir.display().to_string(), verdict });
     }
-    let realised = verdicts.get("realised").copied().unwrap_or(0);
-    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
-    talk.line(&format!("made       {} of {count} · {}", rows.len(), words.join(" · ")));
-    talk.line(&format!("look       {}", root.display()));
-    let readings: Vec<_> = prepared.iter().map(|one| &one.reading).collect();
-    talk.result(&json!({
-        "bundle": root.display().to_string(), "verdict": if realised == count { "realised" } else { "mixed" }, "stages": [], "metrics": {},
-        "reading": readings, "scenarios": rows, "verdicts": verdicts,
-    }));
-    Ok(if options.require == "any" || realised == count { Code::Ok } else { Code::NotRealised })
+    let readings = prepared.iter().map(|one| one.reading.clone()).collect();
+    library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
+    // The work folder is only needed to resume.
+    drop(std::fs::remove_dir_all(&work));
+    library::finish(talk, options, &root)
 }
 
 /// Prints how a request is read.
@@ -212,8 +219,9 @@ enum Place {
 fn place(base: &Path, wish: socrates_model::Digest) -> Place {
     for number in 1.. {
         let dir = if number == 1 { base.to_path_buf() } else { PathBuf::from(format!("{}-{number}", base.display())) };
-        if let Some(manifest) = bundle::manifest(&dir) {
-            if manifest.wish == wish {
+        let made = bundle::manifest(&dir).map(|manifest| manifest.wish).or_else(|| library::read(&dir).map(|library| library.wish));
+        if let Some(made) = made {
+            if made == wish {
                 return Place::Finished(dir);
             }
             continue;

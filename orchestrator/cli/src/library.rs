@@ -1,0 +1,70 @@
+//! The list of a library: one file at the root of a folder of bundles.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use socrates_model::{Digest, Reading, ScenarioId};
+
+use crate::args::RunOptions;
+use crate::exit::{Code, Complaint};
+use crate::talk::Talk;
+
+/// File that lists a library.
+const FILE: &str = "library.json";
+
+/// One scenario of a library.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Row {
+    /// Which.
+    pub(crate) scenario: ScenarioId,
+    /// Its folder.
+    pub(crate) bundle: String,
+    /// Verdict, or `failed` where no bundle could be made.
+    pub(crate) verdict: String,
+}
+
+/// A finished library.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Library {
+    /// What it was made from.
+    pub(crate) wish: Digest,
+    /// Scenarios asked for.
+    pub(crate) count: u64,
+    /// Readings of its requests.
+    pub(crate) readings: Vec<Reading>,
+    /// Scenarios, in order of submission.
+    pub(crate) scenarios: Vec<Row>,
+}
+
+/// The library of a folder, if it is one.
+pub(crate) fn read(root: &Path) -> Option<Library> {
+    serde_json::from_str(&std::fs::read_to_string(root.join(FILE)).ok()?).ok()
+}
+
+/// Writes the list.
+pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
+    let path = root.join(FILE);
+    let text = serde_json::to_string_pretty(library).map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+    std::fs::write(&path, text).map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder"))
+}
+
+/// Prints what a library holds.
+pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<Code, Complaint> {
+    let library = read(root).ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
+    let mut verdicts = BTreeMap::<&str, u64>::new();
+    for row in &library.scenarios {
+        *verdicts.entry(row.verdict.as_str()).or_default() += 1;
+    }
+    let realised = verdicts.get("realised").copied().unwrap_or(0);
+    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
+    talk.line(&format!("made       {} of {} · {}", library.scenarios.len(), library.count, words.join(" · ")));
+    talk.line(&format!("look       {}", root.display()));
+    let whole = realised == library.count;
+    talk.result(&json!({
+        "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
+        "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+    }));
+    Ok(if options.require == "any" || whole { Code::Ok } else { Code::NotRealised })
+}

@@ -1,0 +1,123 @@
+//! What a bundle holds, and that it says the same again.
+
+use std::path::Path;
+
+use crate::{WAREHOUSE, make, socrates};
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            std::fs::copy(&path, &target).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_bundle_holds_everything_and_can_be_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let (finished, json) = make(folder.path(), "whole", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    for key in ["bundle", "verdict", "stages", "metrics", "reading"] {
+        assert!(!json[key].is_null(), "`{key}` is missing in {json}");
+    }
+    let bundle = folder.path().join("bundle-whole");
+    for file in [
+        "report.html",
+        "run.png",
+        "run.svg",
+        "story.txt",
+        "metrics.csv",
+        "agents.csv",
+        "request.toml",
+        "details/manifest.json",
+        "details/provenance.json",
+        "details/proposal.json",
+        "details/paths.json",
+        "details/behaviors.json",
+        "details/behaviors/human_1.xml",
+        "details/location/map.yaml",
+        "details/recordings/reference-1.mcap",
+        "details/reports/reference-1.json",
+    ] {
+        assert!(bundle.join(file).metadata().is_ok_and(|meta| meta.len() > 20), "{file}");
+    }
+    let agents = std::fs::read_to_string(bundle.join("agents.csv")).unwrap();
+    assert!(agents.starts_with("t,id,x,y,yaw,v,gesture,leaf"));
+    let page = std::fs::read_to_string(bundle.join("report.html")).unwrap();
+    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
+    assert!(!bundle.join(".socrates").exists(), "the work folder was left");
+    let elsewhere = folder.path().join("else/where");
+    copy(&bundle, &elsewhere);
+    std::fs::remove_dir_all(&bundle).unwrap();
+    let moved = elsewhere.display().to_string();
+    for verb in ["simulate", "score"] {
+        let again = socrates(folder.path(), verb, &["--format", "json", verb, &moved]);
+        assert_eq!(again.code, 0, "{verb}: {}", again.err);
+        assert_eq!(again.json()["runs"][0]["same"], true, "{verb}: {}", again.out);
+    }
+}
+
+#[test]
+fn the_same_request_and_seed_give_the_same_recording_with_one_and_four_workers() {
+    let folder = tempfile::tempdir().unwrap();
+    let hashes: Vec<String> = [("one", "1"), ("four", "4")]
+        .iter()
+        .map(|(name, workers)| {
+            let (finished, json) =
+                make(folder.path(), name, WAREHOUSE, &["--require", "any", "--seeds", "1..4", "--workers", workers]);
+            assert_eq!(finished.code, 0, "{}", finished.err);
+            let runs = json["runs"].as_array().unwrap().clone();
+            assert_eq!(runs.len(), 4);
+            runs.iter().map(|run| run["recording_hash"].as_str().unwrap().to_owned()).collect::<Vec<_>>().join(" ")
+        })
+        .collect();
+    assert_eq!(hashes[0], hashes[1]);
+    let seeds: std::collections::BTreeSet<&str> = hashes[0].split(' ').collect();
+    assert_eq!(seeds.len(), 4, "other seeds give other recordings");
+}
+
+#[test]
+fn the_same_folder_again_prints_the_bundle_and_another_wish_gets_a_suffix() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, json) = make(folder.path(), "again", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(first.code, 0, "{}", first.err);
+    let (second, same) = make(folder.path(), "again", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(second.code, 0, "{}", second.err);
+    assert_eq!(json["bundle"], same["bundle"]);
+    assert!(second.err.contains("nothing to do"), "{}", second.err);
+    let (third, other) = make(folder.path(), "again", WAREHOUSE, &["--require", "any", "--seed", "2"]);
+    assert_eq!(third.code, 0, "{}", third.err);
+    assert!(other["bundle"].as_str().unwrap().ends_with("bundle-again-2"), "{other}");
+}
+
+#[test]
+fn a_run_in_which_robot_and_human_never_meet_is_not_realised() {
+    let folder = tempfile::tempdir().unwrap();
+    let (finished, _) = make(folder.path(), "meet", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    let details = folder.path().join("bundle-meet/details");
+    let mut paths: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(details.join("paths.json")).unwrap()).unwrap();
+    // The human is sent to the node that is farthest from everything the robot visits, and stays there.
+    let location: socrates_model::Location =
+        serde_json::from_str(&std::fs::read_to_string(details.join("location.json")).unwrap()).unwrap();
+    let visited: Vec<String> =
+        paths["robot"].as_array().unwrap().iter().map(|node| node.as_str().unwrap().to_owned()).collect();
+    let robot: Vec<_> = location.graph.nodes.iter().filter(|node| visited.contains(&node.id.to_string())).collect();
+    let reach = |node: &&socrates_model::GraphNode| {
+        robot.iter().map(|other| (node.at - other.at).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let far = location.graph.nodes.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap();
+    paths["humans"]["human_1"] = serde_json::json!([far.id]);
+    std::fs::write(folder.path().join("paths.json"), paths.to_string()).unwrap();
+    std::fs::copy(details.join("proposal.json"), folder.path().join("proposal.json")).unwrap();
+    let pinned = format!("proposal = \"proposal.json\"\npaths = \"paths.json\"\n{WAREHOUSE}");
+    let (finished, json) = make(folder.path(), "apart", &pinned, &[]);
+    assert_ne!(json["verdict"], "realised");
+    assert_eq!(finished.code, 3, "{}\n{}", finished.err, finished.out);
+}

@@ -1,0 +1,69 @@
+//! Every shipped request, and the published tool's sample, is realised.
+
+use crate::{make, socrates};
+
+fn realised(location: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    let requests = socrates_maps::shipped::requests(location);
+    assert!(requests.len() >= 3, "{location} ships {} requests", requests.len());
+    let mut missed = Vec::new();
+    for (stem, text) in requests {
+        let (finished, json) = make(folder.path(), stem, text, &[]);
+        if json["verdict"] != "realised" {
+            missed.push(format!(
+                "{stem}: code {} {}\n{}\n{}",
+                finished.code, json["verdict"], finished.err, finished.out
+            ));
+        }
+    }
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+}
+
+#[test]
+fn every_request_of_the_warehouse_is_realised() {
+    realised("warehouse");
+}
+
+#[test]
+fn every_request_of_the_hospital_is_realised() {
+    realised("hospital");
+}
+
+#[test]
+fn every_request_of_the_office_is_realised() {
+    realised("office");
+}
+
+#[test]
+fn a_foreign_location_is_realised_with_its_own_request_and_without_any() {
+    let Some(data) = socrates_tests::shared_data() else {
+        println!("skipped: there is no shared data beside this checkout");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let config = std::fs::read_to_string(data.join("socrates_hunav/socrates/config/inputs.yaml")).unwrap();
+    let value = |key: &str| {
+        let line = config.lines().find(|line| line.starts_with(&format!("{key}:"))).unwrap();
+        line.split_once(':').unwrap().1.trim().to_owned()
+    };
+    let location = data.join("socrates_hunav/socrates/locations/small_warehouse").display().to_string();
+    let base = format!("location = {location:?}\nsocial_context = {}\ntask = {}\n", value("context"), value("task"));
+    let guided = format!("{base}rough_scenario = {}\n", value("rough_scenario"));
+    for (name, text) in [("guided", &guided), ("unguided", &base)] {
+        let (finished, json) = make(folder.path(), name, text, &[]);
+        assert_eq!(json["verdict"], "realised", "{name}: {}\n{}", finished.err, finished.out);
+    }
+}
+
+#[test]
+fn the_demo_needs_nothing_and_is_realised() {
+    let folder = tempfile::tempdir().unwrap();
+    let finished = socrates(folder.path(), "demo", &["demo"]);
+    assert_eq!(finished.code, 0, "{}\n{}", finished.err, finished.out);
+    for word in
+        ["location", "reading", "author  offline", "proposal ✔", "simulation ✔", "realised", "robot", "look", "next"]
+    {
+        assert!(finished.out.contains(word), "`{word}` is missing in\n{}", finished.out);
+    }
+    assert!(folder.path().join("runs/elevator-1/report.html").is_file());
+}
