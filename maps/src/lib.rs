@@ -1,1 +1,41 @@
-//! socrates-maps.
+//! Locations: reading, checking, generating them, and asking their map for distances, ways and sight.
+//!
+//! ```text
+//! map.yaml + image ─┐                     ┌─► DistanceField ─► Geodesic, shortest_path, sectors
+//! scene_graph.json ─┼─► parse ─► Location ┤
+//! location.toml ────┘      ▲              └─► Sight
+//!                plan.toml ─ generate
+//! ```
+//!
+//! Modules in reading order: files in ([`parse`], [`load`]), what is checked ([`check`]), the grid's
+//! questions (field, geodesic, route, sight), places, and the shipped locations with their generator.
+//!
+//! *Never here:* pictures with labels (they are drawn next door), moving agents, a clock, a random
+//! number, a rule about scenarios.
+
+mod check;
+mod doors_file;
+mod field;
+mod generate;
+mod geodesic;
+mod graph_file;
+mod image;
+mod json_lines;
+mod layer;
+mod map_file;
+mod plan;
+mod read;
+mod route;
+mod sectors;
+mod sight;
+
+pub mod place;
+pub mod shipped;
+
+pub use check::check;
+pub use field::{DistanceField, free_disc, nearest_free};
+pub use generate::generate;
+pub use geodesic::Geodesic;
+pub use read::{load, parse};
+pub use route::shortest_path;
+pub use sight::{Sight, sight_clear};

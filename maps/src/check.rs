@@ -1,0 +1,259 @@
+//! What is wrong with a location as a whole.
+
+use std::collections::BTreeSet;
+
+use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point};
+
+use crate::read::{EXTRA, GRAPH};
+use crate::sight::Sight;
+
+/// Longest opening that counts as a door, m.
+const DOOR_MAX_M: f64 = 8.0;
+/// How far a door's end may be from the wall that holds it, m.
+const DOOR_SLACK_M: f64 = 0.35;
+/// Largest time, s, or distance, m, that a door may be given; a run lasts at most as long.
+const DOOR_VALUE_MAX: f64 = 600.0;
+
+/// Every problem of a location that can be seen from its parts together; soft faults are warnings.
+///
+/// Nodes on free floor, edges (with their via points) on free floor, one connected graph, types that
+/// are not empty, doors that are sensible and whose inside nodes exist.
+#[must_use]
+pub fn check(location: &Location) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    grid_problems(&location.grid, &mut faults);
+    let on_wall = node_problems(location, &mut faults);
+    edge_problems(location, &on_wall, &mut faults);
+    part_problems(location, &mut faults);
+    for (index, door) in location.doors.iter().enumerate() {
+        door_problems(location, index, door, &mut faults);
+    }
+    faults
+}
+
+fn grid_problems(grid: &Grid, faults: &mut Vec<Fault>) {
+    if grid.width.saturating_mul(grid.height) != grid.cells.len() {
+        let message = format!("the grid has {} cells for {} by {}", grid.cells.len(), grid.width, grid.height);
+        faults.push(Fault::new(FaultCode::MImage, "grid", message));
+    }
+    if !grid.cells.contains(&Cell::Free) {
+        let message = "no cell of the map is free; check `negate` and the thresholds";
+        faults.push(Fault::new(FaultCode::MImage, "grid", message));
+    }
+}
+
+fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSet<&'a NodeId> {
+    let mut on_wall = BTreeSet::new();
+    for node in &location.graph.nodes {
+        let at = format!("{GRAPH} node `{}`", node.id);
+        if !location.grid.is_free(&node.at) {
+            let found = location.grid.cell_of(&node.at).map_or("outside the map", |(column, row)| {
+                match location.grid.at(column, row) {
+                    Cell::Occupied => "in a wall",
+                    Cell::Unknown => "on unknown floor",
+                    Cell::Free => "free",
+                }
+            });
+            let (px, py) = location.grid.pixel_from_world(&node.at);
+            let message = format!(
+                "stands {found} at ({:.2}, {:.2}) m, pixel ({px:.0}, {py:.0}); move it to free floor",
+                node.at.x, node.at.y
+            );
+            faults.push(Fault::new(FaultCode::MWall, &at, message));
+            on_wall.insert(&node.id);
+        }
+        if node.kind.trim().is_empty() {
+            faults.push(Fault::new(FaultCode::MType, at, "the type is empty; say what kind of place it is"));
+        }
+    }
+    on_wall
+}
+
+fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut Vec<Fault>) {
+    let sight = Sight::new(&location.grid);
+    for edge in &location.graph.edges {
+        let at = format!("{GRAPH} edge `{}` – `{}`", edge.from, edge.to);
+        if edge.kind.trim().is_empty() {
+            faults.push(Fault::new(FaultCode::MType, &at, "the type is empty; say what kind of way it is"));
+        }
+        if on_wall.contains(&edge.from) || on_wall.contains(&edge.to) {
+            continue;
+        }
+        let Some(points) = location.graph.edge_points(&edge.from, &edge.to) else {
+            let message = "joins a node that does not exist";
+            faults.push(Fault::new(FaultCode::MId, at, message));
+            continue;
+        };
+        let blocked = points.windows(2).find_map(|pair| match pair {
+            [a, b] if !sight.clear(a, b) => Some((*a, *b)),
+            _ => None,
+        });
+        if let Some((a, b)) = blocked {
+            let message = format!(
+                "crosses a wall between ({:.2}, {:.2}) and ({:.2}, {:.2}) m; open the wall in the image or remove the edge",
+                a.x, a.y, b.x, b.y
+            );
+            faults.push(Fault::new(FaultCode::GFree, at, message));
+        }
+    }
+}
+
+fn part_problems(location: &Location, faults: &mut Vec<Fault>) {
+    let mut parts = location.graph.parts();
+    if parts.len() < 2 {
+        return;
+    }
+    parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
+    let listed: Vec<String> = parts.iter().map(|part| names(part)).collect();
+    let message = format!("the graph falls into {} parts: {}; join them by edges", parts.len(), listed.join(" | "));
+    faults.push(Fault::new(FaultCode::MParts, GRAPH, message));
+}
+
+/// Ids in a row, at most a dozen.
+fn names(ids: &[NodeId]) -> String {
+    let shown: Vec<&str> = ids.iter().take(12).map(NodeId::as_str).collect();
+    let more = ids.len().saturating_sub(shown.len());
+    if more > 0 { format!("{} and {more} more", shown.join(", ")) } else { shown.join(", ") }
+}
+
+fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Vec<Fault>) {
+    let mut fault = |code: FaultCode, message: String| {
+        faults.push(Fault::new(code, format!("{EXTRA} door `{}`", door.id), message))
+    };
+    if door.id.trim().is_empty() {
+        fault(FaultCode::MId, format!("door {} has an empty id", index + 1));
+    }
+    if location.doors.iter().take(index).any(|other| other.id == door.id) {
+        fault(FaultCode::MId, "the id is taken by an earlier door".to_owned());
+    }
+    let length_m = (door.to - door.from).norm();
+    if !(0.3..=DOOR_MAX_M).contains(&length_m) {
+        fault(FaultCode::MValue, format!("the door line is {length_m:.2} m long; allowed: 0.3 to {DOOR_MAX_M} m"));
+    } else {
+        line_problems(location, door, &mut fault);
+    }
+    let (what, value) = match door.opens {
+        DoorOpens::AtTime(secs) => ("opens.at_time", secs),
+        DoorOpens::Near(m) => ("opens.near", m),
+        DoorOpens::RobotNear(m) => ("opens.robot_near", m),
+        DoorOpens::Always | DoorOpens::OnEvent(_) | DoorOpens::Never => ("hold_s", door.hold_s),
+    };
+    for (key, value) in [(what, value), ("hold_s", door.hold_s)] {
+        if !(0.0..=DOOR_VALUE_MAX).contains(&value) {
+            fault(FaultCode::MValue, format!("`{key}` is `{value}`; allowed: 0 to {DOOR_VALUE_MAX}"));
+        }
+    }
+    for id in &door.inside {
+        if location.graph.node(id).is_none() {
+            fault(FaultCode::MId, format!("the inside node `{id}` is no node of the scene graph"));
+        }
+    }
+    let insides: Vec<Point> = door.inside.iter().filter_map(|id| location.graph.node(id)).map(|node| node.at).collect();
+    if let Some(first) = insides.first()
+        && let Some(other) = insides.iter().find(|point| door.depth_m(point, first) <= 0.0)
+    {
+        fault(
+            FaultCode::MValue,
+            format!("its inside nodes lie on both sides of the door line, one at ({:.2}, {:.2}) m", other.x, other.y),
+        );
+    }
+}
+
+fn line_problems(location: &Location, door: &Door, fault: &mut impl FnMut(FaultCode, String)) {
+    if !location.grid.is_free(&door.middle()) {
+        let middle = door.middle();
+        let message =
+            format!("its middle ({:.2}, {:.2}) m is not on free floor; a door closes an opening", middle.x, middle.y);
+        fault(FaultCode::MWall, message);
+        return;
+    }
+    let along = (door.to - door.from).normalize();
+    for (end, outward) in [(door.from, -along), (door.to, along)] {
+        if location.grid.is_free(&(end + outward * DOOR_SLACK_M)) {
+            let message = format!(
+                "its end ({:.2}, {:.2}) m does not meet a wall within {DOOR_SLACK_M} m; the gap beside the door would stay open",
+                end.x, end.y
+            );
+            fault(FaultCode::MWall, message);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::tests::grid;
+    use socrates_model::{DoorKind, GraphEdge, GraphNode, SceneGraph};
+
+    fn id(text: &str) -> NodeId {
+        NodeId::new(text).unwrap()
+    }
+
+    fn location() -> Location {
+        let node = |name: &str, x: f64, y: f64| GraphNode { id: id(name), kind: "ROOM".into(), at: Point::new(x, y) };
+        let edge = |a: &str, b: &str| GraphEdge { from: id(a), to: id(b), kind: "DOORWAY".into(), via: vec![] };
+        Location {
+            format: 1,
+            name: "two".into(),
+            description: "Two rooms.".into(),
+            grid: grid(&["#########", "#...#...#", "#.......#", "#...#...#", "#########"]),
+            graph: SceneGraph { nodes: vec![node("a", 1.2, 1.25), node("b", 3.2, 1.25)], edges: vec![edge("a", "b")] },
+            doors: vec![Door {
+                id: "d".into(),
+                kind: DoorKind::Room,
+                from: Point::new(2.25, 1.0),
+                to: Point::new(2.25, 1.5),
+                opens: DoorOpens::Near(1.5),
+                hold_s: 5.0,
+                inside: vec![id("b")],
+            }],
+            warnings: vec![],
+        }
+    }
+
+    fn codes(location: &Location) -> Vec<&'static str> {
+        check(location).iter().map(|fault| fault.code.code()).collect()
+    }
+
+    #[test]
+    fn a_good_location_has_no_problem() {
+        assert_eq!(check(&location()), []);
+    }
+
+    #[test]
+    fn nodes_in_walls_and_edges_through_walls_are_named() {
+        let mut bad = location();
+        bad.graph.nodes[0].at = Point::new(0.2, 0.2);
+        assert_eq!(codes(&bad), ["M-WALL"]);
+        let mut bad = location();
+        bad.graph.nodes[0].at = Point::new(1.2, 0.75);
+        bad.graph.nodes[1].at = Point::new(3.2, 0.75);
+        assert_eq!(codes(&bad), ["G-FREE"]);
+    }
+
+    #[test]
+    fn the_parts_of_a_broken_graph_are_listed() {
+        let mut bad = location();
+        bad.graph.edges.clear();
+        let faults = check(&bad);
+        assert_eq!(faults[0].code, FaultCode::MParts);
+        assert!(faults[0].message.contains("2 parts: a | b"), "{}", faults[0]);
+    }
+
+    #[test]
+    fn doors_that_cannot_be_are_named() {
+        let mut bad = location();
+        bad.doors.push(bad.doors[0].clone());
+        bad.doors[1].inside = vec![id("a"), id("b"), id("zz")];
+        bad.doors[1].hold_s = -1.0;
+        bad.doors[1].opens = DoorOpens::RobotNear(f64::NAN);
+        assert_eq!(codes(&bad), ["M-ID", "M-VALUE", "M-VALUE", "M-ID", "M-VALUE"]);
+        bad.doors[1].from = bad.doors[1].to;
+        assert!(codes(&bad).contains(&"M-VALUE"));
+        let mut open = location();
+        open.doors[0].from = Point::new(1.0, 1.25);
+        open.doors[0].to = Point::new(1.5, 1.25);
+        open.doors[0].inside.clear();
+        assert_eq!(codes(&open), ["M-WALL", "M-WALL"]);
+    }
+}

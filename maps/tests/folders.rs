@@ -1,0 +1,185 @@
+//! Whole folders: a foreign one, and one with a flaw in every file.
+
+#[cfg(test)]
+mod folders {
+    use std::collections::BTreeMap;
+    use std::path::PathBuf;
+
+    use socrates_maps::{DistanceField, generate, load, parse, shipped};
+    use socrates_model::{Fault, FaultCode, NodeId, PlaceClass};
+
+    /// The folder of foreign test data, where there is one.
+    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
+    fn shared(path: &str) -> Option<PathBuf> {
+        let dir = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/socrates_hunav")).join(path);
+        if dir.is_dir() {
+            return Some(dir);
+        }
+        eprintln!("skipped: there is no folder {}", dir.display());
+        None
+    }
+
+    fn codes(faults: &[Fault]) -> Vec<FaultCode> {
+        faults.iter().map(|fault| fault.code).collect()
+    }
+
+    #[test]
+    fn a_foreign_location_is_read_with_its_extra_key_as_a_warning() {
+        let Some(dir) = shared("socrates/locations/small_warehouse") else { return };
+        let location = load(&dir).unwrap_or_else(|faults| panic!("{faults:#?}"));
+        assert_eq!((location.graph.nodes.len(), location.graph.edges.len()), (18, 19));
+        assert_eq!(location.name, "small_warehouse");
+        assert_eq!(location.warnings.len(), 1, "{:?}", location.warnings);
+        assert!(location.warnings[0].contains("`type`"), "{:?}", location.warnings);
+        // Node `ef` is at pixel (88, 31) of 250 by 250 at 0.1 m from (-12.5, -12.5).
+        let node = location.graph.node(&NodeId::new("ef").unwrap()).unwrap();
+        assert!((node.at.x - -3.7).abs() < 1e-9 && (node.at.y - 9.4).abs() < 1e-9, "{}", node.at);
+        assert_eq!(PlaceClass::of_type(&node.kind), PlaceClass::BlindCorner);
+        let field = DistanceField::new(&location.grid);
+        assert!(location.graph.nodes.iter().all(|node| field.clearance(&node.at) > 0.1));
+    }
+
+    #[test]
+    fn foreign_map_images_are_read_and_only_the_missing_graph_is_missed() {
+        for (folder, maps) in [
+            ("hunav_sim_v1_1/maps", ["cafe", "map_cafe2", "small_house", "small_warehouse"].as_slice()),
+            ("isaac_wrapper_v2/maps", ["office", "warehouse"].as_slice()),
+        ] {
+            let Some(dir) = shared(folder) else { return };
+            for map in maps {
+                let mut files = BTreeMap::new();
+                for entry in std::fs::read_dir(&dir).unwrap() {
+                    let path = entry.unwrap().path();
+                    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+                    files.insert(name, std::fs::read(&path).unwrap());
+                }
+                let Some(yaml) = files.get(&format!("{map}.yaml")).cloned() else { panic!("{map}") };
+                files.insert("map.yaml".to_owned(), yaml);
+                let faults = parse(&files, map).unwrap_err();
+                // The image of the first one does not come with the folder.
+                let image_there =
+                    files.contains_key(&format!("{map}.pgm")) || files.contains_key(&format!("{map}.png"));
+                let want = if image_there { vec![FaultCode::MRead] } else { vec![FaultCode::MRead, FaultCode::MImage] };
+                let mut found = codes(&faults);
+                found.sort();
+                assert_eq!(found, want, "{map}: {faults:#?}");
+            }
+        }
+    }
+
+    #[test]
+    fn flaws_of_all_files_are_named_at_once() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut files = shipped::files("office").unwrap();
+        let text = |files: &BTreeMap<String, Vec<u8>>, name: &str| String::from_utf8(files[name].clone()).unwrap();
+        let yaml = text(&files, "map.yaml").replace("negate: 0", "negated: 0");
+        let graph = text(&files, "scene_graph.json").replacen("\"INTERSECTION\"", "7", 1).replace("\"rx\"}", "\"ry\"}");
+        let extra = text(&files, "location.toml").replace("hold_s", "holds");
+        files.insert("map.yaml".into(), yaml.into_bytes());
+        files.insert("scene_graph.json".into(), graph.into_bytes());
+        files.insert("location.toml".into(), extra.into_bytes());
+        files.insert("map.png".into(), b"\x89PNG broken".to_vec());
+        for (name, bytes) in &files {
+            std::fs::write(dir.path().join(name), bytes).unwrap();
+        }
+        let faults = load(dir.path()).unwrap_err();
+        let all: String = faults.iter().map(|fault| format!("{fault}\n")).collect();
+        for part in [
+            "M-KEY map.yaml:5",
+            "`negated`",
+            "M-IMAGE map.png",
+            "M-VALUE scene_graph.json:",
+            "`ry`",
+            "M-KEY location.toml:",
+        ] {
+            assert!(all.contains(part), "{part} not in\n{all}");
+        }
+    }
+
+    #[test]
+    fn an_empty_folder_names_what_belongs_there() {
+        let dir = tempfile::tempdir().unwrap();
+        let faults = load(dir.path()).unwrap_err();
+        assert_eq!(codes(&faults), [FaultCode::MRead, FaultCode::MRead], "{faults:#?}");
+        assert!(faults[0].message.contains("scene_graph.json"));
+    }
+
+    #[test]
+    fn a_written_folder_loads_as_the_parsed_one() {
+        let dir = tempfile::tempdir().unwrap();
+        let folder = dir.path().join("office");
+        std::fs::create_dir(&folder).unwrap();
+        for (name, bytes) in shipped::files("office").unwrap() {
+            std::fs::write(folder.join(name), bytes).unwrap();
+        }
+        assert_eq!(load(&folder).unwrap(), shipped::load("office").unwrap());
+    }
+
+    #[test]
+    fn the_plan_of_the_readme_makes_a_location() {
+        let readme = include_str!("../README.md");
+        let plan = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let files = generate(plan).unwrap_or_else(|faults| panic!("{faults:#?}"));
+        let location = parse(&files, "fourth").unwrap();
+        assert_eq!((location.graph.nodes.len(), location.doors.len()), (6, 1));
+        assert_eq!(location.warnings, Vec::<String>::new());
+    }
+
+    /// Bytes of a little generator; the same every time.
+    fn numbers() -> impl FnMut(usize) -> usize {
+        let mut state = 0x9e37_79b9_u64;
+        move |below| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            usize::try_from(state >> 33).unwrap() % below.max(1)
+        }
+    }
+
+    #[test]
+    fn damaged_files_give_a_location_or_faults_and_never_a_panic() {
+        let plan = include_str!("../README.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+        let whole = generate(plan).unwrap();
+        let mut number = numbers();
+        let mut refused = 0;
+        for name in whole.keys() {
+            for _ in 0..150 {
+                let mut files = whole.clone();
+                let bytes = files.get_mut(name).unwrap();
+                let at = number(bytes.len());
+                match number(3) {
+                    0 => bytes[at] = u8::try_from(number(256)).unwrap(),
+                    1 => bytes.truncate(at),
+                    _ => drop(bytes.drain(at..(at + 9).min(bytes.len()))),
+                }
+                match parse(&files, "damaged") {
+                    Ok(location) => assert!(socrates_maps::check(&location).iter().all(Fault::is_soft)),
+                    Err(faults) => {
+                        refused += 1;
+                        assert!(
+                            !faults.is_empty()
+                                && faults.iter().all(|fault| !fault.at.is_empty() && !fault.message.is_empty())
+                        );
+                    }
+                }
+            }
+        }
+        assert!(refused > 200, "{refused}");
+    }
+
+    #[test]
+    fn damaged_plans_give_files_or_faults_and_never_a_panic() {
+        let plan = include_str!("../README.md").split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+        let mut number = numbers();
+        let mut refused = 0;
+        for _ in 0..300 {
+            let mut text: Vec<char> = plan.chars().collect();
+            let at = number(text.len());
+            match number(3) {
+                0 => text[at] = ['9', '-', '.', 'e', ']', '"'][number(6)],
+                1 => text.truncate(at),
+                _ => text.insert(at, ['7', '0', ',', 'x'][number(4)]),
+            }
+            refused += usize::from(generate(&text.into_iter().collect::<String>()).is_err());
+        }
+        assert!(refused > 50, "{refused}");
+    }
+}
