@@ -1,1 +1,68 @@
-//! socrates-orchestrator.
+//! The state machine that decides what happens to every job: pure, so that it can be driven through
+//! millions of odd histories in a test.
+//!
+//! ```text
+//! event, now ─► step(state) ─► rows to save, then replies, then hints
+//! ```
+//!
+//! A shell around it owns the bus, the clock and the store: it commits the rows of a step in one
+//! transaction *before* it sends the replies of that step. Modules in reading order: what there is
+//! ([`state`]), how stages hang together ([`pipeline`]), what goes in and out ([`event`]), how a
+//! step keeps its books (`turn`), then one file per kind of event, and the checker ([`fsck`]).
+//!
+//! *Never here:* a runtime, the bus, a file, a clock, a random number, what an artifact contains.
+
+pub mod event;
+pub mod pipeline;
+pub mod policy;
+pub mod state;
+
+mod turn;
+
+mod acquire;
+mod beat;
+mod control;
+mod failure;
+mod recover;
+mod report;
+mod revision;
+mod submit;
+mod timer;
+
+mod fsck;
+mod status;
+
+#[cfg(test)]
+mod histories;
+#[cfg(test)]
+mod rules;
+#[cfg(test)]
+mod world;
+
+pub use event::{Answer, Effect, Event, Row, Token};
+pub use fsck::fsck;
+pub use policy::Policy;
+pub use recover::Snapshot;
+pub use state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, ScenarioEnd, State, Worker};
+pub use status::status;
+
+/// One step: takes an event at time `now` and says what is to be saved and sent.
+///
+/// `now` is the shell's monotonic clock in ms and must never run backwards. The rows among the
+/// effects belong into one transaction; nothing else of the step may be seen before it is durable.
+pub fn step(state: &mut State, event: Event, now: Millis) -> Vec<Effect> {
+    let mut turn = turn::Turn::new(state, now);
+    match event {
+        Event::Hello { hello, to } => turn.hello(hello, to),
+        Event::Submit { submit, to } => turn.submit(submit, to),
+        Event::Acquire { ask, to } => turn.acquire(&ask, to),
+        Event::Beat { beat, to } => turn.beat(&beat, to),
+        Event::Report { report, to } => turn.report(*report, to),
+        Event::Release { release, to } => turn.release(&release, to),
+        Event::Control { control, to } => turn.control(&control, to),
+        Event::Gone { instance } => turn.gone(&instance),
+        Event::Tick => turn.tick(),
+        Event::Recover => turn.recover(),
+    }
+    turn.finish()
+}

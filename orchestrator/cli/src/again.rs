@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use socrates_model::Recording;
+use socrates_model::{Recording, RunId};
 use socrates_scoring::Evidence;
 
 use crate::bundle::{self, Bundle};
@@ -53,15 +53,15 @@ pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Opt
 
 /// One run of a bundle's scenario.
 fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
-    let scenario = bundle.manifest.scenario.parse().map_err(|bad: socrates_model::ids::BadId| Complaint::input(bad.to_string(), "the bundle is damaged"))?;
+    let name = format!("{}.{planner}-{seed}", bundle.manifest.scenario);
+    let run = RunId::new(name).map_err(|bad| Complaint::input(bad.to_string(), "the bundle is damaged"))?;
     let setup = socrates_simulation::setup(
-        &scenario,
-        bundle.request.clone(),
         bundle.location.clone(),
         bundle.proposal.clone(),
         bundle.paths.clone(),
         bundle.behaviors.clone(),
-        planner,
+        Some(&bundle.request),
+        run,
         seed,
     )
     .map_err(|faults| Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do"))?;
@@ -82,7 +82,15 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         socrates_stream::csv::read_tracks(text).map_err(|why| bad(why.to_string()))?
     };
     let location = location.map(|name| load_location(name, Path::new("."))).transpose()?.map(|(location, _)| location);
-    let report = socrates_scoring::score(&Evidence { location: location.as_ref(), ..Evidence::of(&recording) });
+    let report = socrates_scoring::score(&Evidence {
+        recording: &recording,
+        location: location.as_ref(),
+        request: None,
+        reading: None,
+        proposal: None,
+        paths: None,
+        reference: None,
+    });
     for metric in &report.metrics {
         let value = metric.value.map_or_else(|| format!("n/a ({})", metric.note), |value| format!("{value:.3} {}", metric.unit));
         talk.line(&format!("{:<34} {value}", metric.id));
@@ -105,7 +113,7 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
             proposal: Some(&bundle.proposal),
             paths: Some(&bundle.paths),
             reference: reference.map(|(recording, _)| recording),
-            ..Evidence::of(recording)
+            recording,
         });
         let same = report == *old;
         differ += usize::from(!same);

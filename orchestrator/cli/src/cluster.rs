@@ -1,6 +1,8 @@
 //! `cluster submit`: requests handed to a running orchestrator.
 
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
 
 use serde_json::json;
 use socrates_kit::LocalBlobs;
@@ -33,7 +35,7 @@ pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], c
         .map_err(|why| Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?").with_code(Code::Input))?;
     let folder = std::env::temp_dir().join(format!("socrates-submit-{}", std::process::id()));
     let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
-    let blobs = LocalBlobs::open(&folder).map_err(|why| ours(why.to_string()))?;
+    let blobs = LocalBlobs::new(&folder, false);
     let mut specs = Vec::new();
     for one in &prepared {
         for index in 0..one.request.run.variants {
@@ -44,13 +46,14 @@ pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], c
     let mut digests: Vec<_> = specs.iter().flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied())).collect();
     digests.sort();
     digests.dedup();
+    let bus: Arc<dyn Bus> = Arc::new(bus);
     let remote = socrates_kit::Blobs::Bus;
     for digest in digests {
         let bytes = blobs.get(&digest).map_err(|why| ours(why.to_string()))?;
-        remote.put(&bus, &bytes).await.map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
+        remote.put(&bus, bytes, Duration::from_secs(10)).await.map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
     let count = specs.len();
-    send(&bus, "cluster", specs).await?;
+    send(bus.as_ref(), "cluster", specs).await?;
     bus.close().await;
     drop(std::fs::remove_dir_all(&folder));
     talk.line(&format!("submitted  {} from {}", plural(count, "scenario"), plural(prepared.len(), "request")));

@@ -1,6 +1,6 @@
 //! One making: store the inputs, start the system, submit, follow, collect.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use socrates_kit::LocalBlobs;
@@ -58,7 +58,7 @@ const SUBMIT_AT_ONCE: usize = 40;
 
 /// Makes the scenarios, resuming what the work folder holds.
 pub(crate) async fn make(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, work: &Path, wanted: &[Wanted<'_>]) -> Result<Made, Complaint> {
-    let blobs = LocalBlobs::open(&work.join("blobs")).map_err(|why| Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder"))?;
+    let blobs = LocalBlobs::new(work.join("blobs"), false);
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
     let mut supervisor = Supervisor::start(work, config, workers, &passed_on(cli)).await?;
@@ -198,12 +198,13 @@ async fn all(bus: &dyn Bus, ids: &[ScenarioId]) -> Result<Vec<ScenarioStatus>, C
             Err(why) => return Err(ours(&why.to_string())),
         }
     }
-    found.retain(|status| ids.contains(&status.id));
-    found.sort_by_key(|status| ids.iter().position(|id| *id == status.id));
-    Ok(found)
-}
-
-/// The work folder of a bundle or library folder.
-pub(crate) fn work_of(dir: &Path) -> PathBuf {
-    dir.join(".socrates")
+    // A scenario with many runs comes in several lines, so that each reply fits a message.
+    let mut whole: std::collections::BTreeMap<ScenarioId, ScenarioStatus> = std::collections::BTreeMap::new();
+    for mut line in found {
+        match whole.get_mut(&line.id) {
+            Some(status) => status.jobs.append(&mut line.jobs),
+            None => drop(whole.insert(line.id.clone(), line)),
+        }
+    }
+    Ok(ids.iter().filter_map(|id| whole.remove(id)).collect())
 }

@@ -126,11 +126,11 @@ fn free_port() -> Result<u64, Complaint> {
 
 fn roles(work: &Path, endpoint: &str, namespace: &str, simulations: u32, passed_on: &[String]) -> Vec<Role> {
     let text = |path: PathBuf| path.display().to_string();
-    let mut common = passed_on.to_vec();
+    let common = passed_on;
     let mut roles = Vec::new();
     let mut role = |name: String, own: Vec<String>| {
         let mut args = own;
-        args.append(&mut common.clone());
+        args.extend_from_slice(common);
         args.extend(["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned));
         roles.push(Role { name, args });
     };
@@ -170,6 +170,8 @@ fn spawn(role: &Role) -> Result<Child, Complaint> {
 /// Keeps one child alive until told to stop.
 async fn keep(role: Role, mut child: Child, mut stopped: watch::Receiver<bool>, report: mpsc::Sender<String>, restarts: usize) {
     let mut deaths: VecDeque<Instant> = VecDeque::new();
+    // Waiting for a child closes its standard input, unless somebody else holds the pipe.
+    let mut pipe = child.stdin.take();
     loop {
         let ended = tokio::select! {
             status = child.wait() => Some(status),
@@ -180,7 +182,7 @@ async fn keep(role: Role, mut child: Child, mut stopped: watch::Receiver<bool>, 
         };
         let Some(status) = ended else {
             // Closing its standard input asks the child to leave.
-            drop(child.stdin.take());
+            drop(pipe);
             if tokio::time::timeout(LEAVE_LIMIT, child.wait()).await.is_err()
                 && let Err(why) = child.kill().await
             {
@@ -200,7 +202,10 @@ async fn keep(role: Role, mut child: Child, mut stopped: watch::Receiver<bool>, 
             return;
         }
         match spawn(&role) {
-            Ok(next) => child = next,
+            Ok(next) => {
+                child = next;
+                pipe = child.stdin.take();
+            }
             Err(why) => {
                 drop(report.send(why.what).await);
                 return;

@@ -1,1 +1,65 @@
-//! socrates-offline.
+//! The offline author: same questions as a language model, answers by rules, no network, no weights.
+//!
+//! ```text
+//! request text ─► words ─► clause ─► story ─► reading ──► proposal ──► paths, rules
+//!                 lexicon.toml        cast     + problems   catalog/*.toml   scene graph
+//! ```
+//!
+//! Everything is deterministic in the question's seed, and feedback is acted upon: a fault code leads to
+//! a longer path, another place, another draw. The limits are those of a small grammar: English only,
+//! clause by clause, prose from templates; words that nothing was read from are reported, never dropped.
+//!
+//! Never: a network or a file; a random number that is not the seed's; a check of its own answers
+//! (the same checks judge every author); a wish that vanishes without a trace in the reading.
+
+pub mod card;
+
+mod lexicon;
+mod words;
+
+mod mention;
+
+mod cast;
+mod clause;
+mod deed;
+mod finish;
+mod story;
+mod task;
+
+mod default_cast;
+mod pattern;
+mod summary;
+mod understand;
+
+mod events;
+mod place;
+mod proposal;
+mod prose;
+
+mod answer;
+mod draw;
+mod humans;
+mod routes;
+mod solve;
+
+#[cfg(test)]
+mod tests;
+
+use socrates_model::{Location, Reading, Request};
+
+pub use answer::Offline;
+pub use card::{Card, catalog};
+pub use summary::summary;
+
+/// Name of this author, as artifacts spell it.
+pub const NAME: &str = "offline/1";
+
+/// Reads a request: who, where, what, and every word that was not understood.
+///
+/// Deterministic in the request and the location; never fails. Wishes that cannot be read (P-READ), placed
+/// (P-PLACE), reconciled (P-CONTRA) or simulated (P-LIMIT), and texts that are not English (P-LANG), stand in
+/// [`Reading::problems`]; unused words in [`Reading::ignored`]; assumptions in [`Reading::notes`].
+#[must_use]
+pub fn read(request: &Request, location: &Location) -> Reading {
+    understand::understand(request, location).reading
+}

@@ -1,1 +1,33 @@
-//! socrates-author.
+//! Who answers the authoring questions, and one attempt at an answer.
+//!
+//! ```text
+//! Question ─► Author::ask ─► text ─► parse (prompts) ─► check (checks) ─► artifact + exchange
+//!              offline │ language model │ cassette         └── any fault: refused, with every reason
+//!              FaultyAuthor wraps any of them
+//! ```
+//!
+//! One attempt is one ask. What comes next — asking again, waiting, giving up — is decided elsewhere.
+//!
+//! *Never here:* a second ask, a sleep, an environment variable, a private door for any author.
+
+pub mod author;
+pub mod offline;
+
+pub mod cassette;
+pub mod llm;
+
+pub mod faulty;
+mod mutate;
+
+pub mod attempt;
+pub mod job;
+pub mod settings;
+
+#[cfg(test)]
+mod testing;
+
+pub use attempt::{Exchange, Made, Refused, Written, attempt};
+pub use author::{Answer, AskError, Author};
+pub use faulty::{FaultKind, FaultRates, FaultyAuthor};
+pub use job::{Desk, JobAnswer, JobRefusal, Papers};
+pub use settings::{Keys, author_for};

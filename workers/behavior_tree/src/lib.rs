@@ -1,1 +1,35 @@
-//! socrates-bt.
+//! Behavior trees of humans: BehaviorTree.CPP XML of versions 3 and 4 in and out, ticked against a
+//! small view of the world, made from rule lists, and checked without a simulator.
+//!
+//! ```text
+//! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures
+//!          faults          ▲       │
+//! rules ──► compile ───────┘       └──► check: every case of the conditions, ticked once
+//! ```
+//!
+//! *Never here:* a simulator, a planner, a map, a file, a clock, a random number, another agent's tree.
+
+mod blackboard;
+mod build;
+pub mod check;
+pub mod compile;
+pub mod nodes;
+pub mod parse;
+mod rules;
+mod script;
+pub mod sheet;
+pub mod status;
+mod tick;
+pub mod tree;
+pub mod world;
+mod write;
+mod xml;
+
+pub use check::{CheckContext, check};
+pub use compile::{compile, describe};
+pub use nodes::CATALOG;
+pub use parse::{Includes, Options, REGULAR_NAV, REGULAR_NAV_PATH};
+pub use sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet};
+pub use status::Status;
+pub use tree::{Format, Tree, TreeState};
+pub use world::World;

@@ -1,1 +1,37 @@
-//! socrates-scoring.
+//! Scoring: metrics, fidelity verdict and story of one recording.
+//!
+//! ```text
+//! recording ─► tracks ─┬─► metrics   (how well did the robot do?)          ─┐
+//!                      ├─► fidelity  (did the scenario happen as asked?)   ─┼─► report
+//!                      └─► narrative (what happened, with times)           ─┘
+//! ```
+//!
+//! The core is one pure function, [`score`]; the stage around it decodes inputs and hands back the
+//! report. What is missing (a map, a proposal, velocities) makes single figures not applicable with
+//! a note; it never becomes 0.
+//!
+//! *Never here:* a wall clock, a random number, a model that decides, a judgement of the setting by
+//! what the robot made of it.
+
+mod evidence;
+mod series;
+mod tracks;
+
+pub mod fidelity;
+pub mod metrics;
+
+mod narrative;
+mod repair;
+mod score;
+mod stage;
+
+#[cfg(test)]
+mod fixture;
+#[cfg(test)]
+mod scenarios;
+
+pub use evidence::{Evidence, REFERENCE};
+pub use score::score;
+pub use series::{Series, Span};
+pub use stage::ScoringStage;
+pub use tracks::{MOVING_MPS, Sample, Track, TrackFault, Tracks};

@@ -1,1 +1,23 @@
-//! socrates-simulation.
+//! The simulation stage: from proposal, paths and behaviors to a recording.
+//!
+//! ```text
+//! job ─► inputs ─► checks ─► Setup ─► engine ⇄ planner ─► frames ─► live viewers (never slow a run)
+//!                                          └─► recording ─► MCAP + summary
+//! ```
+//!
+//! Modules in reading order: the pure run ([`simulate()`]), what is said about it ([`summary`]), how
+//! fast it plays for viewers ([`pace`]), and the worker's stage ([`stage`]).
+//!
+//! *Never here:* another stage, the orchestrator, the store, a metric, a verdict.
+
+pub mod pace;
+pub mod simulate;
+pub mod stage;
+pub mod summary;
+
+#[cfg(test)]
+mod runs;
+
+pub use simulate::{setup, simulate, simulate_into};
+pub use stage::Simulation;
+pub use summary::Summary;

@@ -1,1 +1,41 @@
-//! socrates-engine.
+//! The engine: one simulated run of a scenario, pure and fixed-step.
+//!
+//! ```text
+//! Setup ─► start (floor, trees, places) ─► every 0.01 s:
+//!     doors ─► trees (World) ─► planner ─► rendezvous ─► motion ─► forces ─► contacts ─► recorder
+//! ```
+//!
+//! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], doors, [`lidar`]), the agents
+//! (human, view, robot, script), how they move (motion, walk, contacts), how they meet (rendezvous),
+//! where they start (placing, start), what is written down (recorder, ending), and the loop ([`run`]).
+//!
+//! *Never here:* a file, a socket, the wall clock, a thread, a random number outside the seed, another
+//! library's math types in the interface.
+
+pub mod floor;
+pub mod lidar;
+pub mod run;
+pub mod setup;
+
+mod contacts;
+mod doors;
+mod ending;
+mod human;
+mod motion;
+mod placing;
+mod recorder;
+mod rendezvous;
+mod robot;
+mod script;
+mod start;
+mod view;
+mod walk;
+
+#[cfg(test)]
+mod fixture;
+#[cfg(test)]
+mod tests;
+
+pub use floor::Floor;
+pub use run::{Engine, NO_ROBOT};
+pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

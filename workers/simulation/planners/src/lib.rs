@@ -1,1 +1,28 @@
-//! socrates-planners.
+//! Planners: what drives the robot under test.
+//!
+//! ```text
+//! Mission ─► make(name) ─► RobotDriver: Observation (people in sight, lidar, doors) ─► Command (v, omega, gesture)
+//! ```
+//!
+//! Modules in reading order: what a planner is given ([`mission`]), the list of planners ([`catalog`]), the
+//! floor as planners see it (ground), ways round people (detour), following a way (pursuit), then one file
+//! per planner and the robot's script that `reference` plays.
+//!
+//! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
+
+pub mod catalog;
+pub mod mission;
+
+mod detour;
+mod ground;
+mod pursuit;
+mod reactive;
+mod reference;
+mod script;
+mod waiting;
+
+#[cfg(test)]
+mod tests;
+
+pub use catalog::{CATALOG, NO_ROBOT, PlannerSheet, make, names};
+pub use mission::Mission;

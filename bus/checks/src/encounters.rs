@@ -1,0 +1,203 @@
+//! Where robot and humans meet: G-MEET, G-MEETEND, G-TYPE.
+
+use std::collections::BTreeSet;
+
+use socrates_model::{
+    Encounter, Fault, FaultCode, HumanProposal, Location, NodeId, Paths, PlaceClass, Proposal, Relation,
+};
+
+use crate::list;
+use crate::places::{family, is_inside, nodes_of};
+
+/// Longest list of candidates in one message.
+const LISTED: usize = 24;
+
+/// Every fault of the encounters.
+pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut seen = BTreeSet::new();
+    for encounter in &paths.encounters {
+        if !seen.insert(encounter.human) {
+            faults.push(Fault::new(FaultCode::GMeet, encounter.human, "has two encounters; give at most one"));
+        }
+        match proposal.human(encounter.human) {
+            None => {
+                let message = format!(
+                    "has an encounter but is not in the proposal; humans: {}",
+                    list(proposal.humans.iter().map(|human| human.id))
+                );
+                faults.push(Fault::new(FaultCode::GAgents, encounter.human, message));
+            }
+            Some(human) => {
+                faults.extend(meets(encounter, human, paths, location));
+                faults.extend(ends(encounter, human, paths, location));
+            }
+        }
+    }
+    for human in &proposal.humans {
+        let path = paths.humans.get(&human.id);
+        if human.relation != Relation::Staying && path.is_some() && paths.encounter_of(human.id).is_none() {
+            let shared = path.map(|nodes| shared(nodes, &paths.robot)).unwrap_or_default();
+            let message = format!("has no encounter; nodes it shares with the robot: {}", list(shared));
+            faults.push(Fault::new(FaultCode::GMeet, human.id, message));
+        }
+    }
+    faults.extend(types(paths, proposal, location));
+    faults
+}
+
+/// G-MEET: the node must be on both paths. Who stays inside is met where the robot's way ends.
+fn meets(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: &Location) -> Option<Fault> {
+    let own = paths.humans.get(&human.id)?;
+    let on_robot = paths.robot.contains(&encounter.node);
+    let on_human = own.contains(&encounter.node);
+    // People of an elevator or room are met at its door, although they start behind it.
+    let at_door = matches!(human.relation, Relation::Staying | Relation::Leaving)
+        && own.first().is_some_and(|start| near_inside(&encounter.node, start, location));
+    if on_robot && (on_human || at_door) {
+        return None;
+    }
+    let where_missing = match (on_robot, on_human) {
+        (true, _) => "is not on its own path".to_owned(),
+        (false, true) => "is not on the robot's path".to_owned(),
+        (false, false) => "is on neither its own nor the robot's path".to_owned(),
+    };
+    let shared = shared(own, &paths.robot);
+    let hint = if shared.is_empty() {
+        "the two paths share no node; lead one of them through the other".to_owned()
+    } else {
+        format!("nodes they share: {}", list(shared))
+    };
+    let message = format!("meets the robot at `{}`, which {where_missing}; {hint}", encounter.node);
+    Some(Fault::new(FaultCode::GMeet, human.id, message))
+}
+
+/// Whether a node is in the same room or car as the start, or next to it.
+fn near_inside(node: &NodeId, start: &NodeId, location: &Location) -> bool {
+    let same_door = location.door_of(start).is_some_and(|door| door.inside.contains(node));
+    same_door || location.graph.shortest(start, node).is_some_and(|way| way.len() <= 4)
+}
+
+/// G-MEETEND: not at the ends of the robot's path, and the human goes on behind it.
+fn ends(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: &Location) -> Option<Fault> {
+    let own = paths.humans.get(&human.id)?;
+    let at_car = is_inside(location, &encounter.node)
+        || location.graph.neighbors(&encounter.node).iter().any(|node| is_inside(location, node));
+    let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
+    let stands = own.len() == 1;
+    let last = paths.robot.last() == Some(&encounter.node);
+    if paths.robot.first() == Some(&encounter.node) || last && !((indoors || stands) && at_car) {
+        let which = if last { "last" } else { "first" };
+        let message = format!(
+            "meets the robot at `{}`, the robot's {which} node; the encounter needs a robot node before and after it. Choose \
+             one of {}, or make the robot's path longer",
+            encounter.node,
+            list(inner(&paths.robot).iter().filter(|node| own.contains(node)))
+        );
+        return Some(Fault::new(FaultCode::GMeetEnd, human.id, message));
+    }
+    if !stands && !indoors && own.last() == Some(&encounter.node) {
+        let next: Vec<NodeId> = location.graph.neighbors(&encounter.node);
+        let message = format!(
+            "ends at the encounter `{}`; a human who walks needs at least one node after it, such as one of {}",
+            encounter.node,
+            list(next)
+        );
+        return Some(Fault::new(FaultCode::GMeetEnd, human.id, message));
+    }
+    None
+}
+
+/// G-TYPE: the meeting stretch (the node, and the robot's nodes next to it) is the proposed place.
+fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> {
+    let graph = &location.graph;
+    let wanted = proposal.place;
+    if wanted == PlaceClass::Plain || nodes_of(graph, wanted).is_empty() {
+        return Vec::new();
+    }
+    let is_wanted = |node: &NodeId| family(wanted).iter().any(|class| graph.node_is(node, *class));
+    let fits = |encounter: &Encounter| {
+        is_wanted(&encounter.node)
+            || paths.robot.iter().position(|node| *node == encounter.node).is_some_and(|at| {
+                let before = at.checked_sub(1).and_then(|before| paths.robot.get(before));
+                before.into_iter().chain(paths.robot.get(at + 1)).any(is_wanted)
+            })
+    };
+    if paths.encounters.iter().any(|encounter| graph.node(&encounter.node).is_none()) {
+        return Vec::new();
+    }
+    // Who walks with the robot meets it along the way; one meeting at the place is enough for them.
+    let along = |encounter: &Encounter| {
+        proposal
+            .human(encounter.human)
+            .is_some_and(|human| matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast))
+    };
+    let somewhere = paths.encounters.iter().any(fits);
+    paths
+        .encounters
+        .iter()
+        .filter(|encounter| !(fits(encounter) || somewhere && along(encounter)))
+        .map(|encounter| {
+            let message = format!(
+                "meets the robot at `{}` ({}), but the proposal wants `{wanted}`; candidates: {}",
+                encounter.node,
+                list(graph.classes(&encounter.node)),
+                list(nodes_of(graph, wanted).iter().take(LISTED))
+            );
+            Fault::new(FaultCode::GType, encounter.human, message)
+        })
+        .collect()
+}
+
+fn shared(own: &[NodeId], robot: &[NodeId]) -> Vec<NodeId> {
+    let mut found: Vec<NodeId> = Vec::new();
+    for node in own.iter().filter(|node| robot.contains(node)) {
+        if !found.contains(node) {
+            found.push(node.clone());
+        }
+    }
+    found
+}
+
+fn inner(nodes: &[NodeId]) -> &[NodeId] {
+    nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{crossing_paths, crossing_proposal, hard_codes, node, nodes, plus_map};
+    use socrates_model::HumanId;
+
+    fn codes(change: impl FnOnce(&mut Paths, &mut Proposal)) -> Vec<String> {
+        let (mut paths, mut proposal) = (crossing_paths(), crossing_proposal());
+        change(&mut paths, &mut proposal);
+        hard_codes(&check(&paths, &proposal, &plus_map()))
+    }
+
+    #[test]
+    fn a_meeting_off_one_of_the_paths_is_refused() {
+        assert_eq!(codes(|paths, _| paths.encounters[0].node = node("n_1")), ["G-MEET", "G-TYPE"]);
+        assert_eq!(codes(|paths, _| paths.encounters.truncate(1)), ["G-MEET"]);
+    }
+
+    #[test]
+    fn a_meeting_at_the_robots_end_is_refused() {
+        let end = |paths: &mut Paths, _: &mut Proposal| paths.robot = nodes(&["w_3", "w_2", "w_1", "n_center"]);
+        assert_eq!(codes(end), ["G-MEETEND", "G-MEETEND"]);
+    }
+
+    #[test]
+    fn who_walks_goes_on_after_the_meeting() {
+        let stop = |paths: &mut Paths, _: &mut Proposal| {
+            paths.humans.insert(HumanId::new(1), nodes(&["n_2", "n_1", "n_center"]));
+        };
+        assert_eq!(codes(stop), ["G-MEETEND"]);
+    }
+
+    #[test]
+    fn the_meeting_is_at_the_proposed_place_or_next_to_it() {
+        assert_eq!(codes(|_, proposal| proposal.place = PlaceClass::Exit), ["G-TYPE", "G-TYPE"]);
+        assert!(codes(|_, proposal| proposal.place = PlaceClass::Corridor).is_empty());
+    }
+}

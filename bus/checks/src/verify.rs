@@ -1,0 +1,219 @@
+//! P-VERIFY: a scenario cannot be realised by promising nothing.
+
+use std::collections::BTreeSet;
+
+use socrates_model::{Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading};
+
+use crate::list;
+
+/// Every human needs a setup clause that must hold and speaks of it, or of its group.
+pub(crate) fn humans(proposal: &Proposal) -> Vec<Fault> {
+    proposal
+        .humans
+        .iter()
+        .filter(|human| !must_setup(proposal).any(|clause| speaks_of(clause, human.id, proposal)))
+        .map(|human| {
+            let message = "has no clause with role `setup` and `must` that speaks of it; add one that says how it is seen \
+                           that it did its part, such as `meets`, `reacts` or `stands_still`";
+            Fault::new(FaultCode::PVerify, human.id, message)
+        })
+        .collect()
+}
+
+/// Every reaction, gesture, place and group that was asked for needs a setup clause that names it as its source.
+pub(crate) fn facts(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for fact in reading.facts.iter().filter(|fact| needs_clause(&fact.kind)) {
+        let carriers: Vec<&Clause> = must_setup(proposal).filter(|clause| clause.source == fact.id).collect();
+        if carriers.is_empty() {
+            let message = format!(
+                "\"{}\" was asked for, but no clause with role `setup` and `must` has `source` = `{}`; add one that verifies it",
+                fact.quote, fact.id
+            );
+            faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));
+        } else if let Some(owner) = human_of(fact)
+            && !carriers.iter().any(|clause| speaks_of(clause, owner, proposal))
+        {
+            let message = format!(
+                "is about {owner}, but its clauses {} speak of others; one must speak of {owner}",
+                list(carriers.iter().map(|clause| &clause.id))
+            );
+            faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));
+        }
+    }
+    faults
+}
+
+/// Clauses that cannot be judged: doubled ids, unknown groups or orders, results dressed up as setup, impossible numbers.
+pub(crate) fn clauses(proposal: &Proposal) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    let mut seen = BTreeSet::new();
+    let ids: BTreeSet<&str> = proposal.expected_events.iter().map(|clause| clause.id.as_str()).collect();
+    for clause in &proposal.expected_events {
+        let mut bad =
+            |message: String| faults.push(Fault::new(FaultCode::PVerify, format!("clause {}", clause.id), message));
+        if !seen.insert(clause.id.as_str()) {
+            bad("is listed twice; number the clauses c1, c2, …".to_owned());
+        }
+        if let Predicate::Formation { group, .. } | Predicate::WalksTogether { group, .. } = &clause.predicate
+            && !proposal.groups.iter().any(|found| found.id == *group)
+        {
+            bad(format!("speaks of {group}; groups: {}", list(proposal.groups.iter().map(|found| found.id))));
+        }
+        if let Predicate::Order { first, then } = &clause.predicate {
+            for id in [first, then].into_iter().filter(|id| !ids.contains(id.as_str())) {
+                bad(format!("orders the clause `{id}`; clauses: {}", list(&ids)));
+            }
+        }
+        if clause.role == ClauseRole::Setup && judges_robot(&clause.predicate) {
+            bad("judges what the robot does and cannot be part of the setup; use the role `outcome`".to_owned());
+        }
+        for (name, value) in numbers(&clause.predicate) {
+            if !value.is_finite() || value < 0.0 {
+                bad(format!("`{name}` is {value}; a number of 0 or more is expected"));
+            }
+        }
+    }
+    faults
+}
+
+fn must_setup(proposal: &Proposal) -> impl Iterator<Item = &Clause> {
+    proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup)
+}
+
+/// Whether a clause is about the human: directly, as the leader it follows, or through its group.
+fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
+    let by_group = |id| proposal.groups.iter().any(|group| group.id == id && group.members.contains(&human));
+    let led = matches!(&clause.predicate, Predicate::Follows { leader, .. } if *leader == human.into());
+    let grouped = matches!(
+        &clause.predicate,
+        Predicate::Formation { group, .. } | Predicate::WalksTogether { group, .. } if by_group(*group)
+    );
+    led || grouped || clause.predicate.human() == Some(human)
+}
+
+const fn needs_clause(kind: &FactKind) -> bool {
+    match kind {
+        FactKind::Group { .. }
+        | FactKind::Reacts { .. }
+        | FactKind::Gestures { .. }
+        | FactKind::Place(_)
+        | FactKind::RobotSays(_) => true,
+        FactKind::Humans(_)
+        | FactKind::Relates { .. }
+        | FactKind::RobotTask(_)
+        | FactKind::RobotStart(_)
+        | FactKind::RobotGoal(_)
+        | FactKind::Pattern(_) => false,
+    }
+}
+
+const fn human_of(fact: &Fact) -> Option<HumanId> {
+    match &fact.kind {
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => Some(*human),
+        FactKind::Humans(_)
+        | FactKind::Group { .. }
+        | FactKind::Relates { .. }
+        | FactKind::Place(_)
+        | FactKind::RobotTask(_)
+        | FactKind::RobotSays(_)
+        | FactKind::RobotStart(_)
+        | FactKind::RobotGoal(_)
+        | FactKind::Pattern(_) => None,
+    }
+}
+
+const fn judges_robot(predicate: &Predicate) -> bool {
+    matches!(
+        predicate,
+        Predicate::RobotArrives
+            | Predicate::RobotKeeps { .. }
+            | Predicate::RobotEntersLast
+            | Predicate::RobotObeys { .. }
+    )
+}
+
+/// The numbers of a predicate by name.
+fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
+    match predicate {
+        Predicate::Meets { within_m, .. }
+        | Predicate::HiddenUntil { within_m, .. }
+        | Predicate::Reaches { within_m, .. } => {
+            vec![("within_m", *within_m)]
+        }
+        Predicate::Crosses { gap_s, .. } => vec![("gap_s", *gap_s)],
+        Predicate::Ahead { within_m, for_s, .. } => vec![("within_m", *within_m), ("for_s", *for_s)],
+        Predicate::Follows { gap_m: [least, most], for_s, .. } => {
+            vec![("gap_m", *least), ("gap_m", *most), ("gap_m, largest less smallest", most - least), ("for_s", *for_s)]
+        }
+        Predicate::Abreast { for_s, .. }
+        | Predicate::Blocks { for_s, .. }
+        | Predicate::Looks { for_s, .. }
+        | Predicate::StandsStill { for_s, .. } => vec![("for_s", *for_s)],
+        Predicate::RunsAway { by_m, .. } => vec![("by_m", *by_m)],
+        Predicate::Reacts { within_s, .. } | Predicate::RobotObeys { within_s, .. } => vec![("within_s", *within_s)],
+        Predicate::DoorOpens { robot_m: [least, most], .. } => {
+            vec![("robot_m", *least), ("robot_m", *most), ("robot_m, largest less smallest", most - least)]
+        }
+        Predicate::Formation { spread_m, .. } | Predicate::WalksTogether { spread_m, .. } => {
+            vec![("spread_m", *spread_m)]
+        }
+        Predicate::RobotKeeps { min_m } => vec![("min_m", *min_m)],
+        Predicate::Humans { .. }
+        | Predicate::HeadOn { .. }
+        | Predicate::Overtakes { .. }
+        | Predicate::RobotPasses { .. }
+        | Predicate::GivesWay { .. }
+        | Predicate::Gestures { .. }
+        | Predicate::Leaves { .. }
+        | Predicate::StaysInside { .. }
+        | Predicate::Order { .. }
+        | Predicate::EncounterAt { .. }
+        | Predicate::Plausible
+        | Predicate::RobotArrives
+        | Predicate::RobotEntersLast => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{codes, crossing_proposal, reading_of};
+
+    #[test]
+    fn a_human_without_a_clause_cannot_be_verified() {
+        let mut proposal = crossing_proposal();
+        let second = HumanId::new(2);
+        proposal.expected_events.retain(|clause| clause.predicate.human() != Some(second));
+        let faults = humans(&proposal);
+        assert_eq!(codes(&faults), ["P-VERIFY"]);
+        assert_eq!(faults[0].at, "human_2");
+    }
+
+    #[test]
+    fn a_wish_needs_a_must_clause_of_its_own() {
+        let mut proposal = crossing_proposal();
+        let reading = reading_of(&proposal);
+        assert!(facts(&proposal, &reading).is_empty());
+        for clause in &mut proposal.expected_events {
+            clause.must = clause.source.is_empty();
+        }
+        assert!(!facts(&proposal, &reading).is_empty());
+    }
+
+    #[test]
+    fn the_robots_result_is_no_part_of_the_setup() {
+        let mut proposal = crossing_proposal();
+        proposal.expected_events[0].predicate = Predicate::RobotArrives;
+        assert_eq!(codes(&clauses(&proposal)), ["P-VERIFY"]);
+    }
+
+    #[test]
+    fn doubled_ids_and_dangling_orders_are_refused() {
+        let mut proposal = crossing_proposal();
+        let double = proposal.expected_events[0].id.clone();
+        proposal.expected_events[1].id = double;
+        proposal.expected_events[2].predicate = Predicate::Order { first: "c1".into(), then: "c99".into() };
+        assert_eq!(codes(&clauses(&proposal)), ["P-VERIFY", "P-VERIFY"]);
+    }
+}

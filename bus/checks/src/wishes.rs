@@ -1,0 +1,182 @@
+//! What the request asked for, held against the proposal: P-COUNT and P-ROUGH.
+
+use std::collections::BTreeSet;
+
+use socrates_model::{Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger};
+
+use crate::list;
+use crate::proposal::robot_says;
+
+/// A fault per fact of the reading that the proposal drops.
+pub(crate) fn check(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
+    reading.facts.iter().filter_map(|fact| missing(fact, proposal)).collect()
+}
+
+fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
+    let quote = if fact.quote.is_empty() { String::new() } else { format!(" (asked for by \"{}\")", fact.quote) };
+    let rough = |at: String, message: String| Some(Fault::new(FaultCode::PRough, at, format!("{message}{quote}")));
+    match &fact.kind {
+        FactKind::Humans(count) => {
+            let listed = proposal.humans.len();
+            (listed != *count as usize).then(|| {
+                Fault::new(FaultCode::PCount, "humans", format!("lists {listed} humans, asked for were {count}{quote}"))
+            })
+        }
+        FactKind::Group { group, members } => {
+            let wanted: BTreeSet<HumanId> = members.iter().copied().collect();
+            let there =
+                proposal.groups.iter().any(|found| found.members.iter().copied().collect::<BTreeSet<_>>() == wanted);
+            if there {
+                None
+            } else {
+                rough(group.to_string(), format!("no group has exactly the members {}", list(&wanted)))
+            }
+        }
+        FactKind::Reacts { human, rule } => {
+            let Some(found) = proposal.human(*human) else { return rough(human.to_string(), "is missing".to_owned()) };
+            if found.rules.iter().any(|other| covers(other, rule)) {
+                None
+            } else {
+                rough(
+                    human.to_string(),
+                    format!("has no rule for: {}; its rules: {}", words(rule), rules_in_words(&found.rules)),
+                )
+            }
+        }
+        FactKind::Relates { human, relation } => {
+            let found = proposal.human(*human)?.relation;
+            if found == *relation {
+                None
+            } else {
+                rough(
+                    human.to_string(),
+                    format!("has the relation `{}`, asked for was `{}`", snake(found), snake(*relation)),
+                )
+            }
+        }
+        FactKind::Gestures { human, gesture } => {
+            let found = proposal.human(*human)?;
+            if found.rules.iter().any(|rule| rule.gesture == Some(*gesture)) {
+                None
+            } else {
+                rough(human.to_string(), format!("has no rule with the gesture {gesture}"))
+            }
+        }
+        FactKind::Place(class) => {
+            let clause = proposal
+                .expected_events
+                .iter()
+                .any(|clause| matches!(clause.predicate, Predicate::EncounterAt { place } if place == *class));
+            if proposal.place == *class || clause {
+                None
+            } else {
+                rough("place".to_owned(), format!("is `{}`, asked for was `{class}`", proposal.place))
+            }
+        }
+        FactKind::RobotSays(gesture) => {
+            let said = robot_says(proposal);
+            if said.contains(gesture) {
+                None
+            } else {
+                rough("robot script".to_owned(), format!("never says {gesture}; it says {}", list(&said)))
+            }
+        }
+        FactKind::RobotStart(class) => {
+            let found = proposal.robot.start;
+            if found == Some(*class) { None } else { rough("robot start".to_owned(), format!("is not `{class}`")) }
+        }
+        FactKind::RobotGoal(class) => {
+            let found = proposal.robot.goal;
+            if found == Some(*class) { None } else { rough("robot goal".to_owned(), format!("is not `{class}`")) }
+        }
+        FactKind::Pattern(card) => {
+            if proposal.pattern == *card {
+                None
+            } else {
+                rough("pattern".to_owned(), format!("is `{}`, asked for was `{card}`", proposal.pattern))
+            }
+        }
+        // An empty task is P-ROBOT; whether prose means the same as prose is not judged here.
+        FactKind::RobotTask(_) => None,
+    }
+}
+
+/// Whether a rule of the proposal does what was asked: same action, same gestures; distances are the author's.
+fn covers(found: &Rule, asked: &Rule) -> bool {
+    let heard = |rule: &Rule| -> BTreeSet<(u32, Gesture)> {
+        rule.when
+            .iter()
+            .filter_map(|trigger| match trigger {
+                Trigger::RobotSays(gesture) => Some((0, *gesture)),
+                Trigger::HumanSays(id, gesture) => Some((id.number(), *gesture)),
+                Trigger::Always
+                | Trigger::RobotVisible(_)
+                | Trigger::RobotNear(_)
+                | Trigger::RobotBlocking(_)
+                | Trigger::RobotMoving
+                | Trigger::RobotStopped
+                | Trigger::GoalReached
+                | Trigger::AtEncounter
+                | Trigger::AfterSecs(_) => None,
+            })
+            .collect()
+    };
+    found.act == asked.act
+        && (asked.gesture.is_none() || found.gesture == asked.gesture)
+        && heard(asked).is_subset(&heard(found))
+}
+
+/// A rule in words.
+pub(crate) fn words(rule: &Rule) -> String {
+    let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
+    let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
+    format!("{} it {}{gesture}", when.join(" and "), rule.act.phrase())
+}
+
+fn rules_in_words(rules: &[Rule]) -> String {
+    if rules.is_empty() { "none".to_owned() } else { rules.iter().map(words).collect::<Vec<_>>().join("; ") }
+}
+
+/// A relation as written in files.
+pub(crate) const fn snake(relation: socrates_model::Relation) -> &'static str {
+    use socrates_model::Relation as R;
+    match relation {
+        R::Frontal => "frontal",
+        R::Behind => "behind",
+        R::Ahead => "ahead",
+        R::Crossing => "crossing",
+        R::Static => "static",
+        R::Leaving => "leaving",
+        R::Staying => "staying",
+        R::Abreast => "abreast",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{codes, crossing_proposal, reading_of};
+    use socrates_model::{Action, Relation};
+
+    #[test]
+    fn every_dropped_wish_is_named_with_its_words() {
+        let asked = crossing_proposal();
+        let reading = reading_of(&asked);
+        let mut proposal = asked;
+        proposal.humans.pop();
+        proposal.humans[0].rules[0].act = Action::StandStill;
+        proposal.humans[0].relation = Relation::Frontal;
+        let faults = check(&proposal, &reading);
+        assert_eq!(codes(&faults), ["P-COUNT", "P-ROUGH", "P-ROUGH"]);
+        assert!(faults[1].message.contains("asked for by"), "{}", faults[1].message);
+    }
+
+    #[test]
+    fn another_distance_for_the_same_reaction_is_the_authors_choice() {
+        let asked = crossing_proposal();
+        let reading = reading_of(&asked);
+        let mut proposal = asked;
+        proposal.humans[0].rules[0].when = vec![Trigger::RobotNear(2.5)];
+        assert!(check(&proposal, &reading).is_empty());
+    }
+}

@@ -1,0 +1,50 @@
+//! Typed calls on top of any bus.
+
+use std::time::Duration;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::bus::Bus;
+use crate::envelope::{Envelope, decode, encode};
+use crate::error::LinkError;
+
+/// Kind of a reply that says no.
+pub const KIND_REFUSED: &str = "refused";
+
+/// Body of a reply that says no.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refusal {
+    /// Why, in a sentence.
+    pub why: String,
+}
+
+/// Asks with a message and gives the body of the reply, which has the same kind.
+///
+/// # Errors
+/// As [`Bus::query`], [`encode`] and [`decode`]; [`LinkError::Refused`] when the other side said no.
+pub async fn call<Req: Serialize + Sync, Rep: DeserializeOwned>(
+    bus: &dyn Bus,
+    key: &str,
+    kind: &str,
+    request: &Req,
+    timeout: Duration,
+) -> Result<Rep, LinkError> {
+    Ok(call_envelope(bus, key, kind, request, timeout).await?.body)
+}
+
+/// As [`call`], with the whole envelope of the reply: its epoch tells a stale orchestrator.
+///
+/// # Errors
+/// As [`call`].
+pub async fn call_envelope<Req: Serialize + Sync, Rep: DeserializeOwned>(
+    bus: &dyn Bus,
+    key: &str,
+    kind: &str,
+    request: &Req,
+    timeout: Duration,
+) -> Result<Envelope<Rep>, LinkError> {
+    let body = encode(&Envelope::fresh(kind, bus.name(), 0, request))?;
+    let reply = bus.query(key, body, timeout).await?;
+    decode(kind, &reply)
+}

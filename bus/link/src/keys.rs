@@ -1,0 +1,214 @@
+//! Keys: every name on the bus, relative to the namespace `soc/v1/<ns>`.
+//!
+//! | key | kind | use |
+//! |---|---|---|
+//! | `rpc/…` | query, served by the active orchestrator | worker protocol, clients, artifacts |
+//! | `hint/<stage>` | put, [`crate::Qos::Hint`] | work exists |
+//! | `cmd/<instance>` | put, [`crate::Qos::Control`] | cancel, drain |
+//! | `ev/<batch>/<scenario>` | put, [`crate::Qos::Hint`] | numbered notices for viewers |
+//! | `live/orch/<id>`, `live/worker/<stage>/<instance>` | presence tokens | hastening |
+//! | `live/<run>/{meta,agents,ctl}` | put and query | live state of a run |
+
+use socrates_model::RunId;
+use socrates_model::job::Stage;
+use zenoh::key_expr::keyexpr;
+
+use crate::error::LinkError;
+
+/// A worker introduces itself: `wire::Hello` → `wire::Welcome`.
+pub const HELLO: &str = "rpc/hello";
+/// A worker asks for work: `wire::Acquire` → `wire::Acquired`.
+pub const ACQUIRE: &str = "rpc/acquire";
+/// A worker says that it lives: `wire::Beat` → `wire::BeatReply`.
+pub const BEAT: &str = "rpc/beat";
+/// A worker reports: `wire::Report` → `wire::Recorded`.
+pub const REPORT: &str = "rpc/report";
+/// A worker hands back: `wire::Release` → `wire::Recorded`.
+pub const RELEASE: &str = "rpc/release";
+/// A client submits: `wire::Submit` → `wire::Submitted`.
+pub const SUBMIT: &str = "rpc/submit";
+/// A client controls: `wire::Control` → `u32`, how many were changed.
+pub const CONTROL: &str = "rpc/control";
+/// A client asks how things stand: `wire::StatusAsk` → `wire::StatusReply`.
+pub const STATUS: &str = "rpc/status";
+/// A part of an artifact is fetched: `wire::BlobGet` → `wire::BlobPart`.
+pub const BLOB_GET: &str = "rpc/blob_get";
+/// A part of an artifact is stored: `wire::BlobPut` → `u64`, bytes held so far.
+pub const BLOB_PUT: &str = "rpc/blob_put";
+
+/// Every query key of the orchestrator, in the order in which they are declared.
+pub const RPC: [&str; 10] = [HELLO, ACQUIRE, BEAT, REPORT, RELEASE, SUBMIT, CONTROL, STATUS, BLOB_GET, BLOB_PUT];
+
+/// Presence tokens of every worker.
+pub const WORKERS_ALIVE: &str = "live/worker/**";
+/// Presence tokens of every orchestrator.
+pub const ORCHESTRATORS_ALIVE: &str = "live/orch/*";
+/// Notices of every batch.
+pub const EVENTS: &str = "ev/**";
+/// Announcements of every run.
+pub const RUNS: &str = "live/*/meta";
+
+/// Wake hint of a stage.
+#[must_use]
+pub fn hint(stage: Stage) -> String {
+    format!("hint/{stage}")
+}
+
+/// Commands for one worker process.
+#[must_use]
+pub fn command(instance: &str) -> String {
+    format!("cmd/{}", chunk(instance))
+}
+
+/// Notices about one scenario of a batch.
+#[must_use]
+pub fn event(batch: &str, scenario: &str) -> String {
+    format!("ev/{}/{}", chunk(batch), chunk(scenario))
+}
+
+/// Presence token of a worker process.
+#[must_use]
+pub fn worker_alive(stage: Stage, instance: &str) -> String {
+    format!("live/worker/{stage}/{}", chunk(instance))
+}
+
+/// Presence token of an orchestrator.
+#[must_use]
+pub fn orchestrator_alive(id: &str) -> String {
+    format!("live/orch/{}", chunk(id))
+}
+
+/// Stage and instance named by a worker's presence token; `None` for another key.
+#[must_use]
+pub fn worker_of(key: &str) -> Option<(Stage, String)> {
+    let (stage, instance) = key.strip_prefix("live/worker/")?.split_once('/')?;
+    Some((stage.parse().ok()?, instance.to_owned()))
+}
+
+/// Header, events and end of a run.
+#[must_use]
+pub fn live_meta(run: &RunId) -> String {
+    format!("live/{}/meta", chunk(run.as_str()))
+}
+
+/// Frames of a run, one message per tick.
+#[must_use]
+pub fn live_agents(run: &RunId) -> String {
+    format!("live/{}/agents", chunk(run.as_str()))
+}
+
+/// Asks a run for ticks and events that were missed.
+#[must_use]
+pub fn live_ctl(run: &RunId) -> String {
+    format!("live/{}/ctl", chunk(run.as_str()))
+}
+
+/// Free text as one chunk of a key: everything that is not a letter, digit, `.`, `_` or `-` becomes `%` and hex digits.
+#[must_use]
+pub fn chunk(text: &str) -> String {
+    if text.is_empty() {
+        return "%".to_owned();
+    }
+    text.bytes()
+        .map(|byte| match byte {
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'.' | b'_' | b'-' => char::from(byte).to_string(),
+            other => format!("%{other:02x}"),
+        })
+        .collect()
+}
+
+/// A namespace: deployments that share a router and must not hear each other have different ones.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Namespace(String);
+
+impl Namespace {
+    /// Reads a namespace.
+    ///
+    /// # Errors
+    /// [`LinkError::BadKey`] unless it is 1 to 64 of `a-z A-Z 0-9 . _ -`.
+    pub fn new(text: &str) -> Result<Self, LinkError> {
+        let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-');
+        if !text.is_empty() && text.len() <= 64 && text.chars().all(fits) {
+            return Ok(Self(format!("soc/v1/{text}/")));
+        }
+        Err(LinkError::BadKey {
+            key: text.chars().take(80).collect(),
+            why: "a namespace is 1 to 64 of a-z A-Z 0-9 . _ -".to_owned(),
+        })
+    }
+
+    /// The whole key of a relative one.
+    ///
+    /// # Errors
+    /// [`LinkError::BadKey`] when the key is not a well-formed key expression.
+    pub fn full(&self, key: &str) -> Result<String, LinkError> {
+        checked(key)?;
+        Ok(format!("{}{key}", self.0))
+    }
+
+    /// The relative key of a whole one; a foreign key is given back as it is.
+    #[must_use]
+    pub fn relative<'k>(&self, full: &'k str) -> &'k str {
+        full.strip_prefix(self.0.as_str()).unwrap_or(full)
+    }
+}
+
+/// The key expression, if it is one.
+pub(crate) fn checked(key: &str) -> Result<&keyexpr, LinkError> {
+    keyexpr::new(key).map_err(|why| LinkError::BadKey { key: key.chars().take(200).collect(), why: why.to_string() })
+}
+
+/// Whether a key falls under a key expression (`*` is one chunk, `**` any number).
+///
+/// # Errors
+/// [`LinkError::BadKey`] when either is not well formed.
+pub fn covers(expression: &str, key: &str) -> Result<bool, LinkError> {
+    Ok(checked(expression)?.intersects(checked(key)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_of_the_table_is_well_formed_and_apart_from_the_others() {
+        let run = RunId::new("case-3.reference-1").unwrap();
+        let mut all: Vec<String> = RPC.iter().map(|key| (*key).to_owned()).collect();
+        all.extend(Stage::WORKERS.map(hint));
+        all.extend([command("a b"), event("", "s"), worker_alive(Stage::Paths, "i"), orchestrator_alive("o")]);
+        all.extend([live_meta(&run), live_agents(&run), live_ctl(&run)]);
+        for key in &all {
+            assert!(checked(key).is_ok(), "{key}");
+        }
+        let mut apart = all.clone();
+        apart.sort();
+        apart.dedup();
+        assert_eq!(apart.len(), all.len());
+    }
+
+    #[test]
+    fn a_wildcard_covers_what_it_should_and_nothing_else() {
+        assert!(covers(RUNS, "live/a/meta").unwrap());
+        assert!(!covers(RUNS, "live/a/agents").unwrap());
+        assert!(covers(WORKERS_ALIVE, &worker_alive(Stage::Scoring, "x")).unwrap());
+        assert!(covers("a//b", "a").is_err());
+    }
+
+    #[test]
+    fn a_namespace_is_put_in_front_and_taken_off_again() {
+        let ns = Namespace::new("lab-1").unwrap();
+        let full = ns.full(ACQUIRE).unwrap();
+        assert_eq!(full, "soc/v1/lab-1/rpc/acquire");
+        assert_eq!(ns.relative(&full), ACQUIRE);
+        for bad in ["", "a/b", "a*", "ä"] {
+            assert!(Namespace::new(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_presence_token_names_its_worker() {
+        let key = worker_alive(Stage::Simulation, "9f");
+        assert_eq!(worker_of(&key), Some((Stage::Simulation, "9f".to_owned())));
+        assert_eq!(worker_of("live/orch/x"), None);
+    }
+}

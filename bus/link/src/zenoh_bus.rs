@@ -1,0 +1,301 @@
+//! The bus over zenoh: between processes and machines.
+//!
+//! Its functions are not generic, so that zenoh is compiled once, here.
+
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use async_trait::async_trait;
+use zenoh::Session;
+use zenoh::bytes::ZBytes;
+use zenoh::config::Config;
+use zenoh::qos::{CongestionControl, Priority};
+use zenoh::query::{ConsolidationMode, Query, QueryTarget};
+use zenoh::sample::{Sample, SampleKind};
+
+use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Qos, Reply, Serving, Subscription};
+use crate::envelope::fits;
+use crate::error::LinkError;
+use crate::keys::Namespace;
+use crate::mailbox::Mailbox;
+
+/// Room of a served key and of a presence watch.
+const DEPTH: usize = 1024;
+/// Longest time closing may take; on a lossy link the transport would wait 10 s.
+const CLOSE_LIMIT: Duration = Duration::from_secs(3);
+/// A peer that is silent for so long is gone, ms. Announced to the other side, so every participant sets it.
+const LEASE_MS: u64 = 3000;
+
+/// The part a participant plays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Passes messages on between all that connect to it.
+    Router,
+    /// Talks to those it is connected to.
+    Peer,
+    /// Has one connection, to a router.
+    Client,
+}
+
+/// How to join.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ZenohConfig {
+    /// Part played.
+    pub mode: Mode,
+    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447` or `unixsock-stream//run/socrates.sock`; none by default.
+    pub listen: Vec<String>,
+    /// Endpoints to connect to. There is no discovery: what is not listed is not found.
+    pub connect: Vec<String>,
+    /// Deployment that this participant belongs to.
+    pub namespace: String,
+    /// Name written into envelopes.
+    pub name: String,
+    /// How long opening keeps trying to connect. Default 10 s. Once open, a lost connection is sought for ever.
+    pub patience: Duration,
+}
+
+impl ZenohConfig {
+    /// The settings of a participant that neither listens nor connects yet.
+    #[must_use]
+    pub fn new(mode: Mode, namespace: &str, name: &str) -> Self {
+        Self {
+            mode,
+            listen: Vec::new(),
+            connect: Vec::new(),
+            namespace: namespace.to_owned(),
+            name: name.to_owned(),
+            patience: Duration::from_secs(10),
+        }
+    }
+
+    /// Listens on this endpoint too.
+    #[must_use]
+    pub fn listen(mut self, endpoint: &str) -> Self {
+        self.listen.push(endpoint.to_owned());
+        self
+    }
+
+    /// Connects to this endpoint too.
+    #[must_use]
+    pub fn connect(mut self, endpoint: &str) -> Self {
+        self.connect.push(endpoint.to_owned());
+        self
+    }
+
+    fn settings(&self) -> Result<Config, LinkError> {
+        let mode = match self.mode {
+            Mode::Router => "router",
+            Mode::Peer => "peer",
+            Mode::Client => "client",
+        };
+        // Debug of a string vector is a JSON5 list of strings.
+        let rows: [(&str, String); 17] = [
+            ("mode", format!("{mode:?}")),
+            ("listen/endpoints", format!("{:?}", self.listen)),
+            ("listen/timeout_ms", "0".to_owned()),
+            ("connect/endpoints", format!("{:?}", self.connect)),
+            ("connect/timeout_ms", self.patience.as_millis().to_string()),
+            ("connect/exit_on_failure", "true".to_owned()),
+            ("connect/retry", "{ period_init_ms: 100, period_max_ms: 1000, period_increase_factor: 1.5 }".to_owned()),
+            ("scouting/multicast/enabled", "false".to_owned()),
+            ("scouting/gossip/enabled", "false".to_owned()),
+            ("scouting/delay", "0".to_owned()),
+            ("adminspace/enabled", "false".to_owned()),
+            ("transport/shared_memory/enabled", "false".to_owned()),
+            ("transport/link/tx/lease", LEASE_MS.to_string()),
+            ("transport/link/tx/keep_alive", "4".to_owned()),
+            ("transport/unicast/accept_timeout", "5000".to_owned()),
+            ("transport/unicast/open_timeout", "5000".to_owned()),
+            ("queries_default_timeout", "10000".to_owned()),
+        ];
+        let mut config = Config::default();
+        for (key, value) in rows {
+            let set = config.insert_json5(key, &value);
+            set.map_err(|why| transport(&format!("setting `{key}` to `{value}`"), &why.to_string()))?;
+        }
+        Ok(config)
+    }
+}
+
+fn transport(what: &str, why: &str) -> LinkError {
+    LinkError::Transport { what: what.to_owned(), why: why.to_owned() }
+}
+
+/// The session, and every mailbox that ends with it.
+pub struct ZenohBus {
+    session: Session,
+    namespace: Namespace,
+    name: String,
+    endings: Arc<Mutex<Vec<Ending>>>,
+}
+
+/// Closes a mailbox with the given `true`; says whether anybody still reads it.
+type Ending = Box<dyn Fn(bool) -> bool + Send>;
+
+impl ZenohBus {
+    /// Joins: listeners are bound and connections made before it returns.
+    ///
+    /// # Errors
+    /// [`LinkError::BadKey`] for the namespace; [`LinkError::Transport`] when an endpoint cannot be bound or reached.
+    pub async fn open(config: ZenohConfig) -> Result<Self, LinkError> {
+        let namespace = Namespace::new(&config.namespace)?;
+        let settings = config.settings()?;
+        let what = format!("joining the bus (listen {:?}, connect {:?})", config.listen, config.connect);
+        let session = zenoh::open(settings).await.map_err(|why| transport(&what, &why.to_string()))?;
+        Ok(Self { session, namespace, name: config.name, endings: Arc::default() })
+    }
+
+    fn full(&self, key: &str) -> Result<String, LinkError> {
+        if self.session.is_closed() {
+            return Err(LinkError::Closed);
+        }
+        self.namespace.full(key)
+    }
+
+    /// Remembers to close the mailbox with the bus, and forgets those whose reader is gone.
+    fn ends_with_bus<T: Send + 'static>(&self, mailbox: &Mailbox<T>) {
+        let mut endings = self.endings.lock().unwrap_or_else(PoisonError::into_inner);
+        endings.retain(|still_read| still_read(false));
+        endings.push(mailbox.ending());
+    }
+}
+
+struct Back(Query);
+
+#[async_trait]
+impl Reply for Back {
+    async fn send(self: Box<Self>, key: &str, body: Vec<u8>) -> Result<(), LinkError> {
+        // A reply takes the congestion control and express mark of its query.
+        let reply = self.0.reply(self.0.key_expr().clone(), body);
+        reply.await.map_err(|why| transport(&format!("replying on `{key}`"), &why.to_string()))
+    }
+}
+
+fn bytes(payload: &ZBytes) -> Vec<u8> {
+    payload.to_bytes().into_owned()
+}
+
+#[async_trait]
+impl Bus for ZenohBus {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    async fn query(&self, key: &str, body: Vec<u8>, timeout: Duration) -> Result<Vec<u8>, LinkError> {
+        let full = self.full(key)?;
+        let body = fits(key, body)?;
+        let failed = |why: &dyn std::fmt::Display| transport(&format!("asking `{key}`"), &why.to_string());
+        let late = || LinkError::Timeout { key: key.to_owned(), after: timeout };
+        let get = self
+            .session
+            .get(full)
+            .payload(body)
+            .target(QueryTarget::BestMatching)
+            .consolidation(ConsolidationMode::None)
+            .congestion_control(CongestionControl::Block)
+            .express(true)
+            .timeout(timeout);
+        let replies = get.await.map_err(|why| failed(&why))?;
+        // The transport has the same limit; ours also holds where a router forgets its own.
+        let first = tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), replies.recv_async());
+        match first.await {
+            Ok(Ok(reply)) => match reply.into_result() {
+                Ok(sample) => Ok(bytes(sample.payload())),
+                Err(error) => match error.payload().try_to_string() {
+                    Ok(text) if text.eq_ignore_ascii_case("timeout") => Err(late()),
+                    Ok(text) => Err(failed(&text)),
+                    Err(why) => Err(failed(&why)),
+                },
+            },
+            Ok(Err(_no_more_replies)) => Err(LinkError::NoReply { key: key.to_owned() }),
+            Err(_elapsed) => Err(late()),
+        }
+    }
+
+    async fn serve(&self, key: &str) -> Result<Serving, LinkError> {
+        let full = self.full(key)?;
+        let mailbox = Mailbox::new(DEPTH);
+        self.ends_with_bus(&mailbox);
+        let (inbox, namespace) = (mailbox.clone(), self.namespace.clone());
+        let declared = self
+            .session
+            .declare_queryable(full)
+            .complete(true)
+            .callback(move |query: Query| {
+                let key = namespace.relative(query.key_expr().as_str()).to_owned();
+                let body = query.payload().map(bytes).unwrap_or_default();
+                inbox.push_blocking(Ask::new(key, body, Box::new(Back(query))));
+            })
+            .await;
+        let guard = declared.map_err(|why| transport(&format!("serving `{key}`"), &why.to_string()))?;
+        Ok(Serving::new(mailbox, Box::new(guard)))
+    }
+
+    async fn publish(&self, key: &str, body: Vec<u8>, qos: Qos) -> Result<(), LinkError> {
+        let full = self.full(key)?;
+        let body = fits(key, body)?;
+        let (congestion, priority, express) = match qos {
+            Qos::Control => (CongestionControl::Block, Priority::InteractiveHigh, true),
+            Qos::Hint => (CongestionControl::Drop, Priority::Data, true),
+            Qos::Stream => (CongestionControl::Drop, Priority::DataLow, false),
+        };
+        let put = self.session.put(full, body).congestion_control(congestion).priority(priority).express(express);
+        put.await.map_err(|why| transport(&format!("publishing `{key}`"), &why.to_string()))
+    }
+
+    async fn subscribe(&self, expression: &str, depth: usize, overflow: Overflow) -> Result<Subscription, LinkError> {
+        let full = self.full(expression)?;
+        let mailbox = Mailbox::new(depth);
+        self.ends_with_bus(&mailbox);
+        let (inbox, namespace) = (mailbox.clone(), self.namespace.clone());
+        let declared = self
+            .session
+            .declare_subscriber(full)
+            .callback(move |sample: Sample| {
+                let message = (namespace.relative(sample.key_expr().as_str()).to_owned(), bytes(sample.payload()));
+                match overflow {
+                    Overflow::DropOldest => inbox.push_over(message),
+                    Overflow::Block => inbox.push_blocking(message),
+                }
+            })
+            .await;
+        let guard = declared.map_err(|why| transport(&format!("listening to `{expression}`"), &why.to_string()))?;
+        Ok(Subscription::new(mailbox, Box::new(guard)))
+    }
+
+    async fn declare_alive(&self, key: &str) -> Result<AliveToken, LinkError> {
+        let full = self.full(key)?;
+        let declared = self.session.liveliness().declare_token(full).await;
+        let guard = declared.map_err(|why| transport(&format!("showing `{key}`"), &why.to_string()))?;
+        Ok(AliveToken::new(Box::new(guard)))
+    }
+
+    async fn watch_alive(&self, expression: &str) -> Result<Presence, LinkError> {
+        let full = self.full(expression)?;
+        let mailbox = Mailbox::new(DEPTH);
+        self.ends_with_bus(&mailbox);
+        let (inbox, namespace) = (mailbox.clone(), self.namespace.clone());
+        let declared = self
+            .session
+            .liveliness()
+            .declare_subscriber(full)
+            .history(true)
+            .callback(move |sample: Sample| {
+                let alive = sample.kind() == SampleKind::Put;
+                inbox.push_over((namespace.relative(sample.key_expr().as_str()).to_owned(), alive));
+            })
+            .await;
+        let guard = declared.map_err(|why| transport(&format!("watching `{expression}`"), &why.to_string()))?;
+        Ok(Presence::new(mailbox, Box::new(guard)))
+    }
+
+    async fn close(&self) {
+        if let Err(_elapsed) = tokio::time::timeout(CLOSE_LIMIT, self.session.close()).await {
+            tracing::warn!(limit_s = CLOSE_LIMIT.as_secs(), "the bus did not close in time and was left");
+        }
+        let endings = std::mem::take(&mut *self.endings.lock().unwrap_or_else(PoisonError::into_inner));
+        for end in endings {
+            end(true);
+        }
+    }
+}

@@ -1,0 +1,297 @@
+//! Tracks as comma-separated text: for spreadsheets, and from other people's recordings.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use socrates_model::recording::{AgentInfo, AgentState, Recording, RecordingHeader};
+use socrates_model::time::{STEP_SECS, SimTime};
+use socrates_model::{AgentId, FORMAT, Gesture, RunId};
+
+use crate::error::StreamError;
+
+/// How many of the ticks are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Rate {
+    /// Ten a second.
+    #[default]
+    TenHertz,
+    /// Every tick.
+    Every,
+}
+
+impl Rate {
+    const fn stride(self) -> usize {
+        match self {
+            Self::TenHertz => 10,
+            Self::Every => 1,
+        }
+    }
+}
+
+/// Most states that a file may make: 256 MiB in memory.
+const MAX_STATES: usize = 4 * 1024 * 1024;
+/// Assumed radius where a file says nothing, m: that of a person in the native profile.
+const RADIUS_M: f64 = 0.28;
+/// Slower than this no heading is taken from the motion, m/s.
+const STILL_MPS: f64 = 0.05;
+
+/// The states of a recording, ten times a second: `t,id,x,y,yaw,v,gesture,leaf`.
+#[must_use]
+pub fn write_agents(recording: &Recording) -> String {
+    write_agents_at(recording, Rate::TenHertz)
+}
+
+/// As [`write_agents`], at a rate of choice.
+#[must_use]
+pub fn write_agents_at(recording: &Recording, rate: Rate) -> String {
+    let mut text = String::from("t,id,x,y,yaw,v,gesture,leaf\n");
+    for tick in (0..recording.ticks()).step_by(rate.stride()) {
+        for state in recording.tick(tick) {
+            let leaf = recording.header.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
+            // Writing to a string cannot fail.
+            let _infallible = writeln!(
+                text,
+                "{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{}",
+                SimTime::at_tick(state.tick).secs(),
+                state.agent_id(),
+                state.x,
+                state.y,
+                state.yaw,
+                state.speed(),
+                state.gesture(),
+                quoted(leaf),
+            );
+        }
+    }
+    text
+}
+
+fn quoted(text: &str) -> String {
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// One line of a track file.
+#[derive(Debug, Clone, Copy)]
+struct Fix {
+    t: f64,
+    x: f64,
+    y: f64,
+    yaw: Option<f64>,
+}
+
+/// Reads tracks: columns `t` (s), `id` (`robot`, `human_3` or a number; 0 is the robot), `x`, `y` (m) and maybe `yaw`
+/// (rad), in any order; other columns are passed over. Lines may come in any order. The tracks are brought to the
+/// step of 0.01 s by straight lines between fixes; before its first and after its last fix an agent stands still.
+///
+/// # Errors
+/// [`StreamError::Csv`] with the line.
+pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let Some((at, head)) = lines.next() else {
+        return Err(bad(1, "the file is empty; a head line `t,id,x,y` is needed"));
+    };
+    let columns = Columns::read(at + 1, head)?;
+    let mut tracks: BTreeMap<AgentId, Vec<Fix>> = BTreeMap::new();
+    for (at, line) in lines {
+        let (agent, fix) = columns.fix(at + 1, line)?;
+        tracks.entry(agent).or_default().push(fix);
+    }
+    let last = text.lines().count();
+    if tracks.is_empty() {
+        return Err(bad(last, "the file has no line after its head"));
+    }
+    let begin = tracks.values().flatten().map(|fix| fix.t).fold(f64::INFINITY, f64::min);
+    let end = tracks.values().flatten().map(|fix| fix.t).fold(f64::NEG_INFINITY, f64::max);
+    let steps = libm::floor((end - begin) / STEP_SECS + 1e-6);
+    #[expect(clippy::cast_precision_loss, reason = "the limit is far below 2^53")]
+    if steps * (tracks.len() as f64) >= MAX_STATES as f64 {
+        return Err(bad(
+            last,
+            &format!("{} agents over {:.0} s are more than {MAX_STATES} states", tracks.len(), end - begin),
+        ));
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded just above, and end >= begin")]
+    let ticks = steps as usize + 1;
+    for track in tracks.values_mut() {
+        track.sort_by(|a, b| a.t.total_cmp(&b.t));
+        track.dedup_by(|later, kept| later.t <= kept.t);
+    }
+    let mut per_agent: Vec<Vec<AgentState>> =
+        tracks.iter().map(|(agent, track)| resampled(*agent, track, begin, ticks)).collect();
+    let agents = tracks.keys().map(|agent| info(*agent)).collect();
+    let mut frames = Vec::with_capacity(ticks.saturating_mul(tracks.len()));
+    let mut columns: Vec<_> = per_agent.iter_mut().map(|states| states.drain(..)).collect();
+    for _tick in 0..ticks {
+        frames.extend(columns.iter_mut().filter_map(Iterator::next));
+    }
+    let run = RunId::new("tracks").map_err(|why| bad(1, &why.to_string()))?;
+    let header = RecordingHeader {
+        format: FORMAT,
+        run,
+        planner: "tracks".to_owned(),
+        seed: 0,
+        profile: "tracks".to_owned(),
+        step_s: STEP_SECS,
+        agents,
+        leaves: vec![String::new()],
+    };
+    Ok(Recording { header, frames, events: Vec::new() })
+}
+
+fn info(agent: AgentId) -> AgentInfo {
+    let role = match agent {
+        AgentId::Robot => "robot",
+        AgentId::Human(_) => "person",
+    };
+    AgentInfo { agent, radius_m: RADIUS_M, speed_mps: 1.2, role: role.to_owned() }
+}
+
+fn bad(line: usize, why: &str) -> StreamError {
+    StreamError::Csv { line, why: why.to_owned() }
+}
+
+struct Columns {
+    t: usize,
+    id: usize,
+    x: usize,
+    y: usize,
+    yaw: Option<usize>,
+}
+
+impl Columns {
+    fn read(line: usize, head: &str) -> Result<Self, StreamError> {
+        let names: Vec<String> = head
+            .trim_start_matches('\u{feff}')
+            .split(',')
+            .map(|name| name.trim().trim_matches('"').to_lowercase())
+            .collect();
+        let find = |name: &str| names.iter().position(|found| found == name);
+        let need = |name: &str| {
+            find(name).ok_or_else(|| {
+                bad(line, &format!("the head has no column `{name}`; needed are t, id, x, y, allowed is yaw"))
+            })
+        };
+        Ok(Self { t: need("t")?, id: need("id")?, x: need("x")?, y: need("y")?, yaw: find("yaw") })
+    }
+
+    fn fix(&self, line: usize, text: &str) -> Result<(AgentId, Fix), StreamError> {
+        let cells: Vec<&str> = text.split(',').map(|cell| cell.trim().trim_matches('"')).collect();
+        let cell = |at: usize, name: &str| {
+            cells
+                .get(at)
+                .copied()
+                .ok_or_else(|| bad(line, &format!("column `{name}` is missing; the line has {} cells", cells.len())))
+        };
+        let number = |at: usize, name: &str| {
+            let text = cell(at, name)?;
+            // Beyond a million metres or seconds a track is an error of units.
+            text.parse::<f64>().ok().filter(|value| value.abs() < 1e6).ok_or_else(|| {
+                let shown: String = text.chars().take(40).collect();
+                bad(line, &format!("`{shown}` in column `{name}` is not a number between -1000000 and 1000000"))
+            })
+        };
+        let id = cell(self.id, "id")?;
+        let agent = match id.parse::<u32>() {
+            Ok(number) => AgentId::from_number(number),
+            Err(_not_a_number) => {
+                id.parse::<AgentId>().map_err(|why| bad(line, &format!("{why}, robot, or a number")))?
+            }
+        };
+        let yaw = match self.yaw {
+            Some(at) => Some(number(at, "yaw")?),
+            None => None,
+        };
+        Ok((agent, Fix { t: number(self.t, "t")?, x: number(self.x, "x")?, y: number(self.y, "y")?, yaw }))
+    }
+}
+
+fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<AgentState> {
+    let flags = AgentState::flags(agent, Gesture::None, 0);
+    let mut states: Vec<AgentState> = Vec::with_capacity(ticks);
+    let mut at = 0_usize;
+    let mut heading = track.first().and_then(|fix| fix.yaw).unwrap_or_else(|| first_heading(track));
+    for tick in 0..ticks {
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 ticks")]
+        let t = begin + tick as f64 * STEP_SECS;
+        while track.get(at + 1).is_some_and(|next| next.t <= t) {
+            at += 1;
+        }
+        let Some(from) = track.get(at) else { break };
+        // Half a step of slack at the ends, so that rounding of times makes nobody move early.
+        let to = track.get(at + 1).filter(|_| t >= from.t);
+        let (x, y, vx, vy) = match to {
+            Some(to) => {
+                let (span, share) = (to.t - from.t, (t - from.t) / (to.t - from.t));
+                let (dx, dy) = (to.x - from.x, to.y - from.y);
+                (from.x + dx * share, from.y + dy * share, dx / span, dy / span)
+            }
+            None => (from.x, from.y, 0.0, 0.0),
+        };
+        heading = match (from.yaw, to.and_then(|to| to.yaw.map(|yaw| (to.t, yaw)))) {
+            (Some(a), Some((t1, b))) => {
+                let share = (t - from.t) / (t1 - from.t);
+                socrates_model::geometry::wrap_angle(a + socrates_model::geometry::wrap_angle(b - a) * share)
+            }
+            (Some(a), None) => a,
+            (None, _) if libm::hypot(vx, vy) >= STILL_MPS => libm::atan2(vy, vx),
+            (None, _) => heading,
+        };
+        let before = states.last().map_or(heading, |last| last.yaw);
+        let omega = socrates_model::geometry::wrap_angle(heading - before) / STEP_SECS;
+        states.push(AgentState { tick: tick as u64, agent: agent.number(), flags, x, y, yaw: heading, vx, vy, omega });
+    }
+    states
+}
+
+fn first_heading(track: &[Fix]) -> f64 {
+    let moves = track.windows(2).filter_map(|pair| if let [a, b] = pair { Some((b.x - a.x, b.y - a.y)) } else { None });
+    moves.into_iter().find(|(dx, dy)| libm::hypot(*dx, *dy) > 1e-3).map_or(0.0, |(dx, dy)| libm::atan2(dy, dx))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tracks_come_to_the_step_with_heading_from_the_motion() {
+        let recording = read_tracks("t,id,x,y\n0,robot,0,0\n1,robot,1,0\n0.5,2,0,3\n1,human_2,0,4\n").unwrap();
+        assert_eq!(recording.ticks(), 101);
+        assert_eq!(recording.header.agents.len(), 2);
+        let robot = recording.tick(50)[0];
+        assert!((robot.x - 0.5).abs() < 1e-9 && (robot.vx - 1.0).abs() < 1e-9);
+        let human = recording.tick(75)[1];
+        assert_eq!(human.agent_id().to_string(), "human_2");
+        assert!((human.y - 3.5).abs() < 1e-9 && (human.yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+        let before = recording.tick(10)[1];
+        assert!((before.y - 3.0).abs() < 1e-12 && before.speed() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_written_is_read_again() {
+        let first = read_tracks("t,id,x,y,yaw\n0,0,0,0,0\n2,0,2,0,1\n0,1,5,5,0\n2,1,5,3,0\n").unwrap();
+        let again = read_tracks(&write_agents_at(&first, Rate::Every)).unwrap();
+        assert_eq!(again.ticks(), first.ticks());
+        for (a, b) in first.frames.iter().zip(&again.frames) {
+            assert!((a.x - b.x).abs() < 1e-3 && (a.y - b.y).abs() < 1e-3 && (a.yaw - b.yaw).abs() < 1e-3);
+        }
+        assert_eq!(write_agents(&first).lines().count(), 1 + 2 * 21);
+    }
+
+    #[test]
+    fn a_wrong_line_is_named() {
+        for (text, line, word) in [
+            ("", 1, "empty"),
+            ("t,id,x\n", 1, "`y`"),
+            ("t,id,x,y\n", 1, "no line"),
+            ("t,id,x,y\n0,robot,1,2\n\n0,dog,1,2\n", 4, "`dog`"),
+            ("t,id,x,y\n0,1,one,2\n", 2, "`one`"),
+            ("t,id,x,y\n0,1,nan,2\n", 2, "`nan`"),
+            ("t,id,x,y\n0,1\n", 2, "`x`"),
+            ("t,id,x,y\n0,1,0,0\n900000,1,0,0\n", 3, "states"),
+        ] {
+            let error = read_tracks(text).unwrap_err();
+            let StreamError::Csv { line: found, why } = &error else { panic!("{error}") };
+            assert_eq!((*found, why.contains(word)), (line, true), "{error}");
+        }
+    }
+}

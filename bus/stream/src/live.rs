@@ -1,0 +1,162 @@
+//! Frames over the bus: one message per tick, which may be lost, and a door where the lost can be fetched.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use socrates_link::{Ask, Bus, Envelope, LinkError, Qos, Serving, encode, keys};
+use socrates_model::RunId;
+use socrates_model::recording::{AgentState, Event, RecordingHeader};
+use tokio::sync::Notify;
+use tokio::task::JoinHandle;
+
+use crate::error::StreamError;
+use crate::shelf::{Ctl, END_AGENT, KIND_CTL, KIND_META, PART_BYTES, Shelf};
+use crate::sink::FrameSink;
+
+/// Puts a run on the bus.
+///
+/// The simulation only writes to memory; a task publishes from there at the bus's own pace, so nobody who
+/// watches can slow a run. After the end, what was missed can be fetched for the linger time.
+pub struct LiveSink {
+    shelf: Arc<Shelf>,
+    news: Arc<Notify>,
+    publisher: JoinHandle<()>,
+}
+
+impl LiveSink {
+    /// Opens the run's keys. Queries are served before it returns, so that the run can be asked about from tick 0 on.
+    ///
+    /// # Errors
+    /// [`StreamError::Link`].
+    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, linger: Duration) -> Result<Self, StreamError> {
+        let failed = |why: LinkError| StreamError::Link { run: run.to_string(), why };
+        let meta = bus.serve(&keys::live_meta(run)).await.map_err(failed)?;
+        let ctl = bus.serve(&keys::live_ctl(run)).await.map_err(failed)?;
+        let (shelf, news) = (Arc::new(Shelf::default()), Arc::new(Notify::new()));
+        let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
+        let publisher = tokio::spawn(task.publish(meta, ctl, linger));
+        Ok(Self { shelf, news, publisher })
+    }
+
+    /// Waits until the run is on the bus to its end and the linger time is over.
+    pub async fn finished(self) {
+        if let Err(why) = self.publisher.await {
+            tracing::warn!(%why, "the live stream broke");
+        }
+    }
+}
+
+impl FrameSink for LiveSink {
+    fn announce(&mut self, header: &RecordingHeader) {
+        self.shelf.announce(header);
+        self.news.notify_one();
+    }
+
+    fn tick(&mut self, _tick: u64, states: &[AgentState]) {
+        self.shelf.tick(states);
+        self.news.notify_one();
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.shelf.event(event);
+        self.news.notify_one();
+    }
+
+    fn end(&mut self, _ticks: u64) {
+        self.shelf.end();
+        self.news.notify_one();
+    }
+}
+
+struct Publisher {
+    bus: Arc<dyn Bus>,
+    run: RunId,
+    shelf: Arc<Shelf>,
+    news: Arc<Notify>,
+}
+
+impl Publisher {
+    async fn publish(self, mut meta: Serving, mut ctl: Serving, linger: Duration) {
+        let served = async {
+            loop {
+                let answered = tokio::select! {
+                    Some(ask) = meta.next() => self.answer_meta(ask).await,
+                    Some(ask) = ctl.next() => self.answer_ctl(ask).await,
+                    else => return,
+                };
+                if let Err(why) = answered {
+                    tracing::debug!(run = %self.run, %why, "an answer about a run did not go out");
+                }
+            }
+        };
+        let told = async {
+            if let Err(why) = self.tell().await {
+                tracing::warn!(run = %self.run, %why, "the live stream ended early; the run goes on");
+            }
+            tokio::time::sleep(linger).await;
+        };
+        tokio::select! {
+            () = served => {}
+            () = told => {}
+        }
+    }
+
+    /// Publishes what is new until the run is over.
+    async fn tell(&self) -> Result<(), LinkError> {
+        let (meta_key, agents_key) = (keys::live_meta(&self.run), keys::live_agents(&self.run));
+        let (mut announced, mut told_ticks, mut told_events) = (false, 0_u64, 0_u64);
+        loop {
+            let (ticks, events, ended) = self.shelf.standing();
+            if !announced && self.shelf.meta().is_some() {
+                self.bus.publish(&meta_key, self.meta_message()?, Qos::Hint).await?;
+                announced = true;
+            }
+            while told_ticks < ticks {
+                self.bus.publish(&agents_key, self.shelf.frame(told_ticks), Qos::Stream).await?;
+                told_ticks += 1;
+            }
+            if told_events < events || ended {
+                // Says how many there are; whoever wants them fetches them.
+                self.bus.publish(&meta_key, self.meta_message()?, Qos::Hint).await?;
+                told_events = events;
+            }
+            if ended && told_ticks == ticks {
+                let end = AgentState {
+                    tick: ticks,
+                    agent: END_AGENT,
+                    flags: 0,
+                    x: 0.,
+                    y: 0.,
+                    yaw: 0.,
+                    vx: 0.,
+                    vy: 0.,
+                    omega: 0.,
+                };
+                return self.bus.publish(&agents_key, end.to_bytes().to_vec(), Qos::Stream).await;
+            }
+            self.news.notified().await;
+        }
+    }
+
+    fn meta_message(&self) -> Result<Vec<u8>, LinkError> {
+        match self.shelf.meta() {
+            Some(meta) => encode(&Envelope::fresh(KIND_META, self.bus.name(), 0, meta)),
+            None => Err(LinkError::NoReply { key: keys::live_meta(&self.run) }),
+        }
+    }
+
+    async fn answer_meta(&self, ask: Ask) -> Result<(), LinkError> {
+        // Before the announcement there is nothing to say: the asker hears no reply and asks again.
+        ask.reply(self.meta_message()?).await
+    }
+
+    async fn answer_ctl(&self, ask: Ask) -> Result<(), LinkError> {
+        match ask.read::<Ctl>(KIND_CTL) {
+            Ok(envelope) => match envelope.body {
+                Ctl::Frames { from, to } => ask.reply(self.shelf.frames(from, to, PART_BYTES)).await,
+                Ctl::Events { from } => ask.answer(KIND_CTL, self.bus.name(), 0, &self.shelf.events(from)).await,
+            },
+            Err(why) => ask.refuse(self.bus.name(), 0, &why.to_string()).await,
+        }
+    }
+}

@@ -1,0 +1,88 @@
+use super::*;
+use socrates_model::AgentId;
+use socrates_model::gesture::Gesture;
+use socrates_model::recording::EventKind;
+
+fn recording() -> Recording {
+    let mut text = String::from("t,id,x,y\n");
+    for n in 0..4 {
+        text.push_str(&format!("{n},robot,{n},0\n{n},human_1,0,{n}\n"));
+    }
+    let mut recording = crate::csv::read_tracks(&text).unwrap();
+    let gesture = |tick, gesture| Event {
+        time: SimTime::at_tick(tick),
+        kind: EventKind::Gesture { agent: AgentId::Robot, gesture },
+    };
+    recording.events = vec![
+        gesture(3, Gesture::Wait),
+        gesture(3, Gesture::None),
+        Event { time: SimTime::at_tick(400), kind: EventKind::End { reason: "done".into() } },
+    ];
+    recording
+}
+
+#[test]
+fn what_is_written_is_read_and_the_bytes_are_the_same_again() {
+    let recording = recording();
+    let bytes = write(&recording, None).unwrap();
+    assert_eq!(write(&recording, None).unwrap(), bytes);
+    assert_eq!(read(&bytes).unwrap(), recording);
+}
+
+#[test]
+fn a_cut_file_is_an_error_at_every_length() {
+    let bytes = write(&recording(), None).unwrap();
+    let step = (bytes.len() / 300).max(1);
+    for cut in (0..bytes.len()).step_by(step).chain([bytes.len() - 1]) {
+        assert!(read(&bytes[..cut]).is_err(), "cut at {cut} of {}", bytes.len());
+    }
+    assert!(read(b"").is_err());
+    assert!(read(&[0; 5000]).is_err());
+}
+
+#[test]
+fn a_flipped_bit_is_an_error_or_changes_nothing() {
+    let recording = recording();
+    let good = write(&recording, None).unwrap();
+    let step = (good.len() / 400).max(1);
+    for at in (0..good.len()).step_by(step) {
+        let mut bad = good.clone();
+        bad[at] ^= 0x11;
+        if let Ok(read) = read(&bad) {
+            assert_eq!(read.hash(), recording.hash(), "byte {at}");
+        }
+    }
+}
+
+#[test]
+fn a_file_of_another_program_is_told_apart() {
+    let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
+    writer.finish().unwrap();
+    let error = read(&writer.into_inner().into_inner()).unwrap_err().to_string();
+    assert!(error.contains("no recording of ours"), "{error}");
+}
+
+#[test]
+fn a_recording_without_ticks_comes_back() {
+    let mut recording = recording();
+    recording.frames.clear();
+    recording.events.clear();
+    assert_eq!(read(&write(&recording, None).unwrap()).unwrap(), recording);
+}
+
+#[test]
+fn viewers_find_pictures_ten_times_a_second() {
+    let recording = recording();
+    let bytes = write(&recording, None).unwrap();
+    let scenes = ::mcap::MessageStream::new(&bytes)
+        .unwrap()
+        .map(Result::unwrap)
+        .filter(|message| message.channel.topic == "/scene")
+        .collect::<Vec<_>>();
+    // The ways, and one every tenth tick.
+    assert_eq!(scenes.len(), 1 + recording.ticks().div_ceil(10));
+    let last: serde_json::Value = serde_json::from_slice(&scenes.last().unwrap().data).unwrap();
+    assert_eq!(last["entities"][1]["id"], "human_1");
+    assert_eq!(last["entities"][1]["cylinders"][0]["pose"]["position"]["y"], 3.0);
+    assert_eq!(scenes.last().unwrap().channel.schema.as_ref().unwrap().name, "foxglove.SceneUpdate");
+}

@@ -1,0 +1,330 @@
+//! Frames through shared memory, for readers on the same host. A run never depends on it.
+
+use std::io::Write as _;
+use std::path::{Path as FsPath, PathBuf};
+
+use iceoryx2::port::publisher::Publisher;
+use iceoryx2::port::subscriber::Subscriber;
+use iceoryx2::prelude::{
+    AllocationStrategy, Config, FileName, LogLevel, Node, NodeBuilder, Path, SemanticString as _, ServiceName,
+    SignalHandlingMode, ZeroCopySend, ipc_threadsafe, set_log_level,
+};
+use socrates_model::RunId;
+use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
+
+use crate::error::StreamError;
+use crate::order::{Order, Seen, TickRange};
+use crate::sink::FrameSink;
+
+/// Folder where shared memory segments live on this system.
+const SHM_FOLDER: &str = "/dev/shm";
+/// Readers at a time.
+const READERS: usize = 4;
+/// Ticks that wait for a reader; the oldest is replaced.
+const BUFFER: usize = 64;
+/// Ticks that a late reader still gets.
+const HISTORY: usize = 64;
+
+/// [`AgentState`] in the layout that is shared: the same 64 bytes.
+#[derive(Debug, Clone, Copy, PartialEq, ZeroCopySend)]
+#[type_name("socrates.AgentState.v1")]
+#[repr(C)]
+pub struct ShmState {
+    /// Tick number.
+    pub tick: u64,
+    /// 0 for the robot, k for `human_k`.
+    pub agent: u32,
+    /// Kind, gesture, leaf.
+    pub flags: u32,
+    /// x, m.
+    pub x: f64,
+    /// y, m.
+    pub y: f64,
+    /// Heading, rad.
+    pub yaw: f64,
+    /// Velocity along x, m/s.
+    pub vx: f64,
+    /// Velocity along y, m/s.
+    pub vy: f64,
+    /// Turning rate, rad/s.
+    pub omega: f64,
+}
+
+const _: () = assert!(size_of::<ShmState>() == AGENT_STATE_BYTES && align_of::<ShmState>() == 8);
+
+impl From<&AgentState> for ShmState {
+    fn from(state: &AgentState) -> Self {
+        let AgentState { tick, agent, flags, x, y, yaw, vx, vy, omega } = *state;
+        Self { tick, agent, flags, x, y, yaw, vx, vy, omega }
+    }
+}
+
+impl From<&ShmState> for AgentState {
+    fn from(state: &ShmState) -> Self {
+        let ShmState { tick, agent, flags, x, y, yaw, vx, vy, omega } = *state;
+        Self { tick, agent, flags, x, y, yaw, vx, vy, omega }
+    }
+}
+
+/// Where shared memory is arranged. Writers and readers must agree.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShmConfig {
+    /// Folder of the small files by which both sides find each other. Default `/tmp/socrates-shm`.
+    pub root: PathBuf,
+    /// Begin of every segment's name. Default `socrates_`.
+    pub prefix: String,
+}
+
+impl Default for ShmConfig {
+    fn default() -> Self {
+        Self { root: PathBuf::from("/tmp/socrates-shm"), prefix: "socrates_".to_owned() }
+    }
+}
+
+type Ipc = ipc_threadsafe::Service;
+
+/// The run's corner of shared memory.
+struct Corner {
+    run: String,
+    node: Node<Ipc>,
+    name: ServiceName,
+}
+
+impl Corner {
+    fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
+        let failed = |what: &'static str, why: &dyn std::fmt::Debug| StreamError::Shm {
+            run: run.to_string(),
+            what,
+            why: format!("{why:?}"),
+        };
+        // Failures come back as values; the library's own lines would reach a terminal.
+        set_log_level(LogLevel::Fatal);
+        let mut settings = Config::default();
+        let root = Path::new(config.root.as_os_str().as_encoded_bytes())
+            .map_err(|why| failed("reading the root path", &why))?;
+        settings.global.set_root_path(&root);
+        settings.global.prefix =
+            FileName::new(config.prefix.as_bytes()).map_err(|why| failed("reading the prefix", &why))?;
+        // Corpses of killed processes are cleared away by whoever comes next.
+        settings.global.node.cleanup_dead_nodes_on_creation = true;
+        settings.global.service.cleanup_dead_nodes_on_open = true;
+        let node = NodeBuilder::new()
+            .config(&settings)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(|why| failed("joining", &why))?;
+        let name = ServiceName::new(&format!("socrates/{run}")).map_err(|why| failed("naming", &why))?;
+        Ok(Self { run: run.to_string(), node, name })
+    }
+
+    fn failed(&self, what: &'static str, why: &dyn std::fmt::Debug) -> StreamError {
+        StreamError::Shm { run: self.run.clone(), what, why: format!("{why:?}") }
+    }
+}
+
+/// Puts the ticks of a run into shared memory. When that fails, it says so once and takes no more.
+pub struct ShmSink {
+    corner: Corner,
+    port: Option<Publisher<Ipc, [ShmState], ()>>,
+}
+
+impl ShmSink {
+    /// Prepares a run; memory is taken at the announcement, when the number of agents is known.
+    ///
+    /// # Errors
+    /// [`StreamError::Shm`]: the caller goes on without.
+    pub fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
+        Ok(Self { corner: Corner::open(run, config)?, port: None })
+    }
+
+    /// As [`ShmSink::open`], with one log line in place of an error.
+    #[must_use]
+    pub fn open_or_log(run: &RunId, config: &ShmConfig) -> Option<Self> {
+        match Self::open(run, config) {
+            Ok(sink) => Some(sink),
+            Err(why) => {
+                tracing::warn!(%why, "no shared memory for this run");
+                None
+            }
+        }
+    }
+
+    fn create(&self, agents: usize) -> Result<Publisher<Ipc, [ShmState], ()>, StreamError> {
+        let samples = READERS * (BUFFER + 2) + HISTORY + 2;
+        room_for(samples * agents * AGENT_STATE_BYTES).map_err(|why| self.corner.failed("finding room", &why))?;
+        let service = self
+            .corner
+            .node
+            .service_builder(&self.corner.name)
+            .publish_subscribe::<[ShmState]>()
+            .max_publishers(1)
+            .max_subscribers(READERS)
+            .max_nodes(READERS + 4)
+            .subscriber_max_buffer_size(BUFFER)
+            .history_size(HISTORY)
+            .enable_safe_overflow(true)
+            .open_or_create()
+            .map_err(|why| self.corner.failed("creating the service", &why))?;
+        service
+            .publisher_builder()
+            .initial_max_slice_len(agents)
+            .allocation_strategy(AllocationStrategy::Static)
+            .create()
+            .map_err(|why| self.corner.failed("creating the publisher", &why))
+    }
+
+    fn send(&self, states: &[AgentState]) -> Result<(), StreamError> {
+        let Some(port) = &self.port else { return Ok(()) };
+        let sample = port.loan_slice_uninit(states.len()).map_err(|why| self.corner.failed("loaning", &why))?;
+        let mut left = states.iter();
+        // The loan has exactly as many places as there are states.
+        let end = AgentState { tick: 0, agent: 0, flags: 0, x: 0., y: 0., yaw: 0., vx: 0., vy: 0., omega: 0. };
+        let sample = sample.write_from_fn(|_place| ShmState::from(left.next().unwrap_or(&end)));
+        sample.send().map_err(|why| self.corner.failed("sending", &why))?;
+        Ok(())
+    }
+}
+
+impl FrameSink for ShmSink {
+    fn announce(&mut self, header: &RecordingHeader) {
+        match self.create(header.agents.len().max(1)) {
+            Ok(port) => self.port = Some(port),
+            Err(why) => tracing::warn!(%why, "no shared memory for this run"),
+        }
+    }
+
+    fn tick(&mut self, _tick: u64, states: &[AgentState]) {
+        if let Err(why) = self.send(states) {
+            tracing::warn!(%why, "shared memory is given up for this run");
+            self.port = None;
+        }
+    }
+
+    fn event(&mut self, _event: &Event) {}
+
+    fn end(&mut self, _ticks: u64) {}
+}
+
+/// Whether so many bytes are free in shared memory: over-committing it shows as a signal, not as an error.
+fn room_for(bytes: usize) -> std::io::Result<()> {
+    if !FsPath::new(SHM_FOLDER).is_dir() {
+        return Ok(());
+    }
+    let probe = FsPath::new(SHM_FOLDER).join(format!("socrates-probe-{}", std::process::id()));
+    let written = std::fs::File::create(&probe).and_then(|mut file| {
+        let page = [0_u8; 4096];
+        (0..bytes.div_ceil(page.len())).try_for_each(|_page| file.write_all(&page))
+    });
+    std::fs::remove_file(&probe)?;
+    written
+}
+
+/// Reads the ticks of a run from shared memory.
+pub struct ShmWatch {
+    corner: Corner,
+    port: Subscriber<Ipc, [ShmState], ()>,
+    order: Order,
+}
+
+impl ShmWatch {
+    /// Joins a run that was announced; the last ticks before are still seen.
+    ///
+    /// # Errors
+    /// [`StreamError::Shm`], also when there is no such run.
+    pub fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
+        let corner = Corner::open(run, config)?;
+        let service = corner
+            .node
+            .service_builder(&corner.name)
+            .publish_subscribe::<[ShmState]>()
+            .open()
+            .map_err(|why| corner.failed("opening the service", &why))?;
+        let port = service
+            .subscriber_builder()
+            .buffer_size(BUFFER)
+            .create()
+            .map_err(|why| corner.failed("creating the subscriber", &why))?;
+        Ok(Self { corner, port, order: Order::new() })
+    }
+
+    /// The next tick, if one is here now; never an older one.
+    ///
+    /// # Errors
+    /// [`StreamError::Shm`].
+    pub fn poll(&mut self) -> Result<Option<Vec<AgentState>>, StreamError> {
+        while let Some(sample) = self.port.receive().map_err(|why| self.corner.failed("receiving", &why))? {
+            let states: Vec<AgentState> = sample.payload().iter().map(AgentState::from).collect();
+            let Some(first) = states.first() else { continue };
+            if self.order.saw(first.tick) != Seen::Old {
+                return Ok(Some(states));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Ticks that were overwritten before they were read, in order.
+    #[must_use]
+    pub fn missing(&self) -> &[TickRange] {
+        self.order.missing()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csv;
+
+    fn config(dir: &FsPath) -> ShmConfig {
+        let prefix = format!("soct{}_", dir.file_name().unwrap().to_string_lossy().replace('.', ""));
+        ShmConfig { root: dir.to_path_buf(), prefix }
+    }
+
+    #[test]
+    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
+    fn a_reader_gets_every_tick_in_order_and_knows_what_was_overwritten() {
+        let dir = tempfile::tempdir().unwrap();
+        let mut text = String::from("t,id,x,y\n");
+        for n in 0..3 {
+            text.push_str(&format!("{n},robot,{n},0\n{n},human_1,0,{n}\n"));
+        }
+        let recording = csv::read_tracks(&text).unwrap();
+        let run = RunId::new("shm-test").unwrap();
+        let mut sink = match ShmSink::open(&run, &config(dir.path())) {
+            Ok(sink) => sink,
+            Err(why) => {
+                eprintln!("skipped: this machine has no shared memory: {why}");
+                return;
+            }
+        };
+        assert!(ShmWatch::open(&run, &config(dir.path())).is_err(), "nobody has announced the run");
+        sink.announce(&recording.header);
+        assert!(sink.port.is_some(), "the service was not created");
+        for tick in 0..10 {
+            sink.tick(tick as u64, recording.tick(tick));
+        }
+        // A late reader still gets the history.
+        let mut watch = ShmWatch::open(&run, &config(dir.path())).unwrap();
+        let mut next = 0;
+        for tick in 10..20 {
+            sink.tick(tick as u64, recording.tick(tick));
+            while let Some(states) = watch.poll().unwrap() {
+                assert_eq!(states, recording.tick(next));
+                next += 1;
+            }
+        }
+        assert_eq!(next, 20);
+        assert!(watch.missing().is_empty());
+        // A reader that sleeps loses the oldest and knows which.
+        for tick in 20..200 {
+            sink.tick(tick as u64, recording.tick(tick));
+        }
+        let mut got = Vec::new();
+        while let Some(states) = watch.poll().unwrap() {
+            got.push(states[0].tick);
+        }
+        let lost: u64 = watch.missing().iter().map(|range| range.len()).sum();
+        assert_eq!(got.len() as u64 + lost, 180);
+        assert_eq!(got.last(), Some(&199));
+        assert!(lost > 0);
+    }
+}

@@ -1,0 +1,103 @@
+//! Where the simulation puts its frames.
+
+use socrates_model::recording::{AgentState, Event, Recording, RecordingHeader};
+
+/// Takes a run tick by tick. Synchronous and quick: nothing here waits for a viewer.
+///
+/// Order of calls: `announce` once, then `tick` for 0, 1, 2 … with `event`s in between, then `end`.
+pub trait FrameSink: Send {
+    /// The run begins; before tick 0.
+    fn announce(&mut self, header: &RecordingHeader);
+    /// Every agent of one tick, in the header's order.
+    fn tick(&mut self, tick: u64, states: &[AgentState]);
+    /// Something happened.
+    fn event(&mut self, event: &Event);
+    /// The run is over after so many ticks.
+    fn end(&mut self, ticks: u64);
+}
+
+/// Takes everything and keeps nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoSink;
+
+impl FrameSink for NoSink {
+    fn announce(&mut self, _header: &RecordingHeader) {}
+    fn tick(&mut self, _tick: u64, _states: &[AgentState]) {}
+    fn event(&mut self, _event: &Event) {}
+    fn end(&mut self, _ticks: u64) {}
+}
+
+/// Hands everything to several sinks in order.
+#[derive(Default)]
+pub struct Fanout(Vec<Box<dyn FrameSink>>);
+
+impl Fanout {
+    /// A fanout to these.
+    #[must_use]
+    pub fn new(sinks: Vec<Box<dyn FrameSink>>) -> Self {
+        Self(sinks)
+    }
+
+    /// One more sink.
+    pub fn add(&mut self, sink: Box<dyn FrameSink>) {
+        self.0.push(sink);
+    }
+}
+
+impl FrameSink for Fanout {
+    fn announce(&mut self, header: &RecordingHeader) {
+        self.0.iter_mut().for_each(|sink| sink.announce(header));
+    }
+
+    fn tick(&mut self, tick: u64, states: &[AgentState]) {
+        self.0.iter_mut().for_each(|sink| sink.tick(tick, states));
+    }
+
+    fn event(&mut self, event: &Event) {
+        self.0.iter_mut().for_each(|sink| sink.event(event));
+    }
+
+    fn end(&mut self, ticks: u64) {
+        self.0.iter_mut().for_each(|sink| sink.end(ticks));
+    }
+}
+
+/// Collects a recording in memory.
+#[derive(Debug, Clone, Default)]
+pub struct Recorder {
+    recording: Option<Recording>,
+}
+
+impl Recorder {
+    /// A recorder that has seen nothing.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { recording: None }
+    }
+
+    /// What was recorded; `None` before `announce`.
+    #[must_use]
+    pub fn into_recording(self) -> Option<Recording> {
+        self.recording
+    }
+}
+
+impl FrameSink for Recorder {
+    fn announce(&mut self, header: &RecordingHeader) {
+        self.recording = Some(Recording { header: header.clone(), frames: Vec::new(), events: Vec::new() });
+    }
+
+    fn tick(&mut self, _tick: u64, states: &[AgentState]) {
+        if let Some(recording) = &mut self.recording {
+            recording.frames.extend_from_slice(states);
+        }
+    }
+
+    fn event(&mut self, event: &Event) {
+        if let Some(recording) = &mut self.recording {
+            recording.events.push(event.clone());
+        }
+    }
+
+    fn end(&mut self, _ticks: u64) {}
+}

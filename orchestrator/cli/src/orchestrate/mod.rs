@@ -1,0 +1,132 @@
+//! The orchestrator process: the bus, the clock and the store round the pure state machine.
+//!
+//! ```text
+//! bus ─► readers (decode, check artifacts) ─► owner (step, one task) ─► writer thread (group commit)
+//!  ▲                                            ▲ presence, timers               │ durable
+//!  └────────────── answers, notices, hints ◄─────────────────────────────────────┘
+//! ```
+//!
+//! Events stand in one line before the owner; nothing of a step is seen before its rows are durable.
+
+mod artifacts;
+mod owner;
+mod reader;
+mod writer;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use anyhow::Context as _;
+use socrates_kit::{LocalBlobs, Stop};
+use socrates_link::{Bus, keys};
+use socrates_orchestrator::{Event, Policy, Row, State, step};
+use socrates_store::{SqliteStore, Store as _};
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinSet;
+
+use owner::Owner;
+use reader::Inbound;
+
+/// Events that wait for the owner at most; beyond it the readers wait, then the bus.
+const LINE: usize = 1024;
+/// Committed steps that wait to be told at most.
+const TELLING: usize = 256;
+
+/// Settings of an orchestrator process.
+pub(crate) struct OrchestratorConfig {
+    /// Folder of `jobs.sqlite` and `blobs/`; on a local disk.
+    pub(crate) dir: PathBuf,
+    /// Length of a lease, ms.
+    pub(crate) lease_ms: u64,
+    /// Pause between a worker's beats, ms.
+    pub(crate) beat_ms: u64,
+    /// New revisions that a scenario may have.
+    pub(crate) repairs: u32,
+    /// Version that workers must have; empty takes any.
+    pub(crate) code_version: String,
+}
+
+/// Serves until it is asked to stop or the store fails. Stopping takes no time for anybody's work: what
+/// workers hold stays theirs, and the next orchestrator on this folder knows of it.
+///
+/// # Errors
+/// When the store is in use, cannot be read or written (then nothing that was acknowledged is lost), or
+/// the bus does not take the keys.
+pub(crate) async fn serve(
+    config: OrchestratorConfig,
+    bus: Arc<dyn Bus>,
+    mut shutdown: watch::Receiver<Stop>,
+) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let blobs = LocalBlobs::new(config.dir.join("blobs"), false);
+    let policy = Policy {
+        lease_ms: config.lease_ms,
+        beat_ms: config.beat_ms,
+        repairs: config.repairs,
+        code_version: config.code_version,
+        ..Policy::default()
+    };
+    let (at, kept) = (config.dir.join("jobs.sqlite"), blobs.clone());
+    let (store, state) =
+        tokio::task::spawn_blocking(move || open(&at, policy, &kept)).await.context("opening the job store")??;
+    let epoch = state.epoch;
+    tracing::info!(epoch, scenarios = state.counts().0, "the orchestrator begins");
+
+    let (line, inbound) = mpsc::channel::<Inbound>(LINE);
+    let (committed, telling) = mpsc::channel(TELLING);
+    let (writer, mut broken) = writer::start(store, committed).context("starting the writer")?;
+    let mut tasks = JoinSet::new();
+    tasks.spawn(writer::tell(Arc::clone(&bus), epoch, telling));
+    // Everything is declared before the token that says so.
+    for key in
+        [keys::HELLO, keys::ACQUIRE, keys::BEAT, keys::REPORT, keys::RELEASE, keys::SUBMIT, keys::CONTROL, keys::STATUS]
+    {
+        let serving = bus.serve(key).await.with_context(|| format!("serving `{key}`"))?;
+        tasks.spawn(reader::read(Arc::clone(&bus), epoch, serving, line.clone(), blobs.clone()));
+    }
+    let (parts_bus, parts) = (Arc::clone(&bus), blobs.clone());
+    tasks.spawn(async move {
+        if let Err(why) = socrates_kit::serve_blobs(parts_bus, parts).await {
+            tracing::error!(%why, "artifacts are not served over the bus");
+        }
+    });
+    let presence = bus.watch_alive(keys::WORKERS_ALIVE).await.context("watching the workers")?;
+    tasks.spawn(reader::watch(presence, line));
+    let token = bus.declare_alive(&keys::orchestrator_alive(bus.name())).await.context("showing the token")?;
+
+    let mut owner = Owner::new(state, started, writer);
+    let result = tokio::select! {
+        biased;
+        why = &mut broken => Err(why.map_or_else(|_gone| anyhow::anyhow!("the writer of the job store has ended"), anyhow::Error::from)),
+        // Nobody left who could ask is a wish to stop, too.
+        _asked = shutdown.wait_for(|stop| *stop != Stop::Run) => Ok(()),
+        () = owner.run(inbound) => Ok(()),
+    };
+    drop(token);
+    // The writer ends when its line does: what stands in it is committed and told.
+    drop(owner);
+    let ended = broken.await_end(result.is_ok()).await;
+    tasks.shutdown().await;
+    result.and(ended)
+}
+
+/// Opens the store, begins a new reign, and puts small texts back where workers look for them.
+fn open(at: &std::path::Path, policy: Policy, blobs: &LocalBlobs) -> anyhow::Result<(SqliteStore, State)> {
+    let mut store = SqliteStore::open(at)?;
+    let snapshot = store.load().context("reading the job store")?;
+    for digest in store.texts()? {
+        if !blobs.has(&digest)
+            && let Some(text) = store.text(&digest)?
+        {
+            blobs.put(text.as_bytes()).context("putting a text back among the artifacts")?;
+        }
+    }
+    let mut state = State::restore(snapshot, policy, 0);
+    let rows: Vec<Row> = step(&mut state, Event::Recover, 0).into_iter().filter_map(owner::row).collect();
+    store.save(&rows)?;
+    Ok((store, state))
+}

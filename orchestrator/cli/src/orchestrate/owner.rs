@@ -1,0 +1,194 @@
+//! The owner of the state: one task, events in one line, timers from the monotonic clock.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::time::{Duration, Instant};
+
+use socrates_link::Ask;
+use socrates_model::job::Stage;
+use socrates_model::wire::{Acquire, Acquired};
+use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, State, Token, status, step};
+use tokio::sync::mpsc;
+
+use super::reader::{Inbound, Question};
+use super::writer::{Commit, Reply, Said, Say};
+
+/// How long an acquire without work waits for some, ms. Far below the workers' query limit.
+const HOLD_MS: Millis = 200;
+/// Acquires held at one time at most; more are answered at once.
+const HELD: usize = 4096;
+/// Longest pause between two looks at the clock, ms.
+const PAUSE_MS: Millis = 1_000;
+
+/// The row of an effect, if it is one.
+pub(super) fn row(effect: Effect) -> Option<Row> {
+    match effect {
+        Effect::Save(row) => Some(row),
+        Effect::Reply { .. } | Effect::Notice { .. } | Effect::Hint(_) | Effect::ScenarioDone { .. } => None,
+    }
+}
+
+/// An acquire that waits for work.
+struct Waiting {
+    until: Millis,
+    acquire: Acquire,
+    ask: Ask,
+}
+
+/// Owns the state. Dropping it ends the writer's line.
+pub(super) struct Owner {
+    state: State,
+    started: Instant,
+    writer: mpsc::Sender<Commit>,
+    asks: BTreeMap<Token, Ask>,
+    next: Token,
+    waiting: VecDeque<Waiting>,
+}
+
+impl Owner {
+    pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>) -> Self {
+        Self { state, started, writer, asks: BTreeMap::new(), next: 0, waiting: VecDeque::new() }
+    }
+
+    fn now(&self) -> Millis {
+        u64::try_from(self.started.elapsed().as_millis()).unwrap_or(u64::MAX)
+    }
+
+    /// Works through the line until it ends.
+    pub(super) async fn run(&mut self, mut line: mpsc::Receiver<Inbound>) {
+        // What the rebuilt state has to offer.
+        let hints = Stage::WORKERS.into_iter().filter(|stage| self.state.has_ready(*stage)).map(Effect::Hint).collect();
+        self.commit(hints).await;
+        loop {
+            let wait = Duration::from_millis(self.pause());
+            tokio::select! {
+                inbound = line.recv() => match inbound {
+                    Some(Inbound::Asked(question, ask)) => self.asked(question, ask).await,
+                    Some(Inbound::Gone(instance)) => self.event(Event::Gone { instance }).await,
+                    None => return,
+                },
+                () = tokio::time::sleep(wait) => {}
+            }
+            let now = self.now();
+            if self.state.next_due().is_some_and(|due| due <= now)
+                || wait.is_zero()
+                || self.state.author_pause_until > 0
+            {
+                self.event(Event::Tick).await;
+            }
+            self.give_up_waiting(now).await;
+        }
+    }
+
+    fn pause(&self) -> Millis {
+        let now = self.now();
+        let due = self.state.next_due().unwrap_or(Millis::MAX);
+        let held = self.waiting.front().map_or(Millis::MAX, |waiting| waiting.until);
+        due.min(held).saturating_sub(now).min(PAUSE_MS)
+    }
+
+    async fn asked(&mut self, question: Question, ask: Ask) {
+        self.next += 1;
+        let to = self.next;
+        let event = match question {
+            Question::Status(about) => {
+                let reply = status(&self.state, &about, self.now());
+                // Behind the rows it speaks of, as every answer.
+                let said = Said { replies: vec![Reply { ask, say: Say::Status(reply) }], ..Said::default() };
+                return self.send(Commit { rows: Vec::new(), said }).await;
+            }
+            Question::Acquire(acquire) => return self.acquire(acquire, ask, None).await,
+            Question::Hello(hello) => Event::Hello { hello, to },
+            Question::Beat(beat) => Event::Beat { beat, to },
+            Question::Report(report) => Event::Report { report, to },
+            Question::Release(release) => Event::Release { release, to },
+            Question::Submit(submit) => Event::Submit { submit, to },
+            Question::Control(control) => Event::Control { control, to },
+        };
+        self.asks.insert(to, ask);
+        self.event(event).await;
+    }
+
+    /// One step, then another look at the acquires that its hints may serve.
+    async fn event(&mut self, event: Event) {
+        let now = self.now();
+        let effects = step(&mut self.state, event, now);
+        let hinted: Vec<Stage> = effects
+            .iter()
+            .filter_map(|effect| match effect {
+                Effect::Hint(stage) => Some(*stage),
+                Effect::Save(_) | Effect::Reply { .. } | Effect::Notice { .. } | Effect::ScenarioDone { .. } => None,
+            })
+            .collect();
+        self.commit(effects).await;
+        if hinted.is_empty() {
+            return;
+        }
+        for waiting in std::mem::take(&mut self.waiting) {
+            if waiting.acquire.stages.iter().any(|stage| hinted.contains(stage)) {
+                self.acquire(waiting.acquire, waiting.ask, Some(waiting.until)).await;
+            } else {
+                self.waiting.push_back(waiting);
+            }
+        }
+    }
+
+    /// Answers an acquire, or lets it wait a little for work.
+    async fn acquire(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) {
+        self.next += 1;
+        let to = self.next;
+        let now = self.now();
+        let effects = step(&mut self.state, Event::Acquire { ask: acquire.clone(), to }, now);
+        let idle = effects.iter().any(|effect| match effect {
+            Effect::Reply { answer, .. } => {
+                matches!(&**answer, Answer::Acquired(Acquired::None { reason, .. }) if reason == "empty")
+            }
+            Effect::Save(_) | Effect::Notice { .. } | Effect::Hint(_) | Effect::ScenarioDone { .. } => false,
+        });
+        let until = until.unwrap_or_else(|| now.saturating_add(HOLD_MS));
+        if idle && until > now && self.waiting.len() < HELD {
+            let at = self.waiting.partition_point(|other| other.until <= until);
+            return self.waiting.insert(at, Waiting { until, acquire, ask });
+        }
+        self.asks.insert(to, ask);
+        self.commit(effects).await;
+    }
+
+    async fn give_up_waiting(&mut self, now: Millis) {
+        while self.waiting.front().is_some_and(|waiting| waiting.until <= now) {
+            if let Some(waiting) = self.waiting.pop_front() {
+                self.acquire(waiting.acquire, waiting.ask, Some(0)).await;
+            }
+        }
+    }
+
+    /// Hands the effects of a step to the writer: rows to be saved, the rest to be told afterwards.
+    async fn commit(&mut self, effects: Vec<Effect>) {
+        let mut commit = Commit::default();
+        for effect in effects {
+            match effect {
+                Effect::Save(row) => commit.rows.push(row),
+                Effect::Reply { to, answer } => {
+                    if let Some(ask) = self.asks.remove(&to) {
+                        commit.said.replies.push(Reply { ask, say: Say::Answer(answer) });
+                    }
+                }
+                Effect::Notice { batch, notice } => commit.said.notices.push((batch, *notice)),
+                Effect::Hint(stage) => commit.said.hints.push(stage),
+                Effect::ScenarioDone { id, end } => {
+                    tracing::info!(scenario = %id, result = end.name(), "a scenario ended")
+                }
+            }
+        }
+        if commit.rows.is_empty() && commit.said.is_empty() {
+            return;
+        }
+        self.send(commit).await;
+    }
+
+    async fn send(&mut self, commit: Commit) {
+        if self.writer.send(commit).await.is_err() {
+            // The writer has ended with an error that the process ends with, too.
+            tracing::error!("a step could not be saved");
+        }
+    }
+}

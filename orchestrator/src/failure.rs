@@ -1,0 +1,225 @@
+//! Failures: what is done about each class (`spec/orchestration` §1.7, `spec/llm` §5.6).
+//!
+//! ```text
+//! wrong answer:  1st, 2nd ─► ask again with the reasons
+//!                3rd (or the same reasons twice) ─► another seed, the reasons as what to avoid
+//!                4th ─► propose anew, once per scenario ─► else dead
+//! ```
+
+use std::collections::BTreeMap;
+
+use socrates_model::Fault;
+use socrates_model::fault::FailureClass;
+use socrates_model::job::{JobKey, Stage};
+
+use crate::pipeline;
+use crate::state::{AttemptEnd, Job, JobState};
+use crate::turn::Turn;
+
+/// Reasons that travel with a job at most, and characters of each.
+const FEEDBACK: usize = 40;
+const FEEDBACK_CHARS: usize = 600;
+
+/// A failed attempt.
+pub(crate) struct Failure {
+    pub(crate) class: FailureClass,
+    pub(crate) faults: Vec<Fault>,
+    pub(crate) retry_after_ms: Option<u64>,
+    pub(crate) end: AttemptEnd,
+}
+
+impl Turn<'_> {
+    /// Ends the attempt that holds the job with a failure and decides what comes next.
+    pub(crate) fn fail(&mut self, key: &JobKey, failure: &Failure) {
+        let (class, end) = (failure.class, failure.end);
+        let number = self.job(key).and_then(|job| job.current()).map(|attempt| attempt.number);
+        self.end_current(key, end);
+        if let Some(number) = number
+            && let Some(attempt) = self.attempt_mut(key, number)
+        {
+            attempt.class = Some(class);
+            attempt.faults.clone_from(&failure.faults);
+        }
+        let Some(number) = number else { return };
+        let why = codes(class, &failure.faults);
+        match class {
+            FailureClass::Transient => {
+                let limit = self.state.policy.transient_tries;
+                let tries = self.count(key, |job| &mut job.tries.transient);
+                self.wait_or_die(key, number, tries, limit, failure.retry_after_ms, &why);
+            }
+            FailureClass::Overload => self.overload(key, number, failure, &why),
+            FailureClass::WorkerDeath => {
+                let limit = self.state.policy.lapses.saturating_sub(1);
+                let tries = self.count(key, |job| &mut job.tries.lapses);
+                self.wait_or_die(key, number, tries, limit, Some(0), &why);
+            }
+            FailureClass::Unparsable => {
+                let limit = self.state.policy.unparsable_tries;
+                if self.count(key, |job| &mut job.tries.unparsable) > limit {
+                    self.move_to(key, JobState::Dead, why);
+                } else {
+                    self.ask_again(key, number, failure, &why);
+                }
+            }
+            FailureClass::Semantic => self.climb(key, number, failure, &why),
+            FailureClass::Poison => self.move_to(key, JobState::Dead, why),
+            FailureClass::Permanent => self.move_to(key, JobState::Failed, why),
+        }
+    }
+
+    fn count(&mut self, key: &JobKey, which: impl FnOnce(&mut Job) -> &mut u32) -> u32 {
+        let Some(job) = self.job_mut(key) else { return 0 };
+        let counter = which(job);
+        *counter = counter.saturating_add(1);
+        *counter
+    }
+
+    fn wait_or_die(&mut self, key: &JobKey, number: u32, tries: u32, limit: u32, wish: Option<u64>, why: &str) {
+        if tries > limit {
+            return self.move_to(key, JobState::Dead, format!("{why}, {tries} times"));
+        }
+        let policy = &self.state.policy;
+        let own = if wish == Some(0) { 0 } else { policy.backoff(key, number, tries) };
+        // A server may wish any number; ten times our cap is the most that is believed.
+        let wished = wish.unwrap_or(0).min(policy.backoff_cap_ms.saturating_mul(10));
+        self.delay(key, own.max(wished), why);
+    }
+
+    fn delay(&mut self, key: &JobKey, pause_ms: u64, why: &str) {
+        if let Some(job) = self.job_mut(key) {
+            job.delay_ms = pause_ms;
+        }
+        if pause_ms == 0 {
+            return self.offer(key, why);
+        }
+        self.move_to(key, JobState::Delayed, why);
+        let due = self.now.saturating_add(pause_ms);
+        self.arm(key, Some(due));
+    }
+
+    /// Too much asked of the author's server: everybody slows down, not only this job.
+    fn overload(&mut self, key: &JobKey, number: u32, failure: &Failure, why: &str) {
+        if pipeline::is_authored(key.stage) {
+            self.state.author_slots = (self.state.author_slots.min(self.state.authoring.saturating_add(1)) / 2).max(1);
+            if let Some(wish) = failure.retry_after_ms {
+                let until = self.now.saturating_add(wish.min(self.state.policy.backoff_cap_ms));
+                self.state.author_pause_until = self.state.author_pause_until.max(until);
+            }
+        }
+        let (limit, hard_limit) = (self.state.policy.overload_tries, self.state.policy.overload_tries * 16);
+        let tries = self.count(key, |job| &mut job.tries.overload);
+        // A stated wait is no try, but not for ever.
+        let limit = if failure.retry_after_ms.is_some() { hard_limit } else { limit };
+        self.wait_or_die(key, number, tries, limit, failure.retry_after_ms, why);
+    }
+
+    /// A wrong answer: the next rung of the ladder, or back to the stage that can mend it.
+    fn climb(&mut self, key: &JobKey, number: u32, failure: &Failure, why: &str) {
+        let found_by = key.stage;
+        let owners: Vec<Option<Stage>> = failure.faults.iter().map(|fault| pipeline::owner(fault, found_by)).collect();
+        let own = owners.is_empty() || owners.contains(&Some(found_by));
+        if !own || !pipeline::is_authored(found_by) {
+            return self.send_back(key, failure, &owners, why);
+        }
+        let same = self.said_before(key, number, &failure.faults);
+        let feedback_tries = self.state.policy.feedback_tries;
+        let rung = match self.job_mut(key) {
+            Some(job) => {
+                let next = job.tries.semantic.saturating_add(1);
+                // The same reasons twice: telling them a third time changes nothing.
+                job.tries.semantic = if same { next.max(feedback_tries + 1) } else { next };
+                job.tries.semantic
+            }
+            None => return,
+        };
+        if rung <= feedback_tries {
+            self.ask_again(key, number, failure, why);
+        } else if rung == feedback_tries + 1 {
+            self.reseed(key, failure, why);
+        } else if found_by != Stage::Proposal && self.repropose(key, &failure.faults) {
+            // The new revision has superseded this job.
+        } else {
+            self.move_to(key, JobState::Dead, format!("{why}, {number} attempts"));
+        }
+    }
+
+    /// Whether the answer before was refused for the same reasons.
+    fn said_before(&self, key: &JobKey, number: u32, faults: &[Fault]) -> bool {
+        let Some(job) = self.job(key) else { return false };
+        let ended = Some(AttemptEnd::Failed);
+        let before = job.attempts.iter().rev().find(|attempt| attempt.number < number && attempt.end == ended);
+        before.is_some_and(|before| before.class == Some(FailureClass::Semantic) && before.faults == faults)
+    }
+
+    fn ask_again(&mut self, key: &JobKey, number: u32, failure: &Failure, why: &str) {
+        self.reword(key, why, |job| {
+            let left = job.attempts.iter().find(|attempt| attempt.number == number);
+            job.spec.refused = left.and_then(|attempt| pipeline::refused(&attempt.artifacts));
+            job.spec.feedback = feedback(&job.sent_back, &failure.faults);
+        });
+        self.offer(key, why);
+    }
+
+    fn reseed(&mut self, key: &JobKey, failure: &Failure, why: &str) {
+        let Some(scenario) = self.scenario(&key.scenario) else { return };
+        let spec = scenario.spec.clone();
+        self.reword(key, why, |job| {
+            job.reseeds += 1;
+            job.spec.seed = pipeline::seed(&spec, job.key.stage, None, job.seed_revision, job.reseeds);
+            job.spec.refused = None;
+            job.spec.feedback = feedback(&job.sent_back, &failure.faults);
+        });
+        self.offer(key, why);
+    }
+
+    /// Changes the question of a job that nobody holds any more. It waits afterwards.
+    fn reword(&mut self, key: &JobKey, why: &str, edit: impl FnOnce(&mut Job)) {
+        // Delayed first: it leaves the index of its old key and enters none that hands it out.
+        self.move_to(key, JobState::Delayed, why);
+        self.reindex(key, |turn| {
+            if let Some(job) = turn.job_mut(key) {
+                job.trial += 1;
+                edit(job);
+            }
+            turn.rekey(key);
+        });
+    }
+
+    fn send_back(&mut self, key: &JobKey, failure: &Failure, owners: &[Option<Stage>], why: &str) {
+        let mut targets: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
+        for (owner, fault) in owners.iter().zip(&failure.faults) {
+            if let Some(owner) = owner.filter(|owner| pipeline::is_after(key.stage, *owner)) {
+                targets.entry(owner).or_default().push(fault.clone());
+            }
+        }
+        if !self.repair(&key.scenario, targets) {
+            self.move_to(key, JobState::Dead, format!("{why}, nothing left to try"));
+        }
+    }
+}
+
+/// The reasons a job carries: those it was sent back with, then the newest refusal.
+pub(crate) fn feedback(sent_back: &[Fault], newest: &[Fault]) -> Vec<Fault> {
+    let mut all: Vec<Fault> = Vec::new();
+    for fault in newest.iter().chain(sent_back) {
+        let message: String = fault.message.chars().take(FEEDBACK_CHARS).collect();
+        let at: String = fault.at.chars().take(FEEDBACK_CHARS).collect();
+        let short = Fault { code: fault.code, at, message };
+        if all.len() < FEEDBACK && !all.contains(&short) {
+            all.push(short);
+        }
+    }
+    all
+}
+
+/// The codes of the faults for status lines: `G-DISC, G-MEET`.
+fn codes(class: FailureClass, faults: &[Fault]) -> String {
+    let mut codes: Vec<&str> = Vec::new();
+    for fault in faults {
+        if codes.len() < 6 && !codes.contains(&fault.code.code()) {
+            codes.push(fault.code.code());
+        }
+    }
+    if codes.is_empty() { format!("{class:?}").to_lowercase() } else { codes.join(", ") }
+}

@@ -1,0 +1,154 @@
+//! The checker: what must hold after every step (`spec/orchestration` §1.6, I1–I10).
+
+use std::collections::BTreeMap;
+
+use crate::pipeline;
+use crate::state::{Attempt, AttemptEnd, Job, JobState, State};
+use crate::submit::REFERENCE_ROLE;
+
+/// Everything that is wrong with a state; empty when nothing is.
+#[must_use]
+pub fn fsck(state: &State) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for job in state.jobs.values() {
+        check_job(state, job, &mut wrong);
+    }
+    check_indices(state, &mut wrong);
+    check_scenarios(state, &mut wrong);
+    wrong
+}
+
+fn check_job(state: &State, job: &Job, wrong: &mut Vec<String>) {
+    let key = &job.key;
+    let held = matches!(job.state, JobState::Leased | JobState::Canceling);
+    // I1: one result, and only of a job that succeeded.
+    if job.result.is_some() != (job.state == JobState::Succeeded) {
+        wrong.push(format!("I1 {key}: {} with result `{}`", job.state.name(), job.result.is_some()));
+    }
+    let winners = job.attempts.iter().filter(|attempt| attempt.end == Some(AttemptEnd::Succeeded)).count();
+    if winners > 1 {
+        wrong.push(format!("I1 {key}: `{winners}` attempts succeeded"));
+    }
+    // I2: one attempt runs exactly while the job is held.
+    let running = job.attempts.iter().filter(|attempt| attempt.end.is_none()).count();
+    if running != usize::from(held) || (held && job.attempts.last().is_none_or(|last| last.end.is_some())) {
+        wrong.push(format!("I2 {key}: `{running}` attempts run while it is {}", job.state.name()));
+    }
+    // I5: ready exactly when all it needs has results.
+    let lacks = job.sources.iter().any(|(role, source)| {
+        let parent = state.jobs.get(source);
+        let missing = parent.is_none_or(|parent| parent.result.is_none());
+        missing && (role != REFERENCE_ROLE || parent.is_none_or(|parent| !parent.state.is_terminal()))
+    });
+    match job.state {
+        JobState::Ready | JobState::Delayed | JobState::Leased | JobState::Succeeded if lacks => {
+            wrong.push(format!("I5 {key}: {} without all inputs", job.state.name()));
+        }
+        JobState::Blocked if !lacks => wrong.push(format!("I5 {key}: blocked with all inputs")),
+        JobState::Blocked => {
+            let open = |source| state.jobs.get(source).is_some_and(|parent| !parent.state.is_terminal());
+            if !job.sources.values().any(open) {
+                wrong.push(format!("I7 {key}: blocked for nobody"));
+            }
+        }
+        JobState::Ready
+        | JobState::Delayed
+        | JobState::Leased
+        | JobState::Canceling
+        | JobState::Succeeded
+        | JobState::Failed
+        | JobState::Dead
+        | JobState::Canceled
+        | JobState::Superseded => {}
+    }
+    // I7: what can stall has a timer; what cannot has none.
+    let timed = matches!(job.state, JobState::Delayed | JobState::Leased | JobState::Canceling);
+    if timed != job.due.is_some() || job.due.is_some_and(|due| !state.timers.contains(&(due, key.clone()))) {
+        wrong.push(format!("I7 {key}: {} with timer `{:?}`", job.state.name(), job.due));
+    }
+    // I9: fences and numbers grow.
+    let grows = |pair: &[Attempt]| matches!(pair, [a, b] if a.fence < b.fence && a.number < b.number);
+    if !job.attempts.windows(2).all(grows) || job.attempts.last().is_some_and(|last| last.fence >= state.next_fence) {
+        wrong.push(format!("I9 {key}: fences do not grow"));
+    }
+    // A held job is in its worker's hand.
+    if held {
+        let holder = job.attempts.last().and_then(|attempt| state.workers.get(&attempt.instance));
+        if holder.is_none_or(|worker| !worker.held.contains(key)) {
+            wrong.push(format!("{key}: its worker does not hold it"));
+        }
+    }
+}
+
+fn check_indices(state: &State, wrong: &mut Vec<String>) {
+    let count = |wanted: fn(&Job) -> bool| state.jobs.values().filter(|job| wanted(job)).count();
+    // I4: counters and indices equal counts of rows.
+    let ready: usize = state.ready.values().map(std::collections::BTreeSet::len).sum();
+    let pairs = [
+        ("ready", ready, count(|job| job.state == JobState::Ready)),
+        ("open", state.open_jobs, count(|job| !job.state.is_terminal())),
+        ("timers", state.timers.len(), count(|job| job.due.is_some())),
+        (
+            "authoring",
+            usize::try_from(state.authoring).unwrap_or(usize::MAX),
+            count(|job| {
+                matches!(job.state, JobState::Leased | JobState::Canceling) && pipeline::is_authored(job.key.stage)
+            }),
+        ),
+        ("waiting", state.waiting.values().map(std::collections::BTreeSet::len).sum(), {
+            count(|job| {
+                matches!(job.state, JobState::Ready | JobState::Delayed) && job.shares() && job.idem_key.is_some()
+            })
+        }),
+    ];
+    for (what, counter, rows) in pairs {
+        if counter != rows {
+            wrong.push(format!("I4 {what}: counter `{counter}`, rows `{rows}`"));
+        }
+    }
+    for worker in state.workers.values() {
+        for key in &worker.held {
+            let holds = state.jobs.get(key).and_then(Job::current).is_some_and(|a| a.instance == worker.hello.instance);
+            if !holds {
+                wrong.push(format!("I2 {key}: in the hand of `{}`, which has lost it", worker.hello.instance));
+            }
+        }
+    }
+    // Single flight: no key twice at one time.
+    let mut flying: BTreeMap<_, &Job> = BTreeMap::new();
+    for job in state.jobs.values().filter(|job| job.state == JobState::Leased && job.shares()) {
+        let Some(idem_key) = job.idem_key else {
+            wrong.push(format!("{}: leased without a key", job.key));
+            continue;
+        };
+        if let Some(twin) = flying.insert(idem_key, job) {
+            wrong.push(format!("{} and {} do the same work", job.key, twin.key));
+        }
+    }
+}
+
+fn check_scenarios(state: &State, wrong: &mut Vec<String>) {
+    let mut done = 0;
+    let mut under_way = 0;
+    for (id, scenario) in &state.scenarios {
+        let open =
+            scenario.jobs.iter().filter_map(|key| state.jobs.get(key)).filter(|j| !j.state.is_terminal()).count();
+        if open != scenario.open {
+            wrong.push(format!("I4 {id}: counter `{}`, open jobs `{open}`", scenario.open));
+        }
+        // I8: a scenario ends when, and only when, nothing is left to do.
+        if scenario.end.is_some() != (open == 0) {
+            wrong.push(format!("I8 {id}: `{open}` jobs open, ended `{:?}`", scenario.end));
+        }
+        done += usize::from(scenario.end.is_some());
+        under_way += usize::from(scenario.started && scenario.end.is_none() && !scenario.spec.review);
+        if scenario.repairs > state.policy.repairs || scenario.reproposals > state.policy.reproposals {
+            wrong.push(format!("{id}: more revisions than its budget"));
+        }
+    }
+    if (done, under_way) != (state.done, state.under_way) {
+        wrong.push(format!("I4 scenarios: `{done}` ended, `{under_way}` under way, not what was counted"));
+    }
+    let known = |id: &socrates_model::ScenarioId| state.scenarios.contains_key(id);
+    wrong.extend(state.jobs.keys().filter(|key| !known(&key.scenario)).map(|key| format!("{key}: no such scenario")));
+}

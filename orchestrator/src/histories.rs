@@ -1,0 +1,236 @@
+//! Random histories: workers that die, forget, repeat themselves and come back; clients that cancel
+//! and requeue; restarts. The checker runs after every step, and every history comes to an end.
+
+use std::collections::BTreeMap;
+
+use socrates_model::ScenarioId;
+use socrates_model::fault::{FailureClass, FaultCode};
+use socrates_model::hash::derive_seed;
+use socrates_model::job::{JobKey, Stage};
+use socrates_model::report::{Repair, Verdict};
+use socrates_model::wire::{Control, Grant, Outcome, Report};
+
+use crate::world::{World, fault, report, spec, success};
+use crate::{Attempt, Event, Job, JobResult, JobState, Policy, Row, Scenario, Snapshot, State};
+
+/// Draws by hashing a counter: the same seed is the same history.
+struct Dice {
+    seed: u64,
+    thrown: u64,
+}
+
+impl Dice {
+    fn below(&mut self, sides: u64) -> u64 {
+        self.thrown += 1;
+        derive_seed(self.seed, &[&self.thrown.to_string()]) % sides
+    }
+
+    fn pick<T: Clone>(&mut self, of: &[T]) -> T {
+        let n = self.below(of.len() as u64);
+        of[usize::try_from(n).unwrap()].clone()
+    }
+}
+
+const ALL: [Stage; 6] = crate::pipeline::ORDER;
+
+fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
+    let faults = |dice: &mut Dice| {
+        let codes = [FaultCode::GDisc, FaultCode::BMatch, FaultCode::PPlace, FaultCode::EJson, FaultCode::DNoMeet];
+        vec![fault(dice.pick(&codes), &dice.below(3).to_string())]
+    };
+    match dice.below(10) {
+        0 => report(grant, Outcome::Failed { class: FailureClass::Transient, faults: vec![], retry_after_ms: None }),
+        1 => {
+            let wish = Some(dice.below(3_000));
+            report(grant, Outcome::Failed { class: FailureClass::Overload, faults: vec![], retry_after_ms: wish })
+        }
+        2 | 3 => {
+            let class = dice.pick(&[FailureClass::Semantic, FailureClass::Semantic, FailureClass::Unparsable]);
+            report(grant, Outcome::Failed { class, faults: faults(dice), retry_after_ms: None })
+        }
+        4 if dice.below(6) == 0 => {
+            let class = dice.pick(&[FailureClass::Poison, FailureClass::Permanent, FailureClass::WorkerDeath]);
+            report(grant, Outcome::Failed { class, faults: faults(dice), retry_after_ms: None })
+        }
+        _ if grant.spec.key.stage == Stage::Scoring => {
+            let verdict = dice.pick(&[Verdict::Realised, Verdict::NotTriggered, Verdict::Contradicted]);
+            let stage = dice.pick(&[Stage::Proposal, Stage::Paths, Stage::Behaviors, Stage::Simulation]);
+            let repair = (dice.below(2) == 0).then(|| Repair { stage, faults: faults(dice) });
+            Report { verdict: Some(verdict), repair, ..success(grant) }
+        }
+        _ if grant.spec.key.stage == Stage::Review && dice.below(2) == 0 => {
+            let repair = Some(Repair { stage: Stage::Proposal, faults: faults(dice) });
+            Report { repair, ..success(grant) }
+        }
+        _ => success(grant),
+    }
+}
+
+fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
+    (0..1 + dice.below(3))
+        .map(|n| {
+            let mut spec = spec(&format!("s{n}"));
+            spec.planners = dice.pick(&[vec![], vec!["mppi".to_owned()], vec!["none".to_owned(), "mppi".to_owned()]]);
+            spec.run_seeds = dice.pick(&[vec![1], vec![1, 2], vec![]]);
+            spec.review = dice.below(4) == 0;
+            if dice.below(4) == 0 {
+                // The same work as another scenario's.
+                spec.request = socrates_model::Digest::of(b"same");
+            }
+            if dice.below(4) == 0 {
+                let role = dice.pick(&["proposal", "paths", "behaviors"]);
+                spec.pinned.insert(role.to_owned(), socrates_model::Digest::of(role.as_bytes()));
+            }
+            spec
+        })
+        .collect()
+}
+
+/// What a store would hold after these rows.
+pub(crate) fn replay(rows: &[Row]) -> Snapshot {
+    let mut scenarios: BTreeMap<ScenarioId, Scenario> = BTreeMap::new();
+    let mut jobs: BTreeMap<JobKey, Job> = BTreeMap::new();
+    let mut attempts: BTreeMap<(JobKey, u32), Attempt> = BTreeMap::new();
+    let mut results: BTreeMap<JobKey, JobResult> = BTreeMap::new();
+    let mut snapshot = Snapshot { epoch: 2, next_seq: 1, ..Snapshot::default() };
+    for row in rows.iter().cloned() {
+        match row {
+            Row::Scenario(scenario) => drop(scenarios.insert(scenario.spec.id.clone(), *scenario)),
+            Row::Job(job) => drop(jobs.insert(job.key.clone(), *job)),
+            Row::Attempt(key, attempt) => drop(attempts.insert((key, attempt.number), *attempt)),
+            Row::Result(key, result) => {
+                assert!(results.insert(key.clone(), *result).is_none(), "{key} has two results");
+            }
+            Row::Paused(paused) => snapshot.paused = paused,
+            Row::Event(_, notice) => {
+                assert_eq!(notice.seq, snapshot.next_seq, "the outbox has a gap");
+                snapshot.next_seq += 1;
+            }
+            Row::Text(..) | Row::Dead(..) | Row::Revived(_) => {}
+        }
+    }
+    snapshot.scenarios = scenarios.into_values().collect();
+    snapshot.jobs = jobs.into_values().collect();
+    snapshot.attempts = attempts.into_iter().map(|((key, _), attempt)| (key, attempt)).collect();
+    snapshot.results = results.into_iter().collect();
+    snapshot
+}
+
+/// What must survive a restart, in an order of its own.
+fn essence(state: &State) -> Vec<String> {
+    let jobs = state.jobs.values().map(|job| {
+        let ends: Vec<_> = job.attempts.iter().map(|a| (a.number, a.fence, a.end, a.reported)).collect();
+        format!("{} {:?} {:?} {:?} {:?} {ends:?}", job.key, job.state, job.spec, job.tries, job.result)
+    });
+    let scenarios = state.scenarios.values().map(|scenario| {
+        let Scenario { verdicts, settled, end, revision, started, open, .. } = scenario;
+        format!("{verdicts:?} {settled:?} {end:?} {revision} {started} {open}")
+    });
+    jobs.chain(scenarios).collect()
+}
+
+fn restart(world: &mut World) {
+    let before = essence(&world.state);
+    world.now += 50;
+    world.state = State::restore(replay(&world.rows), world.state.policy.clone(), world.now);
+    assert_eq!(essence(&world.state), before);
+    world.send(|_| Event::Recover);
+}
+
+fn history(seed: u64, length: u64) -> World {
+    let mut dice = Dice { seed, thrown: 0 };
+    let mut world = World::with(Policy { open_per_worker: 1, ..Policy::default() });
+    let specs = scenarios(&mut dice);
+    world.submit(specs.clone());
+    let mut held: Vec<(String, Grant)> = Vec::new();
+    let mut said: Vec<Report> = Vec::new();
+    for _ in 0..length {
+        let worker = format!("w{}", dice.below(3));
+        match dice.below(20) {
+            0..6 => {
+                let stages: Vec<Stage> = ALL.into_iter().filter(|_| dice.below(3) > 0).collect();
+                let credits = u32::try_from(dice.below(4)).unwrap();
+                if let socrates_model::wire::Acquired::Grants(grants) = world.ask(&worker, &stages, credits) {
+                    held.extend(grants.into_iter().map(|grant| (worker.clone(), grant)));
+                }
+            }
+            6..12 if !held.is_empty() => {
+                let n = usize::try_from(dice.below(held.len() as u64)).unwrap();
+                let (instance, grant) = held.remove(n);
+                let report = Report { instance, ..some_report(&mut dice, &grant) };
+                world.send_report(report.clone());
+                said.push(report);
+            }
+            12 if !said.is_empty() => drop(world.send_report(dice.pick(&said))),
+            13 => {
+                // The worker dies, its grants with it; or it only looks dead.
+                world.send(|_| Event::Gone { instance: worker.clone() });
+                if dice.below(2) == 0 {
+                    held.retain(|(instance, _)| *instance != worker);
+                }
+            }
+            14 => {
+                let mine: Vec<Grant> = held.iter().filter(|(i, _)| *i == worker).map(|(_, g)| g.clone()).collect();
+                world.beat(&worker, &mine.iter().collect::<Vec<_>>());
+            }
+            15 if !held.is_empty() => {
+                let (_, grant) = dice.pick(&held);
+                world.release(&grant);
+            }
+            16 => drop(world.submit(specs.clone())),
+            17 => match dice.below(12) {
+                0 => drop(world.control(Control::Cancel("b".to_owned()))),
+                1 => drop(world.control(Control::Pause("b".to_owned()))),
+                2 | 3 => drop(world.control(Control::Resume("b".to_owned()))),
+                4..8 => drop(world.control(Control::Requeue(dice.pick(&specs).id))),
+                _ => restart(&mut world),
+            },
+            _ => {
+                let ms = dice.pick(&[1, 100, 1_000, 16_000, 125_000]);
+                world.wait(ms);
+            }
+        }
+    }
+    world
+}
+
+/// From anywhere, a healthy worker brings everything to an end.
+fn come_to_an_end(world: &mut World) {
+    world.control(Control::Resume(String::new()));
+    for _ in 0..2_000 {
+        if world.state.is_done() {
+            return;
+        }
+        world.wait(130_000);
+        if let socrates_model::wire::Acquired::Grants(grants) = world.ask("healthy", &ALL, 16) {
+            for grant in grants {
+                let verdict = (grant.spec.key.stage == Stage::Scoring).then_some(Verdict::Realised);
+                world.send_report(Report { instance: "healthy".to_owned(), verdict, ..success(&grant) });
+            }
+        }
+    }
+    let open: Vec<_> = world.state.jobs.values().filter(|job| !job.state.is_terminal()).collect();
+    panic!("stuck: {open:#?}");
+}
+
+#[test]
+fn no_history_breaks_an_invariant_and_all_come_to_an_end() {
+    let mut realised = 0;
+    for seed in 0..400 {
+        let mut world = history(seed, 120);
+        come_to_an_end(&mut world);
+        // Exactly one committed result per job and per scenario, in the rows as in the state.
+        let kept = replay(&world.rows);
+        assert!(kept.scenarios.iter().all(|scenario| scenario.end.is_some()), "seed {seed}");
+        assert_eq!(kept.results.len(), kept.jobs.iter().filter(|job| job.state == JobState::Succeeded).count());
+        realised += kept.scenarios.iter().filter(|s| s.end.is_some_and(|e| e.name() == "realised")).count();
+    }
+    assert!(realised > 200, "only {realised} scenarios came to a good end: the histories test little");
+}
+
+#[test]
+fn the_same_history_has_the_same_effects() {
+    for seed in [3, 77] {
+        assert_eq!(history(seed, 150).rows, history(seed, 150).rows);
+    }
+}

@@ -1,0 +1,215 @@
+//! How the stages hang together: who needs whose output, which runs there are, which seeds.
+//!
+//! ```text
+//! proposal ─► review? ─┬─► paths ─────┐
+//!                      └─► behaviors ─┴─► simulation ─► scoring      (per planner and seed)
+//! ```
+
+use std::collections::BTreeSet;
+
+use socrates_model::fault::Remedy;
+use socrates_model::hash::derive_seed;
+use socrates_model::job::{Artifact, Stage};
+use socrates_model::wire::ScenarioSpec;
+use socrates_model::{Digest, Fault};
+
+/// The planner that plays the robot script; it always runs.
+pub const REFERENCE: &str = "reference";
+
+/// The stages in pipeline order.
+pub const ORDER: [Stage; 6] =
+    [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation, Stage::Scoring];
+
+/// The stages as they are handed out: later ones first, so that started scenarios get finished.
+pub const URGENCY: [Stage; 6] =
+    [Stage::Scoring, Stage::Simulation, Stage::Behaviors, Stage::Paths, Stage::Review, Stage::Proposal];
+
+/// Stages whose outputs a stage needs.
+#[must_use]
+pub const fn needs(stage: Stage) -> &'static [Stage] {
+    match stage {
+        Stage::Proposal => &[],
+        Stage::Review => &[Stage::Proposal],
+        Stage::Paths | Stage::Behaviors => &[Stage::Proposal, Stage::Review],
+        Stage::Simulation => &[Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors],
+        Stage::Scoring => &[Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation],
+    }
+}
+
+/// Whether `stage` comes, directly or not, after `earlier`.
+#[must_use]
+pub fn is_after(stage: Stage, earlier: Stage) -> bool {
+    needs(stage).contains(&earlier)
+}
+
+/// Role of the output that a successful attempt must have.
+#[must_use]
+pub const fn main_role(stage: Stage) -> Option<&'static str> {
+    match stage {
+        Stage::Proposal => Some("proposal"),
+        Stage::Paths => Some("paths"),
+        Stage::Behaviors => Some("behaviors"),
+        Stage::Simulation => Some("recording"),
+        Stage::Scoring => Some("report"),
+        // A person who changes nothing hands nothing back.
+        Stage::Review => None,
+    }
+}
+
+/// Whether an author (perhaps a language model) does this stage.
+#[must_use]
+pub const fn is_authored(stage: Stage) -> bool {
+    matches!(stage, Stage::Proposal | Stage::Paths | Stage::Behaviors)
+}
+
+/// A run: planner and seed.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Run {
+    /// Planner.
+    pub planner: String,
+    /// Simulation seed.
+    pub seed: u64,
+}
+
+impl Run {
+    /// Item of the job keys of this run.
+    #[must_use]
+    pub fn item(&self) -> String {
+        format!("{}-{}", self.planner, self.seed)
+    }
+}
+
+/// The run whose verdict is the scenario's: the reference robot with the first seed.
+#[must_use]
+pub fn lead(spec: &ScenarioSpec) -> Run {
+    Run { planner: REFERENCE.to_owned(), seed: spec.run_seeds.first().copied().unwrap_or(1) }
+}
+
+/// Every run of a scenario once, reference first for every seed, the lead run at the front.
+#[must_use]
+pub fn runs(spec: &ScenarioSpec) -> Vec<Run> {
+    let seeds: &[u64] = if spec.run_seeds.is_empty() { &[1] } else { &spec.run_seeds };
+    let mut seen = BTreeSet::new();
+    std::iter::once(REFERENCE)
+        .chain(spec.planners.iter().map(String::as_str))
+        .flat_map(|planner| seeds.iter().map(move |seed| Run { planner: planner.to_owned(), seed: *seed }))
+        .filter(|run| seen.insert(run.clone()))
+        .collect()
+}
+
+/// The authoring and review jobs that a scenario needs, in pipeline order.
+#[must_use]
+pub fn authored(spec: &ScenarioSpec) -> Vec<Stage> {
+    let pinned = |role: &str| spec.pinned.contains_key(role);
+    ORDER
+        .into_iter()
+        .filter(|stage| match stage {
+            Stage::Proposal | Stage::Paths | Stage::Behaviors => !pinned(stage.name()),
+            // Who pins a proposal has looked at it.
+            Stage::Review => spec.review && !pinned("proposal"),
+            Stage::Simulation | Stage::Scoring => false,
+        })
+        .collect()
+}
+
+/// Seed of a job. Simulation and scoring take the run's seed and nothing of planner or revision, so
+/// that every planner meets the same people and an unchanged run can be used again.
+#[must_use]
+pub fn seed(spec: &ScenarioSpec, stage: Stage, run: Option<&Run>, seed_revision: u32, reseeds: u32) -> u64 {
+    match run {
+        Some(run) => derive_seed(spec.seed, &[stage.name(), &run.seed.to_string()]),
+        None => derive_seed(spec.seed, &[stage.name(), &seed_revision.to_string(), &reseeds.to_string()]),
+    }
+}
+
+/// The output of this role among artifacts.
+#[must_use]
+pub fn output(artifacts: &[Artifact], role: &str) -> Option<Digest> {
+    artifacts.iter().find(|artifact| artifact.role == role).map(|artifact| artifact.digest)
+}
+
+/// The text of a refused answer among what a failed attempt left.
+#[must_use]
+pub fn refused(artifacts: &[Artifact]) -> Option<Digest> {
+    output(artifacts, "refused").or_else(|| output(artifacts, "answer"))
+}
+
+/// The stage that can do something about a fault found in `found_by`.
+#[must_use]
+pub fn owner(fault: &Fault, found_by: Stage) -> Option<Stage> {
+    if let Remedy::BackTo(stage) = fault.code.remedy() {
+        return Some(stage);
+    }
+    let by_code = match fault.code.code().split('-').next() {
+        Some("P") => Some(Stage::Proposal),
+        Some("G") => Some(Stage::Paths),
+        Some("B") => Some(Stage::Behaviors),
+        Some(_) | None => None,
+    };
+    match by_code {
+        Some(stage) if stage == found_by || is_after(found_by, stage) => Some(stage),
+        // Paths and behaviors cannot send each other back, and syntax is the asked stage's own.
+        Some(_) | None => is_authored(found_by).then_some(found_by),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use socrates_model::FaultCode;
+    use std::collections::BTreeMap;
+
+    fn spec(planners: &[&str], seeds: &[u64]) -> ScenarioSpec {
+        ScenarioSpec {
+            id: "a".parse().unwrap(),
+            request: Digest::of(b"r"),
+            location: Digest::of(b"l"),
+            reading: Digest::of(b"g"),
+            seed: 7,
+            planners: planners.iter().map(|p| (*p).to_owned()).collect(),
+            run_seeds: seeds.to_vec(),
+            pinned: BTreeMap::new(),
+            settings: BTreeMap::new(),
+            review: false,
+        }
+    }
+
+    #[test]
+    fn the_reference_robot_runs_first_and_once() {
+        let items: Vec<String> =
+            runs(&spec(&["mppi", "reference", "mppi"], &[3, 4, 3])).iter().map(Run::item).collect();
+        assert_eq!(items, ["reference-3", "reference-4", "mppi-3", "mppi-4"]);
+        assert_eq!(runs(&spec(&[], &[])).len(), 1);
+    }
+
+    #[test]
+    fn every_planner_meets_the_same_people() {
+        let spec = spec(&["mppi"], &[3]);
+        let of = |planner: &str| {
+            let run = Run { planner: planner.to_owned(), seed: 3 };
+            seed(&spec, Stage::Simulation, Some(&run), 0, 0)
+        };
+        assert_eq!(of("reference"), of("mppi"));
+        assert_ne!(seed(&spec, Stage::Paths, None, 0, 0), seed(&spec, Stage::Paths, None, 1, 0));
+    }
+
+    #[test]
+    fn a_pinned_proposal_is_neither_asked_nor_reviewed() {
+        let mut spec = spec(&[], &[1]);
+        spec.review = true;
+        assert_eq!(authored(&spec), [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors]);
+        spec.pinned.insert("proposal".to_owned(), Digest::of(b"p"));
+        assert_eq!(authored(&spec), [Stage::Paths, Stage::Behaviors]);
+    }
+
+    #[test]
+    fn a_fault_goes_to_the_stage_that_can_mend_it() {
+        let fault = |code| Fault::new(code, "x", "y");
+        assert_eq!(owner(&fault(FaultCode::GDisc), Stage::Simulation), Some(Stage::Paths));
+        assert_eq!(owner(&fault(FaultCode::DNoTrig), Stage::Scoring), Some(Stage::Behaviors));
+        assert_eq!(owner(&fault(FaultCode::PPlace), Stage::Paths), Some(Stage::Proposal));
+        assert_eq!(owner(&fault(FaultCode::BMatch), Stage::Paths), Some(Stage::Paths));
+        assert_eq!(owner(&fault(FaultCode::EJson), Stage::Proposal), Some(Stage::Proposal));
+        assert_eq!(owner(&fault(FaultCode::JSpec), Stage::Simulation), None);
+    }
+}

@@ -1,0 +1,135 @@
+//! Limits and budgets (`spec/orchestration` §1.7 and §1.8), all in one place.
+
+use socrates_model::job::{JobKey, Stage};
+use socrates_model::{Digest, hash};
+
+use crate::state::Millis;
+
+/// What the orchestrator allows. Every field has a default that suits one machine and a cluster.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Policy {
+    /// Length of a lease, ms. Default 15 000. Shorter finds lost workers sooner and forgives less.
+    pub lease_ms: u64,
+    /// Pause between a worker's beats, ms. Default 2 000.
+    pub beat_ms: u64,
+    /// How long a worker whose liveliness token is gone may still beat, ms. Default 2 000.
+    pub grace_ms: u64,
+    /// How long a canceled attempt may take to say so, ms. Default 30 000.
+    pub cancel_ms: u64,
+    /// Longest authoring attempt, ms. Default 120 000.
+    pub author_deadline_ms: u64,
+    /// Longest simulation attempt, ms. Default 1 200 000: ten times the longest scenario.
+    pub simulation_deadline_ms: u64,
+    /// Longest scoring attempt, ms. Default 60 000.
+    pub scoring_deadline_ms: u64,
+    /// Longest look of a person, ms. Default one day.
+    pub review_deadline_ms: u64,
+    /// Transient failures that a job survives. Default 8.
+    pub transient_tries: u32,
+    /// Overloads without a stated wait that a job survives. Default 8.
+    pub overload_tries: u32,
+    /// Unparsable answers that a job survives. Default 2.
+    pub unparsable_tries: u32,
+    /// Wrong answers that are asked again with the reasons before the seed changes. Default 2.
+    pub feedback_tries: u32,
+    /// Lost workers at which a job is taken for one that kills its worker. Default 3.
+    pub lapses: u32,
+    /// New revisions that a scenario may have, re-proposals included. Default 3.
+    pub repairs: u32,
+    /// Re-proposals because a later stage found no answer. Default 1.
+    pub reproposals: u32,
+    /// Revisions that a person may ask for. Default 20.
+    pub reviews: u32,
+    /// First back-off, ms; doubles with every failure. Default 500.
+    pub backoff_ms: u64,
+    /// Longest back-off, ms. Default 60 000.
+    pub backoff_cap_ms: u64,
+    /// Started scenarios per live worker before new ones are begun. Default 4.
+    pub open_per_worker: u32,
+    /// Jobs not yet ended at which a submission is told to come back. Default 200 000.
+    pub max_open_jobs: usize,
+    /// Runs (planner and seed) that one scenario may ask for. Default 10 000.
+    pub max_runs: usize,
+    /// Authoring attempts at one time. Default 256; halves on overload and grows back.
+    pub author_slots: u32,
+    /// Version that workers must have; empty takes any. Enters the idempotency keys.
+    pub code_version: String,
+}
+
+impl Default for Policy {
+    fn default() -> Self {
+        Self {
+            lease_ms: 15_000,
+            beat_ms: 2_000,
+            grace_ms: 2_000,
+            cancel_ms: 30_000,
+            author_deadline_ms: 120_000,
+            simulation_deadline_ms: 1_200_000,
+            scoring_deadline_ms: 60_000,
+            review_deadline_ms: 86_400_000,
+            transient_tries: 8,
+            overload_tries: 8,
+            unparsable_tries: 2,
+            feedback_tries: 2,
+            lapses: 3,
+            repairs: 3,
+            reproposals: 1,
+            reviews: 20,
+            backoff_ms: 500,
+            backoff_cap_ms: 60_000,
+            open_per_worker: 4,
+            max_open_jobs: 200_000,
+            max_runs: 10_000,
+            author_slots: 256,
+            code_version: String::new(),
+        }
+    }
+}
+
+impl Policy {
+    /// Longest attempt of a stage, ms.
+    #[must_use]
+    pub const fn deadline_ms(&self, stage: Stage) -> u64 {
+        match stage {
+            Stage::Proposal | Stage::Paths | Stage::Behaviors => self.author_deadline_ms,
+            Stage::Simulation => self.simulation_deadline_ms,
+            Stage::Scoring => self.scoring_deadline_ms,
+            Stage::Review => self.review_deadline_ms,
+        }
+    }
+
+    /// Pause before the next attempt after the `failures`-th failure, ms: full jitter, uniform in
+    /// 0 ..= min(cap, base · 2^(failures-1)). The draw is a hash of job and attempt, so that the
+    /// same history waits the same time.
+    #[must_use]
+    pub fn backoff(&self, key: &JobKey, attempt: u32, failures: u32) -> Millis {
+        let doubled = self.backoff_ms.saturating_mul(1_u64 << failures.saturating_sub(1).min(20));
+        let longest = doubled.min(self.backoff_cap_ms);
+        hash::derive_seed(u64::from(attempt), &[&key.to_string(), "backoff"]) % longest.saturating_add(1)
+    }
+
+    /// Key under which a result may be used again.
+    #[must_use]
+    pub fn idem_key(&self, spec: &socrates_model::job::JobSpec) -> Digest {
+        spec.idem_key(&self.code_version)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use socrates_model::ScenarioId;
+
+    #[test]
+    fn backoff_grows_to_its_cap_and_repeats_itself() {
+        let policy = Policy::default();
+        let key =
+            JobKey { scenario: ScenarioId::new("a").unwrap(), stage: Stage::Paths, item: String::new(), revision: 0 };
+        for failures in 1..40 {
+            let pause = policy.backoff(&key, failures, failures);
+            assert!(pause <= policy.backoff_cap_ms.min(500 << (failures - 1).min(20)));
+            assert_eq!(pause, policy.backoff(&key, failures, failures));
+        }
+        assert!((1..40).any(|n| policy.backoff(&key, n, n) > 5_000), "never waits long");
+    }
+}

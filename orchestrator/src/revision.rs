@@ -1,0 +1,204 @@
+//! Revisions: stages are done anew, the scenario settles on one revision, the other runs follow, and
+//! the scenario ends with exactly one result.
+
+use std::collections::BTreeMap;
+
+use socrates_model::ScenarioId;
+use socrates_model::fault::Fault;
+use socrates_model::job::{JobKey, Stage};
+use socrates_model::report::Verdict;
+
+use crate::failure::feedback;
+use crate::pipeline;
+use crate::state::{AttemptEnd, JobResult, JobState, Scenario, ScenarioEnd};
+use crate::turn::Turn;
+
+impl Turn<'_> {
+    /// A scoring job has its result. Only the lead run's verdict speaks for the revision.
+    pub(crate) fn judged(&mut self, key: &JobKey, result: &JobResult) {
+        let id = &key.scenario;
+        let Some(scenario) = self.scenario(id) else { return };
+        let leads = key.item == pipeline::lead(&scenario.spec).item();
+        if !leads || scenario.settled.is_some() || scenario.end.is_some() || key.revision != self.newest_score(id) {
+            return;
+        }
+        // A report without a verdict proves nothing.
+        let verdict = result.verdict.unwrap_or(Verdict::Invalid);
+        let revision = scenario.revision;
+        if let Some(scenario) = self.scenario_mut(id) {
+            scenario.verdicts.insert(revision, verdict);
+        }
+        let wish = result.repair.as_ref().filter(|_| !is_realised(verdict));
+        if let Some(repair) = wish
+            && self.repair(id, BTreeMap::from([(repair.stage, repair.faults.clone())]))
+        {
+            return;
+        }
+        self.settle(id);
+    }
+
+    fn newest_score(&self, id: &ScenarioId) -> u32 {
+        self.scenario(id)
+            .and_then(|scenario| {
+                let item = pipeline::lead(&scenario.spec).item();
+                self.state.place(id, Stage::Scoring, &item, scenario.revision)
+            })
+            .map_or(0, |key| key.revision)
+    }
+
+    /// A person has looked. Reasons send the proposal back; that is not counted as a repair.
+    pub(crate) fn reviewed(&mut self, key: &JobKey, result: &JobResult) {
+        let Some(repair) = &result.repair else { return };
+        let Some(scenario) = self.scenario(&key.scenario) else { return };
+        if scenario.reviews >= self.state.policy.reviews || scenario.end.is_some() {
+            return;
+        }
+        if self.redo(&key.scenario, &BTreeMap::from([(Stage::Proposal, repair.faults.clone())]))
+            && let Some(scenario) = self.scenario_mut(&key.scenario)
+        {
+            scenario.reviews += 1;
+        }
+    }
+
+    /// Does stages anew for these reasons, within the scenario's budget.
+    pub(crate) fn repair(&mut self, id: &ScenarioId, targets: BTreeMap<Stage, Vec<Fault>>) -> bool {
+        let limit = self.state.policy.repairs;
+        if self.scenario(id).is_none_or(|scenario| scenario.repairs >= limit) || !self.redo(id, &targets) {
+            return false;
+        }
+        if let Some(scenario) = self.scenario_mut(id) {
+            scenario.repairs += 1;
+        }
+        true
+    }
+
+    /// The last rung of the ladder: another proposal, told what went wrong.
+    pub(crate) fn repropose(&mut self, key: &JobKey, faults: &[Fault]) -> bool {
+        let (limit, repairs) = (self.state.policy.reproposals, self.state.policy.repairs);
+        let Some(scenario) = self.scenario(&key.scenario) else { return false };
+        if scenario.reproposals >= limit || scenario.repairs >= repairs {
+            return false;
+        }
+        let anew = self.redo(&key.scenario, &BTreeMap::from([(Stage::Proposal, faults.to_vec())]));
+        if anew && let Some(scenario) = self.scenario_mut(&key.scenario) {
+            scenario.reproposals += 1;
+            scenario.repairs += 1;
+        }
+        anew
+    }
+
+    /// Makes a new revision: new jobs for these stages and all after them. What is not ended of the
+    /// old revision is superseded; siblings that nothing changed for stay.
+    fn redo(&mut self, id: &ScenarioId, targets: &BTreeMap<Stage, Vec<Fault>>) -> bool {
+        let Some(scenario) = self.scenario(id) else { return false };
+        let authored = pipeline::authored(&scenario.spec);
+        // A pinned stage is not asked; what comes after it cannot mend it.
+        let able = targets.keys().all(|stage| pipeline::is_authored(*stage) && authored.contains(stage));
+        if targets.is_empty() || !able || scenario.settled.is_some() || scenario.end.is_some() || scenario.canceled {
+            return false;
+        }
+        let lead = pipeline::lead(&scenario.spec);
+        let (former, revision) = (scenario.revision, scenario.revision + 1);
+        let anew = |stage: &Stage| {
+            targets.contains_key(stage) || targets.keys().any(|target| pipeline::is_after(*stage, *target))
+        };
+        let stages: Vec<Stage> = pipeline::ORDER
+            .into_iter()
+            .filter(|stage| authored.contains(stage) || matches!(stage, Stage::Simulation | Stage::Scoring))
+            .filter(anew)
+            .collect();
+        let item = |stage: Stage| match stage {
+            Stage::Simulation | Stage::Scoring => Some(&lead),
+            Stage::Proposal | Stage::Paths | Stage::Behaviors | Stage::Review => None,
+        };
+        let old: Vec<JobKey> = stages
+            .iter()
+            .filter_map(|stage| {
+                let item = item(*stage).map(pipeline::Run::item).unwrap_or_default();
+                self.state.place(id, *stage, &item, former).cloned()
+            })
+            .collect();
+        for key in &old {
+            if self.job(key).is_none_or(|job| job.state.is_terminal()) {
+                continue;
+            }
+            self.end_current(key, AttemptEnd::Superseded);
+            self.move_to(key, JobState::Superseded, format!("revision {revision}"));
+        }
+        if let Some(scenario) = self.scenario_mut(id) {
+            scenario.revision = revision;
+        }
+        let first = targets.keys().find(|stage| **stage == Stage::Proposal);
+        let made: Vec<JobKey> = stages
+            .iter()
+            .filter_map(|stage| {
+                // A new proposal makes reasons against the old paths and behaviors void.
+                let reasons = targets.get(stage).filter(|_| first.is_none_or(|first| first == stage));
+                let reasons = reasons.map(|faults| feedback(faults, &[])).unwrap_or_default();
+                self.make(id, *stage, item(*stage), revision, &reasons)
+            })
+            .collect();
+        for key in made {
+            self.unblock(&key);
+        }
+        true
+    }
+
+    /// Settles on the best revision and lets the other runs follow.
+    fn settle(&mut self, id: &ScenarioId) {
+        let Some(scenario) = self.scenario(id) else { return };
+        let Some((revision, _)) = best(scenario) else { return };
+        let lead = pipeline::lead(&scenario.spec);
+        let runs: Vec<pipeline::Run> = pipeline::runs(&scenario.spec).into_iter().filter(|run| *run != lead).collect();
+        if let Some(scenario) = self.scenario_mut(id) {
+            scenario.settled = Some(revision);
+        }
+        let mut made = Vec::with_capacity(runs.len() * 2);
+        for stage in [Stage::Simulation, Stage::Scoring] {
+            made.extend(runs.iter().filter_map(|run| self.make(id, stage, Some(run), revision, &[])));
+        }
+        for key in made {
+            self.unblock(&key);
+        }
+        self.moved.insert(id.clone());
+    }
+
+    /// Ends every scenario in which nothing is left to do.
+    pub(crate) fn close_scenarios(&mut self) {
+        // Settling may make jobs that end at once and settle nothing more: two rounds are enough,
+        // but the loop does not rely on it.
+        while let Some(id) = self.moved.pop_first() {
+            let Some(scenario) = self.scenario(&id) else { continue };
+            if scenario.open > 0 || scenario.end.is_some() {
+                continue;
+            }
+            if scenario.canceled {
+                self.end_scenario(&id, ScenarioEnd::Canceled);
+            } else if let Some(settled) = scenario.settled {
+                let verdict = scenario.verdicts.get(&settled).copied().unwrap_or(Verdict::Invalid);
+                self.end_scenario(&id, ScenarioEnd::Judged(verdict));
+            } else if best(scenario).is_some() {
+                // The newest revision came to nothing; an older one has a verdict.
+                self.settle(&id);
+            } else {
+                self.end_scenario(&id, ScenarioEnd::Failed);
+            }
+        }
+    }
+}
+
+const fn is_realised(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Realised | Verdict::RealisedLate)
+}
+
+/// The revision that counts: the newest realised one, else the best, the newer of equals.
+fn best(scenario: &Scenario) -> Option<(u32, Verdict)> {
+    let rank = |verdict: Verdict| match verdict {
+        Verdict::Realised | Verdict::RealisedLate => 4,
+        Verdict::RobotPrevented => 3,
+        Verdict::NotTriggered => 2,
+        Verdict::Contradicted => 1,
+        Verdict::Invalid => 0,
+    };
+    scenario.verdicts.iter().map(|(revision, verdict)| (*revision, *verdict)).max_by_key(|(r, v)| (rank(*v), *r))
+}

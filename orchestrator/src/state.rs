@@ -1,0 +1,422 @@
+//! What there is: scenarios, jobs, attempts, results, workers.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use socrates_model::fault::FailureClass;
+use socrates_model::job::{Artifact, JobKey, JobSpec, Stage};
+use socrates_model::report::{Repair, Verdict};
+use socrates_model::wire::{Hello, ScenarioSpec};
+use socrates_model::{Digest, Fault, ScenarioId};
+
+use crate::policy::Policy;
+
+/// Time on the shell's monotonic clock, ms. Its zero has no meaning.
+pub type Millis = u64;
+
+/// Where a job stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum JobState {
+    /// Waits for other jobs.
+    Blocked,
+    /// Waits for a worker.
+    Ready,
+    /// Waits for a time.
+    Delayed,
+    /// A worker has it.
+    Leased,
+    /// A worker has it and is told to stop.
+    Canceling,
+    /// Ended: it has a result.
+    Succeeded,
+    /// Ended: it cannot get better by itself, or a job before it did not succeed.
+    Failed,
+    /// Ended: its budget is spent, or it kills its workers.
+    Dead,
+    /// Ended: a client gave it up.
+    Canceled,
+    /// Ended: a newer revision took its place.
+    Superseded,
+}
+
+impl JobState {
+    /// Whether nothing more will happen (but for a requeue).
+    #[must_use]
+    pub const fn is_terminal(self) -> bool {
+        match self {
+            Self::Blocked | Self::Ready | Self::Delayed | Self::Leased | Self::Canceling => false,
+            Self::Succeeded | Self::Failed | Self::Dead | Self::Canceled | Self::Superseded => true,
+        }
+    }
+
+    /// Whether this move is one of the table in `spec/orchestration` §1.6.
+    #[must_use]
+    pub const fn may_become(self, next: Self) -> bool {
+        match self {
+            Self::Blocked | Self::Delayed => !matches!(next, Self::Leased | Self::Canceling),
+            Self::Ready => !matches!(next, Self::Blocked | Self::Canceling),
+            Self::Leased => !matches!(next, Self::Blocked),
+            Self::Canceling => matches!(next, Self::Canceled),
+            // Requeue, the one way back.
+            Self::Failed | Self::Dead => matches!(next, Self::Blocked | Self::Ready),
+            Self::Succeeded | Self::Canceled | Self::Superseded => false,
+        }
+    }
+
+    /// Name in the store, in notices and status lines.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Blocked => "blocked",
+            Self::Ready => "ready",
+            Self::Delayed => "delayed",
+            Self::Leased => "leased",
+            Self::Canceling => "canceling",
+            Self::Succeeded => "succeeded",
+            Self::Failed => "failed",
+            Self::Dead => "dead",
+            Self::Canceled => "canceled",
+            Self::Superseded => "superseded",
+        }
+    }
+}
+
+/// How an attempt ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AttemptEnd {
+    /// Its result is the job's.
+    Succeeded,
+    /// It reported a failure.
+    Failed,
+    /// It took longer than it may.
+    TimedOut,
+    /// Its worker was lost.
+    Lapsed,
+    /// Handed back unharmed.
+    Released,
+    /// Stopped because a client gave the job up.
+    Canceled,
+    /// Stopped because another attempt or revision made it needless.
+    Superseded,
+}
+
+/// One try at a job. Append-only; only its end is written later.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Attempt {
+    /// Number, from 1.
+    pub number: u32,
+    /// Worker.
+    pub instance: String,
+    /// Fence; strictly growing per job.
+    pub fence: u64,
+    /// The job's trial when it was granted: a success of an older trial answers an older question.
+    pub trial: u32,
+    /// How it ended; none while it runs.
+    pub end: Option<AttemptEnd>,
+    /// Whether its worker's report is recorded.
+    pub reported: bool,
+    /// Class of its failure.
+    pub class: Option<FailureClass>,
+    /// Reasons of its failure.
+    pub faults: Vec<Fault>,
+    /// Working time as reported, ms.
+    pub wall_ms: u64,
+    /// Tokens in and out.
+    pub tokens: (u64, u64),
+    /// Remark of the report.
+    pub remark: String,
+    /// What a failed attempt left: the refused answer, the exchange.
+    pub artifacts: Vec<Artifact>,
+    /// When it was granted, on this reign's clock.
+    #[serde(skip)]
+    pub granted: Millis,
+}
+
+/// The one result of a job.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct JobResult {
+    /// Attempt that made it; 0 when it was taken from another job with the same key.
+    pub attempt: u32,
+    /// Idempotency key under which it may be used again.
+    pub idem_key: Digest,
+    /// Outputs, without inline content.
+    pub artifacts: Vec<Artifact>,
+    /// Verdict, of a scoring job.
+    pub verdict: Option<Verdict>,
+    /// Repair that was asked for.
+    pub repair: Option<Repair>,
+    /// Remark for the status line.
+    pub remark: String,
+    /// Working time, ms.
+    pub wall_ms: u64,
+}
+
+/// Failures counted against the budgets of a job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Tries {
+    /// Passing failures and time-outs.
+    pub transient: u32,
+    /// Overloads without a stated wait.
+    pub overload: u32,
+    /// Unparsable answers.
+    pub unparsable: u32,
+    /// Wrong answers: the rung of the ladder.
+    pub semantic: u32,
+    /// Lost workers.
+    pub lapses: u32,
+}
+
+/// A stage to be done for one scenario: a row of the store.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Job {
+    /// Which.
+    pub key: JobKey,
+    /// Where it stands.
+    pub state: JobState,
+    /// The jobs its inputs come from, by role of the input.
+    pub sources: BTreeMap<String, JobKey>,
+    /// What a worker is given; inputs are bound when it becomes ready.
+    pub spec: JobSpec,
+    /// Revision that the seed is drawn from: the last one in which this very stage was sent back.
+    pub seed_revision: u32,
+    /// How often the ladder asked for another seed.
+    pub reseeds: u32,
+    /// Reasons for which this revision was made.
+    pub sent_back: Vec<Fault>,
+    /// Grows whenever the question changes within the row.
+    pub trial: u32,
+    /// Failures so far.
+    pub tries: Tries,
+    /// Idempotency key, once its inputs are bound.
+    pub idem_key: Option<Digest>,
+    /// Pause it is in, ms, when delayed.
+    pub delay_ms: u64,
+    /// Why it is where it is, in a few words.
+    pub reason: String,
+    /// Attempts in order.
+    #[serde(skip)]
+    pub attempts: Vec<Attempt>,
+    /// The result, if it succeeded.
+    #[serde(skip)]
+    pub result: Option<JobResult>,
+    /// Jobs whose inputs come from this one.
+    #[serde(skip)]
+    pub children: Vec<JobKey>,
+    /// When something happens to it by itself.
+    #[serde(skip)]
+    pub due: Option<Millis>,
+    /// End of the lease.
+    #[serde(skip)]
+    pub lease_until: Millis,
+    /// Longest the attempt may run.
+    #[serde(skip)]
+    pub deadline_at: Millis,
+}
+
+impl Job {
+    /// The attempt that holds the job.
+    #[must_use]
+    pub fn current(&self) -> Option<&Attempt> {
+        match self.state {
+            JobState::Leased | JobState::Canceling => self.attempts.last(),
+            JobState::Blocked
+            | JobState::Ready
+            | JobState::Delayed
+            | JobState::Succeeded
+            | JobState::Failed
+            | JobState::Dead
+            | JobState::Canceled
+            | JobState::Superseded => None,
+        }
+    }
+
+    /// Whether its result may be used for, and taken from, other jobs with the same key.
+    #[must_use]
+    pub fn shares(&self) -> bool {
+        // A person's look is never a function of its inputs; experiments switch the cache off.
+        self.key.stage != Stage::Review && self.spec.settings.get("cache").is_none_or(|cache| cache != "off")
+    }
+}
+
+/// How a scenario ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScenarioEnd {
+    /// It was simulated and judged.
+    Judged(Verdict),
+    /// No revision came to a verdict.
+    Failed,
+    /// Given up by a client.
+    Canceled,
+}
+
+impl ScenarioEnd {
+    /// Word for status lines.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Judged(verdict) => verdict.name(),
+            Self::Failed => "failed",
+            Self::Canceled => "canceled",
+        }
+    }
+}
+
+/// A scenario and how far it is. Its row in the store is also its one result row.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Scenario {
+    /// Batch.
+    pub batch: String,
+    /// Place in the order of submission.
+    pub order: u64,
+    /// What was asked for.
+    pub spec: ScenarioSpec,
+    /// Newest revision.
+    pub revision: u32,
+    /// Repairs spent.
+    pub repairs: u32,
+    /// Re-proposals spent.
+    pub reproposals: u32,
+    /// Revisions a person asked for.
+    pub reviews: u32,
+    /// Verdict of the lead run, by revision.
+    pub verdicts: BTreeMap<u32, Verdict>,
+    /// The revision that counts; once it is set the other runs are made and nothing is repaired.
+    pub settled: Option<u32>,
+    /// Whether a client gave it up.
+    pub canceled: bool,
+    /// How it ended.
+    pub end: Option<ScenarioEnd>,
+    /// Whether any job was granted.
+    pub started: bool,
+    /// Jobs in order of their making.
+    #[serde(skip)]
+    pub jobs: Vec<JobKey>,
+    /// How many of them are not ended.
+    #[serde(skip)]
+    pub open: usize,
+}
+
+/// A worker process as the orchestrator sees it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Worker {
+    /// Its introduction.
+    pub hello: Hello,
+    /// When it last spoke.
+    pub seen: Millis,
+    /// Whether it takes no more work.
+    pub draining: bool,
+    /// Jobs it holds.
+    pub held: BTreeSet<JobKey>,
+    /// Its last acquire, and what it was given.
+    pub last: (String, Vec<(JobKey, u32)>),
+}
+
+/// Everything. Rebuilt from rows after a restart; the indices are derived.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct State {
+    /// Number of this reign.
+    pub epoch: u64,
+    /// Limits and budgets.
+    pub policy: Policy,
+    /// Scenarios.
+    pub scenarios: BTreeMap<ScenarioId, Scenario>,
+    /// Jobs.
+    pub jobs: BTreeMap<JobKey, Job>,
+    /// Workers by instance.
+    pub workers: BTreeMap<String, Worker>,
+    /// Paused batches; the empty name pauses all.
+    pub paused: BTreeSet<String>,
+    /// Next fence.
+    pub next_fence: u64,
+    /// Next place in the order of submission.
+    pub next_order: u64,
+    /// Next number of the outbox.
+    pub next_seq: u64,
+    /// Authoring attempts allowed at one time; shrinks on overload.
+    pub author_slots: u32,
+    /// No authoring before this time: the author's server asked for a pause.
+    pub author_pause_until: Millis,
+    /// Scenarios in order of submission.
+    pub(crate) by_order: BTreeMap<u64, ScenarioId>,
+    /// Ready jobs by stage, oldest scenario first, then in order of their making.
+    pub(crate) ready: BTreeMap<Stage, BTreeSet<(u64, usize, JobKey)>>,
+    /// Who is due when.
+    pub(crate) timers: BTreeSet<(Millis, JobKey)>,
+    /// Results by idempotency key.
+    pub(crate) cached: BTreeMap<Digest, JobKey>,
+    /// Keys that somebody works on.
+    pub(crate) in_flight: BTreeMap<Digest, JobKey>,
+    /// Jobs that wait, by key.
+    pub(crate) waiting: BTreeMap<Digest, BTreeSet<JobKey>>,
+    /// Scenarios started and not ended, those that wait for a person left out.
+    pub(crate) under_way: usize,
+    /// Scenarios ended.
+    pub(crate) done: usize,
+    /// Jobs not ended.
+    pub(crate) open_jobs: usize,
+    /// Authoring jobs leased.
+    pub(crate) authoring: u32,
+}
+
+impl State {
+    /// An empty state.
+    #[must_use]
+    pub fn new(policy: Policy) -> Self {
+        Self {
+            epoch: 1,
+            author_slots: policy.author_slots,
+            policy,
+            scenarios: BTreeMap::new(),
+            jobs: BTreeMap::new(),
+            workers: BTreeMap::new(),
+            paused: BTreeSet::new(),
+            next_fence: 1,
+            next_order: 0,
+            next_seq: 1,
+            author_pause_until: 0,
+            by_order: BTreeMap::new(),
+            ready: BTreeMap::new(),
+            timers: BTreeSet::new(),
+            cached: BTreeMap::new(),
+            in_flight: BTreeMap::new(),
+            waiting: BTreeMap::new(),
+            under_way: 0,
+            done: 0,
+            open_jobs: 0,
+            authoring: 0,
+        }
+    }
+
+    /// When the next [`crate::Event::Tick`] is needed.
+    #[must_use]
+    pub fn next_due(&self) -> Option<Millis> {
+        self.timers.first().map(|(due, _)| *due)
+    }
+
+    /// Scenarios known and scenarios ended.
+    #[must_use]
+    pub fn counts(&self) -> (usize, usize) {
+        (self.scenarios.len(), self.done)
+    }
+
+    /// Whether there are scenarios and all of them ended.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        !self.scenarios.is_empty() && self.done == self.scenarios.len()
+    }
+
+    /// Whether a job of this stage waits for a worker.
+    #[must_use]
+    pub fn has_ready(&self, stage: Stage) -> bool {
+        self.ready.get(&stage).is_some_and(|ready| !ready.is_empty())
+    }
+
+    /// The job that stands in this place of the plan at a revision: the newest not newer than it.
+    pub(crate) fn place(&self, id: &ScenarioId, stage: Stage, item: &str, revision: u32) -> Option<&JobKey> {
+        let key = |revision| JobKey { scenario: id.clone(), stage, item: item.to_owned(), revision };
+        self.jobs.range(key(0)..=key(revision)).next_back().map(|(key, _)| key)
+    }
+}

@@ -1,0 +1,121 @@
+//! Status: how things stand, for clients, in pages that fit a message.
+
+use std::collections::BTreeMap;
+
+use socrates_model::job::JobKey;
+use socrates_model::wire::{JobStatus, ScenarioStatus, StatusAsk, StatusReply};
+
+use crate::state::{Job, Millis, Scenario, State};
+
+/// Scenario lines in one reply at most.
+const LINES: usize = 200;
+/// Jobs in one line at most.
+const LINE_JOBS: usize = 24;
+/// Bytes of a reply at most, estimated; the envelope and the names of fields take the rest.
+const BYTES: usize = 40 * 1024;
+/// Faults shown for a job at most, and characters of each message.
+const FAULTS: usize = 6;
+const FAULT_CHARS: usize = 300;
+
+/// Answers a status question at time `now`, ms. Lines come in order of submission; ask again from
+/// `from` plus the number of lines until there are none.
+///
+/// A scenario with many runs takes several lines under the same id, each with a part of its jobs.
+#[must_use]
+pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
+    let chosen = || {
+        let ids = state.by_order.values().filter_map(|id| state.scenarios.get(id));
+        ids.filter(|scenario| ask.batch.is_empty() || scenario.batch == ask.batch)
+    };
+    let (total, done) = if ask.batch.is_empty() {
+        state.counts()
+    } else {
+        chosen().fold((0, 0), |(total, done), scenario| (total + 1, done + usize::from(scenario.end.is_some())))
+    };
+    let mut workers: BTreeMap<String, u32> = BTreeMap::new();
+    let alive = |seen: Millis| now.saturating_sub(seen) < state.policy.lease_ms;
+    for worker in state.workers.values().filter(|worker| alive(worker.seen)) {
+        for stage in &worker.hello.stages {
+            *workers.entry(stage.name().to_owned()).or_default() += 1;
+        }
+    }
+    let mut scenarios: Vec<ScenarioStatus> = Vec::new();
+    let mut room = BYTES;
+    let mut skip = usize::try_from(ask.from).unwrap_or(usize::MAX);
+    'page: for scenario in chosen() {
+        let newest = newest(state, scenario);
+        let lines = newest.len().div_ceil(LINE_JOBS).max(1);
+        if skip >= lines {
+            skip -= lines;
+            continue;
+        }
+        for part in std::mem::take(&mut skip)..lines {
+            let jobs = newest.iter().skip(part * LINE_JOBS).take(LINE_JOBS);
+            let (line, size) = line(state, scenario, jobs);
+            if scenarios.len() >= LINES || (size > room && !scenarios.is_empty()) {
+                break 'page;
+            }
+            room = room.saturating_sub(size);
+            scenarios.push(line);
+        }
+    }
+    let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    StatusReply { total: count(total), done: count(done), workers, scenarios }
+}
+
+/// The jobs that stand in the plan of the revision that counts.
+fn newest<'a>(state: &'a State, scenario: &'a Scenario) -> Vec<&'a JobKey> {
+    let revision = scenario.settled.unwrap_or(scenario.revision);
+    let stands = |key: &&JobKey| state.place(&key.scenario, key.stage, &key.item, revision) == Some(*key);
+    scenario.jobs.iter().filter(stands).collect()
+}
+
+/// One line and about how many bytes it takes.
+fn line<'a>(state: &State, scenario: &Scenario, jobs: impl Iterator<Item = &'a &'a JobKey>) -> (ScenarioStatus, usize) {
+    let mut jobs: Vec<JobStatus> = jobs.filter_map(|key| state.jobs.get(*key)).map(job_status).collect();
+    let size = |jobs: &[JobStatus]| 120 + jobs.iter().map(weight).sum::<usize>();
+    if size(&jobs) > BYTES {
+        // Rather without reasons than not at all; the store has them.
+        jobs.iter_mut().for_each(|job| job.faults.clear());
+    }
+    let size = size(&jobs);
+    let line = ScenarioStatus {
+        id: scenario.spec.id.clone(),
+        done: scenario.end.is_some(),
+        result: scenario.end.map(|end| end.name().to_owned()).unwrap_or_default(),
+        jobs,
+    };
+    (line, size)
+}
+
+fn job_status(job: &Job) -> JobStatus {
+    let last = job.attempts.last();
+    let failed = job.attempts.iter().rev().find(|attempt| !attempt.faults.is_empty());
+    let faults = failed.map(|attempt| attempt.faults.iter().take(FAULTS).cloned().collect()).unwrap_or_default();
+    let shorten = |mut fault: socrates_model::Fault| {
+        fault.message = fault.message.chars().take(FAULT_CHARS).collect();
+        fault.at = fault.at.chars().take(FAULT_CHARS).collect();
+        fault
+    };
+    let faults: Vec<_> = Vec::into_iter(faults).map(shorten).collect();
+    let (remark, wall_ms, artifacts) = match &job.result {
+        Some(result) => (result.remark.clone(), result.wall_ms, result.artifacts.clone()),
+        None => (job.reason.clone(), last.map_or(0, |attempt| attempt.wall_ms), Vec::new()),
+    };
+    JobStatus {
+        key: job.key.clone(),
+        state: job.state.name().to_owned(),
+        attempts: last.map_or(0, |attempt| attempt.number),
+        wall_ms,
+        remark,
+        faults,
+        artifacts,
+    }
+}
+
+/// About how many bytes a line takes on the bus.
+fn weight(job: &JobStatus) -> usize {
+    let faults: usize = job.faults.iter().map(|fault| 60 + fault.at.len() + fault.message.len()).sum();
+    let artifacts: usize = job.artifacts.iter().map(|a| 140 + a.role.len() + a.media.len()).sum();
+    220 + job.key.scenario.as_str().len() + job.key.item.len() + job.remark.len() + faults + artifacts
+}

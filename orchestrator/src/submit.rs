@@ -1,0 +1,322 @@
+//! Hello and Submit: workers and scenarios come in; jobs are made and become ready.
+
+use std::collections::BTreeMap;
+
+use socrates_model::ScenarioId;
+use socrates_model::fault::Fault;
+use socrates_model::job::{JobKey, JobSpec, Stage};
+use socrates_model::wire::{Hello, ScenarioSpec, Submit, Submitted, Welcome};
+
+use crate::event::{Answer, Token};
+use crate::pipeline::{self, Run};
+use crate::state::{Job, JobState, Scenario, Tries, Worker};
+use crate::turn::Turn;
+
+/// Role of the recording that other planners' runs are compared with; its absence stops nobody.
+pub(crate) const REFERENCE_ROLE: &str = "reference";
+
+impl Turn<'_> {
+    pub(crate) fn hello(&mut self, hello: Hello, to: Token) {
+        let wanted = &self.state.policy.code_version;
+        let answer = if wanted.is_empty() || *wanted == hello.code_version {
+            let now = self.now;
+            self.state
+                .workers
+                .entry(hello.instance.clone())
+                .and_modify(|worker| {
+                    worker.hello = hello.clone();
+                    worker.seen = now;
+                })
+                .or_insert_with(|| Worker::new(hello, now));
+            let policy = &self.state.policy;
+            Welcome::Welcome { epoch: self.state.epoch, lease_ms: policy.lease_ms, beat_ms: policy.beat_ms }
+        } else {
+            Welcome::Incompatible { range: wanted.clone() }
+        };
+        self.reply(to, Answer::Welcome(answer));
+    }
+
+    pub(crate) fn submit(&mut self, submit: Submit, to: Token) {
+        let answer = self.take(submit);
+        self.reply(to, Answer::Submitted(answer));
+    }
+
+    /// All of it or nothing.
+    fn take(&mut self, submit: Submit) -> Submitted {
+        let mut fresh: BTreeMap<ScenarioId, ScenarioSpec> = BTreeMap::new();
+        let mut order = Vec::new();
+        for spec in submit.scenarios {
+            let known = self.scenario(&spec.id).map(|known| (&known.spec, known.batch.as_str()));
+            let known = known.or_else(|| fresh.get(&spec.id).map(|spec| (spec, submit.batch.as_str())));
+            match known {
+                Some((known, batch)) if *known == spec && batch == submit.batch => {}
+                Some((_, batch)) => {
+                    let why =
+                        format!("scenario `{}` is known already, with other inputs or in batch `{batch}`", spec.id);
+                    return Submitted::Refused { why: format!("{why}; choose another name") };
+                }
+                None => {
+                    if let Err(why) = self.acceptable(&spec) {
+                        return Submitted::Refused { why };
+                    }
+                    order.push(spec.id.clone());
+                    fresh.insert(spec.id.clone(), spec);
+                }
+            }
+        }
+        // A chain has at most six jobs; runs beyond the first are made when the first is judged.
+        if !fresh.is_empty() && self.state.open_jobs + fresh.len() * 6 > self.state.policy.max_open_jobs {
+            return Submitted::Busy { retry_after_ms: 2_000 };
+        }
+        let new = u32::try_from(order.len()).unwrap_or(u32::MAX);
+        for id in order {
+            if let Some(spec) = fresh.remove(&id) {
+                self.begin(&submit.batch, spec);
+            }
+        }
+        Submitted::Accepted { new }
+    }
+
+    fn acceptable(&self, spec: &ScenarioSpec) -> Result<(), String> {
+        let id = &spec.id;
+        let most = self.state.policy.max_runs;
+        let asked = spec.planners.len().saturating_add(1).saturating_mul(spec.run_seeds.len().max(1));
+        if asked > most.saturating_mul(2) || pipeline::runs(spec).len() > most {
+            return Err(format!("scenario `{id}` asks for `{asked}` runs; allowed: at most `{most}`"));
+        }
+        let fits = |name: &str| {
+            let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-' | ':');
+            !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
+        };
+        if let Some(planner) = spec.planners.iter().find(|planner| !fits(planner)) {
+            let shown: String = planner.chars().take(80).collect();
+            return Err(format!(
+                "scenario `{id}`: `{shown}` is no planner name; allowed: 1 to 64 of a-z A-Z 0-9 . _ - :"
+            ));
+        }
+        let roles = ["proposal", "paths", "behaviors"];
+        if let Some(role) = spec.pinned.keys().find(|role| !roles.contains(&role.as_str())) {
+            let shown: String = role.chars().take(80).collect();
+            return Err(format!("scenario `{id}` pins `{shown}`; allowed: proposal, paths, behaviors"));
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, batch: &str, spec: ScenarioSpec) {
+        let id = spec.id.clone();
+        let order = self.state.next_order;
+        self.state.next_order += 1;
+        let stages = pipeline::authored(&spec);
+        let lead = pipeline::lead(&spec);
+        let scenario = Scenario::new(batch, order, spec);
+        self.state.scenarios.insert(id.clone(), scenario);
+        self.state.by_order.insert(order, id.clone());
+        self.scenario_mut(&id);
+        let mut made: Vec<JobKey> = stages.iter().filter_map(|stage| self.make(&id, *stage, None, 0, &[])).collect();
+        for stage in [Stage::Simulation, Stage::Scoring] {
+            made.extend(self.make(&id, stage, Some(&lead), 0, &[]));
+        }
+        for key in made {
+            self.unblock(&key);
+        }
+    }
+
+    /// Makes a blocked job at a revision, with its sources among the jobs of the plan at that
+    /// revision. The caller unblocks it once the whole revision stands.
+    pub(crate) fn make(
+        &mut self,
+        id: &ScenarioId,
+        stage: Stage,
+        run: Option<&Run>,
+        revision: u32,
+        sent_back: &[Fault],
+    ) -> Option<JobKey> {
+        let scenario = self.scenario(id)?;
+        let item = run.map(Run::item).unwrap_or_default();
+        let key = JobKey { scenario: id.clone(), stage, item: item.clone(), revision };
+        let former = revision.checked_sub(1).and_then(|last| self.state.place(id, stage, &item, last));
+        let former = former.and_then(|former| self.job(former));
+        let seed_revision =
+            if sent_back.is_empty() { former.map_or(0, |former| former.seed_revision) } else { revision };
+        let refused = former.filter(|_| !sent_back.is_empty()).and_then(|former| {
+            let artifacts = &former.result.as_ref()?.artifacts;
+            pipeline::refused(artifacts).or_else(|| pipeline::output(artifacts, stage.name()))
+        });
+        let spec = JobSpec {
+            key: key.clone(),
+            inputs: BTreeMap::new(),
+            seed: pipeline::seed(&scenario.spec, stage, run, seed_revision, 0),
+            planner: run.map(|run| run.planner.clone()).unwrap_or_default(),
+            run_seed: run.map_or(0, |run| run.seed),
+            feedback: sent_back.to_vec(),
+            refused,
+            settings: scenario.spec.settings.clone(),
+        };
+        let sources = self.sources(id, stage, run, revision);
+        self.enter(Job {
+            key: key.clone(),
+            state: JobState::Blocked,
+            sources,
+            spec,
+            seed_revision,
+            reseeds: 0,
+            sent_back: sent_back.to_vec(),
+            trial: 0,
+            tries: Tries::default(),
+            idem_key: None,
+            delay_ms: 0,
+            reason: String::new(),
+            attempts: Vec::new(),
+            result: None,
+            children: Vec::new(),
+            due: None,
+            lease_until: 0,
+            deadline_at: 0,
+        });
+        Some(key)
+    }
+
+    /// Which job each input comes from.
+    fn sources(&self, id: &ScenarioId, stage: Stage, run: Option<&Run>, revision: u32) -> BTreeMap<String, JobKey> {
+        let mut sources = BTreeMap::new();
+        let place = |stage, item: &str| self.state.place(id, stage, item, revision).cloned();
+        for need in pipeline::needs(stage) {
+            match need {
+                // The review comes later in the list: what the person left wins.
+                Stage::Proposal | Stage::Review => {
+                    sources.extend(place(*need, "").map(|key| ("proposal".to_owned(), key)));
+                }
+                Stage::Paths | Stage::Behaviors => {
+                    sources.extend(place(*need, "").map(|key| (need.name().to_owned(), key)));
+                }
+                Stage::Simulation => {
+                    let Some(run) = run else { continue };
+                    if let Some(key) = place(*need, &run.item()) {
+                        sources.insert("recording".to_owned(), key.clone());
+                        sources.insert("simulation".to_owned(), key);
+                    }
+                    if run.planner != pipeline::REFERENCE {
+                        let reference = Run { planner: pipeline::REFERENCE.to_owned(), seed: run.seed };
+                        let key = place(*need, &reference.item());
+                        sources.extend(key.map(|key| (REFERENCE_ROLE.to_owned(), key)));
+                    }
+                }
+                Stage::Scoring => {}
+            }
+        }
+        sources
+    }
+
+    /// Looks whether a blocked job has all it waits for: it becomes ready, is done already, or
+    /// fails with the job it needed.
+    pub(crate) fn unblock(&mut self, key: &JobKey) {
+        let Some(job) = self.job(key) else { return };
+        if job.state != JobState::Blocked {
+            return;
+        }
+        let mut failed = None;
+        for (role, source) in &job.sources {
+            let Some(parent) = self.job(source) else { continue };
+            if !parent.state.is_terminal() {
+                return;
+            }
+            if parent.state != JobState::Succeeded && role != REFERENCE_ROLE {
+                failed = Some((parent.state, source.clone()));
+            }
+        }
+        match failed {
+            Some((JobState::Canceled, source)) => {
+                self.move_to(key, JobState::Canceled, format!("{source} was canceled"))
+            }
+            Some((JobState::Superseded, source)) => {
+                self.move_to(key, JobState::Superseded, format!("{source} was superseded"));
+            }
+            Some((_, source)) => self.move_to(key, JobState::Failed, format!("upstream: {source}")),
+            None => {
+                self.bind(key);
+                self.offer(key, "");
+            }
+        }
+    }
+
+    /// Binds the inputs to what the sources made.
+    fn bind(&mut self, key: &JobKey) {
+        let (Some(job), Some(scenario)) = (self.job(key), self.scenario(&key.scenario)) else { return };
+        let mut inputs = BTreeMap::from([
+            ("request".to_owned(), scenario.spec.request),
+            ("location".to_owned(), scenario.spec.location),
+            ("reading".to_owned(), scenario.spec.reading),
+        ]);
+        let wanted = |role: &str| {
+            Stage::WORKERS.into_iter().any(|stage| stage.name() == role && (pipeline::is_after(key.stage, stage)))
+        };
+        inputs.extend(scenario.spec.pinned.iter().filter(|(role, _)| wanted(role)).map(|(role, d)| (role.clone(), *d)));
+        for (role, source) in &job.sources {
+            let Some(parent) = self.job(source) else { continue };
+            let Some(result) = &parent.result else { continue };
+            let made_as = if role == REFERENCE_ROLE { "recording" } else { role.as_str() };
+            let digest = pipeline::output(&result.artifacts, made_as).or_else(|| {
+                // A review that hands nothing back leaves the proposal as it was.
+                (source.stage == Stage::Review).then(|| parent.spec.inputs.get(role).copied()).flatten()
+            });
+            inputs.extend(digest.map(|digest| (role.clone(), digest)));
+        }
+        if let Some(job) = self.job_mut(key) {
+            job.spec.inputs = inputs;
+        }
+        self.rekey(key);
+    }
+
+    /// Computes the idempotency key anew after the question changed. Never for a job in an index
+    /// by key: ready, delayed or leased jobs are moved out of it first.
+    pub(crate) fn rekey(&mut self, key: &JobKey) {
+        let Some(idem_key) = self.job(key).map(|job| self.state.policy.idem_key(&job.spec)) else { return };
+        if let Some(job) = self.job_mut(key) {
+            job.idem_key = Some(idem_key);
+        }
+    }
+
+    /// Makes a job ready, or done at once when its result is known.
+    pub(crate) fn offer(&mut self, key: &JobKey, reason: &str) {
+        if !self.take_known(key) {
+            self.move_to(key, JobState::Ready, reason);
+        }
+    }
+}
+
+impl Worker {
+    /// A worker that just came.
+    #[must_use]
+    pub(crate) fn new(hello: Hello, seen: u64) -> Self {
+        Self {
+            hello,
+            seen,
+            draining: false,
+            held: std::collections::BTreeSet::new(),
+            last: (String::new(), Vec::new()),
+        }
+    }
+}
+
+impl Scenario {
+    /// A scenario that was just submitted.
+    #[must_use]
+    pub(crate) fn new(batch: &str, order: u64, spec: ScenarioSpec) -> Self {
+        Self {
+            batch: batch.to_owned(),
+            order,
+            spec,
+            revision: 0,
+            repairs: 0,
+            reproposals: 0,
+            reviews: 0,
+            verdicts: BTreeMap::new(),
+            settled: None,
+            canceled: false,
+            end: None,
+            started: false,
+            jobs: Vec::new(),
+            open: 0,
+        }
+    }
+}

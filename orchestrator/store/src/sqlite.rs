@@ -1,0 +1,263 @@
+//! The store in one `SQLite` file: write-ahead log, synced at every commit, one writer.
+
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, ErrorCode, OptionalExtension as _, params};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use socrates_model::Digest;
+use socrates_orchestrator::{Row, Snapshot};
+
+use crate::{OUTBOX, SCHEMA_VERSION, Store, StoreError, check, schema};
+
+/// The job store of one orchestrator. Do not put it on a network file system: its locks and its log
+/// need a local disk.
+#[derive(Debug)]
+pub struct SqliteStore {
+    path: PathBuf,
+    connection: Connection,
+    /// Held as long as the store is open; the kernel lets go of it when the process dies.
+    _lock: File,
+}
+
+impl SqliteStore {
+    /// Opens or makes the store at `path`, for this process alone.
+    ///
+    /// # Errors
+    /// [`StoreError::Locked`] when another process has it, [`StoreError::Unwritable`],
+    /// [`StoreError::Newer`], [`StoreError::Sqlite`] when the file is no store.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        let unwritable = |source| StoreError::Unwritable { path: path.to_owned(), source };
+        if let Some(dir) = path.parent() {
+            std::fs::create_dir_all(dir).map_err(unwritable)?;
+        }
+        let lock = File::options()
+            .create(true)
+            .truncate(false)
+            .write(true)
+            .open(path.with_extension("lock"))
+            .map_err(unwritable)?;
+        match lock.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => return Err(StoreError::Locked { path: path.to_owned() }),
+            Err(TryLockError::Error(source)) => return Err(unwritable(source)),
+        }
+        let failed = |source| failure(path, source);
+        let connection = Connection::open(path).map_err(failed)?;
+        connection.execute_batch(schema::PRAGMAS).map_err(failed)?;
+        let mut store = Self { path: path.to_owned(), connection, _lock: lock };
+        store.prepare()?;
+        Ok(store)
+    }
+
+    fn prepare(&mut self) -> Result<(), StoreError> {
+        let known: bool = self
+            .connection
+            .query_row("select exists(select 1 from sqlite_schema where name = 'meta')", [], |row| row.get(0))
+            .map_err(|source| self.failure(source))?;
+        if known {
+            let found = self.number("schema_version")?.unwrap_or(0);
+            if found > u64::from(SCHEMA_VERSION) {
+                let found = u32::try_from(found).unwrap_or(u32::MAX);
+                return Err(StoreError::Newer { path: self.path.clone(), found });
+            }
+        }
+        self.connection.execute_batch(schema::TABLES).map_err(|source| self.failure(source))?;
+        self.set("schema_version", &SCHEMA_VERSION.to_string())
+    }
+
+    fn failure(&self, source: rusqlite::Error) -> StoreError {
+        failure(&self.path, source)
+    }
+
+    fn meta(&self, name: &str) -> Result<Option<String>, StoreError> {
+        self.connection
+            .query_row("select value from meta where name = ?1", [name], |row| row.get(0))
+            .optional()
+            .map_err(|source| self.failure(source))
+    }
+
+    fn number(&self, name: &str) -> Result<Option<u64>, StoreError> {
+        Ok(self.meta(name)?.and_then(|text| text.parse().ok()))
+    }
+
+    fn set(&self, name: &str, value: &str) -> Result<(), StoreError> {
+        self.connection
+            .execute("insert or replace into meta values(?1, ?2)", [name, value])
+            .map(drop)
+            .map_err(|source| self.failure(source))
+    }
+
+    fn bodies<T: DeserializeOwned>(&self, table: &'static str, order: &str) -> Result<Vec<T>, StoreError> {
+        let failed = |source| self.failure(source);
+        let sql = format!("select body from {table} order by {order}");
+        let mut statement = self.connection.prepare(&sql).map_err(failed)?;
+        let mut rows = statement.query([]).map_err(failed)?;
+        let mut all = Vec::new();
+        while let Some(row) = rows.next().map_err(failed)? {
+            let body = row.get_ref(0).and_then(|body| Ok(body.as_str()?)).map_err(failed)?;
+            all.push(serde_json::from_str(body).map_err(|source| StoreError::Row { table, source })?);
+        }
+        Ok(all)
+    }
+
+    fn read(&self) -> Result<Snapshot, StoreError> {
+        let last: i64 = self
+            .connection
+            .query_row("select coalesce(max(seq), 0) from event", [], |row| row.get(0))
+            .map_err(|source| self.failure(source))?;
+        let paused = match self.meta("paused")? {
+            Some(text) => serde_json::from_str(&text).map_err(|source| StoreError::Row { table: "meta", source })?,
+            None => Vec::new(),
+        };
+        Ok(Snapshot {
+            epoch: self.number("epoch")?.unwrap_or(0),
+            scenarios: self.bodies("scenario", "place")?,
+            jobs: self.bodies("job", "job")?,
+            attempts: self.bodies("attempt", "job, number")?,
+            results: self.bodies("result", "job")?,
+            paused,
+            next_seq: u64::try_from(last).unwrap_or(0) + 1,
+        })
+    }
+}
+
+impl Store for SqliteStore {
+    fn save(&mut self, rows: &[Row]) -> Result<(), StoreError> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let path = self.path.clone();
+        let failed = |source| failure(&path, source);
+        // Dropped without a commit, it rolls back.
+        let transaction = self.connection.transaction().map_err(failed)?;
+        for row in rows {
+            write(&transaction, row, &failed)?;
+        }
+        transaction.commit().map_err(failed)
+    }
+
+    fn load(&mut self) -> Result<Snapshot, StoreError> {
+        let epoch = self.number("epoch")?.unwrap_or(0) + 1;
+        self.set("epoch", &epoch.to_string())?;
+        let snapshot = self.read()?;
+        let oldest = i64::try_from(snapshot.next_seq.saturating_sub(OUTBOX)).unwrap_or(0);
+        self.connection.execute("delete from event where seq < ?1", [oldest]).map_err(|source| self.failure(source))?;
+        Ok(snapshot)
+    }
+
+    fn text(&self, digest: &Digest) -> Result<Option<String>, StoreError> {
+        self.connection
+            .query_row("select content from text where digest = ?1", [digest.to_string()], |row| row.get(0))
+            .optional()
+            .map_err(|source| self.failure(source))
+    }
+
+    fn texts(&self) -> Result<Vec<Digest>, StoreError> {
+        let failed = |source| self.failure(source);
+        let mut statement = self.connection.prepare("select digest from text order by digest").map_err(failed)?;
+        let rows = statement.query_map([], |row| row.get::<_, String>(0)).map_err(failed)?;
+        let mut all = Vec::new();
+        for row in rows {
+            // An address that is none was not written by us; the checker speaks of it.
+            all.extend(row.map_err(failed)?.parse::<Digest>().ok());
+        }
+        Ok(all)
+    }
+
+    fn fsck(&self) -> Result<Vec<String>, StoreError> {
+        let failed = |source| self.failure(source);
+        let verdict: String =
+            self.connection.query_row("pragma integrity_check", [], |row| row.get(0)).map_err(failed)?;
+        let mut wrong = if verdict == "ok" { Vec::new() } else { vec![format!("file: {verdict}")] };
+        wrong.extend(check(&self.read()?));
+        for digest in self.texts()? {
+            if self.text(&digest)?.is_some_and(|text| Digest::of(text.as_bytes()) != digest) {
+                wrong.push(format!("the text under `{digest}` is another one"));
+            }
+        }
+        Ok(wrong)
+    }
+}
+
+type Failed<'a> = dyn Fn(rusqlite::Error) -> StoreError + 'a;
+
+fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreError> {
+    let run = |sql: &str, values: &[&dyn rusqlite::ToSql]| {
+        to.prepare_cached(sql).and_then(|mut statement| statement.execute(values)).map(drop).map_err(failed)
+    };
+    match row {
+        Row::Scenario(scenario) => {
+            let (id, place) = (scenario.spec.id.as_str(), i64::try_from(scenario.order).unwrap_or(i64::MAX));
+            let result = scenario.end.map(socrates_orchestrator::ScenarioEnd::name);
+            let body = body("scenario", scenario)?;
+            let sql = "insert or replace into scenario values(?1, ?2, ?3, ?4, ?5)";
+            run(sql, params![id, scenario.batch, place, result, body])
+        }
+        Row::Job(job) => {
+            let key = &job.key;
+            let body = body("job", job)?;
+            let sql = "insert or replace into job values(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)";
+            run(
+                sql,
+                params![
+                    key.to_string(),
+                    key.scenario.as_str(),
+                    key.stage.name(),
+                    key.item,
+                    key.revision,
+                    job.state.name(),
+                    job.idem_key.map(|idem_key| idem_key.to_string()),
+                    body
+                ],
+            )
+        }
+        Row::Attempt(key, attempt) => {
+            let fence = i64::try_from(attempt.fence).unwrap_or(i64::MAX);
+            let outcome = attempt.end.map(|end| format!("{end:?}").to_lowercase());
+            let body = body("attempt", &(key, attempt))?;
+            let sql = "insert or replace into attempt values(?1, ?2, ?3, ?4, ?5, ?6)";
+            run(sql, params![key.to_string(), attempt.number, attempt.instance, fence, outcome, body])
+        }
+        Row::Result(key, result) => {
+            let verdict = result.verdict.map(socrates_model::Verdict::name);
+            let body = body("result", &(key, result))?;
+            let inserted = to
+                .prepare_cached("insert or ignore into result values(?1, ?2, ?3, ?4)")
+                .and_then(|mut insert| insert.execute(params![key.to_string(), result.attempt, verdict, body]))
+                .map_err(failed)?;
+            if inserted == 1 { Ok(()) } else { Err(StoreError::SecondResult { job: key.to_string() }) }
+        }
+        Row::Text(digest, content) => {
+            run("insert or ignore into text values(?1, ?2)", params![digest.to_string(), content])
+        }
+        Row::Event(batch, notice) => {
+            let seq = i64::try_from(notice.seq).unwrap_or(i64::MAX);
+            let body = body("event", notice)?;
+            run("insert or replace into event values(?1, ?2, ?3)", params![seq, batch, body])
+        }
+        Row::Dead(key, reason) => run("insert or replace into dead values(?1, ?2)", params![key.to_string(), reason]),
+        Row::Revived(key) => run("delete from dead where job = ?1", params![key.to_string()]),
+        Row::Paused(paused) => {
+            let body = body("meta", paused)?;
+            run("insert or replace into meta values('paused', ?1)", params![body])
+        }
+    }
+}
+
+fn body(table: &'static str, of: &impl Serialize) -> Result<String, StoreError> {
+    serde_json::to_string(of).map_err(|source| StoreError::Row { table, source })
+}
+
+fn failure(path: &Path, source: rusqlite::Error) -> StoreError {
+    let path = path.to_owned();
+    match source.sqlite_error_code() {
+        Some(ErrorCode::DiskFull) => StoreError::Full { path },
+        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => StoreError::Locked { path },
+        Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
+            StoreError::Unwritable { path, source: std::io::Error::other(source) }
+        }
+        Some(_) | None => StoreError::Sqlite { path, source },
+    }
+}

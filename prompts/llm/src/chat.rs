@@ -1,0 +1,74 @@
+//! What is asked and what comes back.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Who speaks a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Speaker {
+    /// Rules of the conversation.
+    System,
+    /// The one who asks.
+    User,
+    /// The model.
+    Assistant,
+}
+
+/// One turn of a conversation.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Turn {
+    /// Who speaks.
+    pub speaker: Speaker,
+    /// What is said.
+    pub text: String,
+    /// A PNG picture that goes with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub png: Option<Vec<u8>>,
+}
+
+/// One request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ChatRequest {
+    /// The conversation so far.
+    pub turns: Vec<Turn>,
+    /// Name of the form of the answer, `[A-Za-z0-9_-]{1,64}`.
+    pub form: String,
+    /// JSON schema that the answer should keep; without one, any text.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub schema: Option<Value>,
+    /// Seed for servers that take one; best effort everywhere.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Sampling temperature, 0 to 2; without one, the server's own (some models take no other).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub temperature: Option<f64>,
+    /// Most tokens of the answer.
+    pub max_tokens: u32,
+}
+
+/// How an answer ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finish {
+    /// By itself.
+    Stop,
+    /// Cut by the limit of tokens.
+    Cut,
+}
+
+/// One answer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChatAnswer {
+    /// The text.
+    pub text: String,
+    /// How it ended.
+    pub finish: Finish,
+    /// Model as the server names it.
+    pub model: String,
+    /// Tokens in and out; estimated (bytes / 4) where the server does not say.
+    pub tokens: (u64, u64),
+    /// Whether the tokens are an estimate.
+    #[serde(default)]
+    pub estimated: bool,
+}

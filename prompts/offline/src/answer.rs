@@ -1,0 +1,88 @@
+//! The author itself: a question in, an answer as text out.
+
+use serde_json::{Map, Value, json};
+use socrates_model::job::Stage;
+use socrates_model::{Action, FaultCode, Proposal, Rule};
+use socrates_prompts::Question;
+
+use crate::deed::{distance_m, with_distance};
+use crate::{NAME, proposal, solve};
+
+/// The offline author.
+///
+/// Plays by the same rules as a language model: it gets the typed question and answers with text, which goes
+/// through the same parser and the same checks.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Offline;
+
+impl Offline {
+    /// Name of this author, as artifacts spell it.
+    pub const NAME: &'static str = NAME;
+
+    /// The answer to a question, as JSON text; the same question gives the same answer.
+    ///
+    /// What cannot be answered (no way on the map, a stage without questions) is an object with a `note` that
+    /// says so, which the parser refuses like any other wrong answer.
+    #[must_use]
+    pub fn answer(question: &Question) -> String {
+        match question.stage {
+            Stage::Proposal => text(&proposal::propose(question)),
+            Stage::Paths => match with_proposal(question, |known| solve::solve(question, known)) {
+                Some(paths) => text(&paths),
+                None => json!({ "note": "the map has no ways that fit the proposal" }).to_string(),
+            },
+            Stage::Behaviors => {
+                with_proposal(question, |known| Some(behaviors(question, known))).unwrap_or_else(|| "{}".to_owned())
+            }
+            Stage::Simulation | Stage::Scoring | Stage::Review => {
+                json!({ "note": "only proposals, paths and behaviors are written" }).to_string()
+            }
+        }
+    }
+}
+
+/// Calls with the question's proposal; a question that came without one gets it from the same rules.
+fn with_proposal<T>(question: &Question, answer: impl FnOnce(&Proposal) -> Option<T>) -> Option<T> {
+    match &question.proposal {
+        Some(known) => answer(known),
+        None => {
+            answer(&proposal::propose(&Question { stage: Stage::Proposal, feedback: Vec::new(), ..question.clone() }))
+        }
+    }
+}
+
+fn text<T: serde::Serialize>(answer: &T) -> String {
+    serde_json::to_string_pretty(answer).unwrap_or_else(|why| json!({ "note": why.to_string() }).to_string())
+}
+
+fn behaviors(question: &Question, proposal: &Proposal) -> String {
+    let mut humans = Map::new();
+    for human in proposal.humans.iter().filter(|human| question.only.is_empty() || question.only.contains(&human.id)) {
+        let told = |code: FaultCode| {
+            question.feedback.iter().any(|fault| fault.code == code && fault.at.contains(&human.id.to_string()))
+        };
+        // A trigger that never fired gets a longer reach; one that fired too early a shorter one.
+        let scale = if told(FaultCode::DNoTrig) || told(FaultCode::DNoGest) {
+            1.5
+        } else if told(FaultCode::DEarly) {
+            0.7
+        } else {
+            1.0
+        };
+        let rules: Vec<Rule> = human.rules.iter().map(|rule| scaled(rule, scale)).collect();
+        humans.insert(human.id.to_string(), json!({ "description": human.behavior, "rules": rules }));
+    }
+    let answer = Value::Object(Map::from_iter([
+        ("humans".to_owned(), Value::Object(humans)),
+        ("author".to_owned(), json!(NAME)),
+    ]));
+    text(&answer)
+}
+
+fn scaled(rule: &Rule, scale: f64) -> Rule {
+    let reach = |m: f64| (libm::round(m * scale * 10.0) / 10.0).clamp(0.5, 12.0);
+    let when = rule.when.iter().map(|trigger| with_distance(trigger.clone(), distance_m(trigger).map(reach)));
+    // Running away from afar would end the meeting before it began.
+    let flees = rule.act == Action::RunAway && scale > 1.0;
+    if flees { rule.clone() } else { Rule { when: when.collect(), ..rule.clone() } }
+}

@@ -1,0 +1,243 @@
+//! Cards: the canonical scenarios of `prompts/catalog`, as data.
+
+use std::sync::LazyLock;
+
+use serde::Deserialize;
+use socrates_model::rule::RobotRule;
+use socrates_model::{
+    Action, ClauseRole, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
+};
+
+use crate::draw::Draw;
+
+/// A canonical scenario.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Card {
+    /// Id, also the name of its file.
+    pub id: String,
+    /// A few words.
+    pub title: String,
+    /// What happens, in a sentence.
+    pub about: String,
+    /// Principles of social navigation that it probes, `P1` safety to `P8` context (Francis et al. 2023).
+    pub principles: Vec<String>,
+    /// Place classes of the encounter, the best first.
+    pub places: Vec<PlaceClass>,
+    /// Place classes that the map must have.
+    #[serde(default)]
+    pub needs: Vec<PlaceClass>,
+    /// Whether the map must have a place inside a room or an elevator.
+    #[serde(default)]
+    pub inside: bool,
+    /// Where the robot has to go, if the card says.
+    #[serde(default)]
+    pub goal: Option<PlaceClass>,
+    /// What a good robot would do.
+    pub expected: String,
+    /// Who is there.
+    #[serde(rename = "role")]
+    pub roles: Vec<Role>,
+    /// The robot's script.
+    #[serde(default)]
+    pub script: Vec<RobotRule>,
+    /// What should be seen, beyond what every human's own part demands.
+    #[serde(default, rename = "clause")]
+    pub clauses: Vec<CardClause>,
+}
+
+/// A part to play.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Role {
+    /// Name of the part, for the card's clauses.
+    pub name: String,
+    /// How it stands to the robot's way.
+    pub relation: Relation,
+    /// Smallest and largest number of people.
+    pub count: [u32; 2],
+    /// Who may play it.
+    pub who: Vec<String>,
+    /// Range of the desired speed, m/s; by the person's own draw where absent.
+    #[serde(default)]
+    pub speed: Option<[f64; 2]>,
+    /// Whether these people form a group.
+    #[serde(default)]
+    pub group: bool,
+    /// Where they start.
+    #[serde(default)]
+    pub start: Option<PlaceClass>,
+    /// Reactions.
+    #[serde(default, rename = "rule")]
+    pub rules: Vec<RoleRule>,
+}
+
+/// A reaction with ranges in place of values.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RoleRule {
+    /// When.
+    pub when: Vec<Trigger>,
+    /// Range that replaces the distance of `when`, m.
+    #[serde(default)]
+    pub within_m: Option<[f64; 2]>,
+    /// What.
+    pub act: Action,
+    /// Gesture.
+    #[serde(default)]
+    pub gesture: Option<Gesture>,
+    /// Range of the duration, s.
+    #[serde(default)]
+    pub for_s: Option<[f64; 2]>,
+    /// Goes on once started.
+    #[serde(default)]
+    pub latched: bool,
+}
+
+/// A clause with holes: `{human}` and `{group}`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CardClause {
+    /// Name of the role whose every human gets the clause; none for one clause in all.
+    #[serde(default)]
+    pub each: Option<String>,
+    /// Setup or outcome.
+    pub role: ClauseRole,
+    /// Whether it must hold. Default true.
+    #[serde(default = "yes")]
+    pub must: bool,
+    /// In words.
+    pub text: String,
+    /// The predicate, with holes.
+    pub predicate: toml::Value,
+}
+
+const fn yes() -> bool {
+    true
+}
+
+macro_rules! cards {
+    ($($id:literal)*) => { &[$(include_str!(concat!("../../catalog/", $id, ".toml")),)*] };
+}
+
+/// Every card file. Adding a card is a file and a line here.
+const FILES: &[&str] = cards! {
+    "frontal_approach" "pedestrian_obstruction" "robot_overtaking" "human_overtaking" "intersection_crossing" "intersection_wait"
+    "intersection_proceed" "blind_corner" "narrow_doorway" "room_exit" "entering_elevator" "group_passing" "group_walking" "follower"
+    "corridor_follow_and_block" "curious" "frightened" "leading" "robot_following"
+};
+
+static CATALOG: LazyLock<Vec<Card>> = LazyLock::new(|| {
+    // The files are compiled in and each is loaded by a test.
+    FILES.iter().filter_map(|text| toml::from_str(text).ok()).collect()
+});
+
+/// Every card, in the order of the catalog.
+#[must_use]
+pub fn catalog() -> &'static [Card] {
+    &CATALOG
+}
+
+/// The card of this id.
+#[must_use]
+pub fn card(id: &str) -> Option<&'static Card> {
+    catalog().iter().find(|card| card.id == id)
+}
+
+impl Card {
+    /// Whether the map has the places that the card needs.
+    #[must_use]
+    pub fn fits(&self, location: &Location) -> bool {
+        let there = |class: &PlaceClass| crate::place::has(location, *class);
+        let inside =
+            !self.inside || !crate::place::inside(location, self.roles.iter().find_map(|role| role.start)).is_empty();
+        inside
+            && self.needs.iter().all(there)
+            && self.places.iter().any(|class| *class == PlaceClass::Plain || there(class))
+    }
+}
+
+impl RoleRule {
+    /// The rule with values drawn from its ranges, in steps of 0.1.
+    pub(crate) fn drawn(&self, draw: &mut Draw) -> Rule {
+        let distance = self.within_m.map(|range| draw.tenths(range));
+        let when = self.when.iter().map(|trigger| crate::deed::with_distance(trigger.clone(), distance)).collect();
+        Rule {
+            when,
+            act: self.act.clone(),
+            gesture: self.gesture,
+            for_s: self.for_s.map(|range| draw.tenths(range)),
+            latched: self.latched,
+        }
+    }
+}
+
+impl CardClause {
+    /// The predicate and its words for a human or group; `None` where the card is not well-formed.
+    pub(crate) fn filled(&self, human: Option<HumanId>, group: Option<GroupId>) -> Option<(String, Predicate)> {
+        let name = human.map_or_else(String::new, |id| id.to_string());
+        let mut value = serde_json::to_value(&self.predicate).ok()?;
+        fill(&mut value, &name, group);
+        let predicate = serde_json::from_value(value).ok()?;
+        Some((self.text.replace("{human}", &name), predicate))
+    }
+}
+
+fn fill(value: &mut serde_json::Value, human: &str, group: Option<GroupId>) {
+    match value {
+        serde_json::Value::String(text) if text == "{human}" => *text = human.to_owned(),
+        serde_json::Value::String(text) if text == "{group}" => *value = serde_json::json!(group.map_or(1, |id| id.0)),
+        serde_json::Value::Object(members) => members.values_mut().for_each(|member| fill(member, human, group)),
+        serde_json::Value::Array(items) => items.iter_mut().for_each(|item| fill(item, human, group)),
+        serde_json::Value::Null
+        | serde_json::Value::Bool(_)
+        | serde_json::Value::Number(_)
+        | serde_json::Value::String(_) => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_card_loads_and_every_file_is_listed() {
+        for text in FILES {
+            if let Err(error) = toml::from_str::<Card>(text) {
+                panic!("{error}\n{text}");
+            }
+        }
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../catalog");
+        let mut files: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .filter_map(|entry| {
+                entry.unwrap().file_name().into_string().unwrap().strip_suffix(".toml").map(str::to_owned)
+            })
+            .collect();
+        let mut ids: Vec<String> = catalog().iter().map(|card| card.id.clone()).collect();
+        files.sort();
+        ids.sort();
+        assert_eq!(files, ids);
+    }
+
+    #[test]
+    fn every_clause_and_rule_of_every_card_is_sound() {
+        let human = HumanId::new(1);
+        for card in catalog() {
+            assert!(card.clauses.iter().any(|clause| clause.role == ClauseRole::Outcome), "{}", card.id);
+            assert!(!card.places.is_empty() && !card.principles.is_empty(), "{}", card.id);
+            for clause in &card.clauses {
+                let each = clause.each.as_ref();
+                assert!(
+                    each.is_none_or(|name| card.roles.iter().any(|role| role.name == *name)),
+                    "{} {each:?}",
+                    card.id
+                );
+                assert!(clause.filled(Some(human), Some(GroupId(1))).is_some(), "{}: {:?}", card.id, clause.predicate);
+            }
+            for role in &card.roles {
+                assert!(role.count[0] >= 1 && role.count[0] <= role.count[1] && !role.who.is_empty(), "{}", card.id);
+            }
+        }
+    }
+}

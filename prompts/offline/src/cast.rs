@@ -1,0 +1,335 @@
+//! The cast: who is there, and whom a mention means.
+
+use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule};
+
+use crate::lexicon::lexicon;
+use crate::mention::{Mention, Who};
+
+/// A rule with where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ReadRule {
+    pub(crate) rule: Rule,
+    /// The words it was read from.
+    pub(crate) quote: String,
+    /// Whether the text says when.
+    pub(crate) stated: bool,
+    /// Whether the text says how near.
+    pub(crate) exact: bool,
+    /// Whether it follows the one before: `and then`.
+    pub(crate) then: bool,
+}
+
+/// One human as it is being read.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Person {
+    pub(crate) role: String,
+    pub(crate) relation: Option<(Relation, String)>,
+    pub(crate) rules: Vec<ReadRule>,
+    pub(crate) group: Option<GroupId>,
+    pub(crate) speed_mps: Option<f64>,
+    /// Where it comes from, or is.
+    pub(crate) start: Option<PlaceClass>,
+    /// Words for the reading line, in order.
+    pub(crate) doings: Vec<String>,
+    /// Whether something was said of this one that sets it apart.
+    pub(crate) bound: bool,
+}
+
+/// People who were introduced together.
+#[derive(Debug, Clone, PartialEq)]
+struct Together {
+    members: Vec<usize>,
+    /// `there are 3 people`: this is everybody.
+    total: bool,
+    quote: String,
+}
+
+/// Everybody so far.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Cast {
+    pub(crate) people: Vec<Person>,
+    pub(crate) groups: Vec<(GroupId, Vec<usize>, String)>,
+    sets: Vec<Together>,
+    /// Whom the last clause spoke of.
+    pub(crate) last: Vec<usize>,
+    pub(crate) notes: Vec<String>,
+    pub(crate) problems: Vec<Fault>,
+    /// Words that said how many, for the fact.
+    pub(crate) count_quote: Option<String>,
+    /// Somebody was said not to be there.
+    pub(crate) nobody: Option<String>,
+    overflow: bool,
+}
+
+/// More people than are kept while reading; the request is refused anyway.
+const READ_AT_MOST: usize = 40;
+
+impl Cast {
+    /// The people whom a mention means; new ones join.
+    pub(crate) fn resolve(&mut self, mention: &Mention, declares: bool, quote: &str) -> Vec<usize> {
+        let found = match &mention.who {
+            Who::Nobody => {
+                self.nobody = Some(quote.to_owned());
+                Vec::new()
+            }
+            Who::New { count: None, .. } => {
+                let n = if mention.group { 3 } else { 2 };
+                self.notes.push(format!("`{quote}` names no number; it was read as {n} humans"));
+                self.join(n, mention, declares, quote)
+            }
+            Who::New { count: Some(n), article } => {
+                let pick = if !*article || mention.role.is_none() && self.declared_open() {
+                    self.pick(*n, mention, quote)
+                } else {
+                    None
+                };
+                pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
+            }
+            Who::Bare(n) => self.pick(*n, mention, quote).unwrap_or_else(|| self.join(*n, mention, declares, quote)),
+            Who::More(n) => match self.pick_open(*n, mention) {
+                Some(found) if *n == 1 => found,
+                Some(_) | None => self.join(*n, mention, declares, quote),
+            },
+            Who::PartOf(n) => self.part_of(*n, mention, quote),
+            Who::Other(count) => self.others(*count, mention, quote),
+            Who::Ordinal(n) => {
+                let set = self.latest();
+                let index = if *n == 0 { set.last() } else { set.get(usize::try_from(n - 1).unwrap_or(usize::MAX)) };
+                index.copied().map_or_else(|| self.join(1, mention, false, quote), |i| vec![i])
+            }
+            Who::Number(n) => {
+                let wanted = usize::try_from((*n).max(1)).unwrap_or(usize::MAX);
+                if wanted > self.people.len() {
+                    let missing = u32::try_from(wanted - self.people.len()).unwrap_or(u32::MAX);
+                    let _new = self.join(missing, mention, false, quote);
+                }
+                if wanted <= self.people.len() { vec![wanted - 1] } else { Vec::new() }
+            }
+            Who::Definite { plural, count } => self.definite(*plural, *count, mention, declares, quote),
+            Who::All => {
+                if self.last.len() > 1 {
+                    self.last.clone()
+                } else {
+                    self.latest()
+                }
+            }
+            Who::Same => self.last.clone(),
+        };
+        if let Some(role) = &mention.role {
+            for i in &found {
+                if let Some(person) = self.people.get_mut(*i).filter(|person| person.role.is_empty()) {
+                    role.clone_into(&mut person.role);
+                }
+            }
+        }
+        let singles = matches!(
+            mention.who,
+            Who::Bare(_) | Who::PartOf(_) | Who::Other(_) | Who::Ordinal(_) | Who::Number(_) | Who::More(_)
+        );
+        let picked = matches!(mention.who, Who::New { .. } | Who::Definite { .. }) && self.latest().len() > found.len();
+        for i in &found {
+            if let Some(person) = self.people.get_mut(*i) {
+                person.bound |= singles || picked;
+            }
+        }
+        if mention.group && found.len() > 1 {
+            self.group(&found, quote);
+        }
+        found
+    }
+
+    /// Makes a group of these people.
+    pub(crate) fn group(&mut self, members: &[usize], quote: &str) {
+        if members.len() < 2 || self.groups.iter().any(|(_, known, _)| members.iter().all(|i| known.contains(i))) {
+            return;
+        }
+        let id = GroupId(u32::try_from(self.groups.len() + 1).unwrap_or(u32::MAX));
+        for i in members {
+            if let Some(person) = self.people.get_mut(*i) {
+                person.group = Some(id);
+            }
+        }
+        self.groups.push((id, members.to_vec(), quote.to_owned()));
+    }
+
+    /// Takes `a nurse and two visitors` as one set.
+    pub(crate) fn together(&mut self, members: &[usize], quote: &str) {
+        if members.len() > 1 && !self.sets.iter().any(|set| set.members == members) {
+            self.sets.push(Together { members: members.to_vec(), total: false, quote: quote.to_owned() });
+        }
+    }
+
+    /// The newest set of more than one, else everybody.
+    fn latest(&self) -> Vec<usize> {
+        self.sets
+            .iter()
+            .rev()
+            .find(|set| set.members.len() > 1)
+            .map_or_else(|| (0..self.people.len()).collect(), |set| set.members.clone())
+    }
+
+    fn declared_open(&self) -> bool {
+        self.sets.last().is_some_and(|set| set.total && self.open(set).next().is_some())
+    }
+
+    fn open<'a>(&'a self, set: &'a Together) -> impl Iterator<Item = usize> + 'a {
+        set.members.iter().copied().filter(|i| self.people.get(*i).is_some_and(|person| !person.bound))
+    }
+
+    fn fits(&self, i: usize, role: Option<&String>) -> bool {
+        role.is_none_or(|role| self.people.get(i).is_some_and(|person| person.role.is_empty() || person.role == *role))
+    }
+
+    /// Some of the open people of the newest set that fit.
+    fn pick_open(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
+        let wanted = usize::try_from(n).ok()?;
+        self.sets.iter().rev().find_map(|set| {
+            let open: Vec<usize> = self.open(set).filter(|i| self.fits(*i, mention.role.as_ref())).collect();
+            if set.members.len() > 1 && open.len() >= wanted && wanted < set.members.len() {
+                open.get(..wanted).map(<[usize]>::to_vec)
+            } else {
+                None
+            }
+        })
+    }
+
+    /// As [`Self::pick_open`]; says so where a total that was given is too small.
+    fn pick(&mut self, n: u32, mention: &Mention, quote: &str) -> Option<Vec<usize>> {
+        if let Some(found) = self.pick_open(n, mention) {
+            return Some(found);
+        }
+        let (total, first) =
+            self.sets.iter().find(|set| set.total).map(|set| (set.members.len(), set.quote.clone()))?;
+        let open: Vec<usize> =
+            (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| !p.bound)).collect();
+        let all_named = self.people.iter().any(|person| person.bound);
+        if !all_named || mention.role.is_some() && open.len() == total {
+            return None;
+        }
+        self.problems.push(Fault::new(
+            FaultCode::PContra,
+            "rough_scenario",
+            format!("`{first}` gives {total} humans, but `{quote}` asks for {n} more than the {} left; correct one of the two", open.len()),
+        ));
+        Some(open)
+    }
+
+    fn part_of(&mut self, n: u32, mention: &Mention, quote: &str) -> Vec<usize> {
+        let wanted = usize::try_from(n).unwrap_or(usize::MAX);
+        if let Some(found) = self.pick_open(n, mention) {
+            return found;
+        }
+        let set = self.latest();
+        if !set.is_empty() && wanted <= set.len() {
+            return set.into_iter().take(wanted).collect();
+        }
+        self.join(n, mention, false, quote)
+    }
+
+    fn others(&mut self, count: Option<u32>, mention: &Mention, quote: &str) -> Vec<usize> {
+        let open: Vec<usize> = self
+            .sets
+            .iter()
+            .rev()
+            .map(|set| self.open(set).filter(|i| !self.last.contains(i)).collect::<Vec<_>>())
+            .find(|open| !open.is_empty())
+            .unwrap_or_default();
+        let wanted = count.map_or(open.len(), |n| usize::try_from(n).unwrap_or(usize::MAX));
+        if wanted > 0 && open.len() >= wanted {
+            return open.into_iter().take(wanted).collect();
+        }
+        // `the other` of two who were both spoken of already: whoever is not the last one.
+        let set = self.latest();
+        let rest: Vec<usize> = set.iter().copied().filter(|i| !self.last.contains(i)).collect();
+        if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
+            return rest;
+        }
+        self.join(count.unwrap_or(1), mention, false, quote)
+    }
+
+    fn definite(
+        &mut self,
+        plural: bool,
+        count: Option<u32>,
+        mention: &Mention,
+        declares: bool,
+        quote: &str,
+    ) -> Vec<usize> {
+        if let Some(role) = &mention.role {
+            let same: Vec<usize> =
+                (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| p.role == *role)).collect();
+            if plural && same.len() > 1 && count.is_none_or(|n| usize::try_from(n) == Ok(same.len())) {
+                return same;
+            }
+            if !plural && let Some(first) = same.first() {
+                return vec![self.last.iter().copied().find(|i| same.contains(i)).unwrap_or(*first)];
+            }
+        } else if !self.people.is_empty() {
+            if plural {
+                let set = self.latest();
+                return count.and_then(|n| self.pick_open(n, mention)).unwrap_or(set);
+            }
+            return self
+                .last
+                .first()
+                .copied()
+                .or_else(|| self.latest().first().copied())
+                .map(|i| vec![i])
+                .unwrap_or_default();
+        }
+        let n = count.unwrap_or(if !plural {
+            1
+        } else if mention.group {
+            3
+        } else {
+            2
+        });
+        if plural && count.is_none() {
+            self.notes.push(format!("`{quote}` names no number; it was read as {n} humans"));
+        }
+        self.join(n, mention, declares, quote)
+    }
+
+    /// New people.
+    pub(crate) fn join(&mut self, n: u32, mention: &Mention, declares: bool, quote: &str) -> Vec<usize> {
+        let from = self.people.len();
+        let wanted = usize::try_from(n).unwrap_or(usize::MAX);
+        if n == 0 {
+            self.nobody = Some(quote.to_owned());
+        }
+        if from.saturating_add(wanted) > usize::try_from(socrates_model::request::MAX_HUMANS).unwrap_or(READ_AT_MOST)
+            && !self.overflow
+        {
+            self.overflow = true;
+            self.problems.push(Fault::new(
+                FaultCode::PLimit,
+                "rough_scenario",
+                format!(
+                    "`{quote}` asks for {} humans; 1 to {} are simulated",
+                    from.saturating_add(wanted),
+                    socrates_model::request::MAX_HUMANS
+                ),
+            ));
+        }
+        let speed = mention.role.as_ref().and_then(|role| lexicon().roles.get(role)).and_then(|word| word.speed_mps);
+        for _ in 0..wanted.min(READ_AT_MOST.saturating_sub(from)) {
+            self.people.push(Person {
+                role: mention.role.clone().unwrap_or_default(),
+                speed_mps: speed,
+                ..Person::default()
+            });
+        }
+        let members: Vec<usize> = (from..self.people.len()).collect();
+        if members.len() > 1 || declares {
+            self.sets.push(Together {
+                members: members.clone(),
+                total: declares && members.len() > 1,
+                quote: quote.to_owned(),
+            });
+        }
+        if self.count_quote.is_none() && !members.is_empty() {
+            self.count_quote = Some(quote.to_owned());
+        }
+        members
+    }
+}

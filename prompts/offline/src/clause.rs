@@ -1,0 +1,315 @@
+//! One clause: what people, deeds, places, distances and durations its words hold.
+
+use socrates_model::{Gesture, PlaceClass};
+
+use crate::lexicon::{Act, Cue, lexicon};
+use crate::mention::{Mention, mentions};
+use crate::words::{Joint, Stretch, find};
+
+/// A deed and where it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Deed {
+    pub(crate) act: Act,
+    /// First word.
+    pub(crate) at: usize,
+    /// Last word.
+    pub(crate) to: usize,
+    /// `does not`, `without`.
+    pub(crate) negated: bool,
+}
+
+/// What a clause holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Found {
+    pub(crate) mentions: Vec<Mention>,
+    /// Robot words that no phrase has as its object.
+    pub(crate) robots: Vec<usize>,
+    pub(crate) deeds: Vec<Deed>,
+    pub(crate) cue: Option<(Cue, usize)>,
+    pub(crate) gesture: Option<Gesture>,
+    pub(crate) places: Vec<(PlaceClass, usize)>,
+    /// Places that no map can hold.
+    pub(crate) nowhere: Vec<usize>,
+    /// Verbs without a form in the simulation.
+    pub(crate) impossible: Vec<usize>,
+    pub(crate) distance_m: Option<f64>,
+    pub(crate) lasts_s: Option<f64>,
+    pub(crate) after_s: Option<f64>,
+    pub(crate) pace_mps: Option<f64>,
+    /// `in a group`.
+    pub(crate) in_group: bool,
+    /// `there are`, `in the scenario`.
+    pub(crate) declares: bool,
+}
+
+impl Found {
+    /// Whether a deed of people (not only walking about) is in it.
+    pub(crate) fn acts(&self) -> bool {
+        !self.deeds.is_empty() || self.gesture.is_some()
+    }
+}
+
+/// Reads a clause; words that something was read from are marked as used.
+pub(crate) fn read(stretch: &mut Stretch) -> Found {
+    let mut found = Found { mentions: mentions(&stretch.words), ..Found::default() };
+    for mention in &found.mentions {
+        mark(stretch, mention.from, mention.to);
+    }
+    measures(stretch, &mut found);
+    let placed = places(stretch, &mut found);
+    gesture(stretch, &mut found);
+    let mut taken = vec![false; stretch.words.len()];
+    if found.gesture.is_some() {
+        for (i, word) in stretch.words.iter().enumerate() {
+            if let Some(flag) = taken.get_mut(i) {
+                *flag = word.used
+                    && !found.mentions.iter().any(|mention| (mention.from..=mention.to).contains(&i))
+                    && word.stem != "robot";
+            }
+        }
+    }
+    cue(stretch, &mut found, &mut taken);
+    for (i, at) in placed.iter().enumerate() {
+        if let Some(flag) = taken.get_mut(i) {
+            *flag |= *at;
+        }
+    }
+    deeds(stretch, &mut found, &mut taken);
+    rest(stretch, &mut found, &taken);
+    found
+}
+
+fn mark(stretch: &mut Stretch, from: usize, to: usize) {
+    for word in stretch.words.iter_mut().take(to + 1).skip(from) {
+        word.used = true;
+    }
+}
+
+fn mark_each(stretch: &mut Stretch, at: &[usize]) {
+    for i in at {
+        mark(stretch, *i, *i);
+    }
+}
+
+/// `3 m`, `for 5 seconds`, `after 10 s`, `very close`.
+fn measures(stretch: &mut Stretch, found: &mut Found) {
+    for i in 0..stretch.words.len() {
+        let Some(number) =
+            stretch.words.get(i).filter(|word| !word.used || word.is_digits()).and_then(|word| word.number())
+        else {
+            continue;
+        };
+        let unit = stretch.words.get(i + 1).map_or("", |word| word.stem.as_str());
+        let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
+        match unit {
+            "meter" => found.distance_m = Some(number.clamp(0.3, 15.0)),
+            "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
+            "second" | "minute" => {
+                let secs = (if unit == "minute" { number * 60.0 } else { number }).clamp(0.5, 120.0);
+                if before == "after" { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
+            }
+            _ => continue,
+        }
+        mark(stretch, i, i + 1);
+    }
+    if found.distance_m.is_none() {
+        for phrase in &lexicon().distances {
+            let free = |_: usize| true;
+            if let Some(at) = find(&stretch.words, phrase, 0, false, &free) {
+                found.distance_m = Some(phrase.means);
+                mark_each(stretch, &at);
+                break;
+            }
+        }
+    }
+}
+
+/// Finds places; says which words they take, so that `the exit` is no deed.
+fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
+    let mut taken = vec![false; stretch.words.len()];
+    for phrase in &lexicon().places {
+        let mut from = 0;
+        while let Some(at) = find(&stretch.words, phrase, from, true, &|i| !taken.get(i).copied().unwrap_or(true)) {
+            from = at.first().map_or(usize::MAX, |i| i + 1);
+            // `corner of the warehouse` is an end of the map, no blind corner.
+            let end = at.last().copied().unwrap_or(0);
+            let of = stretch.words.get(end + 1).is_some_and(|word| word.text == "of");
+            let opens = stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
+            for i in &at {
+                if let Some(flag) = taken.get_mut(*i) {
+                    *flag = true;
+                }
+            }
+            mark_each(stretch, &at);
+            let map_end = phrase.means == PlaceClass::BlindCorner && of && at.len() == 1;
+            if !opens && !map_end {
+                found.places.push((phrase.means, at.first().copied().unwrap_or(0)));
+            }
+        }
+    }
+    found.places.sort_by_key(|(_, at)| *at);
+    found.nowhere = (0..stretch.words.len())
+        .filter(|i| {
+            stretch
+                .words
+                .get(*i)
+                .is_some_and(|word| lexicon().nowhere.contains(&word.text) || lexicon().nowhere.contains(&word.stem))
+        })
+        .collect();
+    taken
+}
+
+/// A gesture needs a verb (or the word `gesture`) and a message near it.
+fn gesture(stretch: &mut Stretch, found: &mut Found) {
+    let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
+    let Some(verb) = verbs.filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true)).min() else { return };
+    let (first, last) = (verb.first().copied().unwrap_or(0), verb.last().copied().unwrap_or(0));
+    let noun = stretch.words.get(last).is_some_and(|word| word.stem == "gesture" || word.stem == "signal");
+    for (from, to) in [(last + 1, last + 9), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
+        for phrase in &lexicon().gestures {
+            let inside = |i: usize| (from..to).contains(&i) && !verb.contains(&i);
+            if let Some(at) = find(&stretch.words, phrase, from, false, &inside) {
+                found.gesture = Some(phrase.means);
+                mark_each(stretch, &at);
+                mark_each(stretch, &verb);
+                return;
+            }
+        }
+    }
+}
+
+fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
+    let temporal = matches!(stretch.joint, Joint::When | Joint::Until | Joint::While);
+    let robot = stretch.words.iter().position(|word| word.stem == "robot");
+    if let Some(robot) = robot.filter(|robot| {
+        temporal && found.gesture.is_some() && found.mentions.iter().all(|mention| mention.from > *robot)
+    }) {
+        found.cue = Some((Cue::Says, robot));
+        return;
+    }
+    for phrase in &lexicon().cues {
+        if !temporal && phrase.means != Cue::Visible {
+            continue;
+        }
+        let free = |i: usize| !taken.get(i).copied().unwrap_or(true);
+        let Some(at) = find(&stretch.words, phrase, 0, false, &free) else { continue };
+        let first = at.first().copied().unwrap_or(0);
+        if negated(stretch, first) {
+            continue;
+        }
+        for i in &at {
+            if let Some(flag) = taken.get_mut(*i) {
+                *flag = true;
+            }
+        }
+        mark_each(stretch, &at);
+        found.cue = Some((phrase.means, first));
+        return;
+    }
+}
+
+fn negated(stretch: &Stretch, at: usize) -> bool {
+    (1..=2).any(|back| {
+        at.checked_sub(back)
+            .and_then(|i| stretch.words.get(i))
+            .is_some_and(|word| matches!(word.text.as_str(), "not" | "never" | "without" | "cannot"))
+    })
+}
+
+fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
+    for phrase in &lexicon().actions {
+        if phrase.means == Act::Gesture {
+            continue;
+        }
+        let mut from = 0;
+        while let Some(at) = find(&stretch.words, phrase, from, false, &|i| !taken.get(i).copied().unwrap_or(true)) {
+            let (first, last) = (at.first().copied().unwrap_or(0), at.last().copied().unwrap_or(0));
+            from = first + 1;
+            for i in &at {
+                if let Some(flag) = taken.get_mut(*i) {
+                    *flag = true;
+                }
+            }
+            mark_each(stretch, &at);
+            let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
+            found.deeds.push(Deed {
+                act: phrase.means,
+                at: first,
+                to: last,
+                negated: !says_not && negated(stretch, first),
+            });
+        }
+    }
+    found.deeds.sort_by_key(|deed| deed.at);
+    let has = |acts: &[Act]| found.deeds.iter().any(|deed| acts.contains(&deed.act) && !deed.negated);
+    // The more telling word wins: `approaches from behind` is no coming up to the robot out of curiosity.
+    let directed = has(&[Act::Toward, Act::Behind, Act::Cross, Act::Overtake]);
+    let telling = found.deeds.iter().any(|deed| !matches!(deed.act, Act::Walk | Act::Pass | Act::Stand | Act::Stop));
+    let follows = has(&[Act::Follow]);
+    let stands = has(&[Act::Block, Act::Look]);
+    let keep = |deed: &Deed| match deed.act {
+        // `a curious visitor follows` goes after the robot, not up to it.
+        Act::Approach if follows => !directed && deed.at != deed.to,
+        Act::Approach => !directed,
+        Act::Walk | Act::Pass => !telling || deed.negated,
+        Act::Stop => !stands,
+        Act::RunAway
+        | Act::GiveWay
+        | Act::Block
+        | Act::Look
+        | Act::Toward
+        | Act::Overtake
+        | Act::Behind
+        | Act::Abreast
+        | Act::Ahead
+        | Act::Follow
+        | Act::Cross
+        | Act::ComeOut
+        | Act::Stay
+        | Act::Enter
+        | Act::Talk
+        | Act::WalkTogether
+        | Act::Stand
+        | Act::Ignore
+        | Act::Gesture
+        | Act::Lead => true,
+    };
+    let kept = found.deeds.iter().copied().filter(keep).collect();
+    found.deeds = kept;
+}
+
+fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
+    let lex = lexicon();
+    let mut used = Vec::new();
+    for (i, word) in stretch.words.iter().enumerate() {
+        let text = word.text.as_str();
+        let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
+        if let Some(mps) = lex.pace.get(text).or_else(|| lex.pace.get(&word.stem)) {
+            found.pace_mps = Some(*mps);
+            used.push(i);
+        }
+        if word.stem == "robot" {
+            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" {
+                found.robots.push(i);
+            }
+            used.push(i);
+        }
+        if text == "group" && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {
+            found.in_group = true;
+            used.push(i);
+        }
+        if text == "suddenly" || text == "together" {
+            used.push(i);
+        }
+        let exists = text == "there"
+            && stretch
+                .words
+                .get(i + 1)
+                .is_some_and(|next| matches!(next.text.as_str(), "are" | "is" | "will" | "should" | "must"));
+        found.declares |= exists || text == "scenario" || text == "exactly";
+        if lex.impossible.contains(&word.stem) && !word.used {
+            found.impossible.push(i);
+        }
+    }
+    mark_each(stretch, &used);
+}

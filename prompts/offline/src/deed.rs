@@ -1,0 +1,266 @@
+//! From a deed to what the model knows: rules, relations, groups.
+
+use socrates_model::{Action, Gesture, HumanId, PlaceClass, Relation, Rule, Trigger};
+
+use crate::cast::{Cast, Person, ReadRule};
+use crate::lexicon::Act;
+
+/// What is known around a deed.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Around {
+    /// When, as far as the text says.
+    pub(crate) trigger: Option<Trigger>,
+    /// The trigger names no distance: the one that suits the deed is taken.
+    pub(crate) vague: bool,
+    pub(crate) distance_m: Option<f64>,
+    pub(crate) lasts_s: Option<f64>,
+    pub(crate) gesture: Option<Gesture>,
+    /// Another human who is followed.
+    pub(crate) object: Option<HumanId>,
+    pub(crate) place: Option<PlaceClass>,
+    /// `startled`, not only `looks`.
+    pub(crate) startled: bool,
+    /// The deed belongs to the one before it: `stops and gestures`.
+    pub(crate) goes_on: bool,
+    /// It comes after what was said before: `and then`.
+    pub(crate) then: bool,
+    pub(crate) quote: String,
+}
+
+/// The triggers and durations that are taken where the text gives none.
+fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
+    Some(match act {
+        Act::RunAway => (Action::RunAway, Trigger::RobotVisible(3.0), Some(6.0), true),
+        Act::GiveWay => (Action::GiveWay, Trigger::RobotVisible(3.5), Some(6.0), true),
+        // The blockade ends by itself, so that the robot can get on.
+        Act::Block => (Action::Block, Trigger::RobotVisible(4.0), Some(8.0), true),
+        Act::Look => (Action::LookAtRobot, Trigger::RobotVisible(4.0), Some(5.0), true),
+        Act::Approach => (Action::Approach, Trigger::RobotVisible(5.0), Some(8.0), true),
+        Act::Follow => (Action::FollowRobot, Trigger::RobotVisible(8.0), None, true),
+        Act::Stop => (Action::StandStill, Trigger::RobotVisible(3.0), Some(5.0), true),
+        Act::Toward
+        | Act::Overtake
+        | Act::Behind
+        | Act::Abreast
+        | Act::Ahead
+        | Act::Cross
+        | Act::ComeOut
+        | Act::Stay
+        | Act::Enter
+        | Act::Talk
+        | Act::WalkTogether
+        | Act::Stand
+        | Act::Ignore
+        | Act::Gesture
+        | Act::Lead
+        | Act::Pass
+        | Act::Walk => return None,
+    })
+}
+
+/// How an act sets somebody to the robot's way.
+fn relation(act: Act) -> Option<Relation> {
+    Some(match act {
+        Act::Toward => Relation::Frontal,
+        Act::Overtake | Act::Behind => Relation::Behind,
+        Act::Abreast => Relation::Abreast,
+        Act::Ahead => Relation::Ahead,
+        Act::Cross => Relation::Crossing,
+        Act::ComeOut => Relation::Leaving,
+        Act::Stay => Relation::Staying,
+        Act::Talk | Act::Stand => Relation::Static,
+        Act::RunAway
+        | Act::GiveWay
+        | Act::Block
+        | Act::Look
+        | Act::Approach
+        | Act::Follow
+        | Act::Enter
+        | Act::WalkTogether
+        | Act::Stop
+        | Act::Ignore
+        | Act::Gesture
+        | Act::Lead
+        | Act::Pass
+        | Act::Walk => return None,
+    })
+}
+
+/// Words for the reading line.
+fn words(act: Act, around: &Around) -> String {
+    let place = |class: Option<PlaceClass>, other: &str| {
+        class.map_or_else(|| other.to_owned(), |class| class.name().replace('_', " "))
+    };
+    match act {
+        Act::RunAway => "runs away".into(),
+        Act::GiveWay => "gives way".into(),
+        Act::Block => "blocks the robot".into(),
+        Act::Look if around.startled => "startled".into(),
+        Act::Look => "looks at the robot".into(),
+        Act::Approach => "comes up to the robot".into(),
+        Act::Toward => "comes towards the robot".into(),
+        Act::Overtake => "overtakes the robot".into(),
+        Act::Behind => "comes from behind".into(),
+        Act::Abreast => "walks beside the robot".into(),
+        Act::Ahead => "walks ahead of the robot".into(),
+        Act::Follow => around.object.map_or_else(|| "follows the robot".into(), |id| format!("follows {id}")),
+        Act::Cross => "crosses".into(),
+        Act::ComeOut if around.place == Some(PlaceClass::Elevator) => "leaves the elevator".into(),
+        Act::ComeOut => format!("comes out of the {}", place(around.place, "room")),
+        Act::Stay => "stays".into(),
+        Act::Talk => "talks".into(),
+        Act::WalkTogether => "walks in a group".into(),
+        Act::Stop => "stops".into(),
+        Act::Stand => "stands".into(),
+        Act::Ignore => "ignores the robot".into(),
+        Act::Gesture => around.gesture.map_or_else(String::new, |gesture| format!("gestures {gesture}")),
+        Act::Enter => format!("goes into the {}", place(around.place, "room")),
+        Act::Lead => "leads".into(),
+        Act::Pass | Act::Walk => "walks".into(),
+    }
+}
+
+/// Applies a deed to one human. Returns the index of the rule it made.
+pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> Option<usize> {
+    let doing = words(act, around);
+    if let Some(person) = cast.people.get_mut(who)
+        && !person.doings.contains(&doing)
+        && !doing.is_empty()
+    {
+        person.doings.push(doing);
+    }
+    if act == Act::Stay
+        && around.place.is_none()
+        && cast.people.get(who).is_some_and(|p| p.relation.is_none())
+        && !cast.people.iter().any(leaves)
+    {
+        // `stays` without anybody leaving is no more than standing.
+        relate(cast, who, Relation::Static, &around.quote);
+    } else if let Some(relation) = relation(act) {
+        relate(cast, who, relation, &around.quote);
+    }
+    let person = cast.people.get_mut(who)?;
+    if matches!(act, Act::ComeOut | Act::Stay) && around.place.is_some() {
+        person.start = around.place;
+    }
+    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::WalkTogether);
+    person.bound |= moves;
+    if act == Act::Gesture {
+        return gesture(person, around);
+    }
+    let (action, usual, lasts, latched) = manner(act)?;
+    if let (Some(gesture), Some(last)) = (around.gesture, person.rules.last_mut())
+        && around.goes_on
+        && last.rule.act == action
+    {
+        last.rule.gesture = Some(gesture);
+        return None;
+    }
+    let action = match (action, around.object) {
+        (Action::FollowRobot, Some(id)) => Action::FollowHuman(id),
+        (other, _) => other,
+    };
+    let when = match (&around.trigger, &usual) {
+        (Some(Trigger::RobotVisible(_)), Trigger::RobotVisible(_)) if around.vague => usual,
+        (Some(said), _) => said.clone(),
+        (None, _) if matches!(action, Action::FollowHuman(_)) => Trigger::Always,
+        (None, _) => with_distance(usual, around.distance_m),
+    };
+    let lasts = around.lasts_s.or(if around.startled { Some(8.0) } else { lasts });
+    let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
+    let stated = around.trigger.is_some() || around.distance_m.is_some();
+    let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;
+    let read = ReadRule { rule, quote: around.quote.clone(), stated, exact, then: around.then };
+    // `stops and looks` is one thing: who looks stands still already.
+    if act == Act::Look && around.goes_on && person.rules.last().is_some_and(|last| last.rule.act == Action::StandStill)
+    {
+        let kept = person.rules.pop().map(|last| last.rule.when);
+        let mut read = read;
+        if let Some(when) = kept.filter(|_| !stated) {
+            read.rule.when = when;
+        }
+        person.rules.push(read);
+    } else {
+        person.rules.push(read);
+    }
+    Some(person.rules.len() - 1)
+}
+
+fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
+    let gesture = around.gesture?;
+    if let Some(last) = person.rules.last_mut().filter(|last| around.goes_on && last.rule.gesture.is_none()) {
+        last.rule.gesture = Some(gesture);
+        return None;
+    }
+    // Whoever lets the robot go first stands still for it; whoever stops it walks on.
+    let (act, lasts) = match gesture {
+        Gesture::Proceed => (Action::StandStill, 6.0),
+        Gesture::None | Gesture::Wait | Gesture::Acknowledged | Gesture::ExcuseMe | Gesture::FollowMe => {
+            (Action::Navigate, 4.0)
+        }
+    };
+    let when = around.trigger.clone().unwrap_or_else(|| with_distance(Trigger::RobotVisible(5.0), around.distance_m));
+    let rule = Rule {
+        when: vec![when],
+        act,
+        gesture: Some(gesture),
+        for_s: Some(around.lasts_s.unwrap_or(lasts)),
+        latched: true,
+    };
+    person.rules.push(ReadRule {
+        rule,
+        quote: around.quote.clone(),
+        stated: around.trigger.is_some(),
+        exact: false,
+        then: around.then,
+    });
+    Some(person.rules.len() - 1)
+}
+
+/// The trigger at another distance.
+pub(crate) fn with_distance(trigger: Trigger, distance_m: Option<f64>) -> Trigger {
+    match (trigger, distance_m) {
+        (Trigger::RobotVisible(_), Some(m)) => Trigger::RobotVisible(m),
+        (Trigger::RobotNear(_), Some(m)) => Trigger::RobotNear(m),
+        (Trigger::RobotBlocking(_), Some(m)) => Trigger::RobotBlocking(m),
+        (other, _) => other,
+    }
+}
+
+/// The distance of a trigger that has one.
+pub(crate) const fn distance_m(trigger: &Trigger) -> Option<f64> {
+    if let Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) = trigger {
+        Some(*m)
+    } else {
+        None
+    }
+}
+
+fn leaves(person: &Person) -> bool {
+    person.relation.as_ref().is_some_and(|(relation, _)| *relation == Relation::Leaving)
+}
+
+/// Sets the relation; two that exclude each other are a contradiction, quoted.
+pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
+    let Some(person) = cast.people.get_mut(who) else { return };
+    let Some((old, first)) = person.relation.clone() else {
+        person.relation = Some((new, quote.to_owned()));
+        return;
+    };
+    let pair = |a: Relation, b: Relation| old == a && new == b || old == b && new == a;
+    let clash = pair(Relation::Leaving, Relation::Staying)
+        || pair(Relation::Frontal, Relation::Behind)
+        || pair(Relation::Ahead, Relation::Behind)
+        || pair(Relation::Frontal, Relation::Ahead);
+    if clash {
+        cast.problems.push(socrates_model::Fault::new(
+            socrates_model::FaultCode::PContra,
+            format!("human_{}", who + 1),
+            format!("`{first}` and `{quote}` cannot both hold for the same human; correct one of the two"),
+        ));
+    } else if matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
+        && !matches!(old, Relation::Leaving | Relation::Staying)
+    {
+        person.relation = Some((new, quote.to_owned()));
+    }
+}

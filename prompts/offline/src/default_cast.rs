@@ -1,0 +1,80 @@
+//! Humans by a card, where the request names none.
+
+use socrates_model::reading::ReadHuman;
+use socrates_model::{GroupId, HumanId, Location, Reading, Request};
+
+use crate::card::{Card, card, catalog};
+use crate::draw::Draw;
+use crate::story::Story;
+use crate::understand::Extra;
+
+/// Fills the reading with the people of its pattern, as few as the card allows.
+pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, location: &Location) -> Vec<Extra> {
+    let found = reading.pattern.as_deref().and_then(card);
+    let Some(card) = found.or_else(|| catalog().iter().find(|card| card.fits(location))) else { return Vec::new() };
+    reading.pattern = Some(card.id.clone());
+    reading.notes.push(format!("the text names no people; the pattern `{}` says who is there", card.id));
+    let (humans, extras) = people(card, request.expect.humans, &mut Draw::new(0, "reading"), request);
+    reading.humans = humans;
+    if story.cast.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
+        reading.notes.push("they form a group".to_owned());
+    }
+    extras
+}
+
+/// The people of a card: `total` of them if given, else a number drawn from the card's ranges.
+pub(crate) fn people(
+    card: &Card,
+    total: Option<u32>,
+    draw: &mut Draw,
+    request: &Request,
+) -> (Vec<ReadHuman>, Vec<Extra>) {
+    let context = crate::pattern::role_of(&request.social_context);
+    let mut counts: Vec<u32> = card
+        .roles
+        .iter()
+        .map(|role| {
+            let [least, most] = role.count;
+            let wide = usize::try_from(most.saturating_sub(least)).unwrap_or(0);
+            if total.is_some() { least } else { least + u32::try_from(draw.below(wide + 1)).unwrap_or(0) }
+        })
+        .collect();
+    if let Some(total) = total {
+        let others: u32 = counts.iter().skip(1).sum();
+        if let Some(first) = counts.first_mut() {
+            *first = total.saturating_sub(others).max(1);
+        }
+    }
+    let (mut humans, mut extras) = (Vec::new(), Vec::new());
+    for (role, count) in card.roles.iter().zip(counts) {
+        let group = role.group && count > 1;
+        for _ in 0..count {
+            if total.is_some_and(|total| humans.len() >= usize::try_from(total).unwrap_or(usize::MAX)) {
+                break;
+            }
+            let number = u32::try_from(humans.len() + 1).unwrap_or(u32::MAX);
+            let who = context.clone().or_else(|| draw.pick(&role.who).cloned()).unwrap_or_else(|| "person".to_owned());
+            let rules: Vec<_> = role.rules.iter().map(|rule| rule.drawn(draw)).collect();
+            extras.push(Extra {
+                speed_mps: role.speed.map(|range| draw.tenths(range)),
+                start: role.start,
+                stated: vec![false; rules.len()],
+            });
+            humans.push(ReadHuman {
+                id: HumanId::new(number),
+                role: who,
+                summary: role.name.clone(),
+                relation: Some(role.relation),
+                rules,
+                group: if group { Some(GroupId(1)) } else { None },
+            });
+        }
+    }
+    (humans, extras)
+}
+
+/// A pattern for a request without a rough scenario: one that the map can hold, drawn by the seed.
+pub(crate) fn unguided(location: &Location, draw: &mut Draw) -> Option<&'static Card> {
+    let fitting: Vec<&'static Card> = catalog().iter().filter(|card| card.fits(location)).collect();
+    draw.pick(&fitting).copied()
+}

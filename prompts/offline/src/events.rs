@@ -1,0 +1,291 @@
+//! The clauses of a proposal: every human and every fact gets one that must hold.
+
+use socrates_model::{
+    Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, Predicate,
+    Proposal, Reading, Relation, Rule, Trigger,
+};
+
+use crate::card::Card;
+use crate::deed::distance_m;
+use crate::place;
+use crate::prose::done;
+use crate::understand::Extra;
+
+/// A robot that does its part has met somebody once they were this near, m: the usual distance of passing in a corridor.
+const MEETS_M: f64 = 2.5;
+/// Largest difference of arrival where ways cross, s.
+const GAP_S: f64 = 4.0;
+
+#[derive(Default)]
+struct List(Vec<Clause>);
+
+impl List {
+    fn add(&mut self, role: ClauseRole, must: bool, source: &str, text: String, predicate: Predicate) {
+        let same = |other: &Clause| {
+            std::mem::discriminant(&other.predicate) == std::mem::discriminant(&predicate)
+                && other.predicate.human() == predicate.human()
+                && (predicate.human().is_some()
+                    && !matches!(predicate, Predicate::Gestures { .. } | Predicate::Reacts { .. })
+                    || other.predicate == predicate)
+        };
+        if let Some(known) = self.0.iter_mut().find(|other| other.role == role && same(other)) {
+            if known.source.is_empty() || known.source == source {
+                known.must |= must;
+                if known.source.is_empty() {
+                    source.clone_into(&mut known.source);
+                }
+                return;
+            }
+            // Two facts about the same thing each need a clause of their own.
+            if source.is_empty() {
+                known.must |= must;
+                return;
+            }
+        }
+        if role == ClauseRole::Outcome
+            && self.0.iter().any(|other| {
+                other.role == role && std::mem::discriminant(&other.predicate) == std::mem::discriminant(&predicate)
+            })
+        {
+            return;
+        }
+        let id = format!("c{}", self.0.len() + 1);
+        self.0.push(Clause { id, text, role, must, source: source.to_owned(), predicate });
+    }
+
+    fn setup(&mut self, must: bool, source: &str, text: impl Into<String>, predicate: Predicate) {
+        self.add(ClauseRole::Setup, must, source, text.into(), predicate);
+    }
+}
+
+/// Every clause of the proposal.
+pub(crate) fn events(
+    proposal: &Proposal,
+    reading: &Reading,
+    card: Option<&Card>,
+    extras: &[Extra],
+    location: &Location,
+) -> Vec<Clause> {
+    let mut list = List::default();
+    let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
+    let source = |wanted: fn(&FactKind) -> bool| {
+        reading.facts.iter().find(|fact| wanted(&fact.kind)).map_or("", |fact| fact.id.as_str())
+    };
+    list.setup(
+        true,
+        source(|kind| matches!(kind, FactKind::Humans(_))),
+        format!("{count} humans are there all the time"),
+        Predicate::Humans { count },
+    );
+    list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
+    for fact in &reading.facts {
+        of_fact(&mut list, fact, proposal, extras);
+    }
+    for group in &proposal.groups {
+        of_group(&mut list, "", group.id, proposal);
+    }
+    for human in &proposal.humans {
+        for rule in &human.rules {
+            of_rule(&mut list, "", human, rule, false);
+        }
+        of_relation(&mut list, "", human);
+    }
+    if place::has(location, proposal.place) {
+        let text = format!("it happens at {}", place::an(proposal.place));
+        list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place });
+    }
+    if let Some(card) = card {
+        of_card(&mut list, card, proposal, location);
+    }
+    list.add(ClauseRole::Outcome, true, "", "the robot gets to its goal".to_owned(), Predicate::RobotArrives);
+    list.add(
+        ClauseRole::Outcome,
+        true,
+        "",
+        "the robot keeps 0.3 m from everybody".to_owned(),
+        Predicate::RobotKeeps { min_m: 0.3 },
+    );
+    list.0
+}
+
+fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) {
+    match &fact.kind {
+        FactKind::Group { group, .. } => of_group(list, &fact.id, *group, proposal),
+        FactKind::Reacts { human, rule } => {
+            let Some(who) = proposal.human(*human) else { return };
+            let index = who.rules.iter().position(|own| own == rule);
+            let extra = usize::try_from(human.number()).ok().and_then(|n| extras.get(n.checked_sub(1)?));
+            let stated = index.zip(extra).and_then(|(i, extra)| extra.stated.get(i)).copied().unwrap_or(false);
+            of_rule(list, &fact.id, who, rule, stated);
+        }
+        FactKind::Relates { human, .. } => {
+            if let Some(who) = proposal.human(*human) {
+                of_relation(list, &fact.id, who);
+            }
+        }
+        FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),
+        FactKind::RobotSays(gesture) => says(list, &fact.id, AgentId::Robot, *gesture),
+        FactKind::Place(class) => {
+            list.setup(
+                true,
+                &fact.id,
+                format!("it happens at {}", place::an(*class)),
+                Predicate::EncounterAt { place: *class },
+            );
+        }
+        FactKind::Humans(_)
+        | FactKind::RobotTask(_)
+        | FactKind::RobotStart(_)
+        | FactKind::RobotGoal(_)
+        | FactKind::Pattern(_) => {}
+    }
+}
+
+fn says(list: &mut List, source: &str, agent: AgentId, gesture: Gesture) {
+    list.setup(true, source, format!("{agent} gestures {gesture}"), Predicate::Gestures { agent, gesture });
+}
+
+fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, proposal: &Proposal) {
+    let Some(found) = proposal.groups.iter().find(|other| other.id == group) else { return };
+    if found.standing {
+        list.setup(true, source, format!("{group} stands in a circle"), Predicate::Formation { group, spread_m: 1.8 });
+    } else {
+        list.setup(true, source, format!("{group} walks together"), Predicate::WalksTogether { group, spread_m: 2.5 });
+    }
+}
+
+/// What must be seen where a rule has played its part.
+fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, stated: bool) {
+    let id = human.id;
+    let text = format!("{id} {}", done(&rule.act));
+    let lasts = |most: f64| rule.for_s.map_or(most, |secs| (secs * 0.6).min(most));
+    let seen = match &rule.act {
+        Action::FollowRobot => Some(follows(id, AgentId::Robot)),
+        Action::FollowHuman(leader) => Some(follows(id, (*leader).into())),
+        Action::RunAway => Some(Predicate::RunsAway { human: id, by_m: 1.0 }),
+        Action::GiveWay => Some(Predicate::GivesWay { human: id }),
+        Action::Block => Some(Predicate::Blocks { human: id, for_s: lasts(2.5) }),
+        Action::LookAtRobot => Some(Predicate::Looks { human: id, for_s: lasts(2.0) }),
+        Action::Approach => Some(Predicate::Meets { human: id, within_m: 2.0 }),
+        Action::StandStill => Some(Predicate::StandsStill { human: id, for_s: lasts(2.0) }),
+        Action::Navigate => None,
+    };
+    if let Some(gesture) = rule.gesture {
+        says(list, "", id.into(), gesture);
+    }
+    let plain = seen.is_none();
+    if let Some(predicate) = seen {
+        list.setup(true, source, text, predicate);
+    }
+    if stated || plain && rule.gesture.is_none() {
+        let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
+        let predicate = Predicate::Reacts { human: id, when: rule.when.clone(), act: rule.act.clone(), within_s: 3.0 };
+        // The deed itself is the must; its exact moment is judged beside it.
+        list.setup(plain, source, format!("{} {id} {}", when.join(" and "), done(&rule.act)), predicate);
+    }
+}
+
+fn follows(follower: HumanId, leader: AgentId) -> Predicate {
+    Predicate::Follows { follower: follower.into(), leader, gap_m: [0.5, 3.5], for_s: 5.0 }
+}
+
+/// What must be seen of how a human stands to the robot's way.
+fn of_relation(list: &mut List, source: &str, human: &HumanProposal) {
+    let id = human.id;
+    let said = !source.is_empty();
+    let does = |act: &Action| human.rules.iter().any(|rule| rule.act == *act);
+    let halts = does(&Action::StandStill)
+        || does(&Action::LookAtRobot)
+        || does(&Action::Block)
+        || human.rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait));
+    let meets = |list: &mut List, must: bool, within_m: f64| {
+        // Whoever reacts at a distance need not come nearer than that.
+        let early = human
+            .rules
+            .iter()
+            .filter(|rule| !matches!(rule.act, Action::FollowRobot | Action::Approach))
+            .flat_map(|rule| &rule.when);
+        let apart = halts || does(&Action::RunAway);
+        let reach = early.filter_map(distance_m).filter(|_| apart).fold(within_m, |most, m| most.max(m + 0.5));
+        list.setup(
+            must,
+            "",
+            format!("{id} and the robot come within {reach} m of each other"),
+            Predicate::Meets { human: id, within_m: reach },
+        );
+    };
+    match human.relation {
+        Relation::Frontal => {
+            meets(list, true, MEETS_M);
+            list.setup(said, source, format!("{id} comes towards the robot"), Predicate::HeadOn { human: id });
+        }
+        Relation::Crossing => {
+            meets(list, true, 3.0);
+            let gap_s = if halts { 10.0 } else { GAP_S };
+            list.setup(
+                said && !halts,
+                source,
+                format!("{id} crosses the robot's way"),
+                Predicate::Crosses { human: id, gap_s },
+            );
+        }
+        Relation::Behind => {
+            let follows = does(&Action::FollowRobot);
+            meets(list, !follows, 3.5);
+            if !follows && !human.rules.iter().any(|rule| rule.act == Action::RunAway) {
+                list.setup(said, source, format!("{id} overtakes the robot"), Predicate::Overtakes { human: id });
+            }
+        }
+        Relation::Ahead => list.setup(
+            true,
+            source,
+            format!("{id} walks ahead of the robot"),
+            Predicate::Ahead { human: id, within_m: 6.0, for_s: 2.0 },
+        ),
+        Relation::Static => {
+            list.setup(true, source, format!("{id} stands"), Predicate::StandsStill { human: id, for_s: 3.0 });
+            meets(list, human.group.is_none(), 3.5);
+        }
+        Relation::Leaving => {
+            list.setup(true, source, format!("{id} comes out"), Predicate::Leaves { human: id, door: String::new() });
+            meets(list, false, 3.5);
+        }
+        Relation::Staying => list.setup(
+            true,
+            source,
+            format!("{id} stays inside"),
+            Predicate::StaysInside { human: id, door: String::new() },
+        ),
+        Relation::Abreast => list.setup(
+            true,
+            source,
+            format!("{id} walks beside the robot"),
+            Predicate::Abreast { human: id, for_s: 3.0 },
+        ),
+    }
+}
+
+fn of_card(list: &mut List, card: &Card, proposal: &Proposal, location: &Location) {
+    let group = proposal.groups.first().map(|group| group.id);
+    for clause in &card.clauses {
+        let relation = clause
+            .each
+            .as_ref()
+            .and_then(|name| card.roles.iter().find(|role| role.name == *name))
+            .map(|role| role.relation);
+        let who: Vec<Option<HumanId>> = match relation {
+            Some(relation) => {
+                proposal.humans.iter().filter(|human| human.relation == relation).map(|human| Some(human.id)).collect()
+            }
+            None => vec![None],
+        };
+        for human in who {
+            let Some((text, predicate)) = clause.filled(human, group) else { continue };
+            // Without doors in the map nothing opens.
+            if matches!(predicate, Predicate::DoorOpens { .. }) && location.doors.is_empty() {
+                continue;
+            }
+            list.add(clause.role, clause.must, "", text, predicate);
+        }
+    }
+}

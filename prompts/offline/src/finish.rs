@@ -1,0 +1,156 @@
+//! What the text leaves open, once all of it is read.
+
+use socrates_model::{Action, Fault, FaultCode, Gesture, PlaceClass, Relation, Trigger};
+
+use crate::cast::Person;
+use crate::deed;
+use crate::story::Story;
+
+/// A standing group is judged until the robot is within 3 m; its members react a little later.
+const CIRCLE_M: f64 = 2.8;
+
+impl Story {
+    /// Fills relations that follow from the deeds, and finds wishes that exclude each other.
+    pub(crate) fn finish(&mut self) {
+        let elevator = self.place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::Elevator);
+        let leaving = self.cast.people.iter().any(|p| is(p, Relation::Leaving));
+        for who in 0..self.cast.people.len() {
+            let Some(person) = self.cast.people.get(who) else { continue };
+            if elevator && leaving && (person.relation.is_none() || is(person, Relation::Static)) {
+                let quote = self.place.as_ref().map(|(_, quote)| quote.clone()).unwrap_or_default();
+                if person.doings.is_empty() {
+                    self.cast.notes.push(format!("nothing is said of human_{}; it stays in the elevator", who + 1));
+                }
+                deed::relate(&mut self.cast, who, Relation::Staying, &quote);
+                if let Some(person) = self.cast.people.get_mut(who) {
+                    person.start = Some(PlaceClass::Elevator);
+                }
+            } else if elevator
+                && is(person, Relation::Leaving)
+                && let Some(person) = self.cast.people.get_mut(who)
+            {
+                person.start = Some(PlaceClass::Elevator);
+            }
+        }
+        self.standing();
+        self.clashes();
+        self.dubious();
+    }
+
+    /// The relation of a human: as said, or as its deeds and its group suggest.
+    pub(crate) fn relation_of(&self, who: usize) -> Option<Relation> {
+        let person = self.cast.people.get(who)?;
+        if let Some((relation, _)) = &person.relation {
+            // Somebody of a group that one member turns to follow cannot stand while the others walk.
+            return Some(*relation);
+        }
+        if let Some((_, members, _)) =
+            person.group.and_then(|id| self.cast.groups.iter().find(|(group, _, _)| *group == id))
+        {
+            let others: Vec<&Person> = members.iter().filter_map(|i| self.cast.people.get(*i)).collect();
+            if let Some((relation, _)) = others.iter().find_map(|p| p.relation.as_ref()) {
+                return Some(*relation);
+            }
+            if others.iter().any(|p| does(p, &Action::FollowRobot)) {
+                return Some(Relation::Behind);
+            }
+            let walks =
+                others.iter().any(|p| p.doings.iter().any(|doing| doing.starts_with("walks")) || !p.rules.is_empty());
+            return Some(if walks { Relation::Frontal } else { Relation::Static });
+        }
+        if does(person, &Action::FollowRobot) {
+            return Some(Relation::Behind);
+        }
+        if let Some(Action::FollowHuman(leader)) =
+            person.rules.iter().map(|read| &read.rule.act).find(|act| matches!(act, Action::FollowHuman(_)))
+        {
+            let leader = usize::try_from(leader.number()).unwrap_or(0);
+            return leader
+                .checked_sub(1)
+                .filter(|leader| *leader < who)
+                .and_then(|leader| self.relation_of(leader))
+                .or(Some(Relation::Frontal));
+        }
+        if person.rules.iter().any(|read| matches!(read.rule.gesture, Some(Gesture::Wait | Gesture::Proceed))) {
+            return Some(Relation::Crossing);
+        }
+        match self.place.as_ref().map(|(class, _)| *class) {
+            Some(PlaceClass::Intersection) => Some(Relation::Crossing),
+            Some(_) | None => Some(Relation::Frontal),
+        }
+    }
+
+    /// A circle holds until the robot is near: reactions of its members at no stated distance wait for that.
+    fn standing(&mut self) {
+        for who in 0..self.cast.people.len() {
+            if self.relation_of(who) != Some(Relation::Static) {
+                continue;
+            }
+            let Some(person) = self.cast.people.get_mut(who).filter(|person| person.group.is_some()) else { continue };
+            for read in person.rules.iter_mut().filter(|read| !read.exact) {
+                for trigger in &mut read.rule.when {
+                    if let Trigger::RobotVisible(m) | Trigger::RobotNear(m) = trigger {
+                        *m = m.min(CIRCLE_M);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Deeds of one human that exclude each other under the same trigger.
+    fn clashes(&mut self) {
+        for (who, person) in self.cast.people.iter().enumerate() {
+            for (i, first) in person.rules.iter().enumerate() {
+                for second in person.rules.iter().skip(i + 1) {
+                    let nears = |act: &Action| matches!(act, Action::FollowRobot | Action::Approach | Action::Block);
+                    let yields = |act: &Action| matches!(act, Action::RunAway | Action::GiveWay);
+                    let (a, b) = (&first.rule.act, &second.rule.act);
+                    let opposed = nears(a) && yields(b) || nears(b) && yields(a);
+                    let same = first.rule.when == second.rule.when || !first.stated && !second.stated;
+                    if opposed && same && !second.then {
+                        self.problems.push(Fault::new(
+                            FaultCode::PContra,
+                            format!("human_{}", who + 1),
+                            format!("`{}` and `{}` cannot both hold for the same human at the same time; say when each, or correct one", first.quote, second.quote),
+                        ));
+                    }
+                }
+            }
+        }
+        let mut found = std::mem::take(&mut self.cast.problems);
+        self.problems.append(&mut found);
+    }
+
+    /// Notes about assumptions that a reader might not expect.
+    fn dubious(&mut self) {
+        for (id, members, quote) in &self.cast.groups {
+            if members.len() > 8 {
+                self.problems.push(Fault::new(
+                    FaultCode::PLimit,
+                    id,
+                    format!("`{quote}` makes a group of {}; a group has 2 to 8 members", members.len()),
+                ));
+            }
+        }
+        if let Some(quote) = self.cast.nobody.clone()
+            && self.cast.people.is_empty()
+        {
+            self.problems.push(Fault::new(
+                FaultCode::PLimit,
+                "rough_scenario",
+                format!(
+                    "`{quote}` asks for 0 humans; a social scenario needs 1 to {}",
+                    socrates_model::request::MAX_HUMANS
+                ),
+            ));
+        }
+    }
+}
+
+fn is(person: &Person, relation: Relation) -> bool {
+    person.relation.as_ref().is_some_and(|(own, _)| *own == relation)
+}
+
+fn does(person: &Person, act: &Action) -> bool {
+    person.rules.iter().any(|read| read.rule.act == *act)
+}

@@ -1,0 +1,303 @@
+//! Ways of humans, by how they stand to the robot's way.
+
+use socrates_model::{HumanProposal, Location, PlaceClass, Relation};
+
+use crate::place;
+use crate::routes::{Net, Route};
+
+/// Speed of the robot that timings are planned with, m/s.
+const ROBOT_MPS: f64 = 0.8;
+/// Desired speed of a human without one of its own, m/s.
+const HUMAN_MPS: f64 = 1.2;
+/// People start at least so far from each other and the robot unless they belong together, m.
+const APART_M: f64 = 0.8;
+/// Somebody goes on at least so far after the meeting, m.
+const ONWARD_M: f64 = 4.0;
+
+/// One human's way and where it meets the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Way {
+    pub(crate) nodes: Vec<usize>,
+    /// The meeting node.
+    pub(crate) meet: usize,
+    /// How well it fits; 0 is best.
+    pub(crate) cost: f64,
+}
+
+/// What is already taken.
+pub(crate) struct Taken<'a> {
+    pub(crate) net: &'a Net<'a>,
+    pub(crate) starts: Vec<usize>,
+    /// There is no room for everybody to start apart: the checks will say so.
+    pub(crate) crowded: bool,
+}
+
+impl Taken<'_> {
+    fn free(&self, node: usize) -> bool {
+        self.crowded || self.starts.iter().all(|other| (self.net.at(*other) - self.net.at(node)).norm() >= APART_M)
+    }
+}
+
+/// The way of a human, if the robot's way has room for it.
+pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+    match human.relation {
+        Relation::Frontal => frontal(human, route, taken),
+        Relation::Crossing => crossing(human, route, taken),
+        Relation::Behind => behind(route, taken, along),
+        Relation::Ahead | Relation::Abreast => ahead(human, route, taken),
+        Relation::Static => standing(route, taken),
+        Relation::Leaving => leaving(human, route, taken),
+        Relation::Staying => staying(human, route, taken),
+    }
+}
+
+fn before_m(net: &Net<'_>, route: &Route) -> f64 {
+    net.length_m(route.nodes.get(..=route.meet).unwrap_or_default())
+}
+
+/// How far a human walks until the robot is at the meeting node, m.
+fn ideal_m(human: &HumanProposal, net: &Net<'_>, route: &Route) -> f64 {
+    before_m(net, route) / ROBOT_MPS * human.speed_mps.unwrap_or(HUMAN_MPS)
+}
+
+/// Towards the robot: its own way the other way round, from beyond the meeting node.
+fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let meet = *route.nodes.get(route.meet)?;
+    let mut back: Vec<usize> = route.nodes.get(..route.meet)?.iter().rev().copied().collect();
+    let long = (1..=back.len())
+        .find(|n| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M)
+        .unwrap_or(back.len());
+    back.truncate(long);
+    let ideal = ideal_m(human, net, route);
+    // Where the robot goes on to, and the nodes beyond its goal.
+    let after = route.nodes.get(route.meet + 1..)?;
+    let last = *after.last()?;
+    let tree = net.tree(last, &|node| route.nodes.contains(&node) && node != last || net.inside(node));
+    let mut starts: Vec<Vec<usize>> = (1..=after.len()).filter_map(|n| after.get(..n)).map(<[usize]>::to_vec).collect();
+    for beyond in (0..net.len()).filter(|node| tree.length_m(*node) > 0.0 && tree.length_m(*node) <= 10.0) {
+        let mut ahead = after.to_vec();
+        ahead.extend(tree.way(beyond).into_iter().skip(1));
+        starts.push(ahead);
+    }
+    let best = starts
+        .into_iter()
+        .filter(|ahead| ahead.last().is_some_and(|start| taken.free(*start)))
+        .map(|ahead| {
+            let length = onward_m(net, meet, &ahead);
+            let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
+            ((length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside, ahead)
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))?;
+    let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
+    nodes.push(meet);
+    nodes.extend(back);
+    Some(Way { nodes, meet, cost: best.0 * 0.2 })
+}
+
+fn onward_m(net: &Net<'_>, from: usize, nodes: &[usize]) -> f64 {
+    let mut all = vec![from];
+    all.extend(nodes);
+    net.length_m(&all)
+}
+
+/// Across: in by one way that the robot does not use, out by another.
+fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let meet = *route.nodes.get(route.meet)?;
+    let used =
+        [route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).copied(), route.nodes.get(route.meet + 1).copied()];
+    let free: Vec<usize> = net
+        .near(meet)
+        .iter()
+        .map(|(node, _)| *node)
+        .filter(|node| !used.contains(&Some(*node)) && !route.nodes.contains(node))
+        .collect();
+    let ideal = ideal_m(human, net, route);
+    let into = used.first().copied().flatten()?;
+    let mut best: Option<Way> = None;
+    for entry in &free {
+        let tree = net.tree(*entry, &|node| route.nodes.contains(&node));
+        let step = onward_m(net, meet, &[*entry]);
+        // Out by a free way if there is one, else along the robot's own; where it came from before where it goes to.
+        let exits: Vec<usize> =
+            free.iter().copied().filter(|exit| exit != entry).chain(used.iter().copied().flatten()).collect();
+        for start in (0..net.len()).filter(|start| tree.length_m(*start).is_finite() && taken.free(*start)) {
+            let length = tree.length_m(start) + step;
+            for exit in &exits {
+                let way = tree.way(start);
+                if way.contains(exit) {
+                    continue;
+                }
+                let side = net.straight(into, meet, *entry).abs();
+                let turn = net.straight(*entry, meet, *exit);
+                let own = if used.contains(&Some(*exit)) { 1.5 } else { 0.0 };
+                let inside = way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0
+                    + if net.inside(*exit) { 3.0 } else { 0.0 };
+                let cost = 0.2 * (length - ideal).abs() + if length < 3.0 { 10.0 } else { 0.0 } + 2.0 * side
+                    - 0.5 * turn
+                    + own
+                    + inside;
+                if best.as_ref().is_none_or(|best| cost < best.cost - 1e-9) {
+                    let mut nodes: Vec<usize> = way.into_iter().rev().collect();
+                    nodes.push(meet);
+                    nodes.push(*exit);
+                    extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && node != *exit);
+                    best = Some(Way { nodes, meet, cost });
+                }
+            }
+        }
+    }
+    best
+}
+
+/// Lengthens a way, as straight as it goes, until it leads far enough from the meeting node.
+fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(usize) -> bool) {
+    while let Some(from) = nodes.iter().position(|node| *node == meet) {
+        if net.length_m(nodes.get(from..).unwrap_or_default()) >= ONWARD_M {
+            return;
+        }
+        let (Some(last), Some(previous)) =
+            (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
+        else {
+            return;
+        };
+        let next = net
+            .near(last)
+            .iter()
+            .map(|(node, _)| *node)
+            .filter(|node| !nodes.contains(node) && !barred(*node) && !net.inside(*node));
+        let Some(next) =
+            next.max_by(|a, b| net.straight(previous, last, *a).total_cmp(&net.straight(previous, last, *b)))
+        else {
+            return;
+        };
+        nodes.push(next);
+    }
+}
+
+/// Behind: the robot's way, from its start or from before it.
+fn behind(route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+    let net = taken.net;
+    let start = *route.nodes.first()?;
+    let second = *route.nodes.get(1)?;
+    // A node before the robot's start lets it be behind from the first moment on.
+    let before = net
+        .near(start)
+        .iter()
+        .filter(|(node, length)| !route.nodes.contains(node) && *length >= 1.5 && !net.inside(*node))
+        .map(|(node, _)| *node)
+        .max_by(|a, b| net.straight(*a, start, second).total_cmp(&net.straight(*b, start, second)));
+    let mut nodes: Vec<usize> = before.into_iter().collect();
+    nodes.extend(&route.nodes);
+    // Somebody who only walks along is met on the way, before others are.
+    let meet = if along && route.meet > 1 { route.meet - 1 } else { route.meet };
+    let cost = if before.is_some() { 0.0 } else { 1.0 };
+    Some(Way { nodes, meet: *route.nodes.get(meet)?, cost })
+}
+
+/// Ahead: the robot's way from a node further on, so that the robot comes up at the meeting node.
+fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let reach = before_m(net, route);
+    let lead = (reach * (1.0 - human.speed_mps.unwrap_or(0.5).min(0.75) / ROBOT_MPS)).max(2.0);
+    let wanted = if human.relation == Relation::Abreast { 1.5 } else { lead };
+    let start =
+        (1..=route.meet).filter(|i| route.nodes.get(*i).is_some_and(|node| taken.free(*node))).min_by(|a, b| {
+            let off = |i: usize| (net.length_m(route.nodes.get(..=i).unwrap_or_default()) - wanted).abs();
+            off(*a).total_cmp(&off(*b))
+        })?;
+    let nodes = route.nodes.get(start..)?.to_vec();
+    let cost = if start == route.meet { 4.0 } else { 0.0 };
+    Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
+}
+
+/// Standing: at the meeting node, or at the free node of the robot's way nearest to it.
+fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let last = route.nodes.len().checked_sub(1)?;
+    let mut places: Vec<usize> = (1..last).collect();
+    places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
+    let at = places.into_iter().filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
+    Some(Way { nodes: vec![at], meet: at, cost: 0.0 })
+}
+
+fn sources(human: &HumanProposal, location: &Location) -> Option<PlaceClass> {
+    human.start.filter(|class| !place::inside(location, Some(*class)).is_empty())
+}
+
+/// Out of a room or car, through its door, over the meeting node and on.
+fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let meet = *route.nodes.get(route.meet)?;
+    let car = sources(human, net.location) == Some(PlaceClass::Elevator);
+    let enters = route.nodes.last().is_some_and(|last| net.inside(*last));
+    let before: Vec<usize> = route.nodes.get(..route.meet)?.to_vec();
+    let beyond = route.nodes.get(route.meet + 1).copied();
+    // Out of the very room that the robot enters, or of any other near by that is not on its way.
+    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
+    let inside: Vec<usize> =
+        place::inside(net.location, sources(human, net.location)).iter().filter_map(|id| net.index(id)).collect();
+    let same = |node: usize| !enters || same_door(net, node, route.nodes.last().copied());
+    let start = inside
+        .into_iter()
+        .filter(|node| {
+            same(*node)
+                && tree.length_m(*node) >= 1.0
+                && tree.length_m(*node) <= if car { 8.0 } else { 12.0 }
+                && !(enters && !car && Some(*node) == route.nodes.last().copied())
+        })
+        .min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
+    let inward = tree.way(start);
+    let mut nodes: Vec<usize> = inward.iter().rev().copied().collect();
+    let entry = inward.get(1).copied()?;
+    // Away from the robot if there is a way, else past it.
+    let exits: Vec<usize> = net
+        .near(meet)
+        .iter()
+        .map(|(node, _)| *node)
+        .filter(|node| !nodes.contains(node) && !net.inside(*node))
+        .collect();
+    let from = route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).copied();
+    let rank = |node: &usize| {
+        let own = if Some(*node) == from {
+            2.0
+        } else if Some(*node) == beyond {
+            1.0
+        } else {
+            0.0
+        };
+        net.straight(entry, meet, *node) - own
+    };
+    let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
+    nodes.extend(exit);
+    extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
+    let length = tree.length_m(start);
+    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
+}
+
+fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
+    let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| door.id.as_str());
+    let Some(b) = b else { return false };
+    match (door(a), door(b)) {
+        (Some(one), Some(other)) => one == other,
+        (None, None) => a == b || net.near(a).iter().any(|(node, _)| *node == b),
+        (Some(_), None) | (None, Some(_)) => false,
+    }
+}
+
+/// Inside, as far from the door as it goes; met where the robot's way ends, or where it passes.
+fn staying(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let last = *route.nodes.last()?;
+    let meet = if net.inside(last) { last } else { *route.nodes.get(route.meet)? };
+    let tree = net.tree(*route.nodes.get(route.meet)?, &|_| false);
+    let inside = place::inside(net.location, sources(human, net.location));
+    let mut all: Vec<usize> = inside.iter().filter_map(|id| net.index(id)).collect();
+    if net.inside(last) {
+        all.retain(|node| same_door(net, *node, Some(last)));
+        let at = all.into_iter().max_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
+        return Some(Way { nodes: vec![at], meet, cost: 0.0 });
+    }
+    let at = all.into_iter().min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
+    Some(Way { nodes: vec![at], meet, cost: 0.2 * tree.length_m(at) })
+}

@@ -1,0 +1,387 @@
+//! Mentions: the stretches of a clause that speak of people.
+
+use crate::lexicon::{Lexicon, lexicon};
+use crate::words::Word;
+
+/// Whom a mention means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Who {
+    /// Somebody not spoken of before: `two nurses`, `a visitor`.
+    New {
+        /// How many; `None` for a bare plural.
+        count: Option<u32>,
+        /// By `a` or `an`, which never picks from those who are there.
+        article: bool,
+    },
+    /// `another`, `two more`.
+    More(u32),
+    /// `one of them`.
+    PartOf(u32),
+    /// `one`, `two` without a noun.
+    Bare(u32),
+    /// `the other`, `the rest`; `None` for all the others.
+    Other(Option<u32>),
+    /// `the first`, `the second`; 0 for `the last`.
+    Ordinal(u32),
+    /// `the nurse`, `the employees`.
+    Definite {
+        /// More than one.
+        plural: bool,
+        /// `the two nurses`.
+        count: Option<u32>,
+    },
+    /// `they`, `both`, `everyone`.
+    All,
+    /// `he`, `she`, `who`.
+    Same,
+    /// `human 2`.
+    Number(u32),
+    /// `nobody`, `no people`.
+    Nobody,
+}
+
+/// One mention.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Mention {
+    pub(crate) who: Who,
+    /// Role word, if it says more than `person`.
+    pub(crate) role: Option<String>,
+    /// `a group of four`.
+    pub(crate) group: bool,
+    /// First word.
+    pub(crate) from: usize,
+    /// Last word.
+    pub(crate) to: usize,
+}
+
+/// Nouns of `the other end` and `one side` that are no people.
+const THINGS: &[&str] = &[
+    "side",
+    "end",
+    "direction",
+    "way",
+    "hand",
+    "part",
+    "corner",
+    "door",
+    "floor",
+    "wall",
+    "room",
+    "time",
+    "moment",
+    "place",
+    "thing",
+];
+
+/// Whether a number or `other` before this word counts things.
+fn thing(words: &[Word], at: usize) -> bool {
+    words.get(at).is_some_and(|word| THINGS.contains(&word.text.as_str()) || lexicon().labels.contains(&word.text))
+}
+
+/// Every mention of people in the words, in order.
+pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
+    let lex = lexicon();
+    let mut found: Vec<Mention> = Vec::new();
+    let mut at = 0;
+    while at < words.len() {
+        if let Some(mention) = phrase_at(words, at, lex) {
+            at = mention.to + 1;
+            found.push(mention);
+        } else {
+            at += 1;
+        }
+    }
+    found
+}
+
+/// The noun for people that ends a noun phrase from `at` on, with at most three describing words before it.
+fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
+    let mut end = None;
+    for (i, word) in words.iter().enumerate().skip(at).take(4) {
+        if lex.roles.contains_key(&word.stem) {
+            end = Some(i);
+            break;
+        }
+        let describes = lex.adjectives.contains(&word.text)
+            || !lex.known.contains(&word.stem)
+                && !lex.stop.contains(&word.text)
+                && word.number().is_none()
+                && word.stem != "robot";
+        if !describes {
+            break;
+        }
+    }
+    // `warehouse employee` and `hospital staff member` end at the last noun.
+    let mut end = end?;
+    while words.get(end + 1).is_some_and(|word| lex.roles.contains_key(&word.stem)) {
+        end += 1;
+    }
+    if words.get(end + 1).is_some_and(|word| word.stem == "member") {
+        end += 1;
+    }
+    Some(end)
+}
+
+fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| words.get(k).map_or("", |word| word.stem.as_str());
+    let role = |k: usize| {
+        let name =
+            (0..=2).filter_map(|back| k.checked_sub(back)).map(&stem).find(|name| lex.roles.contains_key(*name))?;
+        lex.roles.get(name).filter(|word| !word.generic).map(|_| name.to_owned())
+    };
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let of_them = |k: usize| {
+        if stem(k) != "of" {
+            return None;
+        }
+        if matches!(text(k + 1), "them" | "these" | "those") {
+            return Some((k + 1, None));
+        }
+        let skip = if text(k + 1) == "the" { k + 2 } else { k + 1 };
+        noun(words, skip, lex).map(|end| (end, role(end)))
+    };
+    match text(at) {
+        "nobody" | "noone" => return made(Who::Nobody, None, at),
+        "no" => {
+            if text(at + 1) == "one" {
+                return made(Who::Nobody, None, at + 1);
+            }
+            return noun(words, at + 1, lex).and_then(|end| made(Who::Nobody, None, end));
+        }
+        "they" | "them" | "both" | "everyone" | "everybody" => {
+            let end = of_them(at + 1)
+                .map_or_else(|| noun(words, at + 1, lex).filter(|_| text(at) == "both").unwrap_or(at), |(end, _)| end);
+            return made(Who::All, None, end);
+        }
+        "all" | "each" => {
+            if let Some((end, _)) = of_them(at + 1) {
+                return made(Who::All, None, end);
+            }
+            let start = at + 1 + usize::from(matches!(text(at + 1), "the"));
+            let start = start + usize::from(words.get(start).is_some_and(|word| word.count().is_some()));
+            return match noun(words, start, lex) {
+                Some(end) => made(Who::All, None, end),
+                None if start > at + 1 => made(Who::All, None, start - 1),
+                None => None,
+            };
+        }
+        "he" | "she" => return made(Who::Same, None, at),
+        "someone" | "somebody" => return made(Who::New { count: Some(1), article: true }, None, at),
+        _ => {}
+    }
+    if let Some(mention) = others(words, at, lex, &role) {
+        return Some(mention);
+    }
+    if lex.roles.contains_key(stem(at))
+        && !text(at).ends_with("ple")
+        && let Some(number) = words.get(at + 1).filter(|word| word.is_digits()).and_then(Word::count)
+    {
+        // `human 2`, `person_1`; a number with a noun of its own belongs to that one.
+        if noun(words, at + 2, lex).is_none() {
+            return made(Who::Number(number), role(at), at + 1);
+        }
+    }
+    counted(words, at, lex, &role, &of_them)
+}
+
+/// `another …`, `the other …`, `the rest`, `the first …`.
+fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let the = usize::from(matches!(text(at), "the" | "each"));
+    let count = |k: usize| words.get(k).and_then(Word::count);
+    match text(at + the) {
+        "another" => {
+            let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
+            let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
+            let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;
+            made(Who::More(several.unwrap_or(1)), role(end), end)
+        }
+        "others" | "rest" | "remaining" => {
+            let several = count(at + the + 1);
+            let mut end = noun(words, at + the + 1 + usize::from(several.is_some()), lex)
+                .unwrap_or_else(|| at + the + usize::from(several.is_some()));
+            if text(end + 1) == "of" && matches!(text(end + 2), "them") {
+                end += 2;
+            }
+            let single = text(at + the) == "remaining" && !words.get(end).is_some_and(plural);
+            made(Who::Other(several.or(if single { Some(1) } else { None })), None, end)
+        }
+        "other" => {
+            let several = count(at + the + 1);
+            let start = at + the + 1 + usize::from(several.is_some());
+            match noun(words, start, lex) {
+                Some(end) if several.is_none() && words.get(end).is_some_and(plural) => {
+                    made(Who::Other(None), role(end), end)
+                }
+                Some(end) => made(Who::Other(Some(several.unwrap_or(1))), role(end), end),
+                None if thing(words, start) => None,
+                None => made(Who::Other(Some(several.unwrap_or(1))), None, start - 1),
+            }
+        }
+        word if the == 1 || lex.ordinals.contains_key(word) => {
+            let number = lex.ordinals.get(word).copied().or_else(|| if word == "last" { Some(0) } else { None })?;
+            let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
+            let end = noun(words, start, lex).unwrap_or(start - 1);
+            let bare = end == at + the && (the == 0 || thing(words, start));
+            if bare { None } else { made(Who::Ordinal(number), role(end), end) }
+        }
+        _ => None,
+    }
+}
+
+/// Counts and articles: `two nurses`, `a group of 4 employees`, `one of them`, `the nurse`, `people`.
+fn counted(
+    words: &[Word],
+    at: usize,
+    lex: &Lexicon,
+    role: &dyn Fn(usize) -> Option<String>,
+    of_them: &dyn Fn(usize) -> Option<(usize, Option<String>)>,
+) -> Option<Mention> {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
+    let made =
+        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, from: at, to });
+    let article = matches!(text(at), "a" | "an");
+    let the = matches!(text(at), "the" | "these" | "those" | "this");
+    let mut next = at + usize::from(article || the);
+    let mut count = words.get(next).and_then(Word::count);
+    if text(next) == "half" && text(next + 1) == "a" && text(next + 2) == "dozen" {
+        (count, next) = (Some(6), next + 2);
+    } else if matches!(text(next), "large" | "small" | "whole")
+        && words.get(next + 1).is_some_and(|word| word.count().is_some() || word.stem == "group")
+    {
+        next += 1;
+        count = words.get(next).and_then(Word::count);
+    }
+    if count.is_some() {
+        next += 1;
+    }
+    if words
+        .get(next)
+        .is_some_and(|word| matches!(word.stem.as_str(), "group" | "circle" | "cluster" | "bunch" | "team" | "pair"))
+    {
+        return group(words, at, next, count, the, lex, role);
+    }
+    let more = matches!(text(next), "more" | "additional" | "further");
+    next += usize::from(more);
+    let linked = count.is_some() && text(next) == "of";
+    if linked && let Some((end, role)) = of_them(next) {
+        let listed =
+            matches!(text(next - 1), "couple" | "pair" | "crowd" | "dozen" | "handful" | "trio" | "group" | "bunch")
+                && text(next + 1) != "the"
+                && text(next + 1) != "them";
+        let who = if listed { Who::New { count, article: true } } else { Who::PartOf(count.unwrap_or(1)) };
+        return made(who, role, false, end);
+    }
+    if let Some(end) = noun(words, next, lex) {
+        let many = words.get(end).is_some_and(plural);
+        let who = match (the, count, more) {
+            (_, Some(n), true) => Who::More(n),
+            (true, count, _) => Who::Definite { plural: many, count },
+            (false, Some(n), false) => Who::New { count: Some(n), article: false },
+            (false, None, _) if article => Who::New { count: Some(1), article: true },
+            (false, None, _) => Who::New { count: if many { None } else { Some(1) }, article: true },
+        };
+        return made(who, role(end), false, end);
+    }
+    // A number alone speaks of people only where it can stand for them: `2 leave`, `one stays`, `two more`.
+    let n = count?;
+    let label =
+        lex.labels.contains(before) || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot");
+    let unit = words.get(next).is_some_and(|word| {
+        matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "pm" | "am")
+    });
+    let counts = thing(words, next);
+    let verb = words.get(next).is_none_or(|word| lex.known.contains(&word.stem) && !lex.labels.contains(&word.stem));
+    if label || unit || counts || !verb || article || text(at).contains('.') || n == 0 {
+        return None;
+    }
+    let who = if more {
+        Who::More(n)
+    } else if the {
+        Who::Definite { plural: n > 1, count: Some(n) }
+    } else {
+        Who::Bare(n)
+    };
+    made(who, None, false, next - 1)
+}
+
+fn group(
+    words: &[Word],
+    at: usize,
+    group: usize,
+    count: Option<u32>,
+    the: bool,
+    lex: &Lexicon,
+    role: &dyn Fn(usize) -> Option<String>,
+) -> Option<Mention> {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    // `in a group` says how people stand; it is not a mention of its own.
+    let lead = (1..=3)
+        .filter_map(|back| group.checked_sub(back))
+        .map(&text)
+        .find(|word| !matches!(*word, "a" | "the" | "one" | "same" | "small" | "large"));
+    let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming"))
+        && text(group + 1) != "of";
+    if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
+        return None;
+    }
+    let listed = text(group + 1) == "of";
+    let inner = if listed { words.get(group + 2).and_then(Word::count) } else { None };
+    let start = group + 1 + usize::from(listed) + usize::from(inner.is_some());
+    let noun = if listed { noun(words, start, lex) } else { None };
+    let end = noun.unwrap_or(start - 1);
+    let role = noun.and_then(role);
+    let pair = if words.get(group).is_some_and(|word| word.stem == "pair") { Some(2) } else { None };
+    let who = if the && inner.is_none() {
+        Who::Definite { plural: true, count: None }
+    } else {
+        Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
+    };
+    Some(Mention { who, role, group: pair.is_none(), from: at, to: end })
+}
+
+/// Whether a noun is in the plural.
+fn plural(word: &Word) -> bool {
+    matches!(word.text.as_str(), "people" | "men" | "women" | "children" | "staff")
+        || word.text != word.stem && word.text.ends_with('s')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::sentences;
+
+    fn who(text: &str) -> Vec<Who> {
+        mentions(&sentences(text)[0][0].words).into_iter().map(|mention| mention.who).collect()
+    }
+
+    #[test]
+    fn counts_are_read_from_nouns_for_people_only() {
+        assert_eq!(who("two busy employees walk"), [Who::New { count: Some(2), article: false }]);
+        assert_eq!(
+            who("a few people"),
+            [Who::New { count: Some(3), article: false }].map(|_| Who::New { count: Some(3), article: false })
+        );
+        assert_eq!(who("a group of 4 employees talking"), [Who::New { count: Some(4), article: true }]);
+        assert_eq!(who("the robot drives to room 214"), []);
+        assert_eq!(who("the robot passes rack 7"), []);
+        assert_eq!(who("during the night shift of 12"), []);
+        assert_eq!(who("within 3 m of the robot"), []);
+    }
+
+    #[test]
+    fn references_are_told_from_new_people() {
+        assert_eq!(who("2 leave the elevator"), [Who::Bare(2)]);
+        assert_eq!(who("one of them stays"), [Who::PartOf(1)]);
+        assert_eq!(who("other one follows the robot"), [Who::Other(Some(1))]);
+        assert_eq!(who("the others wait"), [Who::Other(None)]);
+        assert_eq!(who("the second person stops"), [Who::Ordinal(2)]);
+        assert_eq!(who("human 2 stops"), [Who::Number(2)]);
+        assert_eq!(who("another nurse waits"), [Who::More(1)]);
+        assert_eq!(who("no people are there"), [Who::Nobody]);
+        assert_eq!(who("both stop"), [Who::All]);
+    }
+}

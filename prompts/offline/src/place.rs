@@ -1,0 +1,52 @@
+//! What places the map has.
+
+use socrates_model::{Location, NodeId, PlaceClass};
+
+/// Whether the map has a place of the class; everything is plain.
+pub(crate) fn has(location: &Location, class: PlaceClass) -> bool {
+    class == PlaceClass::Plain || location.graph.nodes.iter().any(|node| location.graph.node_is(&node.id, class))
+}
+
+/// The classes that the map has, in words, for messages.
+pub(crate) fn listed(location: &Location) -> String {
+    let there: Vec<String> = PlaceClass::ALL
+        .iter()
+        .filter(|class| **class != PlaceClass::Plain && has(location, **class))
+        .map(|class| words(*class))
+        .collect();
+    there.join(", ")
+}
+
+/// The class as prose says it.
+pub(crate) fn words(class: PlaceClass) -> String {
+    if class == PlaceClass::Plain { "passage".to_owned() } else { class.name().replace('_', " ") }
+}
+
+/// The class with its article.
+pub(crate) fn an(class: PlaceClass) -> String {
+    let name = words(class);
+    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {name}")
+}
+
+/// Whether the node is in a room or an elevator: behind a door, or by its type.
+pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
+    location.door_of(node).is_some()
+        || location
+            .graph
+            .node(node)
+            .is_some_and(|node| matches!(PlaceClass::of_type(&node.kind), PlaceClass::Elevator | PlaceClass::Room))
+}
+
+/// Whether the node is in an elevator.
+pub(crate) fn is_car(location: &Location, node: &NodeId) -> bool {
+    let by_door = location.door_of(node).is_some_and(|door| door.kind == socrates_model::DoorKind::Elevator);
+    by_door || location.graph.node(node).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Elevator)
+}
+
+/// Nodes inside rooms or cars: of cars where an elevator is wanted, of rooms otherwise.
+pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<NodeId> {
+    let car = class == Some(PlaceClass::Elevator);
+    let ids = location.graph.nodes.iter().map(|node| &node.id);
+    ids.filter(|id| is_inside(location, id) && is_car(location, id) == car).cloned().collect()
+}

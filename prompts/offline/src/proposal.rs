@@ -1,0 +1,243 @@
+//! The proposal: the reading, or a card, in detail.
+
+use socrates_model::reading::ReadHuman;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{
+    Action, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass, Proposal,
+    Reading, Relation, Request, RobotProposal, Trigger,
+};
+use socrates_prompts::Question;
+
+use crate::card::{Card, card};
+use crate::draw::Draw;
+use crate::understand::{Extra, understand};
+use crate::{NAME, default_cast, events, pattern, place, prose};
+
+/// The pattern of a story that fits no card.
+const FREE: &str = "free";
+
+/// Answers a proposal question.
+pub(crate) fn propose(question: &Question) -> Proposal {
+    let (request, reading, location) = (&question.request, &question.reading, &question.location);
+    let mut draw =
+        Draw::new(question.seed.wrapping_add(u64::try_from(question.feedback.len()).unwrap_or(0)), "proposal");
+    let mut found = reading.pattern.as_deref().and_then(card);
+    let (read, extras) = if reading.humans.is_empty() {
+        found = found.filter(|card| card.fits(location)).or_else(|| default_cast::unguided(location, &mut draw));
+        found.map(|card| default_cast::people(card, request.expect.humans, &mut draw, request)).unwrap_or_default()
+    } else {
+        let extras = understand(request, location).extras;
+        let extras =
+            if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };
+        (reading.humans.clone(), extras)
+    };
+    let place = where_at(reading, found, &read, location, &mut draw);
+    let humans: Vec<HumanProposal> = read
+        .iter()
+        .zip(&extras)
+        .map(|(human, extra)| proposed(human, extra, place, request, location, &mut draw))
+        .collect();
+    let groups = groups(&humans);
+    let robot = robot(reading, request, found, &humans, location);
+    let (title, about, id) = found.map_or_else(
+        || ("A free scenario".to_owned(), "People and the robot meet.".to_owned(), FREE.to_owned()),
+        |card| (card.title.clone(), card.about.clone(), card.id.clone()),
+    );
+    let description = prose::description(&about, &location.name, place, &humans);
+    let mut notes = reading.notes.clone();
+    notes.extend(reading.problems.iter().map(|fault| format!("{}: {}", fault.code, fault.message)));
+    let mut proposal = Proposal {
+        format: FORMAT,
+        title,
+        description,
+        pattern: id,
+        place,
+        humans,
+        groups,
+        robot,
+        expected_events: Vec::new(),
+        not_understood: reading.ignored.clone(),
+        notes,
+        author: NAME.to_owned(),
+    };
+    proposal.expected_events = events::events(&proposal, reading, found, &extras, location);
+    proposal
+}
+
+fn where_at(
+    reading: &Reading,
+    found: Option<&Card>,
+    humans: &[ReadHuman],
+    location: &Location,
+    draw: &mut Draw,
+) -> PlaceClass {
+    let there = |class: &PlaceClass| *class != PlaceClass::Plain && place::has(location, *class);
+    if let Some(class) = reading.place.filter(there) {
+        return class;
+    }
+    let crossing = humans.iter().any(|human| human.relation == Some(Relation::Crossing));
+    if crossing && there(&PlaceClass::Intersection) {
+        return PlaceClass::Intersection;
+    }
+    let wanted: Vec<PlaceClass> =
+        found.map(|card| card.places.iter().copied().filter(there).collect()).unwrap_or_default();
+    // Mostly the place where the card is at home, now and then another that the card allows.
+    let other = if reading.humans.is_empty() && draw.below(3) == 0 { draw.pick(&wanted).copied() } else { None };
+    let usual = [PlaceClass::Corridor, PlaceClass::Intersection, PlaceClass::OpenArea];
+    other.or_else(|| wanted.first().copied()).or_else(|| usual.into_iter().find(there)).unwrap_or(PlaceClass::Plain)
+}
+
+fn proposed(
+    human: &ReadHuman,
+    extra: &Extra,
+    place: PlaceClass,
+    request: &Request,
+    location: &Location,
+    draw: &mut Draw,
+) -> HumanProposal {
+    let relation = human.relation.unwrap_or(if place == PlaceClass::Intersection {
+        Relation::Crossing
+    } else {
+        Relation::Frontal
+    });
+    let start = extra.start.filter(|class| place::has(location, *class));
+    let start = match relation {
+        Relation::Leaving | Relation::Staying => {
+            let usual = if place == PlaceClass::Elevator { PlaceClass::Elevator } else { PlaceClass::Room };
+            start.or_else(|| Some(usual).filter(|class| place::has(location, *class)))
+        }
+        Relation::Frontal
+        | Relation::Behind
+        | Relation::Ahead
+        | Relation::Crossing
+        | Relation::Static
+        | Relation::Abreast => None,
+    };
+    let moves = !matches!(relation, Relation::Static | Relation::Staying);
+    let overtakes = relation == Relation::Behind && !human.rules.iter().any(|rule| rule.act == Action::FollowRobot);
+    let usual = match relation {
+        // Slow enough to be caught up with by a robot of 0.8 m/s.
+        Relation::Ahead => Some(extra.speed_mps.map_or(0.5, |speed| speed.min(0.75))),
+        Relation::Behind if overtakes => Some(extra.speed_mps.map_or(1.5, |speed| speed.max(1.2))),
+        Relation::Frontal
+        | Relation::Behind
+        | Relation::Crossing
+        | Relation::Static
+        | Relation::Leaving
+        | Relation::Staying
+        | Relation::Abreast => extra.speed_mps.or_else(|| {
+            pattern::pace_of(&request.social_context)
+                .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
+        }),
+    };
+    let behavior = prose::behavior(&human.role, relation, place, start, &human.rules, human.group.is_some());
+    HumanProposal {
+        id: human.id,
+        role: human.role.clone(),
+        behavior,
+        relation,
+        rules: human.rules.clone(),
+        group: human.group,
+        speed_mps: usual.filter(|_| moves),
+        start,
+        goal: None,
+    }
+}
+
+fn groups(humans: &[HumanProposal]) -> Vec<GroupProposal> {
+    let mut ids: Vec<GroupId> = humans.iter().filter_map(|human| human.group).collect();
+    ids.sort_unstable();
+    ids.dedup();
+    ids.into_iter()
+        .map(|id| {
+            let members: Vec<&HumanProposal> = humans.iter().filter(|human| human.group == Some(id)).collect();
+            let standing = members.iter().all(|human| human.relation == Relation::Static);
+            GroupProposal { id, members: members.iter().map(|human| human.id).collect(), standing }
+        })
+        .collect()
+}
+
+fn robot(
+    reading: &Reading,
+    request: &Request,
+    found: Option<&Card>,
+    humans: &[HumanProposal],
+    location: &Location,
+) -> RobotProposal {
+    let class = |wanted: fn(&FactKind) -> Option<PlaceClass>| reading.facts.iter().find_map(|fact| wanted(&fact.kind));
+    let start = class(|kind| if let FactKind::RobotStart(class) = kind { Some(*class) } else { None });
+    let goal = class(|kind| if let FactKind::RobotGoal(class) = kind { Some(*class) } else { None });
+    let goal = goal.or_else(|| found.and_then(|card| card.goal)).filter(|class| place::has(location, *class));
+    let mut script: Vec<RobotRule> = found.map(|card| card.script.clone()).unwrap_or_default();
+    let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);
+    for line in &mut script {
+        if let (RobotDo::Follow(who), Some(id)) = (&mut line.act, lead) {
+            *who = id;
+        }
+    }
+    let beside: Vec<HumanId> =
+        humans.iter().filter(|human| human.relation == Relation::Abreast).map(|human| human.id).collect();
+    script.extend(beside.first().map(|id| RobotRule { when: RobotWhen::Start, act: RobotDo::Abreast(*id) }));
+    for fact in &reading.facts {
+        if let FactKind::RobotSays(gesture) = fact.kind {
+            let blocked = fact.quote.contains("block") || fact.quote.contains("obstruct");
+            script.push(RobotRule {
+                when: if blocked { RobotWhen::Blocked(2.0) } else { RobotWhen::HumanNear(4.0) },
+                act: RobotDo::Say(gesture),
+            });
+        }
+    }
+    for asked in &request.robot.gestures {
+        script.extend(when(&asked.when).map(|when| RobotRule { when, act: RobotDo::Say(asked.say) }));
+    }
+    let stops = humans.iter().flat_map(|human| &human.rules).any(|rule| rule.gesture == Some(Gesture::Wait));
+    if stops && !script.iter().any(|line| line.when == RobotWhen::HumanSays(Gesture::Wait)) {
+        script.push(RobotRule { when: RobotWhen::HumanSays(Gesture::Wait), act: RobotDo::Hold(4.0) });
+    }
+    let leaves = humans.iter().any(|human| human.relation == Relation::Leaving)
+        && goal.is_some_and(|class| matches!(class, PlaceClass::Elevator | PlaceClass::Room));
+    if leaves && !script.iter().any(|line| line.act == RobotDo::WaitForLeavers) {
+        script.push(RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers });
+    }
+    // Whoever waits for a word of the robot must hear it.
+    for heard in humans.iter().flat_map(|human| &human.rules).flat_map(|rule| &rule.when) {
+        if let Trigger::RobotSays(gesture) = heard
+            && !script.iter().any(|line| line.act == RobotDo::Say(*gesture))
+        {
+            script.push(RobotRule { when: RobotWhen::HumanNear(4.0), act: RobotDo::Say(*gesture) });
+        }
+    }
+    let mut seen: Vec<RobotRule> = Vec::new();
+    script.retain(|line| {
+        if seen.contains(line) {
+            false
+        } else {
+            seen.push(line.clone());
+            true
+        }
+    });
+    let task = if reading.task.is_empty() { request.task.clone() } else { reading.task.clone() };
+    let expected = found.map_or_else(
+        || "The robot keeps its distance, yields where people are in its way, and reaches its goal.".to_owned(),
+        |card| card.expected.clone(),
+    );
+    RobotProposal { task, start, goal, script, expected_behavior: expected }
+}
+
+/// `start`, `blocked N s`, `human within N m`, `after N s`, as requests write it.
+fn when(text: &str) -> Option<RobotWhen> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let number = || {
+        words
+            .iter()
+            .find_map(|word| word.trim_end_matches(['s', 'm']).parse::<f64>().ok())
+            .filter(|n| n.is_finite() && *n >= 0.0)
+    };
+    match words.first().copied()? {
+        "start" => Some(RobotWhen::Start),
+        "blocked" => Some(RobotWhen::Blocked(number().unwrap_or(3.0))),
+        "human" => Some(RobotWhen::HumanNear(number().unwrap_or(3.0))),
+        "after" => number().map(RobotWhen::AfterSecs),
+        _ => None,
+    }
+}

@@ -1,0 +1,264 @@
+//! Paths for everybody: the meeting node, the robot's way over it, and everybody else's.
+
+use std::collections::BTreeMap;
+
+use socrates_maps::{DistanceField, Sight};
+use socrates_model::{Encounter, FORMAT, FaultCode, HumanId, NodeId, Paths, PlaceClass, Proposal, Relation};
+use socrates_prompts::Question;
+
+use crate::NAME;
+use crate::draw::Draw;
+use crate::humans::{Taken, Way, way};
+use crate::place;
+use crate::routes::{Net, Route, Wish, over, score};
+
+/// Meeting nodes that are tried, and ways of the robot over each.
+const NODES: usize = 14;
+const ROUTES: usize = 10;
+/// Answers within this much of the best are as good, and the seed picks among them.
+const ALIKE: f64 = 2.5;
+
+struct Solution {
+    route: Route,
+    ways: BTreeMap<HumanId, Way>,
+    score: f64,
+}
+
+/// Answers a paths question. `None` where the map has no way at all that fits.
+pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
+    let net = Net::new(&question.location);
+    let told = |code: FaultCode| {
+        u32::try_from(question.feedback.iter().filter(|fault| fault.code == code).count()).unwrap_or(0)
+    };
+    let wish = wish(proposal, told(FaultCode::GShort));
+    let mut solutions = solutions(&net, proposal, &wish);
+    if solutions.is_empty() {
+        // Better another place than no answer; the checks and the person see what became of it.
+        solutions = anywhere(&net, proposal, &wish, false);
+    }
+    if solutions.is_empty() {
+        solutions = anywhere(&net, proposal, &wish, true);
+    }
+    solutions.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.route.nodes.cmp(&b.route.nodes)));
+    // Every refusal moves on to the next meeting node, and so does a simulation in which they did not meet.
+    let moves = question.feedback.iter().filter(|fault| !fault.is_soft() && fault.code != FaultCode::GShort).count();
+    let mut seen: Vec<usize> = Vec::new();
+    let mut best: Vec<&Solution> = Vec::new();
+    for solution in &solutions {
+        let node = solution.route.nodes.get(solution.route.meet).copied().unwrap_or(usize::MAX);
+        if !seen.contains(&node) {
+            seen.push(node);
+            best.push(solution);
+        }
+    }
+    let top = best.first()?.score;
+    let alike = best.iter().filter(|solution| solution.score >= top - ALIKE).count();
+    let first = if moves == 0 { Draw::new(question.seed, "paths").below(alike.clamp(1, 3)) } else { moves };
+    let chosen = best.get(first % best.len())?;
+    Some(written(&net, chosen, proposal))
+}
+
+fn wish(proposal: &Proposal, shorts: u32) -> Wish {
+    let has = |relation: Relation| proposal.humans.iter().any(|human| human.relation == relation);
+    let straight = if proposal.place == PlaceClass::BlindCorner {
+        -1.0
+    } else if has(Relation::Frontal) || has(Relation::Crossing) || has(Relation::Ahead) {
+        1.0
+    } else {
+        0.3
+    };
+    let longer = f64::from(shorts.min(4));
+    // Followers and overtakers need a longer way to show what they do.
+    let along = has(Relation::Behind) || has(Relation::Ahead) || has(Relation::Abreast);
+    Wish {
+        start: proposal.robot.start,
+        goal: proposal.robot.goal,
+        place: proposal.place,
+        straight,
+        least_m: 6.5 + 2.0 * longer,
+        aim_m: if along { 20.0 } else { 16.0 } + 4.0 * longer,
+    }
+}
+
+/// Whether the robot's way ends inside the car or room that people leave.
+fn enters(net: &Net<'_>, proposal: &Proposal) -> Option<Vec<usize>> {
+    let indoors =
+        proposal.humans.iter().find(|human| matches!(human.relation, Relation::Leaving | Relation::Staying))?;
+    let class = indoors.start.unwrap_or(PlaceClass::Room);
+    let goes_in = proposal.robot.goal == Some(class) || class == PlaceClass::Elevator;
+    let cars: Vec<usize> = place::inside(net.location, Some(class)).iter().filter_map(|id| net.index(id)).collect();
+    if goes_in && !cars.is_empty() { Some(cars) } else { None }
+}
+
+fn solutions(net: &Net<'_>, proposal: &Proposal, wish: &Wish) -> Vec<Solution> {
+    if let Some(inside) = enters(net, proposal) {
+        return inside.iter().flat_map(|goal| into(net, proposal, wish, *goal)).collect();
+    }
+    let typed: Vec<usize> =
+        socrates_maps::place::nodes_of(net.location, wish.place).iter().filter_map(|id| net.index(id)).collect();
+    let nodes: Vec<usize> = if wish.place == PlaceClass::Plain { (0..net.len()).collect() } else { typed };
+    at_nodes(net, proposal, wish, &nodes, false)
+}
+
+fn anywhere(net: &Net<'_>, proposal: &Proposal, wish: &Wish, crowded: bool) -> Vec<Solution> {
+    let all: Vec<usize> = (0..net.len()).collect();
+    let relaxed = Wish { least_m: 6.0, ..*wish };
+    at_nodes(net, proposal, &relaxed, &all, crowded)
+}
+
+fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], crowded: bool) -> Vec<Solution> {
+    let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
+    let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
+    let field = if standing > 0 { Some(DistanceField::new(&net.location.grid)) } else { None };
+    let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
+    let mut ranked: Vec<(f64, usize)> = nodes
+        .iter()
+        .filter(|node| (!net.inside(**node) || wish.place == PlaceClass::Room) && net.near(**node).len() >= 2)
+        .map(|node| {
+            let own = if net.kind(*node) == wish.place { 2.0 } else { 0.0 };
+            let arms = net.near(*node).len();
+            // Four ways let people cross straight; fewer than three let nobody cross.
+            let cross = if !crossing {
+                0.0
+            } else if arms >= 4 {
+                1.5
+            } else if arms == 3 {
+                0.0
+            } else {
+                -20.0
+            };
+            let room = field.as_ref().map_or(0.0, |field| 1.5 * field.clearance(&net.at(*node)).min(2.5));
+            (own + cross + room, *node)
+        })
+        .collect();
+    ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    let mut found = Vec::new();
+    for (rank, meet) in ranked.into_iter().take(NODES) {
+        for route in over(net, meet, wish).into_iter().take(ROUTES) {
+            let hidden = sight.as_ref().map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
+            if let Some(mut solution) = people(net, proposal, route, crowded) {
+                solution.score += rank + hidden;
+                found.push(solution);
+            }
+        }
+    }
+    found
+}
+
+/// Whether the nodes before and after the meeting cannot see each other.
+fn hides(net: &Net<'_>, sight: &Sight, route: &Route) -> bool {
+    let around = route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).zip(route.nodes.get(route.meet + 1));
+    around.is_some_and(|(a, b)| !sight.clear(&net.at(*a), &net.at(*b)))
+}
+
+/// The robot's ways into a car or room: met is who leaves at the node before its door.
+fn into(net: &Net<'_>, proposal: &Proposal, wish: &Wish, goal: usize) -> Vec<Solution> {
+    let tree = net.tree(goal, &|_| false);
+    // The robot stops at the first node inside; whoever stays is further in.
+    let entry = (0..net.len())
+        .filter(|node| !net.inside(*node) && tree.way(*node).iter().rev().nth(1).is_some_and(|next| *next == goal))
+        .count();
+    if entry == 0 {
+        return Vec::new();
+    }
+    let mut found: Vec<Solution> = (0..net.len())
+        .filter(|start| !net.inside(*start) && tree.length_m(*start).is_finite())
+        .filter_map(|start| {
+            let mut nodes = tree.way(start);
+            nodes.reverse();
+            let inside = nodes.iter().filter(|node| net.inside(**node)).count();
+            if inside != 1 {
+                return None;
+            }
+            // The last node that is neither inside nor in the doorway.
+            let meet = (1..nodes.len()).rev().find(|i| {
+                nodes.get(*i).is_some_and(|node| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway)
+            })?;
+            let value = score(net, &nodes, meet, &Wish { aim_m: 14.0, straight: 0.0, goal: None, ..*wish });
+            if !value.is_finite() {
+                return None;
+            }
+            people(net, proposal, Route { nodes, meet, score: value + 4.0 }, false)
+        })
+        .collect();
+    found.sort_by(|a, b| b.score.total_cmp(&a.score));
+    found.truncate(ROUTES);
+    found
+}
+
+/// Everybody's way for one way of the robot.
+fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Option<Solution> {
+    let mut taken = Taken { net, starts: route.nodes.first().copied().into_iter().collect(), crowded };
+    let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
+    let along = proposal
+        .humans
+        .iter()
+        .any(|human| !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast));
+    let mut cost = 0.0;
+    for human in &proposal.humans {
+        // Members of a group go together; people of one room leave it one after the other.
+        let mate = proposal
+            .humans
+            .iter()
+            .filter(|other| other.group.is_some() && other.group == human.group)
+            .find_map(|other| ways.get(&other.id).filter(|_| other.relation == human.relation));
+        let led = human.rules.iter().find_map(|rule| {
+            if let socrates_model::Action::FollowHuman(leader) = rule.act { ways.get(&leader) } else { None }
+        });
+        let shared = mate.or_else(|| led.filter(|way| way.nodes.len() > 1 && human.relation == Relation::Frontal));
+        let own = match shared {
+            Some(way) if mate.is_some() => way.clone(),
+            Some(leader) => after(net, leader, &taken)?,
+            None => way(human, &route, &taken, along)?,
+        };
+        cost += own.cost;
+        if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
+            taken.starts.extend(own.nodes.first());
+        }
+        ways.insert(human.id, own);
+    }
+    let score = route.score - cost;
+    Some(Solution { route, ways, score })
+}
+
+/// The way of somebody who follows another human: the same, from the node before or after its start.
+fn after(net: &Net<'_>, leader: &Way, taken: &Taken<'_>) -> Option<Way> {
+    let first = *leader.nodes.first()?;
+    let back = net
+        .near(first)
+        .iter()
+        .map(|(node, _)| *node)
+        .find(|node| !leader.nodes.contains(node) && !taken.starts.contains(node));
+    let mut nodes: Vec<usize> = back.into_iter().collect();
+    nodes.extend(leader.nodes.iter().skip(usize::from(back.is_none())));
+    if nodes.len() < 2 || nodes.first() == Some(&leader.meet) {
+        return None;
+    }
+    Some(Way { nodes, meet: leader.meet, cost: 0.5 })
+}
+
+fn written(net: &Net<'_>, solution: &Solution, proposal: &Proposal) -> Paths {
+    let order = |node: &usize| solution.route.nodes.iter().position(|other| other == node).unwrap_or(usize::MAX);
+    let mut meetings: Vec<(HumanId, usize)> = solution.ways.iter().map(|(id, way)| (*id, way.meet)).collect();
+    meetings.sort_by_key(|(id, node)| (order(node), *id));
+    let encounters: Vec<Encounter> = meetings
+        .into_iter()
+        .filter_map(|(human, node)| net.id(node).map(|node| Encounter { human, node: node.clone() }))
+        .collect();
+    let humans: BTreeMap<HumanId, Vec<NodeId>> =
+        solution.ways.iter().map(|(id, way)| (*id, net.named(&way.nodes))).collect();
+    let length = libm::round(net.length_m(&solution.route.nodes) * 10.0) / 10.0;
+    let reasoning = format!(
+        "The robot goes {length} m over a meeting place that is {}; {} encounters lie on its way in this order.",
+        place::an(proposal.place),
+        encounters.len()
+    );
+    Paths {
+        format: FORMAT,
+        robot: net.named(&solution.route.nodes),
+        humans,
+        encounters,
+        reasoning,
+        author: NAME.to_owned(),
+    }
+}

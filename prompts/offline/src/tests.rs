@@ -1,0 +1,429 @@
+//! Requests in many words, from reading to checked answers.
+
+use socrates_model::job::Stage;
+use socrates_model::{
+    Action, ClauseRole, FactKind, Fault, FaultCode, Gesture, Location, Paths, PlaceClass, Predicate, Proposal, Reading,
+    Relation, Request,
+};
+use socrates_prompts::Question;
+
+use crate::{Offline, read, summary};
+
+fn request(task: &str, rough: Option<&str>) -> Request {
+    Request { rough_scenario: rough.map(str::to_owned), ..blank(task) }
+}
+
+fn blank(task: &str) -> Request {
+    Request {
+        location: "x".to_owned(),
+        social_context: String::new(),
+        task: task.to_owned(),
+        rough_scenario: None,
+        location_description: None,
+        robot: Default::default(),
+        run: Default::default(),
+        expect: Default::default(),
+        proposal: None,
+        paths: None,
+        behaviors: None,
+    }
+}
+
+fn map(name: &str) -> Location {
+    socrates_maps::shipped::load(name).unwrap()
+}
+
+fn small_warehouse() -> Option<Location> {
+    let folder =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/socrates_hunav/socrates/locations/small_warehouse");
+    let folder = std::path::Path::new(folder);
+    if !folder.exists() {
+        #[expect(clippy::print_stderr, reason = "a skipped test says why")]
+        {
+            eprintln!("skipped: no test data at {}", folder.display());
+        }
+        return None;
+    }
+    Some(socrates_maps::load(folder).unwrap())
+}
+
+fn question(stage: Stage, request: &Request, location: &Location, seed: u64) -> Question {
+    Question {
+        stage,
+        request: request.clone(),
+        reading: read(request, location),
+        location: location.clone(),
+        proposal: None,
+        only: Vec::new(),
+        feedback: Vec::new(),
+        refused: None,
+        seed,
+    }
+}
+
+fn parsed<T>(found: Result<T, Vec<socrates_model::Fault>>) -> T {
+    found.unwrap_or_else(|faults| panic!("{faults:#?}"))
+}
+
+/// Proposal and paths as the stages would make them.
+fn answers(request: &Request, location: &Location, seed: u64) -> (Question, Proposal, Paths) {
+    let mut ask = question(Stage::Proposal, request, location, seed);
+    let proposal = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
+    ask.stage = Stage::Paths;
+    ask.proposal = Some(proposal.clone());
+    let paths = parsed(socrates_prompts::parse_paths(&Offline::answer(&ask), &ask));
+    (ask, proposal, paths)
+}
+
+fn samples() -> Vec<(String, Request, Location)> {
+    let mut found = Vec::new();
+    for name in socrates_maps::shipped::names() {
+        let location = map(name);
+        for (stem, text) in socrates_maps::shipped::requests(name) {
+            found.push((format!("{name}/{stem}"), toml::from_str(text).unwrap(), location.clone()));
+        }
+    }
+    found
+}
+
+/// Map, text, and the reading line without the robot's part.
+const READINGS: &[(&str, &str, &str)] = &[
+    (
+        "hospital",
+        "A few people are in the elevator. 2 people leave the elevator and one, startled by the robot, stays inside.",
+        "3 humans · 2 leave the elevator · 1 startled, stays · place: elevator",
+    ),
+    (
+        "hospital",
+        "When the elevator door opens, two people walk out and a third one is surprised to see the robot and stays in.",
+        "3 humans · 2 leave the elevator · 1 startled, stays · place: elevator",
+    ),
+    (
+        "hospital",
+        "3 humans are in the elevator, 2 of them leave and the third is startled on seeing the robot and remains in the elevator",
+        "3 humans · 2 leave the elevator · 1 startled, stays · place: elevator",
+    ),
+    (
+        "office",
+        "One person follows the robot through the corridor while another one blocks its way.",
+        "2 humans · 1 follows the robot · 1 blocks the robot · place: corridor",
+    ),
+    (
+        "office",
+        "A curious employee follows the robot in the corridor and another person obstructs the robot's path",
+        "2 humans · 1 employee follows the robot · 1 blocks the robot · place: corridor",
+    ),
+    (
+        "office",
+        "The robot is passing an intersection when people suddenly come out of a room.",
+        "2 humans · 2 come out of the room · place: intersection",
+    ),
+    (
+        "office",
+        "Two colleagues suddenly come out of the meeting room and cross the robot's way at the intersection.",
+        "2 humans · 2 come out of the room, cross · place: intersection",
+    ),
+    (
+        "warehouse",
+        "The robot has to pass a group of 4 employees who are talking in an open area.",
+        "4 humans · 4 talk · group of 4 · place: open area",
+    ),
+    (
+        "warehouse",
+        "In the scenario there are 2 humans who form a group; 1 of them flees as soon as it sees the robot, the other one follows the robot",
+        "2 humans · 1 runs away · 1 follows the robot · group of 2",
+    ),
+    (
+        "warehouse",
+        "A group of five employees stands in the aisle; when the robot comes within 3 m, one of them steps aside.",
+        "5 humans · 1 stands, gives way · 4 stand · group of 5 · place: narrow passage",
+    ),
+    (
+        "office",
+        "A person comes towards the robot in a corridor and gives way when the robot is within 3 meters.",
+        "1 human · 1 comes towards the robot, gives way · place: corridor",
+    ),
+    (
+        "hospital",
+        "A nurse crosses at the intersection and gestures WAIT to the robot.",
+        "1 human · 1 crosses, gestures WAIT · place: intersection",
+    ),
+    (
+        "office",
+        "An employee at the intersection stops and signals the robot to proceed.",
+        "1 human · 1 stops, gestures PROCEED · place: intersection",
+    ),
+    (
+        "office",
+        "The robot overtakes a slow elderly visitor in the corridor.",
+        "1 human · 1 walks ahead of the robot · place: corridor",
+    ),
+    (
+        "office",
+        "The robot is followed by a child and blocked by a teacher.",
+        "2 humans · 1 child follows the robot · 1 teacher blocks the robot",
+    ),
+    (
+        "office",
+        "Human 1 follows the robot. Human 2 runs away when the robot comes within 2 m. Human 3 stands in the way for 5 seconds.",
+        "3 humans · 1 follows the robot · 1 runs away · 1 blocks the robot",
+    ),
+    ("office", "A person hurries past the robot from behind", "1 human · 1 overtakes the robot, comes from behind"),
+    ("hospital", "The robot leads a visitor to the exit", "1 human · 1 follows the robot"),
+    ("office", "Two people talk in the kitchen", "2 humans · 2 talk · group of 2 · place: room"),
+    (
+        "office",
+        "Someone does not notice the robot because they look at their phone and walks towards it.",
+        "1 human · 1 ignores the robot, comes towards the robot",
+    ),
+    (
+        "office",
+        "A person and a nurse walk together towards the robot. When the robot says EXCUSE_ME, they give way.",
+        "2 humans · 1 walks in a group, comes towards the robot, gives way · 1 nurse walks in a group, comes towards the robot, gives way · group of 2",
+    ),
+    (
+        "office",
+        "Both the manager and the visitor wait at the doorway until the robot has passed",
+        "2 humans · 1 manager stops · 1 visitor stops · place: doorway",
+    ),
+    (
+        "warehouse",
+        "During the night shift of 12, an employee walks past rack 7 towards the robot.",
+        "1 human · 1 comes towards the robot",
+    ),
+    (
+        "office",
+        "There are 3 people. One follows the robot, the other two block it.",
+        "3 humans · 1 follows the robot · 2 block the robot",
+    ),
+];
+
+fn told(rough: &str, on: &str) -> Reading {
+    read(&request("Deliver mail", Some(rough)), &map(on))
+}
+
+#[test]
+fn many_ways_of_saying_it_are_read() {
+    for (on, rough, line) in READINGS {
+        let found = summary(&told(rough, on));
+        assert_eq!(found.strip_suffix(" · robot: deliver mail"), Some(*line), "{rough}");
+    }
+}
+
+#[test]
+fn the_reading_line_is_the_one_of_the_first_minutes() {
+    let rough =
+        "A few people are in the elevator. 2 people leave the elevator and one, startled by the robot, stays inside.";
+    let reading = read(&request("Take the elevator to deliver supplies", Some(rough)), &map("hospital"));
+    assert_eq!(
+        summary(&reading),
+        "3 humans · 2 leave the elevator · 1 startled, stays · place: elevator · robot: enter elevator"
+    );
+    assert_eq!(reading.ignored, ["supplies"]);
+    assert!(reading.problems.is_empty(), "{:?}", reading.problems);
+}
+
+fn codes(rough: &str, on: &str) -> Vec<FaultCode> {
+    let mut found: Vec<FaultCode> = told(rough, on).problems.into_iter().map(|fault| fault.code).collect();
+    found.dedup();
+    found
+}
+
+#[test]
+fn wishes_that_cannot_be_met_are_named() {
+    assert_eq!(codes("10000 people walk in the corridor", "office"), [FaultCode::PLimit]);
+    assert_eq!(codes("No people are in the corridor.", "office"), [FaultCode::PLimit]);
+    assert_eq!(
+        codes("Ein Mensch folgt dem Roboter durch den langen Flur und bleibt stehen", "office"),
+        [FaultCode::PLang]
+    );
+    assert_eq!(codes("A person on the escalator looks at the robot", "office"), [FaultCode::PPlace]);
+    assert_eq!(codes("A visitor picks up a box in the corridor", "office"), [FaultCode::PRead]);
+    assert_eq!(codes("Two people leave the elevator.", "warehouse").first(), Some(&FaultCode::PPlace));
+}
+
+#[test]
+fn contradictions_quote_both_sides() {
+    let reading = told("There are 3 humans. 2 follow the robot. 2 block it.", "office");
+    let fault = reading.problems.iter().find(|fault| fault.code == FaultCode::PContra).unwrap();
+    assert!(fault.message.contains("3 humans") && fault.message.contains("`2`"), "{}", fault.message);
+    let reading = told("A person follows the robot and runs away from it.", "office");
+    let fault = reading.problems.iter().find(|fault| fault.code == FaultCode::PContra).unwrap();
+    assert!(fault.message.contains("follows the robot") && fault.message.contains("runs away"), "{}", fault.message);
+}
+
+#[test]
+fn numbers_of_rooms_racks_and_shifts_are_no_people() {
+    let reading = told("In room 214 and at rack 7, during the shift of 12, a person looks at the robot.", "office");
+    assert_eq!(reading.humans.len(), 1);
+    assert!(
+        reading.ignored.contains(&"214".to_owned()) && reading.ignored.contains(&"12".to_owned()),
+        "{:?}",
+        reading.ignored
+    );
+}
+
+#[test]
+fn distances_and_durations_of_the_text_are_kept() {
+    let reading =
+        told("Human 1 runs away when the robot comes within 2.5 m. Human 2 stands in the way for 5 seconds.", "office");
+    let rule = &reading.humans[0].rules[0];
+    assert_eq!((&rule.act, &rule.when[..]), (&Action::RunAway, &[socrates_model::Trigger::RobotNear(2.5)][..]));
+    assert_eq!(reading.humans[1].rules[0].for_s, Some(5.0));
+}
+
+#[test]
+fn gestures_belong_to_whom_the_text_says() {
+    let reading = told(
+        "A nurse crosses at the intersection and gestures WAIT to the robot. The robot says EXCUSE_ME.",
+        "hospital",
+    );
+    assert!(reading.facts.iter().any(|fact| matches!(fact.kind, FactKind::Gestures { gesture: Gesture::Wait, .. })));
+    assert!(reading.facts.iter().any(|fact| fact.kind == FactKind::RobotSays(Gesture::ExcuseMe)));
+    assert_eq!((reading.humans[0].role.as_str(), reading.humans[0].relation), ("nurse", Some(Relation::Crossing)));
+}
+
+#[test]
+fn what_the_request_expects_wins_over_the_text() {
+    let mut asked = request("Deliver mail", Some("Two people come towards the robot in the corridor."));
+    asked.expect.humans = Some(3);
+    asked.expect.place = Some("intersection".to_owned());
+    let reading = read(&asked, &map("office"));
+    assert_eq!((reading.humans.len(), reading.place), (3, Some(PlaceClass::Intersection)));
+}
+
+#[test]
+fn any_text_is_read_without_breaking() {
+    let location = map("office");
+    for text in [
+        "",
+        ".",
+        "and and and",
+        "when when",
+        "who?",
+        "2",
+        "the the",
+        "one other one another the rest",
+        "robot robot robot",
+        "0 people",
+        "99999999999999999999 people",
+        "group of",
+        "a group of group of",
+        "ß’t 🤖 \u{202e}",
+    ] {
+        let _reading = read(&request("x", Some(text)), &location);
+    }
+}
+
+/// Every human and every fact has a clause that must hold; paths are whole; meetings lie on both ways.
+fn sound(name: &str, ask: &Question, proposal: &Proposal, paths: &Paths) {
+    let must = |test: &dyn Fn(&socrates_model::Clause) -> bool| {
+        proposal.expected_events.iter().any(|clause| clause.must && clause.role == ClauseRole::Setup && test(clause))
+    };
+    for human in &proposal.humans {
+        let grouped = |clause: &socrates_model::Clause| matches!(clause.predicate, Predicate::Formation { group, .. } | Predicate::WalksTogether { group, .. } if Some(group) == human.group);
+        assert!(
+            must(&|clause| clause.predicate.human() == Some(human.id) || grouped(clause)),
+            "{name}: {} has no clause",
+            human.id
+        );
+        let nodes = &paths.humans[&human.id];
+        let meet = paths.encounter_of(human.id).unwrap();
+        assert!(paths.robot.contains(meet), "{name}: {} meets off the robot's way", human.id);
+        assert!(nodes.contains(meet) || human.relation == Relation::Staying, "{name}: {}", human.id);
+    }
+    for fact in &ask.reading.facts {
+        let wanted = matches!(
+            fact.kind,
+            FactKind::Reacts { .. }
+                | FactKind::Gestures { .. }
+                | FactKind::Group { .. }
+                | FactKind::Place(_)
+                | FactKind::RobotSays(_)
+                | FactKind::Humans(_)
+        );
+        assert!(!wanted || must(&|clause| clause.source == fact.id), "{name}: {fact:?} has no clause");
+    }
+    for nodes in std::iter::once(&paths.robot).chain(paths.humans.values()) {
+        for pair in nodes.windows(2) {
+            assert!(ask.location.graph.edge(&pair[0], &pair[1]).is_some(), "{name}: {pair:?}");
+        }
+    }
+    assert!(paths.robot.len() >= 4 && ask.location.graph.length_m(&paths.robot) >= 6.0, "{name}");
+}
+
+#[test]
+fn every_sample_and_every_text_is_answered_on_every_map() {
+    let mut all = samples();
+    let mut maps: Vec<Location> = socrates_maps::shipped::names().iter().map(|name| map(name)).collect();
+    maps.extend(small_warehouse());
+    for location in &maps {
+        for (_, rough, _) in READINGS {
+            all.push((
+                format!("{} on {}", rough, location.name),
+                request("Deliver mail", Some(rough)),
+                location.clone(),
+            ));
+        }
+        all.push((format!("unguided on {}", location.name), request("Deliver mail", None), location.clone()));
+    }
+    for (name, request, location) in all {
+        for seed in 1..=2 {
+            let (ask, proposal, paths) = answers(&request, &location, seed);
+            sound(&name, &ask, &proposal, &paths);
+            let ask = Question { stage: Stage::Behaviors, ..ask };
+            assert_eq!(
+                parsed(socrates_prompts::parse_behaviors(&Offline::answer(&ask), &ask)).humans.len(),
+                proposal.humans.len(),
+                "{name}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_samples_are_read_without_problems() {
+    for (name, request, location) in samples() {
+        let reading = read(&request, &location);
+        assert!(reading.problems.is_empty(), "{name}: {:?}", reading.problems);
+        if let Some(count) = request.expect.humans {
+            // The text alone gives as many people as its author expects.
+            let mut plain = request.clone();
+            plain.expect = Default::default();
+            assert_eq!(read(&plain, &location).humans.len(), count as usize, "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_same_question_gives_the_same_answer_and_seeds_differ() {
+    let (asked, location) = (request("Deliver mail", None), map("office"));
+    let answer = |seed| Offline::answer(&question(Stage::Proposal, &asked, &location, seed));
+    assert_eq!(answer(3), answer(3));
+    assert!((1..20).any(|seed| answer(seed) != answer(0)));
+}
+
+#[test]
+fn a_refused_meeting_moves_and_a_short_way_grows() {
+    let asked = request("Deliver mail", Some("A person comes towards the robot in the corridor."));
+    let location = map("office");
+    let (mut ask, proposal, first) = answers(&asked, &location, 1);
+    ask.feedback.push(Fault::new(FaultCode::GMeet, "human_1", "x"));
+    let second = parsed(socrates_prompts::parse_paths(&Offline::answer(&ask), &ask));
+    assert_ne!(first.encounters, second.encounters);
+    ask.feedback = vec![Fault::new(FaultCode::GShort, "robot", "x"); 2];
+    let third = parsed(socrates_prompts::parse_paths(&Offline::answer(&ask), &ask));
+    assert!(location.graph.length_m(&third.robot) > location.graph.length_m(&first.robot));
+    assert_eq!(proposal.humans.len(), 1);
+}
+
+#[test]
+fn a_reaction_that_never_came_gets_a_longer_reach() {
+    let asked = request("Deliver mail", Some("A person in the corridor looks at the robot."));
+    let location = map("office");
+    let (ask, ..) = answers(&asked, &location, 1);
+    let mut ask = Question { stage: Stage::Behaviors, ..ask };
+    let first = Offline::answer(&ask);
+    ask.feedback.push(Fault::new(FaultCode::DNoTrig, "human_1", "x"));
+    assert_ne!(first, Offline::answer(&ask));
+}

@@ -1,0 +1,283 @@
+//! From the story to the reading: facts with their quotes, and every wish that has no place in the simulation.
+
+use socrates_model::reading::ReadHuman;
+use socrates_model::{
+    FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request,
+};
+
+use crate::lexicon::lexicon;
+use crate::pattern;
+use crate::story::{self, Story};
+use crate::task::{self, Task};
+use crate::{default_cast, place, words};
+
+/// The reading with what the model has no field for.
+pub(crate) struct Understood {
+    pub(crate) reading: Reading,
+    /// Per human: desired speed, where it starts, whether its rules' triggers were said.
+    pub(crate) extras: Vec<Extra>,
+}
+
+/// What is known of one human beyond the reading.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Extra {
+    pub(crate) speed_mps: Option<f64>,
+    pub(crate) start: Option<PlaceClass>,
+    /// Per rule: whether the text says when.
+    pub(crate) stated: Vec<bool>,
+}
+
+/// Reads a request. Never fails: what cannot be read stands in `ignored` and `problems`.
+pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
+    let rough = request.rough_scenario.as_deref().map(str::trim).filter(|text| !text.is_empty());
+    let mut story = rough.map(story::read).unwrap_or_default();
+    let mut task = task::read(&request.task);
+    let mut reading = Reading { format: FORMAT, task: shortened(&request.task), ..Reading::default() };
+    language(request, &mut reading);
+    expectations(request, &mut story, &mut reading);
+    story.finish();
+    unplaceable(location, &mut story, &mut task, &mut reading);
+    let wanted = request.expect.pattern.as_deref().or(story.robot_part);
+    reading.pattern = rough.and_then(|_| pattern::of(&story, wanted)).or_else(|| wanted.map(str::to_owned));
+    if let Some(id) = request.expect.pattern.as_ref().filter(|id| crate::card::card(id).is_none()) {
+        let known: Vec<&str> = crate::card::catalog().iter().map(|card| card.id.as_str()).collect();
+        reading.problems.push(Fault::new(
+            FaultCode::PRead,
+            "expect.pattern",
+            format!("`{id}` is no pattern; patterns: {}", known.join(", ")),
+        ));
+        reading.pattern = None;
+    }
+    people(request, &story, &mut reading);
+    let mut extras: Vec<Extra> = story
+        .cast
+        .people
+        .iter()
+        .map(|person| Extra {
+            speed_mps: person.speed_mps,
+            start: person.start,
+            stated: person.rules.iter().map(|read| read.stated).collect(),
+        })
+        .collect();
+    // A text without people, or only a number of them: the pattern says what they do.
+    if story.cast.nobody.is_some() && reading.humans.is_empty() {
+        reading.pattern = None;
+    }
+    let foreign = reading.problems.iter().any(|fault| fault.code == FaultCode::PLang);
+    let empty = reading.humans.is_empty() && story.cast.nobody.is_none() && !foreign;
+    if empty && (rough.is_some() || request.expect.pattern.is_some()) {
+        extras = default_cast::fill(&mut reading, &story, request, location);
+    }
+    facts(&story, &task, &mut reading);
+    leftovers(request, location, &mut story, &task, &mut reading);
+    Understood { reading, extras }
+}
+
+fn shortened(text: &str) -> String {
+    let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let line = line.trim_end_matches('.');
+    if line.chars().count() <= 120 {
+        line.to_owned()
+    } else {
+        format!("{} …", line.chars().take(118).collect::<String>().trim_end())
+    }
+}
+
+/// P-LANG where hardly a word is known.
+fn language(request: &Request, reading: &mut Reading) {
+    let texts =
+        [("rough_scenario", request.rough_scenario.as_deref().unwrap_or_default()), ("task", request.task.as_str())];
+    for (key, text) in texts {
+        let all: Vec<words::Word> =
+            words::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
+        let letters: Vec<&words::Word> = all.iter().filter(|word| word.text.starts_with(char::is_alphabetic)).collect();
+        let lex = lexicon();
+        let known = letters
+            .iter()
+            .filter(|word| lex.known.contains(&word.stem) || lex.known.contains(&word.text) || word.stem == "robot")
+            .count();
+        // English texts of a few words still have half of theirs in the tables; other languages share single words only.
+        if letters.len() >= 4 && known * 10 < letters.len() * 3 {
+            let message =
+                format!("{known} of {} words are known; the offline author reads plain English only", letters.len());
+            reading.problems.push(Fault::new(FaultCode::PLang, key, message));
+        }
+    }
+}
+
+/// `[expect]` wins over the text.
+fn expectations(request: &Request, story: &mut Story, reading: &mut Reading) {
+    if let Some(count) = request.expect.humans {
+        let wanted = usize::try_from(count).unwrap_or(0);
+        let read = story.cast.people.len();
+        if read > 0 && wanted > 0 && read != wanted {
+            reading
+                .notes
+                .push(format!("the text speaks of {read} humans, `expect.humans` of {wanted}; {wanted} it is"));
+            story.cast.people.truncate(wanted);
+            story.cast.people.resize_with(wanted, Default::default);
+            for (_, members, _) in &mut story.cast.groups {
+                members.retain(|i| *i < wanted);
+            }
+            story.cast.groups.retain(|(_, members, _)| members.len() > 1);
+            story.problems.retain(|fault| fault.code != FaultCode::PLimit);
+        }
+        story.cast.count_quote = Some(format!("expect.humans = {count}"));
+    }
+    if let Some(Ok(class)) = request.expect.place.as_ref().map(|text| text.parse::<PlaceClass>()) {
+        story.place = Some((class, format!("expect.place = \"{class}\"")));
+    }
+    for numbers in &request.expect.groups {
+        let members: Vec<usize> = numbers
+            .iter()
+            .filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1))
+            .filter(|i| *i < story.cast.people.len())
+            .collect();
+        story.cast.group(&members, "expect.groups");
+    }
+}
+
+/// Places by name that this map does not have: a fault, and the next best place.
+fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading: &mut Reading) {
+    let mut absent = |slot: &mut Option<(PlaceClass, String)>, at: &str| {
+        let Some((class, quote)) = slot.clone().filter(|(class, _)| !place::has(location, *class)) else { return };
+        *slot = None;
+        let message = format!(
+            "`{quote}` asks for {}, which this map does not have; it has: {}",
+            place::an(class),
+            place::listed(location)
+        );
+        reading.problems.push(Fault::new(FaultCode::PPlace, at, message));
+    };
+    absent(&mut story.place, "rough_scenario");
+    absent(&mut story.robot_enters, "rough_scenario");
+    absent(&mut story.robot_leaves, "rough_scenario");
+    absent(&mut task.start, "task");
+    absent(&mut task.goal, "task");
+    let rooms = !place::inside(location, None).is_empty();
+    let cars = !place::inside(location, Some(PlaceClass::Elevator)).is_empty();
+    for who in 0..story.cast.people.len() {
+        let next = story.relation_of(who);
+        let Some(person) = story.cast.people.get_mut(who) else { continue };
+        if person.start.is_some_and(|class| !place::has(location, class)) {
+            person.start = None;
+        }
+        if matches!(next, Some(Relation::Leaving | Relation::Staying)) {
+            let wants_car = person.start == Some(PlaceClass::Elevator);
+            if wants_car && cars || !wants_car && rooms {
+                continue;
+            }
+            if rooms || cars {
+                person.start = Some(if rooms { PlaceClass::Room } else { PlaceClass::Elevator });
+                continue;
+            }
+            let quote = person.relation.as_ref().map(|(_, quote)| quote.clone()).unwrap_or_default();
+            person.relation = None;
+            let fault = Fault::new(
+                FaultCode::PPlace,
+                format!("human_{}", who + 1),
+                format!("`{quote}` needs a room or an elevator with a place inside, which this map does not have"),
+            );
+            if !reading.problems.contains(&fault) {
+                reading.problems.push(fault);
+            }
+        }
+    }
+}
+
+fn people(request: &Request, story: &Story, reading: &mut Reading) {
+    let from_context = pattern::role_of(&request.social_context);
+    for (i, person) in story.cast.people.iter().enumerate() {
+        let number = u32::try_from(i + 1).unwrap_or(u32::MAX);
+        let generic = person.role.is_empty();
+        let role =
+            if generic { from_context.clone().unwrap_or_else(|| "person".to_owned()) } else { person.role.clone() };
+        reading.humans.push(ReadHuman {
+            id: HumanId::new(number),
+            role,
+            summary: person.doings.join(", "),
+            relation: story.relation_of(i),
+            rules: person.rules.iter().map(|read| read.rule.clone()).collect(),
+            group: person.group,
+        });
+    }
+}
+
+fn facts(story: &Story, task: &Task, reading: &mut Reading) {
+    let mut facts: Vec<(String, FactKind)> = Vec::new();
+    let count = u32::try_from(reading.humans.len()).unwrap_or(u32::MAX);
+    if count > 0 {
+        facts.push((story.cast.count_quote.clone().unwrap_or_default(), FactKind::Humans(count)));
+    }
+    let id = |i: usize| HumanId::new(u32::try_from(i + 1).unwrap_or(u32::MAX));
+    for (group, members, quote) in &story.cast.groups {
+        facts.push((
+            quote.clone(),
+            FactKind::Group { group: *group, members: members.iter().copied().map(id).collect() },
+        ));
+    }
+    for (i, person) in story.cast.people.iter().enumerate() {
+        if let Some((relation, quote)) = person.relation.clone() {
+            facts.push((quote, FactKind::Relates { human: id(i), relation }));
+        }
+        for read in &person.rules {
+            match read.rule.gesture {
+                Some(gesture) => facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture })),
+                None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),
+            }
+        }
+    }
+    if let Some((class, quote)) = &story.place {
+        facts.push((quote.clone(), FactKind::Place(*class)));
+        reading.place = Some(*class);
+    }
+    if !reading.task.is_empty() {
+        facts.push((reading.task.clone(), FactKind::RobotTask(reading.task.clone())));
+    }
+    for (gesture, quote) in &story.robot_says {
+        facts.push((quote.clone(), FactKind::RobotSays(*gesture)));
+    }
+    for (class, quote) in story.robot_leaves.iter().chain(&task.start).take(1) {
+        facts.push((quote.clone(), FactKind::RobotStart(*class)));
+    }
+    for (class, quote) in story.robot_enters.iter().chain(&task.goal).take(1) {
+        facts.push((quote.clone(), FactKind::RobotGoal(*class)));
+    }
+    facts.dedup_by(|a, b| a.1 == b.1);
+    reading.facts = facts
+        .into_iter()
+        .enumerate()
+        .map(|(i, (quote, kind))| Fact { id: format!("f{}", i + 1), quote, kind })
+        .collect();
+}
+
+fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
+    reading.problems.append(&mut story.problems);
+    reading.notes.append(&mut story.cast.notes);
+    // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
+    let about: Vec<String> =
+        words::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
+            .into_iter()
+            .flatten()
+            .flat_map(|stretch| stretch.words)
+            .flat_map(|word| [word.text, word.stem])
+            .collect();
+    for word in story.ignored.iter().chain(&task.ignored) {
+        let base = lexicon().stem(word);
+        if !about.contains(word) && !about.contains(&base) && !reading.ignored.contains(word) {
+            reading.ignored.push(word.clone());
+        }
+    }
+    for (i, human) in reading.humans.iter().enumerate() {
+        if human.summary.is_empty() && request.rough_scenario.is_some() {
+            reading.notes.push(format!("nothing is said of what human_{} does; it walks its way", i + 1));
+        }
+    }
+    if request.rough_scenario.is_none() {
+        reading.notes.push("no rough scenario: a pattern that fits the map is drawn by the seed".to_owned());
+    }
+    if !request.social_context.trim().is_empty() {
+        reading.notes.push("of the social context, only roles and pace are used".to_owned());
+    }
+    reading.problems.dedup();
+}

@@ -1,0 +1,123 @@
+//! From text to a proposal or to paths.
+
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
+use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal};
+
+use crate::question::Question;
+use crate::schema::{THINKING, derived};
+use crate::validate::differences;
+
+/// Most differences named at once.
+const MOST: usize = 5;
+
+/// Reads a proposal. `format` and `author` may be left out.
+///
+/// # Errors
+/// Syntax faults with their position, or up to five E-SCHEMA faults with JSON path, expected and found.
+pub fn parse_proposal(text: &str, _question: &Question) -> Result<Proposal, Vec<Fault>> {
+    read(text)
+}
+
+/// Reads paths. `format` and `author` may be left out.
+///
+/// # Errors
+/// As [`parse_proposal`].
+pub fn parse_paths(text: &str, _question: &Question) -> Result<Paths, Vec<Fault>> {
+    read(text)
+}
+
+fn read<T: DeserializeOwned + schemars::JsonSchema>(text: &str) -> Result<T, Vec<Fault>> {
+    typed(prepared(crate::json::object(text)?))
+}
+
+/// The answer without its thinking, without nulls, with the members that we know better than the author.
+pub(crate) fn prepared(mut value: Value) -> Value {
+    without_nulls(&mut value);
+    if let Some(members) = value.as_object_mut() {
+        members.remove(THINKING);
+        members.entry("format").or_insert_with(|| json!(FORMAT));
+        members.entry("author").or_insert_with(|| json!(""));
+    }
+    value
+}
+
+/// The typed value, or every difference from its schema.
+pub(crate) fn typed<T: DeserializeOwned + schemars::JsonSchema>(value: Value) -> Result<T, Vec<Fault>> {
+    schema_faults(&derived::<T>(), &value)?;
+    serde_json::from_value(value).map_err(|error| vec![Fault::new(FaultCode::ESchema, "answer", error.to_string())])
+}
+
+/// E-SCHEMA for every difference, at most five.
+pub(crate) fn schema_faults(schema: &Value, value: &Value) -> Result<(), Vec<Fault>> {
+    let found = differences(schema, value);
+    if found.is_empty() {
+        return Ok(());
+    }
+    let fault = |d: crate::validate::Difference| {
+        Fault::new(FaultCode::ESchema, d.path, format!("expected {}, found {}", d.expected, d.found))
+    };
+    Err(found.into_iter().take(MOST).map(fault).collect())
+}
+
+/// Strict schemas say nothing with `null`; the types say it by leaving the member out.
+fn without_nulls(value: &mut Value) {
+    match value {
+        Value::Object(members) => {
+            members.retain(|_, member| !member.is_null());
+            members.values_mut().for_each(without_nulls);
+        }
+        Value::Array(items) => items.iter_mut().for_each(without_nulls),
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{proposal, question};
+    use socrates_model::job::Stage;
+
+    fn asked() -> Question {
+        question(Stage::Proposal)
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let text = serde_json::to_string(&proposal()).unwrap();
+        assert_eq!(parse_proposal(&text, &asked()).unwrap(), proposal());
+    }
+
+    #[test]
+    fn an_answer_in_the_strict_form_is_read() {
+        let mut value = serde_json::to_value(proposal()).unwrap();
+        let members = value.as_object_mut().unwrap();
+        members.remove("format");
+        members.remove("author");
+        members.insert("analysis".into(), json!("two people, one corner"));
+        members["humans"][0]["group"] = Value::Null;
+        members["expected_events"][0]["source"] = Value::Null;
+        let read = parse_proposal(&value.to_string(), &asked()).unwrap();
+        assert_eq!((read.format, read.author.as_str()), (FORMAT, ""));
+    }
+
+    #[test]
+    fn every_wrong_member_is_named_at_once() {
+        let mut value = serde_json::to_value(proposal()).unwrap();
+        value["place"] = json!("moon");
+        value["humans"][1]["relation"] = json!("sideways");
+        value["robot"]["colour"] = json!("red");
+        let faults = parse_proposal(&value.to_string(), &asked()).unwrap_err();
+        let places: Vec<&str> = faults.iter().map(|fault| fault.at.as_str()).collect();
+        assert_eq!(places, ["$.humans[1].relation", "$.place", "$.robot.colour"]);
+        assert!(faults[1].message.contains("\"intersection\"") && faults[1].message.contains("found `\"moon\"`"));
+    }
+
+    #[test]
+    fn a_node_id_that_cannot_be_one_is_refused_with_what_is_allowed() {
+        let text = json!({"robot": ["a b"], "humans": {"human_1": ["c"]}, "encounters": []}).to_string();
+        let faults = parse_paths(&text, &question(Stage::Paths)).unwrap_err();
+        assert_eq!(faults[0].code, FaultCode::ESchema);
+        assert!(faults[0].message.contains("without blanks"), "{}", faults[0].message);
+    }
+}

@@ -1,0 +1,63 @@
+//! Why the last answer was refused, as the author reads it.
+
+use socrates_model::Fault;
+
+use crate::message::{Message, Role};
+
+/// Most reasons that are given at once; more only confuse.
+const MOST: usize = 8;
+/// Longest refused answer that is shown again, characters.
+const LONGEST: usize = 24_000;
+const CLOSING: &str =
+    "Keep what is correct, change only what is listed, and answer in the same form with the whole answer.";
+
+/// The refused answer and the reasons, or the reasons alone where the answer is not kept.
+pub(crate) fn messages(faults: &[Fault], refused: Option<&str>) -> Vec<Message> {
+    if faults.is_empty() {
+        return Vec::new();
+    }
+    let mut listed: Vec<&Fault> = Vec::new();
+    // Newest last: those are the faults of the refused answer. The same one twice says nothing more.
+    for fault in faults.iter().rev() {
+        if !listed.contains(&fault) {
+            listed.push(fault);
+        }
+    }
+    let more = listed.len().saturating_sub(MOST);
+    listed.truncate(MOST);
+    listed.reverse();
+    let mut text = String::new();
+    for (index, fault) in listed.iter().enumerate() {
+        text.push_str(&format!("{}. {fault}\n", index + 1));
+    }
+    if more > 0 {
+        text.push_str(&format!("(and {more} more of the same kinds)\n"));
+    }
+    match refused {
+        Some(answer) => {
+            let shown: String = answer.chars().take(LONGEST).collect();
+            vec![
+                Message::text(Role::Assistant, shown),
+                Message::text(Role::User, format!("This answer is refused:\n{text}{CLOSING}")),
+            ]
+        }
+        None => vec![Message::text(Role::User, format!("Earlier answers were refused. Avoid this:\n{text}"))],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use socrates_model::FaultCode;
+
+    #[test]
+    fn at_most_eight_reasons_are_given_and_none_twice() {
+        let mut faults: Vec<Fault> =
+            (0..10).map(|k| Fault::new(FaultCode::GDisc, format!("robot step {k}"), "jumps")).collect();
+        faults.push(faults[9].clone());
+        let messages = messages(&faults, Some("{}"));
+        let text = &messages[1].text;
+        assert!(text.contains("8. G-DISC robot step 9") && !text.contains("9. G-DISC"), "{text}");
+        assert!(text.contains("and 2 more"), "{text}");
+    }
+}

@@ -1,0 +1,264 @@
+//! One attempt: ask, read, check. Once.
+
+use serde::{Deserialize, Serialize};
+use socrates_checks::{check_behaviors, check_paths, check_proposal};
+use socrates_model::fault::hard;
+use socrates_model::job::Stage;
+use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal};
+use socrates_prompts::{Message, Question, json, parse_behaviors, parse_paths, parse_proposal};
+
+use crate::author::{Answer, AskError, Author};
+
+/// What an author wrote, typed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Written {
+    /// Answer of the proposal stage.
+    Proposal(Proposal),
+    /// Answer of the paths stage.
+    Paths(Paths),
+    /// Answer of the behaviors stage.
+    Behaviors(Behaviors),
+}
+
+impl Written {
+    /// Short words for the status line: `2 people`, `8 nodes · 2 encounters`, `2 trees`.
+    #[must_use]
+    pub fn remark(&self) -> String {
+        let some = |count: usize, one: &str, many: &str| format!("{count} {}", if count == 1 { one } else { many });
+        match self {
+            Self::Proposal(proposal) => some(proposal.humans.len(), "person", "people"),
+            Self::Paths(paths) => format!(
+                "{} · {}",
+                some(paths.robot.len(), "node", "nodes"),
+                some(paths.encounters.len(), "encounter", "encounters")
+            ),
+            Self::Behaviors(behaviors) => some(behaviors.humans.len(), "tree", "trees"),
+        }
+    }
+
+    fn sign(&mut self, author: &str) {
+        let place = match self {
+            Self::Proposal(proposal) => &mut proposal.author,
+            Self::Paths(paths) => &mut paths.author,
+            Self::Behaviors(behaviors) => &mut behaviors.author,
+        };
+        author.clone_into(place);
+    }
+}
+
+/// One exchange with an author, kept for provenance whether the answer was good or not.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Exchange {
+    /// Format number.
+    pub format: u32,
+    /// Stage of the question.
+    pub stage: Stage,
+    /// Author as configured.
+    pub author: String,
+    /// Author as it answered (the model the server names).
+    pub model: String,
+    /// Content address of the question's JSON.
+    pub question: Digest,
+    /// Seed of the question.
+    pub seed: u64,
+    /// What was sent, for authors that read messages.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub messages: Vec<Message>,
+    /// The answer as it came; empty where none came.
+    pub answer: String,
+    /// Tokens in and out.
+    pub tokens: (u64, u64),
+    /// What was repaired to read it; such an answer is not counted as right at first pass.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub repairs: Vec<Fault>,
+    /// Faults put in on purpose.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub injected: Vec<String>,
+    /// What was found wrong; warnings too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Fault>,
+}
+
+/// A good answer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Made {
+    /// The artifact, signed with its author.
+    pub written: Written,
+    /// How it came about.
+    pub exchange: Exchange,
+}
+
+/// A refused answer, or none.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{} faults, the first: {}", faults.len(), faults.first().map(ToString::to_string).unwrap_or_default())]
+pub struct Refused {
+    /// How the orchestrator treats it.
+    pub class: FailureClass,
+    /// Every reason at once; warnings come last.
+    pub faults: Vec<Fault>,
+    /// The refused text, for the next ask; nothing where there is no text worth showing again.
+    pub text: Option<String>,
+    /// How long the server wants us to wait, ms.
+    pub retry_after_ms: Option<u64>,
+    /// How it came about.
+    pub exchange: Box<Exchange>,
+}
+
+/// Asks once, reads the answer, checks it.
+///
+/// # Errors
+/// [`Refused`] with every reason at once.
+pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, Refused> {
+    let asked = serde_json::to_vec(question).map(|bytes| Digest::of(&bytes));
+    let mut exchange = Exchange {
+        format: FORMAT,
+        stage: question.stage,
+        author: author.name(),
+        model: String::new(),
+        question: asked.unwrap_or_else(|_no_json| Digest::of(&[])),
+        seed: question.seed,
+        messages: Vec::new(),
+        answer: String::new(),
+        tokens: (0, 0),
+        repairs: Vec::new(),
+        injected: Vec::new(),
+        faults: Vec::new(),
+    };
+    let answer = match author.ask(question).await {
+        Ok(answer) => answer,
+        Err(error) => return Err(unanswered(&error, exchange)),
+    };
+    exchange.repairs = json::repairs(&answer.text);
+    let outcome = if answer.cut { Err(vec![cut(&answer)]) } else { read(&answer.text, question) };
+    let model = answer.model.clone();
+    exchange.model = answer.model;
+    exchange.messages = answer.sent;
+    exchange.tokens = answer.tokens;
+    exchange.injected = answer.injected;
+    exchange.answer = answer.text;
+    let (written, faults) = match outcome {
+        Ok(written) => {
+            let faults = check(&written, question);
+            (Some(written), faults)
+        }
+        Err(faults) => (None, faults),
+    };
+    exchange.faults.clone_from(&faults);
+    match written {
+        Some(mut written) if hard(&faults).is_empty() => {
+            written.sign(&model);
+            Ok(Made { written, exchange })
+        }
+        Some(_) | None => Err(refused(faults, exchange)),
+    }
+}
+
+fn read(text: &str, question: &Question) -> Result<Written, Vec<Fault>> {
+    match question.stage {
+        Stage::Proposal => parse_proposal(text, question).map(Written::Proposal),
+        Stage::Paths => parse_paths(text, question).map(Written::Paths),
+        Stage::Behaviors => parse_behaviors(text, question).map(Written::Behaviors),
+        Stage::Simulation | Stage::Scoring | Stage::Review => Err(vec![Fault::new(
+            FaultCode::JSpec,
+            question.stage,
+            "is no authoring stage; allowed: proposal, paths, behaviors",
+        )]),
+    }
+}
+
+fn check(written: &Written, question: &Question) -> Vec<Fault> {
+    let place = &question.location;
+    match (written, &question.proposal) {
+        (Written::Proposal(proposal), _) => check_proposal(proposal, &question.reading, place),
+        (Written::Paths(paths), Some(proposal)) => check_paths(paths, proposal, place),
+        (Written::Behaviors(behaviors), Some(proposal)) if question.only.is_empty() => {
+            check_behaviors(behaviors, proposal, place)
+        }
+        (Written::Behaviors(behaviors), Some(proposal)) => {
+            // A split question answers for some; what they hear from the others is checked when all are together.
+            let mut part = proposal.clone();
+            part.humans.retain(|human| question.only.contains(&human.id));
+            let mut faults = check_behaviors(behaviors, &part, place);
+            faults.retain(|fault| fault.code != FaultCode::BHear);
+            faults
+        }
+        (Written::Paths(_) | Written::Behaviors(_), None) => {
+            vec![Fault::new(FaultCode::JSpec, question.stage, "needs a proposal to be checked against")]
+        }
+    }
+}
+
+fn cut(answer: &Answer) -> Fault {
+    let message = format!(
+        "was cut by the limit of tokens after {} characters; answer again, and shorter",
+        answer.text.chars().count()
+    );
+    Fault::new(FaultCode::ETrunc, "answer", message)
+}
+
+fn unanswered(error: &AskError, mut exchange: Exchange) -> Refused {
+    let fault = error.fault();
+    exchange.faults = vec![fault.clone()];
+    Refused {
+        class: error.code.class(),
+        faults: vec![fault],
+        text: None,
+        retry_after_ms: error.retry_after_ms,
+        exchange: Box::new(exchange),
+    }
+}
+
+fn refused(mut faults: Vec<Fault>, exchange: Exchange) -> Refused {
+    faults.sort_by_key(Fault::is_soft);
+    let text = (!exchange.answer.trim().is_empty()).then(|| exchange.answer.clone());
+    Refused { class: class_of(&faults), faults, text, retry_after_ms: None, exchange: Box::new(exchange) }
+}
+
+/// The class of the weightiest hard fault: what cannot get better by asking wins, then a wrong answer, then an unreadable one.
+fn class_of(faults: &[Fault]) -> FailureClass {
+    const BY_WEIGHT: [FailureClass; 4] =
+        [FailureClass::Poison, FailureClass::Permanent, FailureClass::Semantic, FailureClass::Unparsable];
+    let classes: Vec<FailureClass> = hard(faults).iter().map(|fault| fault.code.class()).collect();
+    BY_WEIGHT.into_iter().find(|class| classes.contains(class)).unwrap_or(FailureClass::Transient)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Scripted, good_paths, question};
+
+    #[tokio::test]
+    async fn a_good_answer_is_signed_by_its_author() {
+        let made = attempt(&Scripted::says(&good_paths()), &question(Stage::Paths)).await.unwrap();
+        let Written::Paths(paths) = &made.written else { panic!("{made:?}") };
+        assert_eq!(paths.author, "scripted");
+        assert_eq!(made.written.remark(), "5 nodes · 2 encounters");
+        assert!(made.exchange.faults.is_empty() && made.exchange.repairs.is_empty());
+    }
+
+    #[tokio::test]
+    async fn a_wrong_answer_is_refused_with_its_text_and_every_reason() {
+        let text = good_paths().replace("\"w_1\",", "");
+        let refused = attempt(&Scripted::says(&text), &question(Stage::Paths)).await.unwrap_err();
+        assert_eq!((refused.class, refused.text.as_deref()), (FailureClass::Semantic, Some(text.as_str())));
+        assert_eq!(refused.faults[0].code, FaultCode::GDisc);
+        assert_eq!(refused.exchange.answer, text);
+    }
+
+    #[tokio::test]
+    async fn a_cut_answer_is_unparsable_and_a_fence_is_repaired() {
+        let cut = Scripted { cut: true, ..Scripted::says(&good_paths()) };
+        let refused = attempt(&cut, &question(Stage::Paths)).await.unwrap_err();
+        assert_eq!((refused.class, refused.faults[0].code), (FailureClass::Unparsable, FaultCode::ETrunc));
+        let fenced = format!("```json\n{}\n```", good_paths());
+        let made = attempt(&Scripted::says(&fenced), &question(Stage::Paths)).await.unwrap();
+        assert_eq!(made.exchange.repairs[0].code, FaultCode::EExtra);
+    }
+
+    #[tokio::test]
+    async fn no_answer_keeps_its_class_and_its_wish_to_wait() {
+        let slow = Scripted::fails(AskError { code: FaultCode::T429, message: "slow".into(), retry_after_ms: Some(7) });
+        let refused = attempt(&slow, &question(Stage::Paths)).await.unwrap_err();
+        assert_eq!((refused.class, refused.retry_after_ms, refused.text), (FailureClass::Overload, Some(7), None));
+    }
+}

@@ -1,0 +1,220 @@
+//! From the document to flat arrays: subtrees unfold, names of entries become slots.
+
+use std::collections::BTreeMap;
+
+use socrates_model::{Fault, FaultCode};
+
+use crate::blackboard::{Input, Value, read_flag};
+use crate::parse::{Document, GUARDS, key_in_braces};
+use crate::script::Script;
+use crate::sheet::{Kind, PortKind, Role};
+use crate::tree::{Format, Guards, Node, Tree};
+use crate::xml::Element;
+
+/// Most nodes of an unfolded tree.
+pub(crate) const MAX_NODES: usize = 4096;
+/// Deepest nesting of subtrees.
+const MAX_SUBTREES: usize = 16;
+
+/// How a subtree sees names that are not handed over one by one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sight {
+    /// Its own.
+    Own,
+    /// Those of the tree above.
+    Above,
+}
+
+/// The blackboard of one unfolded tree.
+struct Scope {
+    known: BTreeMap<String, usize>,
+    above: Option<usize>,
+    sight: Sight,
+}
+
+struct Builder<'a> {
+    document: &'a Document,
+    nodes: Vec<Node>,
+    board: Vec<Option<Value>>,
+    scopes: Vec<Scope>,
+    leaves: u16,
+    faults: Vec<Fault>,
+}
+
+/// Unfolds a document that was read without faults.
+pub(crate) fn build(document: Document) -> Result<Tree, Vec<Fault>> {
+    let mut builder = Builder {
+        document: &document,
+        nodes: Vec::new(),
+        board: Vec::new(),
+        scopes: vec![Scope { known: BTreeMap::new(), above: None, sight: Sight::Own }],
+        leaves: 0,
+        faults: Vec::new(),
+    };
+    if let Some(root) = document.tree(&document.main) {
+        builder.unfold(root, 0, None, &mut vec![document.main.clone()]);
+    }
+    let Builder { nodes, board, mut scopes, faults, .. } = builder;
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let keys = scopes.drain(..).next().map(|scope| scope.known).unwrap_or_default();
+    Ok(Tree { nodes, board, keys, format: document.format, document })
+}
+
+impl Builder<'_> {
+    /// The slot of a name as one scope sees it.
+    fn slot(&mut self, scope: usize, key: &str) -> usize {
+        let Some(here) = self.scopes.get(scope) else { return usize::MAX };
+        if let Some(slot) = here.known.get(key) {
+            return *slot;
+        }
+        let slot = match (here.sight, here.above) {
+            (Sight::Above, Some(above)) => self.slot(above, key),
+            (Sight::Own | Sight::Above, _) => self.new_slot(None),
+        };
+        if let Some(here) = self.scopes.get_mut(scope) {
+            here.known.insert(key.to_owned(), slot);
+        }
+        slot
+    }
+
+    fn new_slot(&mut self, value: Option<Value>) -> usize {
+        self.board.push(value);
+        self.board.len() - 1
+    }
+
+    fn unfold(&mut self, it: &Element, scope: usize, parent: Option<usize>, open: &mut Vec<String>) -> Option<usize> {
+        if self.nodes.len() >= MAX_NODES {
+            if self.faults.is_empty() {
+                let message = format!("the subtrees unfold to more than {MAX_NODES} nodes");
+                self.faults.push(Fault::new(FaultCode::BMain, it.at(), message));
+            }
+            return None;
+        }
+        let sheet = self.document.sheet(it)?;
+        let is_subtree = matches!(it.tag.as_str(), "SubTree" | "SubTreePlus");
+        let named = if is_subtree && self.document.format == Format::V3 { it.attr("ID") } else { it.attr("name") };
+        let name = named.map_or_else(|| it.tag.clone(), str::to_owned);
+        let inputs = if is_subtree || matches!(sheet.role, Role::Foreign) {
+            Vec::new()
+        } else {
+            sheet.ports.iter().map(|port| self.input(it, port, scope)).collect()
+        };
+        let script = match it.attr("code") {
+            Some(code) if it.tag == "Script" => self.script(code, scope),
+            Some(_) | None => None,
+        };
+        let guards = self.guards(it, scope);
+        let is_leaf = matches!(sheet.kind, Kind::Condition | Kind::Action);
+        let leaf = if is_leaf {
+            self.leaves += 1;
+            self.leaves
+        } else {
+            0
+        };
+        let index = self.nodes.len();
+        self.nodes.push(Node {
+            sheet,
+            name,
+            inputs,
+            children: Vec::new(),
+            parent,
+            leaf,
+            guards,
+            script,
+            site: it.site.clone(),
+        });
+        let children = if is_subtree {
+            self.subtree(it, scope, index, open).into_iter().collect()
+        } else {
+            it.children.iter().filter_map(|child| self.unfold(child, scope, Some(index), open)).collect()
+        };
+        if let Some(node) = self.nodes.get_mut(index) {
+            node.children = children;
+        }
+        Some(index)
+    }
+
+    /// The root of the tree that a subtree node names, in a scope of its own.
+    fn subtree(&mut self, it: &Element, scope: usize, index: usize, open: &mut Vec<String>) -> Option<usize> {
+        let id = it.attr("ID")?.to_owned();
+        if open.contains(&id) || open.len() >= MAX_SUBTREES {
+            let message = format!("the tree `{id}` contains itself, by way of `{}`", open.join("` → `"));
+            self.faults.push(Fault::new(FaultCode::BMain, it.at(), message));
+            return None;
+        }
+        let document = self.document;
+        let root = document.tree(&id)?;
+        let inner = self.scope_of(it, scope);
+        open.push(id);
+        let child = self.unfold(root, inner, Some(index), open);
+        open.pop();
+        child
+    }
+
+    fn scope_of(&mut self, it: &Element, outer: usize) -> usize {
+        let v3 = self.document.format == Format::V3;
+        let plain_names = v3 && it.tag == "SubTree";
+        let mut known = BTreeMap::new();
+        let mut sight = Sight::Own;
+        for (name, value) in &it.attrs {
+            match name.as_str() {
+                "ID" | "name" => {}
+                "__shared_blackboard" | "__autoremap" | "_autoremap" => {
+                    if read_flag(value) == Some(true) {
+                        sight = Sight::Above;
+                    }
+                }
+                name if GUARDS.contains(&name) => {}
+                name => {
+                    let slot = if plain_names {
+                        self.slot(outer, value)
+                    } else if let Some(key) = key_in_braces(value) {
+                        self.slot(outer, if key == "=" { name } else { key })
+                    } else {
+                        self.new_slot(Some(Value::Text(value.clone())))
+                    };
+                    known.insert(name.to_owned(), slot);
+                }
+            }
+        }
+        self.scopes.push(Scope { known, above: Some(outer), sight });
+        self.scopes.len() - 1
+    }
+
+    fn input(&mut self, it: &Element, port: &crate::sheet::PortSheet, scope: usize) -> Input {
+        let name = match self.document.format {
+            Format::V3 => port.name,
+            Format::V4 => port.v4_name.unwrap_or(port.name),
+        };
+        let text = it.attr(name).or(port.default).unwrap_or("");
+        match (port.kind, key_in_braces(text)) {
+            (PortKind::Key, Some(key)) => Input::Slot(self.slot(scope, key)),
+            (PortKind::Key, None) => Input::Slot(self.slot(scope, text)),
+            (PortKind::Own | PortKind::Code, _) | (_, None) => Input::Fixed(text.to_owned()),
+            (_, Some(key)) => Input::Slot(self.slot(scope, key)),
+        }
+    }
+
+    fn script(&mut self, code: &str, scope: usize) -> Option<Script> {
+        Script::read(code, &mut |key| self.slot(scope, key)).ok()
+    }
+
+    fn guards(&mut self, it: &Element, scope: usize) -> Option<Box<Guards>> {
+        if self.document.format == Format::V3 || !it.attrs.iter().any(|(name, _)| GUARDS.contains(&name.as_str())) {
+            return None;
+        }
+        let mut read = |name: &str| it.attr(name).and_then(|code| self.script(code, scope));
+        Some(Box::new(Guards {
+            failure_if: read("_failureIf"),
+            success_if: read("_successIf"),
+            skip_if: read("_skipIf"),
+            hold_while: read("_while"),
+            on_success: read("_onSuccess"),
+            on_failure: read("_onFailure"),
+            on_halted: read("_onHalted"),
+            post: read("_post"),
+        }))
+    }
+}

@@ -1,0 +1,185 @@
+//! What can be so or not, and which of these truths the world allows together.
+
+use socrates_model::Trigger;
+
+use crate::check::below;
+use crate::sheet::{Kind, Role};
+use crate::tree::Tree;
+
+/// Most conditions for which every case is ticked.
+const MAX_EXACT: usize = 12;
+/// Cases of the sample beyond that.
+const SAMPLE: u64 = 4096;
+/// One thing that can be so or not.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Atom {
+    /// A condition, in words of the model. `RobotStopped` is asked as `RobotMoving`.
+    World(Trigger),
+    /// This human is at the present goal of its path; so it is at the end of it.
+    GoalHere,
+    /// A timer has run out: place of its node and its seconds.
+    Timer(usize, f64),
+    /// A latch holds, a `RunOnce` has run: place of its node.
+    Memory(usize),
+}
+
+impl Atom {
+    /// Whether it is about the tree's own past.
+    pub(super) const fn is_memory(&self) -> bool {
+        matches!(self, Self::Timer(..) | Self::Memory(_))
+    }
+
+    /// In words.
+    pub(super) fn phrase(&self, tree: &Tree, holds: bool) -> String {
+        match (self, holds) {
+            (Self::GoalHere, _) => format!("{} at a goal of its path", if holds { "while" } else { "while not" }),
+            (Self::World(trigger), true) => trigger.phrase(),
+            (Self::World(trigger), false) => format!("not {}", trigger.phrase()),
+            (Self::Timer(_, secs), true) => format!("after the timer of {secs} s"),
+            (Self::Timer(_, secs), false) => format!("before the timer of {secs} s has run out"),
+            (Self::Memory(node), _) => {
+                let name = tree.nodes.get(*node).map_or("", |node| node.name.as_str());
+                format!("{} `{name}` is set", if holds { "once" } else { "before" })
+            }
+        }
+    }
+}
+
+/// What a tree asks, in pre-order, each once.
+pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
+    let mut atoms: Vec<Atom> = Vec::new();
+    for (index, node) in tree.nodes.iter().enumerate() {
+        let ports = tree.ports(node);
+        let atom = match node.sheet.role {
+            Role::Asks(_) if node.sheet.tag == "IsGoalReached" => Some(Atom::GoalHere),
+            Role::Asks(means) => means(&ports).map(|trigger| {
+                Atom::World(if trigger == Trigger::RobotStopped { Trigger::RobotMoving } else { trigger })
+            }),
+            Role::Timer => ports.real(0).map(|secs| Atom::Timer(index, secs)),
+            Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce") => Some(Atom::Memory(index)),
+            Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet | Role::Foreign => None,
+        };
+        if let Some(atom) = atom
+            && !atoms.contains(&atom)
+        {
+            atoms.push(atom);
+        }
+    }
+    atoms
+}
+
+/// Whether the first truth forces the second.
+fn implies(a: &Trigger, b: &Trigger) -> bool {
+    use Trigger::{AfterSecs, RobotBlocking, RobotNear, RobotVisible};
+    match (a, b) {
+        (RobotVisible(near), RobotVisible(far) | RobotNear(far))
+        | (RobotNear(near), RobotNear(far))
+        | (RobotBlocking(near), RobotBlocking(far) | RobotVisible(far) | RobotNear(far)) => near <= far,
+        (AfterSecs(late), AfterSecs(early)) => late >= early,
+        _ => false,
+    }
+}
+
+/// Whether both cannot be true at once.
+fn excludes(a: &Trigger, b: &Trigger) -> bool {
+    match (a, b) {
+        (Trigger::RobotSays(one), Trigger::RobotSays(other)) => one != other,
+        (Trigger::HumanSays(who, one), Trigger::HumanSays(whom, other)) => who == whom && one != other,
+        _ => false,
+    }
+}
+
+/// Whether the world allows these truths.
+fn is_possible(atoms: &[Atom], truth: &[bool]) -> bool {
+    let world = || {
+        atoms.iter().zip(truth).filter_map(|(atom, holds)| match atom {
+            Atom::World(trigger) => Some((trigger, *holds)),
+            Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere => None,
+        })
+    };
+    world()
+        .filter(|(_, holds)| *holds)
+        .all(|(a, _)| world().all(|(b, holds)| if holds { a == b || !excludes(a, b) } else { !implies(a, b) }))
+}
+
+/// The cases to tick: all that are possible, or a fixed sample of them.
+pub(super) fn truths(tree: &Tree, atoms: &[Atom]) -> Vec<Vec<bool>> {
+    let n = atoms.len();
+    if n <= MAX_EXACT {
+        return (0..1_u64 << n).map(|bits| unpack(bits, n)).filter(|truth| is_possible(atoms, truth)).collect();
+    }
+    let mut sample = aimed(tree, atoms);
+    sample.push(vec![false; n]);
+    let mut seed = 0x5eed_u64;
+    for _ in 0..SAMPLE {
+        let truth = (0..n).map(|_| next(&mut seed).is_multiple_of(3)).collect();
+        sample.push(truth);
+    }
+    let mut closed: Vec<Vec<bool>> =
+        sample.into_iter().map(|truth| close(atoms, truth)).filter(|truth| is_possible(atoms, truth)).collect();
+    closed.sort_unstable();
+    closed.dedup();
+    closed
+}
+
+fn unpack(bits: u64, n: usize) -> Vec<bool> {
+    (0..n).map(|place| bits >> place & 1 == 1).collect()
+}
+
+/// SplitMix64: a fixed sequence, so that the same tree gets the same cases.
+fn next(seed: &mut u64) -> u64 {
+    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *seed;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Adds what the truths force.
+fn close(atoms: &[Atom], mut truth: Vec<bool>) -> Vec<bool> {
+    let forced: Vec<bool> = atoms
+        .iter()
+        .zip(&truth)
+        .map(|(atom, holds)| {
+            *holds || atoms.iter().zip(&truth).any(|(other, other_holds)| *other_holds && forces(other, atom))
+        })
+        .collect();
+    truth.clone_from(&forced);
+    truth
+}
+
+fn forces(a: &Atom, b: &Atom) -> bool {
+    match (a, b) {
+        (Atom::World(Trigger::GoalReached), Atom::GoalHere) => true,
+        (Atom::World(a), Atom::World(b)) => implies(a, b),
+        _ => false,
+    }
+}
+
+/// For every sequence the case in which just its own conditions hold.
+fn aimed(tree: &Tree, atoms: &[Atom]) -> Vec<Vec<bool>> {
+    let mut found = Vec::new();
+    for (index, node) in tree.nodes.iter().enumerate() {
+        if node.sheet.kind != Kind::Control {
+            continue;
+        }
+        let leaves = below(tree, index);
+        let truth: Vec<bool> = atoms
+            .iter()
+            .map(|atom| {
+                leaves.iter().filter_map(|leaf| tree.nodes.get(*leaf)).any(|leaf| match (atom, leaf.sheet.role) {
+                    (Atom::World(trigger), Role::Asks(means)) => {
+                        let inverted = leaf
+                            .parent
+                            .and_then(|parent| tree.nodes.get(parent))
+                            .is_some_and(|parent| parent.sheet.tag == "Inverter");
+                        !inverted && means(&tree.ports(leaf)).as_ref() == Some(trigger)
+                    }
+                    _ => false,
+                })
+            })
+            .collect();
+        found.push(truth);
+    }
+    found
+}

@@ -1,0 +1,84 @@
+//! Who is waited for, and who is spoken of.
+
+use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, HumanId, Trigger};
+
+use crate::check::{CheckContext, place};
+use crate::sheet::Role;
+use crate::tree::{Node, Tree};
+
+/// `B-HEAR` for gestures that nobody makes, `B-RANGE` for humans that are not there, `B-PORT` for
+/// entries that nothing sets.
+pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
+    let mut faults = Vec::new();
+    for node in &tree.nodes {
+        let ports = tree.ports(node);
+        match node.sheet.role {
+            Role::Asks(means) => match means(&ports) {
+                Some(Trigger::RobotSays(gesture)) => {
+                    hear(AgentId::Robot, gesture, ctx.robot_says, node, ctx, &mut faults)
+                }
+                Some(Trigger::HumanSays(id, gesture)) => {
+                    if target(id, node, ctx, &mut faults) {
+                        let made = ctx.human_says.get(&id).map_or(&[][..], Vec::as_slice);
+                        hear(AgentId::Human(id), gesture, made, node, ctx, &mut faults);
+                    }
+                }
+                Some(
+                    Trigger::Always
+                    | Trigger::RobotVisible(_)
+                    | Trigger::RobotNear(_)
+                    | Trigger::RobotBlocking(_)
+                    | Trigger::RobotMoving
+                    | Trigger::RobotStopped
+                    | Trigger::GoalReached
+                    | Trigger::AtEncounter
+                    | Trigger::AfterSecs(_),
+                )
+                | None => {}
+            },
+            Role::Moves(means) => {
+                if let Some(Action::FollowHuman(id)) = means(&ports) {
+                    target(id, node, ctx, &mut faults);
+                }
+            }
+            Role::Flow | Role::Timer | Role::Says | Role::Quiet | Role::Foreign => {}
+        }
+    }
+    faults.sort();
+    faults.dedup();
+    faults
+}
+
+fn hear(
+    who: AgentId,
+    gesture: Gesture,
+    made: &[Gesture],
+    node: &Node,
+    ctx: &CheckContext<'_>,
+    faults: &mut Vec<Fault>,
+) {
+    // NONE is heard from everybody who says nothing.
+    if gesture == Gesture::None || made.contains(&gesture) {
+        return;
+    }
+    let made: Vec<&str> =
+        made.iter().filter(|gesture| **gesture != Gesture::None).map(|gesture| gesture.name()).collect();
+    let made = if made.is_empty() { "no gesture".to_owned() } else { made.join(", ") };
+    let message = format!("waits for {gesture} of {who}, which never makes it; {who} makes: {made}");
+    faults.push(Fault::new(FaultCode::BHear, place(ctx, node), message));
+}
+
+/// Whether the human exists and is somebody else.
+fn target(id: HumanId, node: &Node, ctx: &CheckContext<'_>, faults: &mut Vec<Fault>) -> bool {
+    if id != ctx.human && id.number() <= ctx.humans {
+        return true;
+    }
+    let others: Vec<String> = (1..=ctx.humans.min(64))
+        .filter(|number| *number != ctx.human.number())
+        .map(|number| number.to_string())
+        .collect();
+    let others = if others.is_empty() { "nobody, there is no other human".to_owned() } else { others.join(", ") };
+    let message = format!("target_id=`{}` is not another human; allowed: {others}", id.number());
+    faults.push(Fault::new(FaultCode::BRange, place(ctx, node), message));
+    false
+}

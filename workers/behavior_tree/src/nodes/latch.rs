@@ -1,0 +1,34 @@
+//! `Latch`: once true, true for ever. A rule that goes on when its trigger has passed needs it.
+
+use crate::nodes::halt_children;
+use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
+use crate::status::Status;
+use crate::tick::Ticker;
+
+/// `Latch`.
+pub(super) const SHEET: NodeSheet = NodeSheet {
+    tag: "Latch",
+    v3_tag: None,
+    kind: Kind::Decorator,
+    library: Library::Native,
+    arity: Arity::ONE,
+    ports: &[],
+    about: "fails until its child first succeeds; from then on succeeds without asking again",
+    role: Role::Flow,
+    tick,
+    halt: halt_children,
+};
+
+/// The memory is in `outcome`, since `done` belongs to a parent that may be a `Parallel`.
+fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
+    if t.cell(node).outcome == Status::Success {
+        return Status::Success;
+    }
+    t.set(node, Status::Running);
+    let outcome = t.tick_child(node, 0);
+    if outcome.is_finished() {
+        t.cell(node).outcome = outcome;
+        t.reset_child(node, 0);
+    }
+    outcome
+}

@@ -1,0 +1,31 @@
+//! `IsRobotBlocking`: the robot is in this human's way.
+
+use socrates_model::Trigger;
+
+use crate::blackboard::Ports;
+use crate::nodes::halt_leaf;
+use crate::sheet::{Arity, Kind, Library, NodeSheet, PortSheet, Role};
+use crate::status::Status;
+use crate::tick::Ticker;
+
+/// `IsRobotBlocking`.
+pub(super) const SHEET: NodeSheet = NodeSheet {
+    tag: "IsRobotBlocking",
+    v3_tag: None,
+    kind: Kind::Condition,
+    library: Library::SocratesFork,
+    arity: Arity::NONE,
+    ports: &[PortSheet::OWN, PortSheet::DISTANCE],
+    about: "holds while the robot stands in this human's way within the distance",
+    role: Role::Asks(means),
+    tick,
+    halt: halt_leaf,
+};
+
+fn means(ports: &Ports<'_>) -> Option<Trigger> {
+    ports.real(1).map(Trigger::RobotBlocking)
+}
+
+fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
+    Status::of(t.ports(node).real(1).is_some_and(|within_m| t.world.robot_blocking(within_m)))
+}

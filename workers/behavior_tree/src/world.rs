@@ -1,0 +1,48 @@
+//! What a tree sees and what it can do.
+
+use socrates_model::{Action, Gesture, HumanId, SimTime};
+
+use crate::status::Status;
+
+/// One human's view at the start of a tick. What is done in a tick is seen in the next one.
+pub trait World {
+    /// Distance to the robot, center to center, m; `None` where there is no robot.
+    fn robot_distance_m(&self) -> Option<f64>;
+    /// Whether the robot is in the field of view, in line of sight and within `within_m`.
+    fn robot_visible(&self, within_m: f64) -> bool;
+    /// Whether the robot stands in this human's way within `within_m`.
+    fn robot_blocking(&self, within_m: f64) -> bool;
+    /// Whether the robot moves, in any direction.
+    fn robot_moving(&self) -> bool;
+    /// The gesture the robot makes.
+    fn robot_gesture(&self) -> Gesture;
+    /// The gesture another human makes.
+    fn human_gesture(&self, id: HumanId) -> Gesture;
+    /// Whether this human is at the present goal of its path.
+    fn goal_reached(&self) -> bool;
+    /// Whether this human is at the last goal of its path. A world that takes the next goal by itself
+    /// need not say more than [`World::goal_reached`].
+    fn path_done(&self) -> bool {
+        self.goal_reached()
+    }
+    /// Takes the next goal of the path; at the last one nothing changes.
+    fn next_goal(&mut self);
+    /// Whether this human is at the node where it meets the robot.
+    fn at_encounter(&self) -> bool;
+    /// Time since the start of the run.
+    fn now(&self) -> SimTime;
+    /// Length of a tick, s.
+    fn step_s(&self) -> f64;
+    /// Does something for the length of this tick. `leaf` counts the leaves of
+    /// [`Tree::leaf_names`](crate::Tree::leaf_names) from 1.
+    fn act(&mut self, action: &Action, leaf: u16);
+    /// Makes a gesture that lasts until the next one; [`Gesture::None`] takes it back.
+    fn gesture(&mut self, gesture: Gesture);
+
+    /// Ticks a leaf that is not in the catalogue (see [`Options::foreign`](crate::Options)).
+    fn foreign(&mut self, _leaf: u16) -> Status {
+        Status::Failure
+    }
+    /// A foreign leaf that was running is stopped.
+    fn foreign_halted(&mut self, _leaf: u16) {}
+}

@@ -1,0 +1,66 @@
+//! The stage itself.
+
+use socrates_author::{Desk, Keys, Papers};
+use socrates_kit::{Done, Failure, Job, Stage};
+use socrates_model::job;
+
+use crate::report;
+
+/// Serves jobs of the behaviors stage.
+///
+/// Inputs by role: `request`, `reading`, `location`, `proposal`. Outputs: `behaviors`, and `exchange` for provenance.
+#[derive(Debug, Clone, Default)]
+pub struct BehaviorsStage {
+    desk: Desk,
+}
+
+impl BehaviorsStage {
+    /// A stage whose authors use these keys; jobs carry none.
+    #[must_use]
+    pub const fn new(keys: Keys) -> Self {
+        Self { desk: Desk::new(keys) }
+    }
+}
+
+impl Stage for BehaviorsStage {
+    const STAGE: job::Stage = job::Stage::Behaviors;
+
+    async fn run(&self, job: &Job) -> Result<Done, Failure> {
+        let spec = job.spec();
+        let papers = Papers {
+            stage: Self::STAGE,
+            request: job.json("request")?,
+            reading: job.json("reading")?,
+            location: job.json("location")?,
+            proposal: Some(job.json("proposal")?),
+            only: Vec::new(),
+            feedback: spec.feedback.clone(),
+            refused: job.refused().map(str::to_owned),
+            seed: spec.seed,
+            settings: spec.settings.clone(),
+            attempt: job.grant().attempt,
+        };
+        tracing::debug!(job = %spec.key, attempt = papers.attempt, "author asked");
+        match self.desk.answer(papers).await {
+            Ok(answer) => report::done(answer),
+            Err(refusal) => Err(report::failure(refusal)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use socrates_model::FaultCode;
+    use socrates_model::job::{JobKey, JobSpec};
+    use std::collections::BTreeMap;
+
+    #[tokio::test]
+    async fn a_job_without_its_papers_is_poison() {
+        let key =
+            JobKey { scenario: "s".parse().unwrap(), stage: job::Stage::Behaviors, item: String::new(), revision: 0 };
+        let spec: JobSpec = serde_json::from_value(serde_json::json!({"key": key, "inputs": {}, "seed": 5})).unwrap();
+        let failure = BehaviorsStage::default().run(&Job::detached(spec, BTreeMap::new())).await.unwrap_err();
+        assert_eq!(failure.faults[0].code, FaultCode::JSpec);
+    }
+}

@@ -1,0 +1,262 @@
+//! One attempt from grant to recorded report.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use socrates_link::LinkError;
+use socrates_model::job::{Artifact, INLINE_BYTES};
+use socrates_model::wire::{Grant, Outcome, Report};
+use socrates_model::{Digest, FailureClass, Fault, FaultCode};
+use tokio::task::{JoinError, JoinSet};
+use tokio::time::Instant;
+
+use crate::cancel::Cancel;
+use crate::error::KitError;
+use crate::held::slot_of;
+use crate::job::Job;
+use crate::messages::{Backoff, Worker};
+use crate::stage::{Done, Failure, Output, Stage};
+
+/// Inline text of one report, bytes: what is above goes to the artifact store, so that a report fits a message.
+const INLINE_BUDGET: usize = 32 * 1024;
+/// Faults of one report that keep their full words when it would not fit otherwise.
+const FAULTS_KEPT: usize = 20;
+/// Longest message of a fault when its report would not fit otherwise, characters.
+const FAULT_CHARS: usize = 400;
+
+/// Why an attempt has no report.
+enum End {
+    /// The stage is through.
+    Worked(Result<Done, Failure>),
+    /// It was told to stop.
+    Stopped,
+}
+
+/// Runs an attempt that [`crate::held::Held::take`] took.
+pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant: Grant) -> Result<(), KitError> {
+    let slot = slot_of(&grant);
+    let Some(entry) = worker.held.entry(&slot) else { return Ok(()) };
+    let begun = Instant::now();
+    tracing::debug!(job = %slot.0, attempt = slot.1, "begins");
+    let end = tokio::select! {
+        () = entry.cancel.stopped() => End::Stopped,
+        worked = work(&worker, stage, &grant, &entry.cancel, &entry.progress) => worked,
+    };
+    let worked = match end {
+        End::Worked(worked) => worked,
+        End::Stopped => {
+            tracing::info!(job = %slot.0, attempt = slot.1, "stopped");
+            worker.held.worked(&slot);
+            worker.release(&slot).await;
+            worker.held.end(&slot);
+            return Ok(());
+        }
+    };
+    let wall_ms = u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX);
+    let number = worker.next_report();
+    if let Some(delay) = worker.config.faults.delay {
+        tokio::time::sleep(delay).await;
+    }
+    if worker.config.faults.die_before_report == Some(number) {
+        return Err(KitError::InjectedDeath { at: "before a report" });
+    }
+    let report = report(&worker, &grant, worked, wall_ms).await;
+    let report = keep(&worker, report).await;
+    worker.held.worked(&slot);
+    worker.send_report(&report, number).await?;
+    worker.held.end(&slot);
+    Ok(())
+}
+
+/// Fetches the inputs and runs the stage within its deadline, on a task of its own so that a panic stays there.
+async fn work<S: Stage>(
+    worker: &Arc<Worker>,
+    stage: Arc<S>,
+    grant: &Grant,
+    cancel: &Cancel,
+    progress: &Arc<std::sync::atomic::AtomicU8>,
+) -> End {
+    let inputs = match inputs(worker, grant).await {
+        Ok(inputs) => inputs,
+        Err(failure) => return End::Worked(Err(failure)),
+    };
+    let (inputs, refused) = inputs;
+    let job = Job {
+        grant: grant.clone(),
+        inputs,
+        refused,
+        cancel: cancel.clone(),
+        progress: Arc::clone(progress),
+        live: worker.config.live.as_ref().map_or_else(|| Arc::clone(&worker.bus), Arc::clone),
+    };
+    // A set of one: dropping it stops the task.
+    let mut task = JoinSet::new();
+    task.spawn(async move { stage.run(&job).await });
+    let deadline = Duration::from_millis(grant.deadline_ms);
+    match tokio::time::timeout(deadline, task.join_next()).await {
+        Ok(Some(Ok(result))) => End::Worked(result),
+        Ok(Some(Err(why))) => End::Worked(Err(broke(grant, why))),
+        Ok(None) => End::Stopped,
+        Err(_elapsed) => {
+            cancel.stop();
+            let message = format!("the attempt took longer than its {} ms", grant.deadline_ms);
+            End::Worked(Err(Fault::new(FaultCode::JDeadline, &grant.spec.key, message).into()))
+        }
+    }
+}
+
+fn broke(grant: &Grant, why: JoinError) -> Failure {
+    let words = match why.try_into_panic() {
+        Ok(panic) => panic
+            .downcast_ref::<&str>()
+            .map(|text| (*text).to_owned())
+            .or_else(|| panic.downcast_ref::<String>().cloned())
+            .unwrap_or_else(|| "without words".to_owned()),
+        Err(why) => why.to_string(),
+    };
+    let message = format!("the worker broke on this job: {}", words.chars().take(FAULT_CHARS).collect::<String>());
+    Failure::new(FailureClass::Poison, vec![Fault::new(FaultCode::JPanic, &grant.spec.key, message)])
+}
+
+type Inputs = (BTreeMap<String, Vec<u8>>, Option<String>);
+
+async fn inputs(worker: &Worker, grant: &Grant) -> Result<Inputs, Failure> {
+    let mut fetched = BTreeMap::new();
+    for (role, digest) in &grant.spec.inputs {
+        fetched.insert(role.clone(), input(worker, grant, role, *digest).await?);
+    }
+    let refused = match grant.spec.refused {
+        Some(digest) => {
+            let bytes = input(worker, grant, "refused", digest).await?;
+            Some(String::from_utf8_lossy(&bytes).into_owned())
+        }
+        None => None,
+    };
+    Ok((fetched, refused))
+}
+
+async fn input(worker: &Worker, grant: &Grant, role: &str, digest: Digest) -> Result<Vec<u8>, Failure> {
+    if let Some(text) = grant.inline.get(&digest)
+        && Digest::of(text.as_bytes()) == digest
+    {
+        return Ok(text.clone().into_bytes());
+    }
+    worker.config.blobs.get(&worker.bus, digest, worker.config.timeout).await.map_err(|why| {
+        let message = format!("input `{role}` could not be fetched: {}", chain(&why));
+        Fault::new(FaultCode::JBlob, &grant.spec.key, message).into()
+    })
+}
+
+/// An error with its causes in one line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut source = error.source();
+    while let Some(cause) = source {
+        text.push_str(": ");
+        text.push_str(&cause.to_string());
+        source = cause.source();
+    }
+    text
+}
+
+/// Stores the outputs and makes the report. An output that cannot be stored makes it a passing failure.
+async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, wall_ms: u64) -> Report {
+    let mut report = Report {
+        instance: worker.config.instance.clone(),
+        key: grant.spec.key.clone(),
+        attempt: grant.attempt,
+        fence: grant.fence,
+        outcome: Outcome::Ok,
+        artifacts: Vec::new(),
+        wall_ms,
+        tokens: (0, 0),
+        remark: String::new(),
+        repair: None,
+        verdict: None,
+    };
+    let outputs = match worked {
+        Ok(done) => {
+            (report.tokens, report.remark) = (done.tokens, done.remark);
+            (report.repair, report.verdict) = (done.repair, done.verdict);
+            done.artifacts
+        }
+        Err(failure) => {
+            let Failure { class, faults, artifacts, retry_after_ms, tokens } = failure;
+            report.tokens = tokens;
+            report.outcome = Outcome::Failed { class, faults, retry_after_ms };
+            artifacts
+        }
+    };
+    let mut budget = INLINE_BUDGET;
+    for output in outputs {
+        match stored(worker, output, &mut budget).await {
+            Ok(artifact) => report.artifacts.push(artifact),
+            Err(fault) => {
+                report.outcome =
+                    Outcome::Failed { class: FailureClass::Transient, faults: vec![fault], retry_after_ms: None };
+                (report.repair, report.verdict) = (None, None);
+                break;
+            }
+        }
+    }
+    report
+}
+
+async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<Artifact, Fault> {
+    let Output { role, media, bytes } = output;
+    let (digest, len) = (Digest::of(&bytes), bytes.len());
+    let small = len <= INLINE_BYTES.min(*budget);
+    let inline = if small { std::str::from_utf8(&bytes).ok().map(str::to_owned) } else { None };
+    if inline.is_some() {
+        *budget -= len;
+    } else {
+        let put = worker.config.blobs.put(&worker.bus, bytes, worker.config.timeout).await;
+        put.map_err(|why| {
+            Fault::new(FaultCode::JBlob, &role, format!("output `{role}` could not be stored: {}", chain(&why)))
+        })?;
+    }
+    Ok(Artifact { role, digest, len: len as u64, media, inline })
+}
+
+/// Spools a report; one that does not fit a message gets shorter faults. A full disk is waited out.
+async fn keep(worker: &Worker, mut report: Report) -> Report {
+    let mut backoff = Backoff::new(&worker.config.instance);
+    loop {
+        let (spool, copy) = (worker.spool.clone(), report.clone());
+        let kept = match tokio::task::spawn_blocking(move || spool.keep(&copy)).await {
+            Ok(kept) => kept,
+            Err(why) => Err(KitError::Folder { path: worker.config.spool_dir.clone(), why: why.to_string() }),
+        };
+        match kept {
+            Ok(()) => return report,
+            Err(KitError::Link(LinkError::TooLarge { len, .. })) => {
+                tracing::warn!(job = %report.key, len, "the report is too large for a message and is shortened");
+                shorten(&mut report);
+            }
+            Err(why) => {
+                tracing::error!(job = %report.key, %why, "the report cannot be spooled; tried again");
+                tokio::time::sleep(backoff.next()).await;
+            }
+        }
+    }
+}
+
+/// Makes a report small enough for any message: first its faults, then its remark and repair.
+fn shorten(report: &mut Report) {
+    let cut = |faults: &mut Vec<Fault>| {
+        faults.truncate(FAULTS_KEPT);
+        for fault in faults {
+            fault.message = fault.message.chars().take(FAULT_CHARS).collect();
+            fault.at = fault.at.chars().take(FAULT_CHARS / 2).collect();
+        }
+    };
+    if let Outcome::Failed { faults, .. } = &mut report.outcome {
+        cut(faults);
+    }
+    if let Some(repair) = &mut report.repair {
+        cut(&mut repair.faults);
+    }
+    report.remark = report.remark.chars().take(FAULT_CHARS).collect();
+    report.artifacts.truncate(64);
+}

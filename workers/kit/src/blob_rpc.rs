@@ -1,0 +1,149 @@
+//! Artifacts over the bus, in parts of at most 48 KiB: the worker's side and the orchestrator's.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use socrates_link::{Ask, Bus, LinkError, call, keys};
+use socrates_model::Digest;
+use socrates_model::wire::{BlobGet, BlobPart, BlobPut};
+
+use crate::blobs::{BlobError, LocalBlobs, off_thread};
+
+/// Kind of a message that asks for a part.
+const KIND_GET: &str = "blob_get";
+/// Kind of a message that hands over a part.
+const KIND_PUT: &str = "blob_put";
+/// Largest part, bytes.
+const PART_BYTES: usize = 48 * 1024;
+/// Tries per part before the whole transfer is given up; the attempt is then reported as passing trouble.
+const TRIES: u32 = 5;
+/// Largest artifact that is taken over the bus, bytes: a recording of an hour with forty people.
+const MAX_BYTES: u64 = 1 << 30;
+
+async fn ask<Req, Rep>(
+    bus: &Arc<dyn Bus>,
+    key: &str,
+    kind: &str,
+    request: &Req,
+    timeout: Duration,
+) -> Result<Rep, LinkError>
+where
+    Req: serde::Serialize + Sync,
+    Rep: serde::de::DeserializeOwned,
+{
+    let mut pause = Duration::from_millis(50);
+    for _earlier in 1..TRIES {
+        match call(&**bus, key, kind, request, timeout).await {
+            Err(error) if error.is_transient() => tokio::time::sleep(pause).await,
+            settled => return settled,
+        }
+        pause *= 2;
+    }
+    call(&**bus, key, kind, request, timeout).await
+}
+
+/// Fetches an artifact part by part.
+pub(crate) async fn fetch(bus: &Arc<dyn Bus>, digest: Digest, timeout: Duration) -> Result<Vec<u8>, BlobError> {
+    let mut whole: Vec<u8> = Vec::new();
+    loop {
+        let get = BlobGet { digest, offset: whole.len() as u64 };
+        let part: BlobPart =
+            ask(bus, keys::BLOB_GET, KIND_GET, &get, timeout).await.map_err(|why| BlobError::Link { digest, why })?;
+        if !part.found {
+            return Err(BlobError::Missing { digest });
+        }
+        let ended = part.bytes.is_empty();
+        whole.extend(part.bytes);
+        if ended || whole.len() as u64 >= part.len || part.len > MAX_BYTES {
+            break;
+        }
+    }
+    let found = Digest::of(&whole);
+    if found == digest { Ok(whole) } else { Err(BlobError::Torn { digest, found }) }
+}
+
+/// Stores an artifact part by part.
+pub(crate) async fn store(bus: &Arc<dyn Bus>, bytes: &[u8], timeout: Duration) -> Result<Digest, BlobError> {
+    let digest = Digest::of(bytes);
+    let len = bytes.len() as u64;
+    let mut offset = 0_usize;
+    loop {
+        let part = bytes.get(offset..bytes.len().min(offset.saturating_add(PART_BYTES))).unwrap_or(&[]);
+        let put = BlobPut { digest, len, offset: offset as u64, bytes: part.to_vec() };
+        let held: u64 =
+            ask(bus, keys::BLOB_PUT, KIND_PUT, &put, timeout).await.map_err(|why| BlobError::Link { digest, why })?;
+        if held >= len {
+            return Ok(digest);
+        }
+        offset = usize::try_from(held).unwrap_or(usize::MAX);
+    }
+}
+
+/// Serves a folder of artifacts on the bus until the bus closes; the orchestrator's side.
+///
+/// # Errors
+/// [`LinkError`] when the keys cannot be served.
+pub async fn serve_blobs(bus: Arc<dyn Bus>, blobs: LocalBlobs) -> Result<(), LinkError> {
+    let (mut gets, mut puts) = (bus.serve(keys::BLOB_GET).await?, bus.serve(keys::BLOB_PUT).await?);
+    loop {
+        let (ask, answered) = tokio::select! {
+            Some(ask) = gets.next() => (keys::BLOB_GET, answer_get(&*bus, ask, &blobs).await),
+            Some(ask) = puts.next() => (keys::BLOB_PUT, answer_put(&*bus, ask, &blobs).await),
+            else => return Ok(()),
+        };
+        if let Err(why) = answered {
+            tracing::debug!(key = ask, %why, "a reply about an artifact did not go out");
+        }
+    }
+}
+
+async fn answer_get(bus: &dyn Bus, ask: Ask, blobs: &LocalBlobs) -> Result<(), LinkError> {
+    let get: BlobGet = match ask.read(KIND_GET) {
+        Ok(envelope) => envelope.body,
+        Err(why) => return ask.refuse(bus.name(), 0, &why.to_string()).await,
+    };
+    let folder = blobs.clone();
+    let read = off_thread(blobs.path(&get.digest), move || read_part(&folder, &get)).await;
+    match read {
+        Ok(part) => ask.answer(KIND_GET, bus.name(), 0, &part).await,
+        Err(BlobError::Missing { .. } | BlobError::Torn { .. }) => {
+            ask.answer(KIND_GET, bus.name(), 0, &BlobPart { len: 0, found: false, bytes: Vec::new() }).await
+        }
+        Err(why) => ask.refuse(bus.name(), 0, &why.to_string()).await,
+    }
+}
+
+/// Reads one part only; the fetcher checks the whole against its address.
+fn read_part(blobs: &LocalBlobs, get: &BlobGet) -> Result<BlobPart, BlobError> {
+    use std::io::{Read as _, Seek as _, SeekFrom};
+    let path = blobs.path(&get.digest);
+    if !blobs.has(&get.digest) {
+        return Err(BlobError::Missing { digest: get.digest });
+    }
+    let read = || -> std::io::Result<BlobPart> {
+        let mut file = std::fs::File::open(&path)?;
+        let len = file.metadata()?.len();
+        file.seek(SeekFrom::Start(get.offset))?;
+        let mut bytes = Vec::new();
+        file.take(PART_BYTES as u64).read_to_end(&mut bytes)?;
+        Ok(BlobPart { len, found: true, bytes })
+    };
+    read().map_err(|why| BlobError::File { path: path.clone(), why })
+}
+
+async fn answer_put(bus: &dyn Bus, ask: Ask, blobs: &LocalBlobs) -> Result<(), LinkError> {
+    let put: BlobPut = match ask.read(KIND_PUT) {
+        Ok(envelope) => envelope.body,
+        Err(why) => return ask.refuse(bus.name(), 0, &why.to_string()).await,
+    };
+    if put.len > MAX_BYTES {
+        return ask.refuse(bus.name(), 0, &format!("{} bytes are too many, at most {MAX_BYTES}", put.len)).await;
+    }
+    let folder = blobs.clone();
+    let path = blobs.path(&put.digest);
+    let held = off_thread(path, move || folder.put_part(&put.digest, put.len, put.offset, &put.bytes)).await;
+    match held {
+        Ok(held) => ask.answer(KIND_PUT, bus.name(), 0, &held).await,
+        Err(why) => ask.refuse(bus.name(), 0, &why.to_string()).await,
+    }
+}

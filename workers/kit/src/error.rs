@@ -1,0 +1,41 @@
+//! Why a worker cannot serve.
+
+use std::path::PathBuf;
+
+use socrates_link::LinkError;
+
+/// What ends [`crate::serve`] other than an orderly stop.
+#[derive(Debug, thiserror::Error)]
+pub enum KitError {
+    /// The bus refused a declaration.
+    #[error("worker cannot join the bus")]
+    Link(#[from] LinkError),
+    /// The orchestrator speaks other versions.
+    #[error("worker of version `{ours}` and the orchestrator cannot talk: it speaks {range}")]
+    Incompatible {
+        /// Code version of this worker.
+        ours: String,
+        /// What the orchestrator speaks.
+        range: String,
+    },
+    /// A folder of the worker cannot be used.
+    #[error("`{}` cannot be used: {why}", path.display())]
+    Folder {
+        /// Which folder or file.
+        path: PathBuf,
+        /// The system's words.
+        why: String,
+    },
+    /// A fault plan is not well formed.
+    #[error("`{found}` is not a fault; allowed: die_before_report=N, die_after_report=N, drop_report=N, delay_ms=N")]
+    FaultPlan {
+        /// The text that was found.
+        found: String,
+    },
+    /// The fault plan asked for a death here. Whoever called should let the process die at once.
+    #[error("died as the fault plan asked, {at}")]
+    InjectedDeath {
+        /// Where: before or after a report.
+        at: &'static str,
+    },
+}

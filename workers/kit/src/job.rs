@@ -1,0 +1,138 @@
+//! One job as a stage sees it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use serde::de::DeserializeOwned;
+use socrates_link::{Bus, MemoryBus};
+use socrates_model::job::JobSpec;
+use socrates_model::wire::Grant;
+use socrates_model::{FailureClass, Fault, FaultCode};
+
+use crate::cancel::Cancel;
+use crate::stage::Failure;
+
+/// A job with its inputs fetched.
+pub struct Job {
+    pub(crate) grant: Grant,
+    pub(crate) inputs: BTreeMap<String, Vec<u8>>,
+    pub(crate) refused: Option<String>,
+    pub(crate) cancel: Cancel,
+    pub(crate) progress: Arc<AtomicU8>,
+    pub(crate) live: Arc<dyn Bus>,
+}
+
+impl Job {
+    /// A job outside of any worker: for tests and for stages run in one process.
+    #[must_use]
+    pub fn detached(spec: JobSpec, inputs: BTreeMap<String, Vec<u8>>) -> Self {
+        let idem_key = spec.idem_key("detached");
+        let inline = BTreeMap::new();
+        let grant = Grant { spec, attempt: 1, fence: 1, lease_ms: 15_000, deadline_ms: 600_000, idem_key, inline };
+        Self {
+            grant,
+            inputs,
+            refused: None,
+            cancel: Cancel::new(),
+            progress: Arc::default(),
+            live: Arc::new(MemoryBus::new()),
+        }
+    }
+
+    /// The same with the newest refused answer.
+    #[must_use]
+    pub fn with_refused(mut self, text: impl Into<String>) -> Self {
+        self.refused = Some(text.into());
+        self
+    }
+
+    /// What is to be done.
+    #[must_use]
+    pub const fn spec(&self) -> &JobSpec {
+        &self.grant.spec
+    }
+
+    /// The grant: attempt, fence, limits.
+    #[must_use]
+    pub const fn grant(&self) -> &Grant {
+        &self.grant
+    }
+
+    /// A setting of the job, such as `pace`.
+    #[must_use]
+    pub fn setting(&self, name: &str) -> Option<&str> {
+        self.grant.spec.settings.get(name).map(String::as_str)
+    }
+
+    /// Whether the job has this input.
+    #[must_use]
+    pub fn has(&self, role: &str) -> bool {
+        self.inputs.contains_key(role)
+    }
+
+    /// The bytes of an input.
+    ///
+    /// # Errors
+    /// A poison [`Failure`] (`J-SPEC`) when the job has no such input.
+    pub fn bytes(&self, role: &str) -> Result<&[u8], Failure> {
+        self.inputs.get(role).map(Vec::as_slice).ok_or_else(|| {
+            let there: Vec<&str> = self.inputs.keys().map(String::as_str).collect();
+            self.poison(role, &format!("input `{role}` is missing; the job has {there:?}"))
+        })
+    }
+
+    /// The text of an input.
+    ///
+    /// # Errors
+    /// As [`Job::bytes`], also when it is not UTF-8.
+    pub fn text(&self, role: &str) -> Result<&str, Failure> {
+        std::str::from_utf8(self.bytes(role)?)
+            .map_err(|why| self.poison(role, &format!("input `{role}` is not text: {why}")))
+    }
+
+    /// An input read from JSON.
+    ///
+    /// # Errors
+    /// As [`Job::bytes`], also when it is not JSON of this type.
+    pub fn json<T: DeserializeOwned>(&self, role: &str) -> Result<T, Failure> {
+        serde_json::from_slice(self.bytes(role)?)
+            .map_err(|why| self.poison(role, &format!("input `{role}` cannot be read: {why}")))
+    }
+
+    /// An input read from JSON, if the job has it.
+    ///
+    /// # Errors
+    /// As [`Job::json`], but not for a missing input.
+    pub fn json_if_there<T: DeserializeOwned>(&self, role: &str) -> Result<Option<T>, Failure> {
+        if self.has(role) { self.json(role).map(Some) } else { Ok(None) }
+    }
+
+    /// The newest refused answer, for the author.
+    #[must_use]
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
+    }
+
+    /// The cancel token.
+    #[must_use]
+    pub const fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// Says how far the job is, 0 to 100; shown in the next beat.
+    pub fn progress(&self, percent: u8) {
+        self.progress.store(percent.min(100), Ordering::Relaxed);
+    }
+
+    /// The bus for live streams; never the one that carries jobs where the worker has two.
+    #[must_use]
+    pub fn live_bus(&self) -> Arc<dyn Bus> {
+        Arc::clone(&self.live)
+    }
+
+    fn poison(&self, role: &str, message: &str) -> Failure {
+        let at = format!("{} {role}", self.grant.spec.key);
+        Failure::new(FailureClass::Poison, vec![Fault::new(FaultCode::JSpec, at, message)])
+    }
+}

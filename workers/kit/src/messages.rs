@@ -1,0 +1,156 @@
+//! The worker's side of the protocol: one function per message, each repeated with backoff by its caller.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::time::Duration;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use socrates_link::{Bus, LinkError, call_envelope, keys};
+use socrates_model::Digest;
+use socrates_model::job::Stage;
+use socrates_model::wire::{Recorded, Release, Report};
+
+use crate::config::WorkerConfig;
+use crate::error::KitError;
+use crate::held::{Held, Slot};
+use crate::spool::{KIND_REPORT, Spool};
+
+/// Everything that the tasks of one worker share.
+pub(crate) struct Worker {
+    pub(crate) stage: Stage,
+    pub(crate) bus: Arc<dyn Bus>,
+    pub(crate) config: WorkerConfig,
+    pub(crate) held: Held,
+    pub(crate) spool: Spool,
+    /// Highest reign seen; replies of lower ones are stale.
+    epoch: AtomicU64,
+    /// Reports made so far, for the fault plan.
+    reports: AtomicU32,
+}
+
+/// Growing pauses with jitter that is a function of the worker and the count, not of a clock.
+pub(crate) struct Backoff {
+    seed: u64,
+    tries: u32,
+}
+
+impl Backoff {
+    const FIRST_MS: u64 = 40;
+    const LAST_MS: u64 = 2000;
+
+    pub(crate) fn new(instance: &str) -> Self {
+        Self { seed: Digest::of(instance.as_bytes()).seed(), tries: 0 }
+    }
+
+    /// The next pause: doubling from 40 ms to 2 s, each drawn from its upper half.
+    pub(crate) fn next(&mut self) -> Duration {
+        self.tries = self.tries.saturating_add(1);
+        let full = Self::FIRST_MS.saturating_mul(1 << self.tries.min(10)).min(Self::LAST_MS);
+        // A step of a 64-bit linear congruential generator (Knuth, MMIX); its upper bits are good enough to spread.
+        self.seed = self.seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        Duration::from_millis(full / 2 + (self.seed >> 33) % (full / 2 + 1))
+    }
+
+    pub(crate) fn reset(&mut self) {
+        self.tries = 0;
+    }
+}
+
+impl Worker {
+    pub(crate) fn new(stage: Stage, bus: Arc<dyn Bus>, config: WorkerConfig) -> Result<Self, KitError> {
+        let spool = Spool::open(&config.spool_dir, config.durable)?;
+        Ok(Self {
+            stage,
+            bus,
+            config,
+            held: Held::default(),
+            spool,
+            epoch: AtomicU64::new(0),
+            reports: AtomicU32::new(0),
+        })
+    }
+
+    /// One message and its answer; an answer of an earlier reign counts as none.
+    pub(crate) async fn ask<Req, Rep>(&self, key: &str, kind: &str, request: &Req) -> Result<Rep, LinkError>
+    where
+        Req: Serialize + Sync,
+        Rep: DeserializeOwned,
+    {
+        let reply = call_envelope(&*self.bus, key, kind, request, self.config.timeout).await?;
+        let newest = self.epoch.fetch_max(reply.epoch, Ordering::AcqRel);
+        if reply.epoch < newest {
+            tracing::debug!(key, epoch = reply.epoch, newest, "an answer of an earlier orchestrator is not heard");
+            return Err(LinkError::NoReply { key: key.to_owned() });
+        }
+        Ok(reply.body)
+    }
+
+    /// Number of the next report, from 1.
+    pub(crate) fn next_report(&self) -> u32 {
+        self.reports.fetch_add(1, Ordering::Relaxed).saturating_add(1)
+    }
+
+    /// Sends a spooled report until it is recorded, then forgets it. `number` is 0 for one of an earlier process.
+    pub(crate) async fn send_report(&self, report: &Report, number: u32) -> Result<(), KitError> {
+        let mut backoff = Backoff::new(&self.config.instance);
+        let mut lose = number > 0 && self.config.faults.drop_report == Some(number);
+        loop {
+            let sent = if std::mem::take(&mut lose) {
+                Err(LinkError::NoReply { key: keys::REPORT.to_owned() })
+            } else {
+                self.ask::<Report, Recorded>(keys::REPORT, KIND_REPORT, report).await
+            };
+            if number > 0 && sent.is_ok() && self.config.faults.die_after_report == Some(number) {
+                return Err(KitError::InjectedDeath { at: "after a report" });
+            }
+            match sent {
+                Ok(Recorded::Accepted | Recorded::Duplicate | Recorded::Late) => {
+                    let (spool, report) = (self.spool.clone(), report.clone());
+                    return match tokio::task::spawn_blocking(move || spool.done(&report)).await {
+                        Ok(done) => done,
+                        Err(why) => Err(KitError::Folder { path: self.config.spool_dir.clone(), why: why.to_string() }),
+                    };
+                }
+                Ok(Recorded::Busy) => tracing::debug!(job = %report.key, "the store is busy; the report is kept"),
+                Err(why) if why.is_transient() => tracing::debug!(job = %report.key, %why, "the report is sent again"),
+                Err(why) => {
+                    tracing::warn!(job = %report.key, %why, "the report was refused; it is kept and sent again")
+                }
+            }
+            tokio::time::sleep(backoff.next()).await;
+        }
+    }
+
+    /// Hands an attempt back unharmed; tried a few times, then left to its lease.
+    pub(crate) async fn release(&self, slot: &Slot) {
+        let instance = self.config.instance.clone();
+        let release = Release { instance, key: slot.0.clone(), attempt: slot.1, fence: slot.2 };
+        let mut backoff = Backoff::new(&self.config.instance);
+        for _try in 0..3 {
+            match self.ask::<Release, Recorded>(keys::RELEASE, "release", &release).await {
+                Ok(Recorded::Accepted | Recorded::Duplicate | Recorded::Late) => return,
+                Ok(Recorded::Busy) => {}
+                Err(why) => tracing::debug!(job = %slot.0, %why, "handing back is tried again"),
+            }
+            tokio::time::sleep(backoff.next()).await;
+        }
+        tracing::warn!(job = %slot.0, attempt = slot.1, "could not be handed back; its lease will end");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pauses_grow_to_two_seconds_and_differ_between_workers() {
+        let (mut a, mut b) = (Backoff::new("a"), Backoff::new("b"));
+        let (first, other) = (a.next(), b.next());
+        assert_ne!(first, other);
+        let last = (0..20).map(|_| a.next()).last().unwrap();
+        assert!(last >= Duration::from_secs(1) && last <= Duration::from_secs(2), "{last:?}");
+        a.reset();
+        assert!(a.next() <= Duration::from_millis(80));
+    }
+}

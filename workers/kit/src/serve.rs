@@ -1,0 +1,235 @@
+//! The loop of a worker.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use socrates_link::{Bus, Overflow, Subscription, keys};
+use socrates_model::wire::{Acquire, Acquired, Grant, Hello, Welcome};
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinSet;
+
+use crate::attempt::attempt;
+use crate::beat::beats;
+use crate::config::{Stop, WorkerConfig};
+use crate::error::KitError;
+use crate::held::slot_of;
+use crate::messages::{Backoff, Worker};
+use crate::stage::Stage;
+
+/// Longest pause that an orchestrator may ask for between two asks for work.
+const LONGEST_PAUSE: Duration = Duration::from_secs(10);
+/// Time for handing back and for the last reports.
+const LAST_REPORTS: Duration = Duration::from_secs(2);
+
+/// Serves a stage until it is asked to stop: says hello, shows its presence token, asks for work, does it,
+/// reports it. Reports left by an earlier process with the same spool are sent first.
+///
+/// # Errors
+/// [`KitError`] when the worker cannot begin, or dies as its fault plan asks.
+pub async fn serve<S: Stage>(
+    stage: S,
+    bus: Arc<dyn Bus>,
+    config: WorkerConfig,
+    mut shutdown: watch::Receiver<Stop>,
+) -> Result<(), KitError> {
+    let worker = Arc::new(Worker::new(S::STAGE, bus, config)?);
+    let leftovers = worker.spool.leftovers()?;
+    let welcomed = tokio::select! {
+        biased;
+        () = stopping(&mut shutdown) => return Ok(()),
+        welcomed = hello(&worker) => welcomed,
+    };
+    let beat_every = welcomed?;
+    let hints = worker.bus.subscribe(&keys::hint(S::STAGE), 16, Overflow::DropOldest).await?;
+    let token = worker.bus.declare_alive(&keys::worker_alive(S::STAGE, &worker.config.instance)).await?;
+    let draining = Arc::new(AtomicBool::new(false));
+    let (granted, mut grants) = mpsc::channel::<Vec<Grant>>(16);
+
+    // Tasks that end with this function, whatever happens.
+    let mut service = JoinSet::new();
+    service.spawn(beats(Arc::clone(&worker), beat_every, Arc::clone(&draining), granted.clone()));
+    service.spawn(asks(Arc::clone(&worker), hints, granted));
+    let mut attempts: JoinSet<Result<(), KitError>> = JoinSet::new();
+    let replay = Arc::clone(&worker);
+    attempts.spawn(async move {
+        for report in leftovers {
+            replay.send_report(&report, 0).await?;
+        }
+        Ok(())
+    });
+
+    let stage = Arc::new(stage);
+    loop {
+        tokio::select! {
+            biased;
+            () = stopping(&mut shutdown) => break,
+            Some(ended) = attempts.join_next() => settled(ended)?,
+            Some(batch) = grants.recv() => {
+                for grant in batch {
+                    if grant.spec.key.stage != S::STAGE {
+                        tracing::warn!(job = %grant.spec.key, "a job of another stage was granted and is handed back");
+                        let slot = slot_of(&grant);
+                        worker.release(&slot).await;
+                        worker.held.end(&slot);
+                    } else if worker.held.take(&grant) {
+                        attempts.spawn(attempt(Arc::clone(&worker), Arc::clone(&stage), grant));
+                    }
+                }
+            }
+        }
+    }
+    draining.store(true, Ordering::Release);
+    drain(&worker, &mut attempts, &mut grants, &mut shutdown).await?;
+    service.shutdown().await;
+    drop(token);
+    Ok(())
+}
+
+/// Ends when the worker is asked to stop, or nobody is left who could ask.
+async fn stopping(shutdown: &mut watch::Receiver<Stop>) {
+    drop(shutdown.wait_for(|stop| *stop != Stop::Run).await);
+}
+
+fn settled(ended: Result<Result<(), KitError>, tokio::task::JoinError>) -> Result<(), KitError> {
+    match ended {
+        Ok(result) => result,
+        Err(why) => {
+            // The stage itself cannot get here: its panics end in a report.
+            tracing::error!(%why, "a task of the worker broke");
+            Ok(())
+        }
+    }
+}
+
+/// Says hello until it is welcomed; gives the pause between beats.
+async fn hello(worker: &Worker) -> Result<Duration, KitError> {
+    let hello = Hello {
+        instance: worker.config.instance.clone(),
+        stages: vec![worker.stage],
+        code_version: worker.config.code_version.clone(),
+        pid: std::process::id(),
+        host: worker.config.host.clone(),
+    };
+    let mut backoff = Backoff::new(&worker.config.instance);
+    loop {
+        match worker.ask::<Hello, Welcome>(keys::HELLO, "hello", &hello).await {
+            Ok(Welcome::Welcome { beat_ms, .. }) => return Ok(Duration::from_millis(beat_ms)),
+            Ok(Welcome::Incompatible { range }) => {
+                return Err(KitError::Incompatible { ours: worker.config.code_version.clone(), range });
+            }
+            Err(why) if why.is_transient() => {
+                tracing::debug!(%why, "no orchestrator yet");
+                tokio::time::sleep(backoff.next()).await;
+            }
+            Err(why) => return Err(why.into()),
+        }
+    }
+}
+
+/// Asks for work whenever a place is free. A lost answer is asked for again under the same id.
+async fn asks(worker: Arc<Worker>, mut hints: Subscription, granted: mpsc::Sender<Vec<Grant>>) {
+    let mut backoff = Backoff::new(&worker.config.instance);
+    loop {
+        let credits = worker.held.wait_free(worker.config.slots.max(1)).await;
+        let acquire = Acquire {
+            req_id: uuid::Uuid::new_v4().to_string(),
+            instance: worker.config.instance.clone(),
+            stages: vec![worker.stage],
+            credits,
+            code_version: worker.config.code_version.clone(),
+        };
+        let answer = loop {
+            // Hints that came before this ask are answered by it.
+            while hints.try_next().is_some() {}
+            match worker.ask::<Acquire, Acquired>(keys::ACQUIRE, "acquire", &acquire).await {
+                Ok(answer) => break answer,
+                Err(why) => {
+                    if why.is_transient() {
+                        tracing::debug!(%why, "asking for work is tried again");
+                    } else {
+                        tracing::warn!(%why, "asking for work was refused and is tried again");
+                    }
+                    tokio::time::sleep(backoff.next()).await;
+                }
+            }
+        };
+        backoff.reset();
+        match answer {
+            Acquired::Grants(grants) if !grants.is_empty() => {
+                let slots: Vec<_> = grants.iter().map(slot_of).collect();
+                if granted.send(grants).await.is_err() {
+                    return;
+                }
+                // Asking again before the places are taken would ask for too much.
+                worker.held.wait_seen(&slots).await;
+            }
+            Acquired::Grants(_none) => pause(&worker, &mut hints, Duration::ZERO).await,
+            Acquired::None { retry_after_ms, reason } => {
+                tracing::trace!(reason, "no work");
+                // Only "empty" may be cut short by the poll period: whoever is throttled waits as told.
+                let told = Duration::from_millis(retry_after_ms).min(LONGEST_PAUSE);
+                let told = if reason == "empty" { told.min(worker.config.poll) } else { told };
+                pause(&worker, &mut hints, told).await;
+            }
+        }
+    }
+}
+
+/// Waits for a hint, the pause asked for, or the poll period where none was.
+async fn pause(worker: &Worker, hints: &mut Subscription, told: Duration) {
+    let pause = if told.is_zero() { worker.config.poll } else { told };
+    tokio::select! {
+        _hint = hints.next() => {}
+        () = tokio::time::sleep(pause) => {}
+    }
+}
+
+/// Finishes what fits the drain time, hands back the rest, gives the last reports a moment.
+async fn drain(
+    worker: &Arc<Worker>,
+    attempts: &mut JoinSet<Result<(), KitError>>,
+    grants: &mut mpsc::Receiver<Vec<Grant>>,
+    shutdown: &mut watch::Receiver<Stop>,
+) -> Result<(), KitError> {
+    let limit = tokio::time::sleep(worker.config.drain);
+    tokio::pin!(limit);
+    loop {
+        let now = async {
+            if shutdown.wait_for(|stop| *stop == Stop::Now).await.is_err() {
+                // Nobody can ask for more haste any longer.
+                std::future::pending::<()>().await;
+            }
+        };
+        tokio::select! {
+            biased;
+            () = now => break,
+            () = &mut limit => break,
+            Some(ended) = attempts.join_next() => settled(ended)?,
+            Some(batch) = grants.recv() => {
+                for grant in &batch {
+                    worker.release(&slot_of(grant)).await;
+                }
+            }
+            () = worker.held.wait_empty() => break,
+        }
+    }
+    for slot in worker.held.running() {
+        if let Some(entry) = worker.held.entry(&slot) {
+            entry.cancel.stop();
+        }
+    }
+    let last = async {
+        while let Some(ended) = attempts.join_next().await {
+            settled(ended)?;
+        }
+        Ok(())
+    };
+    match tokio::time::timeout(LAST_REPORTS, last).await {
+        Ok(result) => result,
+        Err(_elapsed) => {
+            tracing::warn!("some reports are not recorded; they stay in the spool");
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! The desk's answer in the words of the worker kit.
+
+use socrates_author::{JobAnswer, JobRefusal, Written};
+use socrates_kit::{Done, Failure, Output, media};
+
+/// A good answer: the artifact and the exchange it came from.
+pub(crate) fn done(answer: JobAnswer) -> Result<Done, Failure> {
+    let artifact = match &answer.written {
+        Written::Proposal(proposal) => Output::json("proposal", proposal)?,
+        Written::Paths(paths) => Output::json("paths", paths)?,
+        Written::Behaviors(behaviors) => Output::json("behaviors", behaviors)?,
+    };
+    let exchange = Output::json("exchange", &answer.exchange)?;
+    let mut done = Done::with(vec![artifact, exchange]).remark(answer.remark);
+    done.tokens = answer.exchange.tokens;
+    Ok(done)
+}
+
+/// A refused answer: every reason, the refused text and the exchange.
+pub(crate) fn failure(refusal: JobRefusal) -> Failure {
+    let mut failure = Failure::new(refusal.class, refusal.faults).retry_after(refusal.retry_after_ms);
+    if let Some(text) = refusal.text {
+        failure = failure.with(Output::text("refused", media::TEXT, text));
+    }
+    if let Some(exchange) = refusal.exchange {
+        failure = failure.tokens(exchange.tokens);
+        // An exchange that cannot be written is no reason to lose the reasons.
+        if let Ok(output) = Output::json("exchange", &exchange) {
+            failure = failure.with(output);
+        }
+    }
+    failure
+}

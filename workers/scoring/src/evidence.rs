@@ -1,0 +1,33 @@
+//! What a report is made from.
+
+use socrates_model::{Location, Paths, Proposal, Reading, Recording, Request};
+
+/// Everything known about one run. Only the recording is needed; what is missing is said in the report.
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// The recording to be judged.
+    pub recording: &'a Recording,
+    /// Map, scene graph and doors.
+    pub location: Option<&'a Location>,
+    /// What the user asked for.
+    pub request: Option<&'a Request>,
+    /// What was understood of it; its facts must be covered by clauses.
+    pub reading: Option<&'a Reading>,
+    /// The scenario in detail, with the clauses.
+    pub proposal: Option<&'a Proposal>,
+    /// Node sequences and encounters.
+    pub paths: Option<&'a Paths>,
+    /// The same scenario and seed with the reference robot, to tell a scenario's fault from a planner's.
+    pub reference: Option<&'a Recording>,
+}
+
+impl<'a> Evidence<'a> {
+    /// Evidence of a recording alone.
+    #[must_use]
+    pub const fn of(recording: &'a Recording) -> Self {
+        Self { recording, location: None, request: None, reading: None, proposal: None, paths: None, reference: None }
+    }
+}
+
+/// Name of the planner that plays the robot script along the intended path.
+pub const REFERENCE: &str = "reference";

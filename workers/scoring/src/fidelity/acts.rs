@@ -1,0 +1,301 @@
+//! Monitors of what one human does: blocks, looks, stands, runs away, gives way, gestures.
+
+use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
+
+use crate::fidelity::company::follow_marks;
+use crate::fidelity::finding::Finding;
+use crate::fidelity::follow::gaps;
+use crate::fidelity::leaves::does;
+use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
+use crate::fidelity::signals::{Moment, Signals};
+use crate::fidelity::windows::{Mark, held, stretches};
+use crate::tracks::MOVING_MPS;
+
+/// Heading within this of the robot is looking at it, rad (20°).
+const LOOK_RAD: f64 = 0.349_065_850_398_866;
+/// Within this distance somebody can be in the robot's way, m.
+const BLOCK_M: f64 = 2.5;
+/// Nearer to the robot's line than this is in its way, m.
+const IN_WAY_M: f64 = 0.6;
+/// A look counts from this near where there is no map to tell lines of sight, m.
+const LOOK_REACH_M: f64 = 10.0;
+/// Distance within which a gesture can be noticed, m.
+const GESTURE_M: f64 = 8.0;
+/// Room beside the robot's line that lets it pass, m.
+const ASIDE_M: f64 = 0.7;
+/// Speed away from the robot that is running from it, m/s.
+const FLEE_MPS: f64 = 0.3;
+/// Time in which somebody who runs away must have gained distance, s.
+const FLEE_SECS: f64 = 6.0;
+
+fn block_mark(moment: &Moment) -> Mark {
+    Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()))
+}
+
+fn look_mark(moment: &Moment) -> Mark {
+    let still = (MOVING_MPS - moment.human.speed()) / MOVING_MPS;
+    let turned = (LOOK_RAD - moment.human.bearing(&moment.robot.at).abs()) / LOOK_RAD;
+    let seen = match moment.sight {
+        Some(true) => 1.0,
+        Some(false) => -1.0,
+        None => (LOOK_REACH_M - moment.distance_m) / LOOK_REACH_M,
+    };
+    Mark::new(moment.t, still.min(turned).min(seen))
+}
+
+fn flee_mark(moment: &Moment) -> Mark {
+    Mark::new(moment.t, moment.human.velocity.dot(&moment.away()) - FLEE_MPS)
+}
+
+/// The human stands or walks in the robot's way for some time, before the robot is at its goal.
+pub(super) fn blocks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let end = signals.arrived_s.unwrap_or(f64::INFINITY);
+    let marks = signals.of(human).iter().filter(|moment| moment.t <= end).map(block_mark).collect();
+    let what = format!("in the robot's way within {BLOCK_M} m for {for_s:.1} s");
+    lasting(signals, human, marks, for_s, 4.0, &what)
+}
+
+/// The human has stopped and looks at the robot for some time.
+pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let marks = signals.of(human).iter().map(look_mark).collect();
+    lasting(signals, human, marks, for_s, GESTURE_M, &format!("stopped and looking at the robot for {for_s:.1} s"))
+}
+
+/// The human stands still for some time.
+pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    let Some(track) = signals.tracks.human(human) else {
+        return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
+    };
+    let marks: Vec<Mark> =
+        track.samples.iter().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())).collect();
+    let longest = stretches(marks.iter().copied(), 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+    let text = format!("{human} below {MOVING_MPS} m/s for {longest:.1} s at most ({for_s:.1} s asked)");
+    match held(marks, for_s, 0.0) {
+        Some(found) => Finding::by_margin(
+            if found.first_s.is_some() { longest - for_s } else { (longest - for_s).min(found.margin) },
+            vec![found.first_s.unwrap_or(found.best_s)],
+            text,
+        ),
+        None => Finding::fails(longest - for_s, vec![], text),
+    }
+}
+
+/// The human gets away from the robot by its own motion.
+pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let moments = signals.of(human);
+    let onsets = seen(signals, human, &Action::RunAway);
+    let Some(nearest) = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)) else {
+        return Finding::not_applicable("the recording is empty");
+    };
+    let mut top: Option<(f64, f64, f64)> = None;
+    for from in &onsets {
+        let Some(start) = moments.iter().find(|moment| moment.t >= *from) else { continue };
+        for later in moments.iter().filter(|moment| moment.t > *from && moment.t <= from + FLEE_SECS) {
+            // The way must be the human's own: a robot that drives off makes nobody flee.
+            let own = (later.human.at - start.human.at).dot(&start.away());
+            let gained = (later.distance_m - start.distance_m).min(own * 2.0);
+            if top.is_none_or(|(old, _, _)| gained > old) {
+                top = Some((gained, *from, later.t));
+            }
+        }
+    }
+    match top {
+        Some((gained, from, to)) => {
+            let text = format!("{human} gained {gained:.1} m from {from:.1} s to {to:.1} s ({by_m:.1} m asked)");
+            Finding::by_margin(gained - by_m, vec![from, to], text)
+        }
+        None if nearest.distance_m > GESTURE_M => {
+            let text = format!("{human} never came near: closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
+            Finding::never(-by_m, vec![nearest.t], text)
+        }
+        None => Finding::fails(-by_m, vec![nearest.t], format!("{human} never ran away from the robot")),
+    }
+}
+
+/// The human is beside the robot's line as the robot passes.
+pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let moments = signals.of(human);
+    let passing = moments
+        .iter()
+        .zip(moments.iter().skip(1))
+        .filter(|(a, b)| a.ahead_m > 0.0 && b.ahead_m <= 0.0 && b.distance_m <= 3.0)
+        .map(|(_, b)| b)
+        .min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+    match passing {
+        Some(moment) => {
+            let aside = moment.left_m.abs();
+            let text = format!("{human} {aside:.2} m beside the robot's line as it passes at {:.1} s", moment.t);
+            Finding::by_margin(aside - ASIDE_M, vec![moment.t], text)
+        }
+        None => {
+            let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
+            let text =
+                nearest.map_or_else(String::new, |at| format!(", closest {:.1} m at {:.1} s", at.distance_m, at.t));
+            Finding::never(-ASIDE_M, vec![], format!("the robot never passed {human}{text}"))
+        }
+    }
+}
+
+/// The agent makes the gesture where the other can notice it.
+pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) -> Finding {
+    let Some(track) = signals.track(agent) else {
+        return match agent {
+            AgentId::Robot => Finding::not_applicable("there is no robot in the recording"),
+            AgentId::Human(id) => Finding::fails(-1.0, vec![], format!("{id} is not in the recording")),
+        };
+    };
+    let mut times: Vec<f64> = signals
+        .evidence
+        .recording
+        .events
+        .iter()
+        .filter(|event| event.kind == (EventKind::Gesture { agent, gesture }))
+        .map(|event| event.time.secs())
+        .collect();
+    times.extend(track.samples.iter().find(|sample| sample.gesture == gesture).map(|sample| sample.t));
+    times.sort_by(f64::total_cmp);
+    let reach = |t: f64| -> Option<f64> {
+        let me = track.at(t)?;
+        let others: Vec<f64> = match agent {
+            AgentId::Robot => signals.tracks.humans.iter().filter_map(|h| Some((h.at(t)?.at - me.at).norm())).collect(),
+            AgentId::Human(id) => {
+                // A human may speak to another human where the proposal says so; else to the robot.
+                let listeners = listeners(signals, id, gesture);
+                let to = signals.tracks.robot.iter().chain(
+                    signals.tracks.humans.iter().filter(|h| h.human().is_some_and(|other| listeners.contains(&other))),
+                );
+                to.filter_map(|other| Some((other.at(t)?.at - me.at).norm())).collect()
+            }
+        };
+        others.into_iter().min_by(f64::total_cmp)
+    };
+    let nearest = times
+        .iter()
+        .filter_map(|t| Some((reach(*t)?, *t)))
+        .min_by(|a, b| (a.0 > GESTURE_M).cmp(&(b.0 > GESTURE_M)).then(a.1.total_cmp(&b.1)));
+    match nearest {
+        Some((distance, t)) => {
+            let text =
+                format!("{agent} says {gesture} at {t:.1} s, listener {distance:.1} m away (at most {GESTURE_M:.0} m)");
+            Finding::by_margin(GESTURE_M - distance, vec![t], text)
+        }
+        None => Finding::never(-1.0, vec![], format!("{agent} never says {gesture}")),
+    }
+}
+
+fn listeners(signals: &Signals<'_>, speaker: HumanId, gesture: Gesture) -> Vec<HumanId> {
+    let Some(proposal) = signals.evidence.proposal else { return Vec::new() };
+    proposal
+        .humans
+        .iter()
+        .filter(|human| {
+            human.rules.iter().any(|rule| rule.when.contains(&socrates_model::Trigger::HumanSays(speaker, gesture)))
+        })
+        .map(|human| human.id)
+        .collect()
+}
+
+/// Marks of an action as the motion alone shows it, with the time for which it must be kept.
+fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
+    let moments = signals.of(human);
+    let follow = |leader: AgentId| -> Vec<Mark> {
+        match (signals.track(leader), signals.tracks.human(human)) {
+            (Some(lead), Some(behind)) => follow_marks(&gaps(lead, behind), [0.3, 4.0]),
+            _ => Vec::new(),
+        }
+    };
+    let speeds = |margin: fn(f64) -> f64| -> Vec<Mark> {
+        signals.tracks.human(human).map_or_else(Vec::new, |track| {
+            track.samples.iter().map(|sample| Mark::new(sample.t, margin(sample.speed()))).collect()
+        })
+    };
+    match action {
+        Action::Navigate => (speeds(|speed| speed - 0.2), 0.5),
+        Action::StandStill => (speeds(|speed| MOVING_MPS - speed), 0.5),
+        Action::FollowRobot => (follow(AgentId::Robot), 1.5),
+        Action::FollowHuman(id) => (follow(AgentId::Human(*id)), 1.5),
+        Action::RunAway => (moments.iter().map(flee_mark).collect(), 0.5),
+        Action::GiveWay => {
+            // Aside already or stepping aside: both leave the line free.
+            let marks = moments.iter().map(|m| Mark::new(m.t, m.off_line_m().min(m.distance_m) - (ASIDE_M - 0.1)));
+            (marks.collect(), 0.3)
+        }
+        Action::Block => (moments.iter().map(block_mark).collect(), 0.5),
+        Action::LookAtRobot => (moments.iter().map(look_mark).collect(), 0.5),
+        Action::Approach => {
+            let marks = moments.iter().map(|m| {
+                let nearing = -m.human.velocity.dot(&m.away()) - 0.2;
+                let there = if m.human.speed() < MOVING_MPS { 1.6 - m.distance_m } else { -1.0 };
+                Mark::new(m.t, nearing.max(there))
+            });
+            (marks.collect(), 0.5)
+        }
+    }
+}
+
+/// Times at which the action begins, in order. Where the recording tells leaves, a leaf that does the
+/// action and the motion to be seen while it runs are both needed; else the motion alone decides.
+pub(super) fn seen(signals: &Signals<'_>, human: HumanId, action: &Action) -> Vec<f64> {
+    let (marks, kept_s) = motion(signals, human, action);
+    let shown = stretches(marks, kept_s);
+    let spans = signals.leaves_of(human);
+    if spans.is_empty() {
+        if *action == Action::RunAway {
+            return turns_away(signals, human, &shown);
+        }
+        return shown.into_iter().map(|(from, _)| from).collect();
+    }
+    spans
+        .iter()
+        .filter(|span| does(&span.name, action))
+        .filter(|span| {
+            // The motion may last a moment longer than the leaf that began it.
+            shown.iter().any(|(from, to)| *from <= span.to_s + 1.0 && *to >= span.from_s + kept_s.min(0.3))
+        })
+        .map(|span| span.from_s)
+        .collect()
+}
+
+/// Without leaves, walking away after passing looks like fleeing: only a change of velocity away from
+/// the robot, of at least 0.4 m/s within 2 s, begins a flight.
+fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Vec<f64> {
+    let Some(track) = signals.tracks.human(human) else { return Vec::new() };
+    shown
+        .iter()
+        .filter(|(from, _)| {
+            let moment = signals.of(human).iter().find(|moment| moment.t >= *from);
+            let before = track.at((from - 1.0).max(0.0));
+            let after = track.at(from + 1.0).or_else(|| track.samples.last().copied());
+            match (moment, before, after) {
+                (Some(moment), Some(before), Some(after)) => {
+                    (after.velocity - before.velocity).dot(&moment.away()) >= 0.4
+                }
+                _ => false,
+            }
+        })
+        .map(|(from, _)| *from)
+        .collect()
+}
+
+/// Whether a delay is within its limit, late, or too long.
+pub(super) fn timely(delay: f64, limit: f64, times: Vec<f64>, text: String) -> Finding {
+    if delay <= limit {
+        Finding::holds(limit - delay, times, text)
+    } else if delay <= LATE_FACTOR * limit + 1.0 {
+        Finding::late(limit - delay, times, text)
+    } else {
+        Finding::fails(limit - delay, times, text)
+    }
+}

@@ -1,0 +1,182 @@
+//! Every clause to its monitor, the proposal's own and those that paths and people demand anyway.
+
+use std::collections::BTreeMap;
+use std::convert::identity;
+
+use socrates_model::report::Standing;
+use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate};
+
+use crate::fidelity::finding::Finding;
+use crate::fidelity::meeting::MEET_NODE_M;
+use crate::fidelity::plausible::{Flaw, flaws, plausible};
+use crate::fidelity::signals::Signals;
+use crate::fidelity::{acts, company, coverage, doorway, groups, meeting, reactions, robot, setting};
+
+/// Clauses with what was found of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// Clause and finding, setup first.
+    pub clauses: Vec<(Clause, Finding)>,
+    /// What is not plausible.
+    pub flaws: Vec<Flaw>,
+    /// Humans and facts without a clause that decides anything.
+    pub uncovered: Vec<String>,
+}
+
+impl Judged {
+    /// The clauses that decide the verdict: setup, must, and judged at all.
+    pub fn deciding(&self) -> impl Iterator<Item = &(Clause, Finding)> {
+        self.clauses.iter().filter(|(clause, finding)| {
+            clause.role == ClauseRole::Setup && clause.must && finding.standing != Standing::NotApplicable
+        })
+    }
+
+    /// The clauses as the report has them.
+    #[must_use]
+    pub fn results(&self) -> Vec<ClauseResult> {
+        let short = |value: f64| (value * 1e4).round() / 1e4;
+        self.clauses
+            .iter()
+            .map(|(clause, finding)| ClauseResult {
+                id: clause.id.clone(),
+                text: clause.text.clone(),
+                role: clause.role,
+                must: clause.must,
+                source: clause.source.clone(),
+                standing: finding.standing,
+                margin: short(finding.margin),
+                times_s: finding.times_s.iter().copied().map(short).collect(),
+                evidence: finding.evidence.clone(),
+            })
+            .collect()
+    }
+}
+
+/// Judges every clause.
+#[must_use]
+pub fn judge(signals: &Signals<'_>) -> Judged {
+    let mut clauses: Vec<Clause> =
+        signals.evidence.proposal.map_or_else(Vec::new, |proposal| proposal.expected_events.clone());
+    clauses.extend(demanded(signals, &clauses));
+    clauses.sort_by_key(|clause| clause.role == ClauseRole::Outcome);
+    let flaws = flaws(signals);
+    let mut found: BTreeMap<String, Finding> = BTreeMap::new();
+    for clause in clauses.iter().filter(|clause| !matches!(clause.predicate, Predicate::Order { .. })) {
+        found.insert(clause.id.clone(), monitor(signals, &clause.predicate, &flaws, &found));
+    }
+    for clause in clauses.iter().filter(|clause| matches!(clause.predicate, Predicate::Order { .. })) {
+        found.insert(clause.id.clone(), monitor(signals, &clause.predicate, &flaws, &found));
+    }
+    let clauses: Vec<(Clause, Finding)> = clauses
+        .into_iter()
+        .map(|clause| {
+            let finding = found.get(&clause.id).cloned();
+            (clause, finding.unwrap_or_else(|| Finding::not_applicable("the clause was not judged")))
+        })
+        .collect();
+    let uncovered = coverage::uncovered(signals.evidence, &clauses);
+    Judged { clauses, flaws, uncovered }
+}
+
+/// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and
+/// every encounter of the paths happens. A scenario cannot be realised by promising nothing.
+fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
+    let setup = |id: String, text: String, predicate: Predicate| Clause {
+        id,
+        text,
+        role: ClauseRole::Setup,
+        must: true,
+        source: String::new(),
+        predicate,
+    };
+    let has = |test: &dyn Fn(&Predicate) -> bool| {
+        given.iter().any(|clause| clause.role == ClauseRole::Setup && clause.must && test(&clause.predicate))
+    };
+    let mut more = Vec::new();
+    if let Some(proposal) = signals.evidence.proposal {
+        let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
+        if !has(&|predicate| *predicate == Predicate::Humans { count }) {
+            more.push(setup("auto-humans".into(), format!("there are {count} humans"), Predicate::Humans { count }));
+        }
+    }
+    if let Some(paths) = signals.evidence.paths {
+        for encounter in &paths.encounters {
+            let human = encounter.human;
+            let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m } if *who == human && *within_m <= MEET_NODE_M);
+            if !has(&meets) {
+                let text = format!("{human} meets the robot near {}", encounter.node);
+                more.push(setup(format!("auto-meet-{human}"), text, Predicate::Meets { human, within_m: MEET_NODE_M }));
+            }
+        }
+    }
+    let judged = signals.evidence.proposal.is_some() || signals.evidence.paths.is_some();
+    if judged && !has(&|predicate| *predicate == Predicate::Plausible) {
+        let text = "nobody overlaps or is faster than 2 m/s".to_owned();
+        more.push(setup("auto-plausible".into(), text, Predicate::Plausible));
+    }
+    more
+}
+
+/// The monitor of a predicate.
+fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: &BTreeMap<String, Finding>) -> Finding {
+    let either = |result: Result<Finding, Finding>| result.unwrap_or_else(identity);
+    match predicate {
+        Predicate::Humans { count } => setting::humans(signals, *count),
+        Predicate::Meets { human, within_m } => meeting::meets(signals, *human, *within_m),
+        Predicate::HeadOn { human } => meeting::head_on(signals, *human),
+        Predicate::Crosses { human, gap_s } => meeting::crosses(signals, *human, *gap_s),
+        Predicate::Ahead { human, within_m, for_s } => meeting::ahead(signals, *human, *within_m, *for_s),
+        Predicate::Overtakes { human } => meeting::passes(signals, *human, true),
+        Predicate::RobotPasses { human } => meeting::passes(signals, *human, false),
+        Predicate::Follows { follower, leader, gap_m, for_s } => {
+            company::follows(signals, *follower, *leader, *gap_m, *for_s)
+        }
+        Predicate::Abreast { human, for_s } => company::abreast(signals, *human, *for_s),
+        Predicate::Blocks { human, for_s } => acts::blocks(signals, *human, *for_s),
+        Predicate::Looks { human, for_s } => acts::looks(signals, *human, *for_s),
+        Predicate::StandsStill { human, for_s } => acts::stands_still(signals, *human, *for_s),
+        Predicate::RunsAway { human, by_m } => acts::runs_away(signals, *human, *by_m),
+        Predicate::GivesWay { human } => acts::gives_way(signals, *human),
+        Predicate::Reacts { human, when, act, within_s } => reactions::reacts(signals, *human, when, act, *within_s),
+        Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
+        Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),
+        Predicate::StaysInside { human, door } => either(doorway::stays_inside(signals, *human, door)),
+        Predicate::DoorOpens { door, robot_m } => either(doorway::door_opens(signals, door, *robot_m)),
+        Predicate::HiddenUntil { human, within_m } => either(doorway::hidden_until(signals, *human, *within_m)),
+        Predicate::Formation { group, spread_m } => either(groups::formation(signals, *group, *spread_m)),
+        Predicate::WalksTogether { group, spread_m } => either(groups::walks_together(signals, *group, *spread_m)),
+        Predicate::Order { first, then } => order(found, first, then),
+        Predicate::EncounterAt { place } => setting::encounter_at(signals, *place),
+        Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
+        Predicate::Plausible => plausible(flaws),
+        Predicate::RobotArrives => robot::arrives(signals),
+        Predicate::RobotKeeps { min_m } => robot::keeps(signals, *min_m),
+        Predicate::RobotEntersLast => either(doorway::robot_enters_last(signals)),
+        Predicate::RobotObeys { gesture, within_s } => robot::obeys(signals, *gesture, *within_s),
+    }
+}
+
+/// One clause is first seen before another.
+fn order(found: &BTreeMap<String, Finding>, first: &str, then: &str) -> Finding {
+    let seen = |id: &str| -> Result<f64, Finding> {
+        match found.get(id) {
+            None => Err(Finding::not_applicable(format!("there is no clause `{id}` to put in order"))),
+            Some(finding) => match finding.standing {
+                Standing::Holds | Standing::Late => {
+                    finding.first_s().ok_or_else(|| Finding::not_applicable(format!("clause `{id}` has no time")))
+                }
+                Standing::NotApplicable => Err(Finding::not_applicable(format!("clause `{id}` could not be judged"))),
+                Standing::NotTriggered | Standing::Fails => {
+                    Err(Finding::never(-1.0, vec![], format!("clause `{id}` was never seen")))
+                }
+            },
+        }
+    };
+    match (seen(first), seen(then)) {
+        (Ok(before), Ok(after)) => {
+            let text = format!("`{first}` at {before:.1} s, `{then}` at {after:.1} s");
+            Finding::by_margin(after - before, vec![after, before], text)
+        }
+        (Err(finding), _) | (_, Err(finding)) => finding,
+    }
+}

@@ -1,0 +1,100 @@
+//! Monitors of going together: follows, abreast.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use socrates_model::{AgentId, HumanId};
+
+use crate::fidelity::finding::Finding;
+use crate::fidelity::follow::{Gap, arcs, gaps};
+use crate::fidelity::meeting::absent;
+use crate::fidelity::signals::Signals;
+use crate::fidelity::windows::{Mark, held, stretches};
+
+/// How far off the leader's trail one still follows, m.
+const TRAIL_M: f64 = 1.2;
+/// Share of the asked time for which the leader must move at 0.5 m/s: standing behind somebody is not following.
+const LEAD_MPS: f64 = 0.1;
+
+/// Marks of one who goes behind another with the gap in a range.
+#[must_use]
+pub(super) fn follow_marks(gaps: &[Gap], gap_m: [f64; 2]) -> Vec<Mark> {
+    let [low, high] = gap_m;
+    gaps.iter()
+        .map(|gap| Mark {
+            t: gap.t,
+            margin: (gap.gap_m - low).min(high - gap.gap_m).min(TRAIL_M - gap.off_m),
+            arc_m: gap.arc_m,
+        })
+        .collect()
+}
+
+/// The follower goes behind the leader for some time.
+pub(super) fn follows(
+    signals: &Signals<'_>,
+    follower: AgentId,
+    leader: AgentId,
+    gap_m: [f64; 2],
+    for_s: f64,
+) -> Finding {
+    let missing = |agent: AgentId| match agent {
+        AgentId::Robot => Finding::not_applicable("there is no robot in the recording"),
+        AgentId::Human(id) => Finding::fails(-1.0, vec![], format!("{id} is not in the recording")),
+    };
+    let Some(behind) = signals.track(follower) else { return missing(follower) };
+    let Some(lead) = signals.track(leader) else { return missing(leader) };
+    let gaps = gaps(lead, behind);
+    let marks = follow_marks(&gaps, gap_m);
+    let [low, high] = gap_m;
+    let what = format!("{follower} behind {leader} with a gap of {low:.1} to {high:.1} m for {for_s:.1} s");
+    let Some(nearest) = gaps.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)) else {
+        return Finding::not_applicable("the recording is empty");
+    };
+    let Some(found) = held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) else {
+        return Finding::never(-1.0, vec![nearest.t], format!("{what}: {leader} does not walk for so long"));
+    };
+    if let Some(from) = found.first_s {
+        let all: f64 = stretches(marks, for_s).iter().map(|(from, to)| to - from).sum();
+        let text = format!("{what}: from {from:.1} s, {all:.1} s in all, margin {:.2} m", found.margin);
+        return Finding::holds(found.margin, vec![from, from + for_s], text);
+    }
+    if nearest.distance_m > high + 1.0 {
+        let text = format!("{what}: never near, closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
+        return Finding::never(found.margin, vec![nearest.t], text);
+    }
+    let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| (b - a, a)).max_by(|a, b| a.0.total_cmp(&b.0));
+    let text = match longest {
+        Some((length, from)) => format!("{what}: only {length:.1} s from {from:.1} s"),
+        None => format!("{what}: not once, short by {:.2} m at {:.1} s", -found.margin, found.best_s),
+    };
+    Finding::fails(found.margin, vec![found.best_s], text)
+}
+
+/// Human and robot go side by side for some time.
+pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(robot) = &signals.tracks.robot else { return Finding::not_applicable("there is no robot") };
+    let ways = arcs(&robot.samples);
+    let marks: Vec<Mark> = signals
+        .of(human)
+        .iter()
+        .zip(ways)
+        .map(|(moment, arc_m)| {
+            let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();
+            let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside);
+            Mark { t: moment.t, margin, arc_m }
+        })
+        .collect();
+    let what = format!("{human} beside the robot at 0.5 to 2.0 m for {for_s:.1} s");
+    match held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) {
+        None => Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long")),
+        Some(found) => match found.first_s {
+            Some(from) => Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s")),
+            None => {
+                let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+                Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s"))
+            }
+        },
+    }
+}

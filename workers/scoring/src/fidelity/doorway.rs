@@ -1,0 +1,188 @@
+//! Monitors of doors and lines of sight: leaves, stays inside, door opens, hidden until, robot enters last.
+
+use socrates_model::{AgentId, Door, HumanId, Location, Point, Relation};
+
+use crate::fidelity::doors::{crossings, inside_point};
+use crate::fidelity::finding::Finding;
+use crate::fidelity::meeting::absent;
+use crate::fidelity::signals::Signals;
+use crate::tracks::Track;
+
+/// Somebody nearer to a door line than this is on the threshold, m.
+const THRESHOLD_M: f64 = 0.15;
+/// Distances from a map's pixels are no better than this, m.
+const SIGHT_SLACK_M: f64 = 0.3;
+
+/// The door a clause means, with a point behind it, or why there is none.
+fn door_of<'a>(signals: &Signals<'a>, door: &str, human: Option<HumanId>) -> Result<(&'a Door, Point), Finding> {
+    let Some(place) = signals.evidence.location else {
+        return Err(Finding::not_applicable("there is no map, so there are no doors"));
+    };
+    if place.doors.is_empty() {
+        return Err(Finding::not_applicable(format!("the map `{}` declares no doors", place.name)));
+    }
+    let found = if door.is_empty() { guess(signals, place, human) } else { place.door(door) };
+    let Some(found) = found else {
+        let names: Vec<&str> = place.doors.iter().map(|door| door.id.as_str()).collect();
+        let what =
+            if door.is_empty() { "no door belongs to the clause".to_owned() } else { format!("no door `{door}`") };
+        return Err(Finding::not_applicable(format!("{what}; the map has {}", names.join(", "))));
+    };
+    inside_point(found, place)
+        .map(|inside| (found, inside))
+        .ok_or_else(|| Finding::not_applicable(format!("the door `{}` names no node behind it", found.id)))
+}
+
+/// The door of a human's first node; else of an encounter, the robot's last node, or any human's first node.
+fn guess<'a>(signals: &Signals<'a>, place: &'a Location, human: Option<HumanId>) -> Option<&'a Door> {
+    let paths = signals.evidence.paths?;
+    let first = |id: HumanId| paths.humans.get(&id).and_then(|nodes| nodes.first());
+    if let Some(id) = human {
+        return first(id).and_then(|node| place.door_of(node));
+    }
+    let meetings = paths.encounters.iter().map(|encounter| &encounter.node);
+    let starts = paths.humans.values().filter_map(|nodes| nodes.first());
+    meetings.chain(paths.robot.last()).chain(starts).find_map(|node| place.door_of(node))
+}
+
+fn person<'a>(signals: &'a Signals<'_>, human: HumanId) -> Result<&'a Track, Finding> {
+    signals.tracks.human(human).ok_or_else(|| Finding::fails(-1.0, vec![], format!("{human} is not in the recording")))
+}
+
+/// The human starts inside and crosses the door line outward exactly once.
+pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
+    let track = person(signals, human)?;
+    let (door, inside) = door_of(signals, door, Some(human))?;
+    let Some(start) = track.samples.first() else { return Err(Finding::not_applicable("the recording is empty")) };
+    let depth = door.depth_m(&start.at, &inside);
+    if depth < THRESHOLD_M {
+        let text = format!("{human} starts {:.1} m outside the door `{}`", -depth, door.id);
+        return Ok(Finding::fails(depth.min(-0.01), vec![0.0], text));
+    }
+    let found = crossings(door, &inside, &track.samples);
+    let out: Vec<f64> = found.iter().filter(|crossing| crossing.outward).map(|crossing| crossing.t).collect();
+    let end = track.samples.last().map_or(0.0, |sample| -door.depth_m(&sample.at, &inside));
+    let list = out.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
+    match (out.as_slice(), found.len()) {
+        ([at], 1) => {
+            let text = format!("{human} leaves through `{}` at {at:.1} s", door.id);
+            Ok(Finding::by_margin(end.max(0.05), vec![*at], text))
+        }
+        ([], _) => {
+            let text = format!("{human} never leaves through `{}`: still {:.1} m inside at the end", door.id, -end);
+            Ok(Finding::fails(end.min(-0.05), vec![], text))
+        }
+        _ => {
+            let text =
+                format!("{human} crosses the door `{}` {} times (out at {list}); once asked", door.id, found.len());
+            Ok(Finding::fails(-1.0, out, text))
+        }
+    }
+}
+
+/// The human is behind the door for the whole run.
+pub(super) fn stays_inside(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
+    let track = person(signals, human)?;
+    let (door, inside) = door_of(signals, door, Some(human))?;
+    let out = crossings(door, &inside, &track.samples).into_iter().find(|crossing| crossing.outward);
+    let least = track.samples.iter().map(|s| (door.depth_m(&s.at, &inside), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let (depth, at) = least.unwrap_or((0.0, 0.0));
+    let text = match out {
+        Some(crossing) => format!("{human} crosses the door `{}` outward at {:.1} s", door.id, crossing.t),
+        None => format!("{human} stays at least {depth:.2} m behind the door `{}` (at {at:.1} s)", door.id),
+    };
+    let margin = if out.is_some() { depth.min(-0.01) } else { depth };
+    Ok(Finding::by_margin(margin, vec![out.map_or(0.0, |crossing| crossing.t)], text))
+}
+
+/// The door opens while the robot is within a range of distances.
+pub(super) fn door_opens(signals: &Signals<'_>, door: &str, robot_m: [f64; 2]) -> Result<Finding, Finding> {
+    let (door, _) = door_of(signals, door, None)?;
+    let Some(robot) = &signals.tracks.robot else {
+        return Err(Finding::not_applicable("there is no robot in the recording"));
+    };
+    if signals.doors.stands_open(&door.id) {
+        return Err(Finding::not_applicable(format!("the door `{}` stands open for the whole run", door.id)));
+    }
+    let [low, high] = robot_m;
+    let middle = door.middle();
+    let Some(t) = signals.doors.first_open_s(&door.id) else {
+        let near = robot.samples.iter().map(|s| (s.at - middle).norm()).fold(f64::INFINITY, f64::min);
+        let text = format!("the door `{}` never opens; the robot comes within {near:.1} m of it", door.id);
+        return Ok(Finding::never(-1.0, vec![], text));
+    };
+    let distance = robot.at(t).or_else(|| robot.samples.last().copied()).map_or(f64::NAN, |s| (s.at - middle).norm());
+    let text =
+        format!("`{}` opens at {t:.1} s with the robot {distance:.1} m away ({low:.1} to {high:.1} m asked)", door.id);
+    Ok(Finding::by_margin((distance - low).min(high - distance), vec![t], text))
+}
+
+/// No line of sight until they are near, or until the door opens.
+pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Result<Finding, Finding> {
+    if let Some(found) = absent(signals, human) {
+        return Err(found);
+    }
+    if signals.field.is_none() {
+        return Err(Finding::not_applicable("there is no map to look for lines of sight"));
+    }
+    let first = signals.of(human).iter().find(|moment| moment.sight == Some(true));
+    let Some(first) = first else {
+        return Ok(Finding::never(
+            -1.0,
+            vec![],
+            format!("there is never a line of sight between {human} and the robot"),
+        ));
+    };
+    let opened = door_of(signals, "", Some(human))
+        .ok()
+        .filter(|(door, _)| !signals.doors.stands_open(&door.id))
+        .and_then(|(door, _)| Some((door, signals.doors.first_open_s(&door.id)?)));
+    let text = format!("first line of sight at {:.1} s from {:.1} m", first.t, first.distance_m);
+    if let Some((door, t)) = opened
+        && first.t >= t - 0.1
+    {
+        let text = format!("{text}, after the door `{}` opened at {t:.1} s", door.id);
+        return Ok(Finding::holds((first.t - t).max(0.1), vec![first.t, t], text));
+    }
+    let margin = within_m + SIGHT_SLACK_M - first.distance_m;
+    Ok(Finding::by_margin(margin, vec![first.t], format!("{text} (at most {within_m:.1} m asked)")))
+}
+
+/// The robot crosses the door line inward only after everybody who leaves is out.
+pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Finding> {
+    let (door, inside) = door_of(signals, "", None)?;
+    let Some(robot) = &signals.tracks.robot else {
+        return Err(Finding::not_applicable("there is no robot in the recording"));
+    };
+    let entry = crossings(door, &inside, &robot.samples).into_iter().find(|crossing| !crossing.outward);
+    let mut last: Option<(f64, AgentId)> = None;
+    let mut inside_still = Vec::new();
+    for track in &signals.tracks.humans {
+        let leaves = track.human().and_then(|id| signals.evidence.proposal?.human(id)).map(|human| human.relation);
+        let out = crossings(door, &inside, &track.samples)
+            .into_iter()
+            .filter(|crossing| crossing.outward)
+            .map(|c| c.t)
+            .next_back();
+        match out {
+            Some(t) if last.is_none_or(|(old, _)| t > old) => last = Some((t, track.agent)),
+            None if leaves == Some(Relation::Leaving) => inside_still.push(track.agent.to_string()),
+            Some(_) | None => {}
+        }
+    }
+    let Some(entry) = entry else {
+        return Ok(Finding::never(-1.0, vec![], format!("the robot never enters through `{}`", door.id)));
+    };
+    if !inside_still.is_empty() {
+        let text =
+            format!("the robot enters `{}` at {:.1} s, {} never left", door.id, entry.t, inside_still.join(", "));
+        return Ok(Finding::fails(-1.0, vec![entry.t], text));
+    }
+    Ok(match last {
+        Some((t, who)) => {
+            let text = format!("the robot enters `{}` at {:.1} s, {who} left last at {t:.1} s", door.id, entry.t);
+            Finding::by_margin(entry.t - t, vec![entry.t, t], text)
+        }
+        None => Finding::never(-1.0, vec![entry.t], format!("nobody leaves through `{}`", door.id)),
+    })
+}

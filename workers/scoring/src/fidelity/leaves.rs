@@ -1,0 +1,84 @@
+//! Leaves of behavior trees as the recording tells them: who ran what, from when to when.
+
+use socrates_model::{Action, EventKind, Recording};
+
+use crate::tracks::Track;
+
+/// A leaf that ran without a break.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeafSpan {
+    /// Start, s.
+    pub from_s: f64,
+    /// End, s.
+    pub to_s: f64,
+    /// Name as in the tree.
+    pub name: String,
+}
+
+/// Spans of a human's leaves: from events where there are any, else from the states.
+#[must_use]
+pub(super) fn leaf_spans(recording: &Recording, track: &Track) -> Vec<LeafSpan> {
+    let Some(id) = track.human() else { return Vec::new() };
+    let end = track.samples.last().map_or(0.0, |sample| sample.t);
+    let mut starts: Vec<(f64, String)> = Vec::new();
+    for event in &recording.events {
+        if let EventKind::Leaf { human, leaf } = &event.kind
+            && *human == id
+        {
+            starts.push((event.time.secs(), leaf.clone()));
+        }
+    }
+    if starts.is_empty() {
+        let mut last = 0_u16;
+        for sample in &track.samples {
+            if sample.leaf != last {
+                let name = recording.header.leaves.get(usize::from(sample.leaf)).cloned().unwrap_or_default();
+                starts.push((sample.t, name));
+                last = sample.leaf;
+            }
+        }
+    }
+    let ends: Vec<f64> = starts.iter().skip(1).map(|(t, _)| *t).chain([end]).collect();
+    starts
+        .into_iter()
+        .zip(ends)
+        .filter(|((_, name), _)| !name.is_empty())
+        .map(|((from_s, name), to_s)| LeafSpan { from_s, to_s, name })
+        .collect()
+}
+
+/// Whether a leaf of this name does the action. Names are compared by their letters alone, so the
+/// dialects of trees (`RunAwayFromRobot`, `run_away`) mean the same.
+#[must_use]
+pub(crate) fn does(name: &str, action: &Action) -> bool {
+    let letters: String = name.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase()).collect();
+    if letters.starts_with("is") {
+        return false;
+    }
+    let words: &[&str] = match action {
+        Action::Navigate => &["regularnav", "navigate", "gotogoal", "updategoal"],
+        Action::FollowRobot => &["followrobot", "followingrobot"],
+        Action::FollowHuman(_) => &["followhuman", "followagent"],
+        Action::RunAway => &["runaway", "scared", "flee"],
+        Action::GiveWay => &["giveway"],
+        Action::Block => &["blockrobot", "block"],
+        Action::LookAtRobot => &["lookatrobot", "lookat", "surprised"],
+        Action::Approach => &["approach", "curious"],
+        Action::StandStill => &["standstill", "stand", "stop", "wait"],
+    };
+    words.iter().any(|word| letters.contains(word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaf_names_of_several_dialects_mean_the_same_action() {
+        assert!(does("RunAwayFromRobot", &Action::RunAway));
+        assert!(does("run_away", &Action::RunAway));
+        assert!(does("GiveWaytoRobot", &Action::GiveWay));
+        assert!(!does("IsRobotBlocking", &Action::Block));
+        assert!(!does("FollowRobot", &Action::Navigate));
+    }
+}

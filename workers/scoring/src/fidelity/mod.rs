@@ -1,0 +1,35 @@
+//! Fidelity: did the scenario that was asked for happen? Judged apart from how well the robot did.
+//!
+//! ```text
+//! tracks + events ─► signals ─► monitors (one per predicate) ─► clauses ─► verdict, score F
+//! ```
+
+mod acts;
+mod clauses;
+mod company;
+mod coverage;
+mod doors;
+mod doorway;
+mod finding;
+mod follow;
+mod gaps;
+mod groups;
+mod leaves;
+mod meeting;
+mod plausible;
+mod reactions;
+mod robot;
+mod setting;
+mod signals;
+mod verdict;
+mod windows;
+
+pub use clauses::{Judged, judge};
+pub use finding::Finding;
+pub use plausible::Flaw;
+pub use robot::{GOAL_M, goal as robot_goal};
+pub use signals::{Moment, Signals};
+pub use verdict::{Ruling, rule};
+
+pub(crate) use gaps::encounter_gaps;
+pub(crate) use leaves::does;

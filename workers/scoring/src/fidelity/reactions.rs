@@ -1,0 +1,179 @@
+//! The monitor of reactions: a trigger, then an action in time, and not before.
+
+use std::f64::consts::PI;
+
+use socrates_model::{Action, AgentId, HumanId, Trigger};
+
+use crate::fidelity::acts::{seen, timely};
+use crate::fidelity::finding::Finding;
+use crate::fidelity::leaves::does;
+use crate::fidelity::meeting::absent;
+use crate::fidelity::signals::{Moment, Signals};
+use crate::fidelity::windows::{Mark, best, first};
+use crate::tracks::MOVING_MPS;
+
+/// Half of a human's field of view, rad (100°).
+const HALF_VIEW_RAD: f64 = 100.0 / 180.0 * PI;
+/// A robot within this angle of where somebody goes is in its way, rad.
+const IN_WAY_RAD: f64 = 0.5;
+/// Somebody this near to the node is at the encounter, or at its goal, m.
+const AT_ENCOUNTER_M: f64 = 1.0;
+const AT_GOAL_M: f64 = 0.6;
+/// How much farther than its stated distance a trigger may be and still not be early, m.
+const EARLY_M: f64 = 0.3;
+/// How much sooner than its trigger an action may start, s: a tree reads the tick before.
+const EARLY_SECS: f64 = 0.3;
+
+/// How far all triggers hold at a moment; distances are widened by `slack_m`.
+fn trigger_mark(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment: &Moment, slack_m: f64) -> Mark {
+    let flag = |yes: bool| if yes { 1.0 } else { -1.0 };
+    let one = |trigger: &Trigger| -> f64 {
+        match trigger {
+            Trigger::Always => 1.0,
+            Trigger::RobotVisible(m) => (m + slack_m - moment.distance_m)
+                .min(HALF_VIEW_RAD + slack_m - moment.human.bearing(&moment.robot.at).abs())
+                .min(flag(moment.sight.unwrap_or(true))),
+            Trigger::RobotNear(m) => m + slack_m - moment.distance_m,
+            Trigger::RobotBlocking(m) => {
+                let away = -moment.away();
+                let by_course = moment.human.course().dot(&away);
+                let off = libm::acos(by_course.max(moment.human.facing().dot(&away)).clamp(-1.0, 1.0));
+                (m + slack_m - moment.distance_m)
+                    .min(IN_WAY_RAD + slack_m - off)
+                    .min(flag(moment.sight.unwrap_or(true)))
+            }
+            Trigger::RobotMoving => moment.robot.speed() - MOVING_MPS,
+            Trigger::RobotStopped => MOVING_MPS - moment.robot.speed(),
+            Trigger::RobotSays(gesture) => flag(moment.robot.gesture == *gesture),
+            Trigger::HumanSays(other, gesture) => flag(
+                signals
+                    .tracks
+                    .human(*other)
+                    .and_then(|track| track.at(moment.t))
+                    .is_some_and(|s| s.gesture == *gesture),
+            ),
+            Trigger::GoalReached => signals
+                .evidence
+                .paths
+                .and_then(|paths| paths.of(AgentId::Human(human)))
+                .and_then(|nodes| nodes.last())
+                .and_then(|id| signals.node(id))
+                .map_or(-1.0, |goal| AT_GOAL_M + slack_m - (moment.human.at - goal).norm()),
+            Trigger::AtEncounter => signals
+                .encounter(human)
+                .map_or(-1.0, |(_, at)| AT_ENCOUNTER_M + slack_m - (moment.human.at - at).norm()),
+            Trigger::AfterSecs(s) => moment.t + slack_m - s,
+        }
+    };
+    Mark::new(moment.t, when.iter().map(one).fold(f64::INFINITY, f64::min))
+}
+
+fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) -> Vec<Mark> {
+    signals.of(human).iter().map(|moment| trigger_mark(signals, human, when, moment, slack_m)).collect()
+}
+
+/// Times at which the triggers begin to hold.
+fn rises(marks: &[Mark]) -> Vec<f64> {
+    let mut held = false;
+    let mut found = Vec::new();
+    for mark in marks {
+        let holds = mark.margin >= 0.0;
+        if holds && !held {
+            found.push(mark.t);
+        }
+        held = holds;
+    }
+    found
+}
+
+/// Actions that have a beginning of their own; walking and standing go on all the time.
+const fn has_onset(action: &Action) -> bool {
+    !matches!(action, Action::Navigate | Action::StandStill)
+}
+
+/// After the triggers first hold, the action is seen in time, and not before them.
+pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], act: &Action, within_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
+    let onsets = seen(signals, human, act);
+    let strict = marks(signals, human, when, 0.0);
+    let loose = marks(signals, human, when, EARLY_M);
+    let distance = |t: f64| {
+        signals.of(human).iter().find(|moment| moment.t >= t - 1e-9).map_or(f64::NAN, |moment| moment.distance_m)
+    };
+    let triggered =
+        first(strict.iter().copied()).or_else(|| first(loose.iter().copied()).filter(|_| !onsets.is_empty()));
+    // The action is early when neither this rule nor another of the same action had a reason by then.
+    if let Some(onset) = onsets.first().copied()
+        && has_onset(act)
+        && (!signals.leaves_of(human).is_empty() || *act == Action::RunAway)
+        && first(loose.iter().copied()).is_none_or(|mark| mark.t > onset + EARLY_SECS)
+        && !other_reason(signals, human, when, act, onset)
+    {
+        let text = format!(
+            "{human} {} at {onset:.1} s with the robot {:.1} m away, {}",
+            act.phrase(),
+            distance(onset),
+            triggered.map_or_else(
+                || format!("but never {phrase}"),
+                |mark| format!("{:.1} s before the trigger ({phrase})", mark.t - onset)
+            )
+        );
+        return Finding::fails(-1.0, vec![onset], text).too_early();
+    }
+    let Some(trigger) = triggered else {
+        let near = best(strict.iter().copied()).unwrap_or(Mark::new(0.0, -1.0));
+        let text = format!(
+            "the trigger never came ({phrase}): nearest at {:.1} s with the robot {:.1} m away",
+            near.t,
+            distance(near.t)
+        );
+        return Finding::never(near.margin, vec![near.t], text);
+    };
+    let Some(onset) = onsets.iter().copied().find(|onset| *onset >= trigger.t - EARLY_SECS).or_else(|| {
+        // Begun in time under the loose reading, or by another rule, and still going on.
+        onsets.last().copied()
+    }) else {
+        let text = format!("trigger at {:.1} s ({phrase}), but {human} never {}", trigger.t, act.phrase());
+        return Finding::fails(-within_s.max(0.5), vec![trigger.t], text);
+    };
+    let start = busy_until(signals, human, act, trigger.t);
+    let delay = (onset - start).max(0.0);
+    let again = rises(&strict).into_iter().rfind(|rise| *rise <= onset + EARLY_SECS);
+    let text = format!(
+        "trigger at {:.1} s ({phrase}); {human} {} from {onset:.1} s, {delay:.1} s later (at most {within_s:.1} s)",
+        trigger.t,
+        act.phrase()
+    );
+    let times = vec![onset, trigger.t];
+    if delay > within_s && again.is_some_and(|rise| onset - rise <= within_s) {
+        return Finding::late(within_s - delay, times, format!("{text}, when the trigger came again"));
+    }
+    timely(delay, within_s, times, text)
+}
+
+/// Whether another rule with the same action had a reason at the time.
+fn other_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigger], act: &Action, onset: f64) -> bool {
+    let rules =
+        signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(&[][..], |human| &human.rules);
+    rules
+        .iter()
+        .filter(|rule| rule.act == *act && rule.when != when)
+        .any(|rule| first(marks(signals, human, &rule.when, EARLY_M)).is_some_and(|mark| mark.t <= onset + EARLY_SECS))
+}
+
+/// The clock of a reaction starts when no earlier rule of the same human runs any more: earlier rules win.
+fn busy_until(signals: &Signals<'_>, human: HumanId, act: &Action, trigger_s: f64) -> f64 {
+    let Some(proposal) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else { return trigger_s };
+    let earlier: Vec<&Action> = proposal.rules.iter().map(|rule| &rule.act).take_while(|other| *other != act).collect();
+    let mut start = trigger_s;
+    for span in signals.leaves_of(human) {
+        let covers = span.from_s <= start + EARLY_SECS && span.to_s > start;
+        if covers && earlier.iter().any(|other| does(&span.name, other)) {
+            start = span.to_s;
+        }
+    }
+    start
+}

@@ -1,0 +1,107 @@
+//! Monitors of what the robot does: arrives, keeps away, obeys.
+
+use socrates_model::{AgentId, EventKind, Gesture, Point};
+
+use crate::fidelity::acts::timely;
+use crate::fidelity::finding::Finding;
+use crate::fidelity::signals::Signals;
+use crate::tracks::MOVING_MPS;
+
+/// The robot is at its goal from this near, m.
+pub const GOAL_M: f64 = 0.5;
+
+/// The robot's goal: the last node of its path.
+pub fn goal(signals: &Signals<'_>) -> Option<Point> {
+    signals.evidence.paths?.robot.last().and_then(|id| signals.node(id))
+}
+
+/// The robot gets to its goal.
+pub(super) fn arrives(signals: &Signals<'_>) -> Finding {
+    let Some(robot) = &signals.full.robot else {
+        return Finding::not_applicable("there is no robot in the recording");
+    };
+    if let Some(t) = signals.arrived_s {
+        return Finding::holds(1.0, vec![t], format!("the robot arrives at {t:.1} s"));
+    }
+    let Some(goal) = goal(signals) else {
+        return Finding::not_applicable("the robot's goal is not known");
+    };
+    let nearest = robot.samples.iter().map(|s| ((s.at - goal).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let (distance, t) = nearest.unwrap_or((f64::INFINITY, 0.0));
+    let first = robot.samples.iter().find(|s| (s.at - goal).norm() <= GOAL_M).map_or(t, |s| s.t);
+    let text = format!("the robot comes within {distance:.2} m of its goal at {t:.1} s (at most {GOAL_M} m)");
+    Finding::by_margin(GOAL_M - distance, vec![first], text)
+}
+
+/// The robot keeps a surface distance from every human.
+pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
+    let Some(robot) = &signals.full.robot else {
+        return Finding::not_applicable("there is no robot in the recording");
+    };
+    let end = signals.arrived_s.unwrap_or(f64::INFINITY);
+    let mut least: Option<(f64, f64, AgentId)> = None;
+    for human in &signals.full.humans {
+        for (r, h) in robot.samples.iter().zip(&human.samples).filter(|(r, _)| r.t <= end) {
+            let distance = (r.at - h.at).norm() - robot.radius_m - human.radius_m;
+            if least.is_none_or(|(old, _, _)| distance < old) {
+                least = Some((distance, r.t, human.agent));
+            }
+        }
+    }
+    match least {
+        Some((distance, t, who)) => {
+            let text =
+                format!("smallest surface distance {distance:.2} m to {who} at {t:.1} s (at least {min_m:.2} m asked)");
+            Finding::by_margin(distance - min_m, vec![t], text)
+        }
+        None => Finding::not_applicable("there is no human in the recording"),
+    }
+}
+
+/// The robot does what the gesture asks in time: it goes for PROCEED and `FOLLOW_ME`, else it stops.
+pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> Finding {
+    let Some(robot) = &signals.tracks.robot else {
+        return Finding::not_applicable("there is no robot in the recording");
+    };
+    let by_event = signals.evidence.recording.events.iter().filter_map(|event| match &event.kind {
+        EventKind::Gesture { agent: AgentId::Human(id), gesture: made } if *made == gesture => {
+            Some((event.time.secs(), AgentId::Human(*id)))
+        }
+        EventKind::Gesture { .. }
+        | EventKind::Leaf { .. }
+        | EventKind::Sees { .. }
+        | EventKind::Encounter { .. }
+        | EventKind::Contact { .. }
+        | EventKind::WallContact { .. }
+        | EventKind::Door { .. }
+        | EventKind::Node { .. }
+        | EventKind::RobotArrived
+        | EventKind::Stuck { .. }
+        | EventKind::End { .. } => None,
+    });
+    let by_state = signals
+        .tracks
+        .humans
+        .iter()
+        .filter_map(|track| Some((track.samples.iter().find(|s| s.gesture == gesture)?.t, track.agent)));
+    let Some((made, who)) = by_event.chain(by_state).min_by(|a, b| a.0.total_cmp(&b.0)) else {
+        return Finding::never(-within_s, vec![], format!("nobody says {gesture} to the robot"));
+    };
+    let goes = matches!(gesture, Gesture::Proceed | Gesture::FollowMe);
+    let done = robot.samples.iter().find(|s| s.t >= made && (s.speed() > MOVING_MPS) == goes);
+    let verb = if goes { "goes" } else { "stops" };
+    match done {
+        Some(sample) => {
+            let delay = sample.t - made;
+            let text = format!(
+                "{who} says {gesture} at {made:.1} s; the robot {verb} {delay:.1} s later (at most {within_s:.1} s)"
+            );
+            timely(delay, within_s, vec![sample.t, made], text)
+        }
+        None => Finding::fails(
+            -within_s,
+            vec![made],
+            format!("{who} says {gesture} at {made:.1} s; the robot never {verb}"),
+        ),
+    }
+}

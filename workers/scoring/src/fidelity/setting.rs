@@ -1,0 +1,63 @@
+//! Monitors of the setting: how many humans, where the encounter is, who reaches a node.
+
+use socrates_model::{AgentId, NodeId, PlaceClass};
+
+use crate::fidelity::finding::Finding;
+use crate::fidelity::signals::Signals;
+
+/// Exactly so many humans are there from the first to the last tick.
+pub(super) fn humans(signals: &Signals<'_>, count: u32) -> Finding {
+    let found = signals.full.humans.len();
+    let text = format!("{found} humans from 0.0 s to {:.1} s ({count} asked)", signals.end_s());
+    if usize::try_from(count).is_ok_and(|count| count == found) {
+        Finding::holds(1.0, vec![0.0], text)
+    } else {
+        Finding::fails(-1.0, vec![0.0], text)
+    }
+}
+
+/// An encounter lies on a place of this class.
+pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass) -> Finding {
+    let (Some(location), Some(paths)) = (signals.evidence.location, signals.evidence.paths) else {
+        return Finding::not_applicable("there is no map or no paths to tell where the encounters are");
+    };
+    if paths.encounters.is_empty() {
+        return Finding::fails(-1.0, vec![], "the paths have no encounter");
+    }
+    let here: Vec<&NodeId> = paths
+        .encounters
+        .iter()
+        .map(|encounter| &encounter.node)
+        .filter(|node| location.graph.node_is(node, place))
+        .collect();
+    let first = here.first().and_then(|node| {
+        let at = signals.node(node)?;
+        let robot = signals.tracks.robot.as_ref()?;
+        robot.samples.iter().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0))
+    });
+    let list = |nodes: Vec<&NodeId>| nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
+    if here.is_empty() {
+        let all = paths.encounters.iter().map(|encounter| &encounter.node).collect();
+        return Finding::fails(
+            -1.0,
+            vec![],
+            format!("no encounter is at a place of class `{place}`: they are at {}", list(all)),
+        );
+    }
+    Finding::holds(1.0, first.map(|(_, t)| t).into_iter().collect(), format!("{} is of class `{place}`", list(here)))
+}
+
+/// The agent comes within a distance of the node.
+pub(super) fn reaches(signals: &Signals<'_>, agent: AgentId, node: &NodeId, within_m: f64) -> Finding {
+    let Some(at) = signals.node(node) else {
+        return Finding::not_applicable(format!("the map has no node `{node}`, or there is no map"));
+    };
+    let Some(track) = signals.track(agent) else {
+        return Finding::fails(-1.0, vec![], format!("{agent} is not in the recording"));
+    };
+    let nearest = track.samples.iter().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let (distance, t) = nearest.unwrap_or((f64::INFINITY, 0.0));
+    let first = track.samples.iter().find(|s| (s.at - at).norm() <= within_m).map_or(t, |s| s.t);
+    let text = format!("{agent} comes within {distance:.2} m of `{node}` at {t:.1} s (at most {within_m:.1} m asked)");
+    Finding::by_margin(within_m - distance, vec![first], text)
+}

@@ -1,0 +1,129 @@
+//! From clauses to one verdict, one score and one sentence.
+
+use std::collections::BTreeMap;
+
+use socrates_model::report::Standing;
+use socrates_model::{Predicate, Verdict};
+
+use crate::evidence::{Evidence, REFERENCE};
+use crate::fidelity::clauses::Judged;
+
+/// Share of a late clause in the score.
+const LATE_SHARE: f64 = 0.8;
+
+/// The ruling.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ruling {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// One sentence, with times.
+    pub text: String,
+    /// Score F, 0 to 1.
+    pub score: f64,
+}
+
+/// Rules on the clauses. `reference` is the verdict of the same scenario with the reference robot, if known.
+#[must_use]
+pub fn rule(
+    evidence: &Evidence<'_>,
+    judged: &Judged,
+    gaps: &BTreeMap<String, f64>,
+    reference: Option<Verdict>,
+) -> Ruling {
+    let total = judged.deciding().count();
+    let seen =
+        judged.deciding().filter(|(_, finding)| matches!(finding.standing, Standing::Holds | Standing::Late)).count();
+    let has_robot = evidence.recording.header.agents.iter().any(|info| info.agent == socrates_model::AgentId::Robot);
+    let tally = format!("{seen} of {total} setup clauses");
+    let invalid = |why: String| Ruling { verdict: Verdict::Invalid, text: why, score: 0.0 };
+    if evidence.proposal.is_none() && evidence.paths.is_none() {
+        return invalid("nothing to verify: there is neither a proposal nor paths".to_owned());
+    }
+    if !has_robot {
+        return invalid("nothing to verify: there is no robot in the recording".to_owned());
+    }
+    if total == 0 {
+        return invalid("nothing to verify: no setup clause could be judged".to_owned());
+    }
+    if let Some(flaw) = judged.flaws.first() {
+        let more = if judged.flaws.len() > 1 { format!(" and {} more", judged.flaws.len() - 1) } else { String::new() };
+        return invalid(format!("the recording proves nothing: {}{more} · {tally}", flaw.text));
+    }
+    if let Some(first) = judged.uncovered.first() {
+        let more = if judged.uncovered.len() > 1 {
+            format!(" and {} more", judged.uncovered.len() - 1)
+        } else {
+            String::new()
+        };
+        return invalid(format!("unverifiable: {first}{more}"));
+    }
+    let standing = |wanted: Standing| judged.deciding().find(move |(_, finding)| finding.standing == wanted);
+    // Where robot and human never met, whatever follows from it is no contradiction.
+    let never_met = judged.deciding().any(|(clause, finding)| {
+        matches!(clause.predicate, Predicate::Meets { .. }) && finding.standing == Standing::NotTriggered
+    });
+    let (never, fails) = (standing(Standing::NotTriggered), standing(Standing::Fails));
+    let (own, culprit) = match (never, fails) {
+        (Some(clause), _) if never_met => (Verdict::NotTriggered, Some(clause)),
+        (_, Some(clause)) => (Verdict::Contradicted, Some(clause)),
+        (Some(clause), None) => (Verdict::NotTriggered, Some(clause)),
+        (None, None) if standing(Standing::Late).is_some() => (Verdict::RealisedLate, standing(Standing::Late)),
+        (None, None) => (Verdict::Realised, None),
+    };
+    let lost = matches!(own, Verdict::NotTriggered | Verdict::Contradicted);
+    let by_reference = matches!(reference, Some(Verdict::Realised | Verdict::RealisedLate));
+    let prevented = lost && by_reference && evidence.recording.header.planner != REFERENCE;
+    let mut text = tally;
+    if let Some(gap) = gaps.values().map(|gap| gap.abs()).max_by(f64::total_cmp) {
+        text.push_str(&format!(" · encounter gap {gap:.1} s"));
+    }
+    if let Some((clause, finding)) = culprit {
+        text.push_str(&format!(" · {}: {}", clause.id, finding.evidence));
+        if prevented {
+            text.push_str(" · realised with the reference robot");
+        }
+    } else if let (Some(from), Some(to)) = times(judged) {
+        text.push_str(&format!(" · seen from {from:.1} s to {to:.1} s"));
+    }
+    Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
+}
+
+/// First and last time of the evidence of deciding clauses.
+fn times(judged: &Judged) -> (Option<f64>, Option<f64>) {
+    let all: Vec<f64> =
+        judged.deciding().flat_map(|(_, finding)| finding.times_s.iter().copied()).filter(|t| *t > 0.0).collect();
+    (all.iter().copied().min_by(f64::total_cmp), all.iter().copied().max_by(f64::total_cmp))
+}
+
+/// Score F (`spec/evaluation` §5.4): the product over must-clauses, times the mean of the others.
+///
+/// A must-clause that holds counts 1, a late one [`LATE_SHARE`], a missed one `2 / (1 + e^(-margin / scale))` with its
+/// negative margin: below 1 and smaller the clearer it was missed. Others count `1 / (1 + e^(-margin / scale))`, taken
+/// to 1 at a clear margin.
+fn score(judged: &Judged) -> f64 {
+    let logistic = |finding: &crate::fidelity::Finding| {
+        let x = (finding.margin / finding.scale.max(1e-6)).clamp(-30.0, 30.0);
+        1.0 / (1.0 + libm::exp(-4.0 * x))
+    };
+    let must: f64 = judged
+        .deciding()
+        .map(|(_, finding)| match finding.standing {
+            Standing::Holds | Standing::NotApplicable => 1.0,
+            Standing::Late => LATE_SHARE,
+            Standing::NotTriggered | Standing::Fails => (2.0 * logistic(finding)).min(0.9),
+        })
+        .product();
+    let others: Vec<f64> = judged
+        .clauses
+        .iter()
+        .filter(|(clause, finding)| {
+            clause.role == socrates_model::ClauseRole::Setup
+                && !clause.must
+                && finding.standing != Standing::NotApplicable
+        })
+        .map(|(_, finding)| logistic(finding))
+        .collect();
+    #[expect(clippy::cast_precision_loss, reason = "a proposal has few clauses")]
+    let should = if others.is_empty() { 1.0 } else { others.iter().sum::<f64>() / others.len() as f64 };
+    ((must * should).clamp(0.0, 1.0) * 1e4).round() / 1e4
+}

@@ -1,0 +1,168 @@
+//! Contacts with people and walls, and who ran into whom.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
+use crate::series::{Series, Span};
+
+/// A contact is over when the two have been this far apart, m, for this long, s.
+const REARM_M: f64 = 0.05;
+const REARM_SECS: f64 = 0.5;
+/// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
+const WALL_SLACK_M: f64 = 0.05;
+
+const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
+const WALLS: &[Need] = &[Need::Robot, Need::Map];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "human_collisions",
+            unit: "count",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "Francis et al. 2023, table 1 (HC)",
+            about: "contacts with humans: stretches with a surface distance below 0, re-armed above 0.05 m for 0.5 s",
+        },
+        Sheet {
+            id: "human_contact_seconds",
+            unit: "s",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "derived from human_collisions",
+            about: "time with a surface distance to a human below 0",
+        },
+        Sheet {
+            id: "robot_on_person_collisions",
+            unit: "count",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "HuNavSim and SEAN 2.0, with the closing speeds of both",
+            about: "contacts in which the robot's share of the closing speed is above one half",
+        },
+        Sheet {
+            id: "person_on_robot_collisions",
+            unit: "count",
+            direction: Direction::Neutral,
+            needs: PEOPLE,
+            source: "HuNavSim and SEAN 2.0, with the closing speeds of both",
+            about: "contacts in which the person's share of the closing speed is at least one half",
+        },
+        Sheet {
+            id: "contact_robot_share",
+            unit: "share",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "own: robot closing a = (v_r . n)+, person closing b = (-v_h . n)+, share a / (a + b)",
+            about: "mean share of the robot in the closing speed at contact; not applicable without contact",
+        },
+        Sheet {
+            id: "wall_collisions",
+            unit: "count",
+            direction: Direction::Down,
+            needs: WALLS,
+            source: "Francis et al. 2023, table 1 (WC)",
+            about: "stretches with the robot's surface less than -0.05 m from a wall of the map",
+        },
+        Sheet {
+            id: "wall_contact_seconds",
+            unit: "s",
+            direction: Direction::Down,
+            needs: WALLS,
+            source: "derived from wall_collisions",
+            about: "time with the robot's surface less than -0.05 m from a wall of the map",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let contacts = human_contacts(scene);
+    let shares: Vec<f64> = contacts.iter().filter_map(|(index, span)| share(scene, *index, span.from_s)).collect();
+    let robots = shares.iter().filter(|share| **share > 0.5).count();
+    let mean = if shares.is_empty() {
+        Err("there is no contact in which somebody moves".to_owned())
+    } else {
+        Ok(shares.iter().sum::<f64>() / count(shares.len()))
+    };
+    let seconds: f64 = scene.distances.iter().map(|distance| distance.time_below(0.0)).sum();
+    let walls = wall_contacts(scene);
+    vec![
+        Ok(count(contacts.len())),
+        Ok(seconds),
+        Ok(count(robots)),
+        Ok(count(shares.len() - robots)),
+        mean,
+        Ok(count(walls.len())),
+        Ok(walls.iter().map(Span::length_s).sum()),
+    ]
+}
+
+/// Contacts with humans: index of the human and the stretch.
+pub(crate) fn human_contacts(scene: &Scene<'_>) -> Vec<(usize, Span)> {
+    scene
+        .distances
+        .iter()
+        .enumerate()
+        .flat_map(|(index, distance)| {
+            distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
+        })
+        .collect()
+}
+
+/// Contacts with walls.
+pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
+    let (Some(field), Some(robot)) = (&scene.signals.field, scene.robot()) else { return Vec::new() };
+    let clearance: Series =
+        robot.samples.iter().map(|sample| (sample.t, field.clearance(&sample.at) - robot.radius_m)).collect();
+    clearance.stretches_below(-WALL_SLACK_M, REARM_M, REARM_SECS)
+}
+
+/// The robot's share of the closing speed just before a time; `None` when nobody closes.
+fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
+    let (robot, person) = scene.pairs().nth(human)?;
+    let before = (t - 0.1).max(robot.samples.first()?.t);
+    let (r, h) = (robot.at(before)?, person.at(before)?);
+    closing_share(&r, &h)
+}
+
+/// The robot's share of the closing speed of two agents.
+pub(crate) fn closing_share(r: &crate::tracks::Sample, h: &crate::tracks::Sample) -> Option<f64> {
+    let line = h.at - r.at;
+    let length = line.norm();
+    if length <= 1e-9 {
+        return None;
+    }
+    let normal = line / length;
+    let (a, b) = (r.velocity.dot(&normal).max(0.0), (-h.velocity.dot(&normal)).max(0.0));
+    (a + b > 1e-6).then(|| a / (a + b))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn running_through_a_standing_person_is_one_contact_of_known_length_by_the_robot() {
+        // Discs of 0.25 m and 0.28 m on one line at 0.5 m/s: contact over 2 * 0.53 m.
+        let walks = || vec![Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 3., 0., 0., 0.)];
+        at_both_rates(&walks, 12.0, "human_collisions", 1.0, 0.0);
+        at_both_rates(&walks, 12.0, "human_contact_seconds", 2.12, 0.01);
+        at_both_rates(&walks, 12.0, "contact_robot_share", 1.0, 1e-9);
+    }
+
+    #[test]
+    fn a_standing_robot_that_is_hit_has_no_part_in_it() {
+        let run = recording(&[Walk::robot(0., 0., 0., 0.), Walk::human(1, 3., 0., -1., 0.)], 6.0, 0.1);
+        assert_eq!(value(&run, "person_on_robot_collisions"), Some(1.0));
+        assert_eq!(value(&run, "robot_on_person_collisions"), Some(0.0));
+    }
+
+    #[test]
+    fn no_contact_is_a_count_of_zero_and_a_share_of_nothing() {
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 3., 4., 0., 0.)], 6.0, 0.1);
+        assert_eq!(value(&run, "human_collisions"), Some(0.0));
+        assert_eq!(value(&run, "contact_robot_share"), None);
+        assert_eq!(value(&run, "wall_collisions"), None);
+    }
+}

@@ -1,0 +1,84 @@
+//! Distances to people and walls.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::series::Series;
+
+const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
+const WALLS: &[Need] = &[Need::Robot, Need::Map];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "human_distance_min",
+            unit: "m",
+            direction: Direction::Up,
+            needs: PEOPLE,
+            source: "Francis et al. 2023, table 1 (DH_min)",
+            about: "smallest surface distance to a human; negative in contact",
+        },
+        Sheet {
+            id: "human_distance_mean_closest",
+            unit: "m",
+            direction: Direction::Up,
+            needs: PEOPLE,
+            source: "HuNavSim, avg_distance_to_closest_person",
+            about: "time mean of the surface distance to the closest human, at least 0",
+        },
+        Sheet {
+            id: "clearing_distance_min",
+            unit: "m",
+            direction: Direction::Up,
+            needs: WALLS,
+            source: "Francis et al. 2023, table 1 (CD)",
+            about: "smallest distance of the robot's surface from the map's walls",
+        },
+        Sheet {
+            id: "clearing_distance_mean",
+            unit: "m",
+            direction: Direction::Up,
+            needs: WALLS,
+            source: "Francis et al. 2023, table 1 (CD)",
+            about: "time mean of the distance of the robot's surface from the map's walls",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let clearing: Series = match (&scene.signals.field, scene.robot()) {
+        (Some(field), Some(robot)) => {
+            robot.samples.iter().map(|sample| (sample.t, field.clearance(&sample.at) - robot.radius_m)).collect()
+        }
+        _ => Series::default(),
+    };
+    let short = "the recording has no length";
+    vec![
+        or_why(scene.nearest.least().map(|(_, distance)| distance), short),
+        or_why(scene.nearest.map(|distance| distance.max(0.0)).mean(), short),
+        or_why(clearing.least().map(|(_, distance)| distance), short),
+        or_why(clearing.mean(), short),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::evidence::Evidence;
+    use crate::fixture::{Walk, floor, recording};
+    use crate::metrics::tests::{at_both_rates, value_of};
+
+    #[test]
+    fn passing_a_standing_person_at_one_metre_leaves_the_offset_less_both_radii() {
+        let walks = || vec![Walk::robot(-4., 0., 0.8, 0.), Walk::human(1, 0., 1., 0., 0.)];
+        at_both_rates(&walks, 10.0, "human_distance_min", 1.0 - 0.53, 0.001);
+    }
+
+    #[test]
+    fn the_clearing_distance_is_that_of_the_wall_beside_the_way() {
+        let place = floor(&[(-20., 1.0, 20., 1.5)], &[], &[]);
+        let run = recording(&[Walk::robot(-4., 0., 0.8, 0.)], 10.0, 0.1);
+        let evidence = Evidence { location: Some(&place), ..Evidence::of(&run) };
+        let found = value_of(&evidence, "clearing_distance_min").unwrap();
+        assert!((found - 0.75).abs() < 0.11, "{found}");
+    }
+}

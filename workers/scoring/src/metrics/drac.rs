@@ -1,0 +1,71 @@
+//! Deceleration needed to avoid a crash, and speed near people.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::series::Series;
+
+/// Nearer than this is near people, m (the outer limit of Hall's personal zone).
+const NEAR_M: f64 = 1.2;
+/// Surfaces nearer than this have met: the deceleration would be without bound, m.
+const TOUCH_M: f64 = 0.01;
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "drac_max",
+            unit: "m/s^2",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Almqvist et al. 1991 (DRAC)",
+            about: "largest closing speed squared over twice the surface distance, where that is at least 0.01 m",
+        },
+        Sheet {
+            id: "speed_near_people",
+            unit: "m/s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "ISO 13482 practice, as mean speed while a human is within 1.2 m",
+            about: "mean speed of the robot while the closest human's surface is within 1.2 m",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let mut top: Option<f64> = None;
+    for (robot, human) in scene.pairs() {
+        for (r, h) in robot.samples.iter().zip(&human.samples) {
+            let line = h.at - r.at;
+            let length = line.norm();
+            let gap = length - robot.radius_m - human.radius_m;
+            if gap < TOUCH_M {
+                continue;
+            }
+            let closing = (-line.dot(&(h.velocity - r.velocity)) / length).max(0.0);
+            let drac = closing * closing / (2.0 * gap);
+            top = Some(top.map_or(drac, |old: f64| old.max(drac)));
+        }
+    }
+    let speed: Series =
+        scene.robot().map(|robot| robot.samples.iter().map(|s| (s.t, s.speed())).collect()).unwrap_or_default();
+    vec![
+        or_why(top, "the two are always in contact"),
+        or_why(speed.mean_while_below(&scene.nearest, NEAR_M), "nobody comes within 1.2 m"),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::value;
+
+    #[test]
+    fn the_deceleration_is_that_of_stopping_in_the_gap() {
+        // After 2 s: centres 2.53 m apart, gap 2 m, closing at 1 m/s: 1 / 4 m/s².
+        let run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 4.53, 0., 0., 0.)], 2.0, 0.1);
+        assert!((value(&run, "drac_max").unwrap() - 0.25).abs() < 1e-6);
+        assert_eq!(value(&run, "speed_near_people"), None);
+    }
+}

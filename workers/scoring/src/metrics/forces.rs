@@ -1,0 +1,136 @@
+//! Social forces between the robot and people, as a measure of disturbance.
+
+use socrates_model::Vector;
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::series::Series;
+use crate::tracks::Sample;
+
+/// Constants of Moussaïd et al. 2009 as HuNavSim's evaluator has them: strength, weight of the velocity
+/// difference, range per speed, and the two angular exponents.
+const STRENGTH: f64 = 2.1;
+const LAMBDA: f64 = 2.0;
+const GAMMA: f64 = 0.35;
+const N: f64 = 2.0;
+const N_PRIME: f64 = 3.0;
+/// Force from walls: strength at touching distance and range, m.
+const WALL_STRENGTH: f64 = 10.0;
+const WALL_RANGE_M: f64 = 0.2;
+
+const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
+const SOURCE: &str = "HuNavSim evaluator, after Moussaid et al. 2009, with the angle of lightsfm and times the step";
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "social_force_on_people",
+            unit: "model",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: SOURCE,
+            about: "time mean of the sum of the sizes of the social forces that the robot exerts on people",
+        },
+        Sheet {
+            id: "social_force_on_robot",
+            unit: "model",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: SOURCE,
+            about: "time mean of the size of the summed social force of all people on the robot",
+        },
+        Sheet {
+            id: "obstacle_force_on_robot",
+            unit: "model",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Map],
+            source: "HuNavSim evaluator: 10 e^(-(d - rho) / 0.2) from the nearest wall",
+            about: "time mean of the force of the nearest wall on the robot",
+        },
+        Sheet {
+            id: "social_work",
+            unit: "model*s",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Humans, Need::Map],
+            source: "HuNavSim, social_work, times the step so that it does not grow with the sampling rate",
+            about: "integral over time of social force on the robot, wall force on the robot and social forces on people",
+        },
+    ],
+    measure,
+};
+
+/// Social force of another agent on one: with `e` from self to other, `t = lambda (v_self - v_other) + e`,
+/// `B = gamma |t|` and `theta` the angle from `t` to `e`.
+pub(crate) fn social_force(one: &Sample, other: &Sample) -> Vector {
+    let line = other.at - one.at;
+    let distance = line.norm();
+    if distance <= 1e-9 {
+        return Vector::zeros();
+    }
+    let e = line / distance;
+    let t = (one.velocity - other.velocity) * LAMBDA + e;
+    let size = t.norm();
+    if size <= 1e-9 {
+        return Vector::zeros();
+    }
+    let b = GAMMA * size;
+    let along = t / size;
+    let left = Vector::new(-along.y, along.x);
+    let theta = libm::atan2(along.perp(&e), along.dot(&e));
+    let decay = |n: f64| libm::exp(-distance / b - (n * b * theta) * (n * b * theta));
+    let sign = if theta > 0.0 {
+        1.0
+    } else if theta < 0.0 {
+        -1.0
+    } else {
+        0.0
+    };
+    along * (-STRENGTH * decay(N_PRIME)) + left * (-STRENGTH * sign * decay(N))
+}
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let Some(robot) = scene.robot() else { return Vec::new() };
+    let mut on_people: Vec<(f64, f64)> = robot.samples.iter().map(|sample| (sample.t, 0.0)).collect();
+    let mut on_robot: Vec<Vector> = vec![Vector::zeros(); robot.samples.len()];
+    for human in &scene.tracks.humans {
+        for ((r, h), (people, sum)) in
+            robot.samples.iter().zip(&human.samples).zip(on_people.iter_mut().zip(on_robot.iter_mut()))
+        {
+            people.1 += social_force(h, r).norm();
+            *sum += social_force(r, h);
+        }
+    }
+    let on_robot: Series = robot.samples.iter().zip(&on_robot).map(|(r, force)| (r.t, force.norm())).collect();
+    let on_people: Series = on_people.into_iter().collect();
+    let walls: Option<Series> = scene.signals.field.as_ref().map(|field| {
+        robot
+            .samples
+            .iter()
+            .map(|r| (r.t, WALL_STRENGTH * libm::exp(-(field.clearance(&r.at) - robot.radius_m) / WALL_RANGE_M)))
+            .collect()
+    });
+    let short = "the recording has no length";
+    let no_map = "there is no map";
+    vec![
+        or_why(on_people.mean(), short),
+        or_why(on_robot.mean(), short),
+        or_why(walls.as_ref().and_then(Series::mean), no_map),
+        or_why(walls.map(|walls| walls.integral() + on_robot.integral() + on_people.integral()), no_map),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::value;
+
+    #[test]
+    fn two_who_stand_face_the_closed_form_of_the_force() {
+        // v = 0: t = e, B = 0.35, theta = 0: |f| = 2.1 e^(-d / 0.35).
+        let run = recording(&[Walk::robot(0., 0., 0., 0.), Walk::human(1, 1.0, 0., 0., 0.)], 5.0, 0.1);
+        let wanted = 2.1 * (-1.0_f64 / 0.35).exp();
+        assert!((value(&run, "social_force_on_robot").unwrap() - wanted).abs() < 1e-6);
+        assert!((value(&run, "social_force_on_people").unwrap() - wanted).abs() < 1e-6);
+        assert_eq!(value(&run, "social_work"), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! How near the robot came to its goal.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "goal_ratio",
+            unit: "share",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "SocNavBench, goal_traversal_ratio, as what is left",
+            about: "shortest way to the goal that is left at the end over that at the start (straight without a map)",
+        },
+        Sheet {
+            id: "goal_distance_min",
+            unit: "m",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "HuNavSim, minimum_distance_to_target",
+            about: "smallest straight distance to the goal",
+        },
+        Sheet {
+            id: "goal_distance_final",
+            unit: "m",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "HuNavSim, final_distance_to_target",
+            about: "straight distance to the goal at the end of the trip",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let (Some(robot), Some(goal)) = (scene.robot(), scene.goal) else { return Vec::new() };
+    let (Some(first), Some(last)) = (robot.samples.first(), robot.samples.last()) else { return Vec::new() };
+    let whole = scene.to_goal_m(&first.at).filter(|way| *way > 1e-6);
+    let left = scene.to_goal_m(&last.at);
+    let nearest = robot.samples.iter().map(|sample| (sample.at - goal).norm()).min_by(f64::total_cmp);
+    vec![
+        or_why(
+            whole.zip(left).map(|(whole, left)| left / whole),
+            "start and goal are one place, or no way leads there",
+        ),
+        or_why(nearest, "the recording is empty"),
+        Ok((last.at - goal).norm()),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::evidence::Evidence;
+    use crate::fixture::{Walk, floor, paths, recording};
+    use crate::metrics::tests::value_of;
+
+    #[test]
+    fn half_way_is_half_of_the_way_left() {
+        let place = floor(&[], &[("a", "CORRIDOR", 0., 0.), ("b", "CORRIDOR", 10., 0.)], &[("a", "b")]);
+        let way = paths(&["a", "b"], &[]);
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.)], 10.0, 0.1);
+        let evidence = Evidence { location: Some(&place), paths: Some(&way), ..Evidence::of(&run) };
+        assert!((value_of(&evidence, "goal_ratio").unwrap() - 0.5).abs() < 0.01);
+        assert!((value_of(&evidence, "goal_distance_min").unwrap() - 5.0).abs() < 1e-6);
+        assert_eq!(value_of(&evidence, "success"), Some(0.0));
+    }
+}

@@ -1,0 +1,205 @@
+//! The space of groups.
+
+use socrates_model::{HumanId, Point, Vector};
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::series::Series;
+use crate::tracks::{Sample, Track};
+
+/// Members nearer to each other than this are together; a robot between them splits the group, m.
+const TOGETHER_M: f64 = 2.5;
+/// Foot points nearer to the line between two members than this disturb them, m (Okal and Arras).
+const RELATION_M: f64 = 0.6;
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Groups];
+
+const fn of_group(id: &'static str, unit: &'static str, source: &'static str, about: &'static str) -> Sheet {
+    Sheet { id, unit, direction: Direction::Down, needs: NEEDS, source, about }
+}
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        of_group(
+            "o_space_seconds",
+            "s",
+            "Kendon 1990 (F-formation); centre from the members' positions and headings",
+            "time with the robot's disc in a standing group's o-space: the circle about the point nearest to all lines of sight that touches the members' discs",
+        ),
+        of_group(
+            "o_space_depth_max",
+            "m",
+            "Kendon 1990 (F-formation)",
+            "largest depth of the robot's disc in an o-space, 0 for none",
+        ),
+        of_group(
+            "o_space_entries",
+            "count",
+            "Kendon 1990 (F-formation)",
+            "entries of the robot's disc into an o-space, re-armed 0.05 m outside for 0.5 s",
+        ),
+        of_group(
+            "group_splits",
+            "count",
+            "Truong and Ngo 2017, as crossings between members",
+            "crossings of the line between two members nearer than 2.5 m to each other by the robot's centre",
+        ),
+        of_group(
+            "relation_disturbance",
+            "s",
+            "Okal and Arras 2016, relation disturbance, in seconds",
+            "sum over pairs of members of the time with the robot's centre beside their line, nearer than 0.6 m",
+        ),
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let (Some(robot), Some(proposal)) = (scene.robot(), scene.signals.evidence.proposal) else { return Vec::new() };
+    let groups: Vec<Vec<&Track>> =
+        proposal.groups.iter().map(|group| members(scene, &group.members)).filter(|group| group.len() >= 2).collect();
+    if groups.is_empty() {
+        return FAMILY.sheets.iter().map(|_| Err("no group of two is in the recording".to_owned())).collect();
+    }
+    let (mut seconds, mut entries) = (0.0, 0_usize);
+    let mut deepest: Option<f64> = None;
+    let (mut splits, mut disturbed) = (0_usize, 0.0);
+    for group in &groups {
+        let outside = outside(robot, group);
+        seconds += outside.time_below(0.0);
+        entries += outside.stretches_below(0.0, 0.05, 0.5).len();
+        if let Some((_, least)) = outside.least() {
+            deepest = Some(deepest.map_or(-least, |old: f64| old.max(-least)).max(0.0));
+        }
+        for (index, a) in group.iter().enumerate() {
+            for b in group.iter().skip(index + 1) {
+                splits += crossings(robot, a, b);
+                disturbed += disturbance(robot, a, b).time_below(0.0);
+            }
+        }
+    }
+    let standing = "the group never stands in a circle";
+    vec![
+        or_why(deepest.map(|_| seconds), standing),
+        or_why(deepest, standing),
+        or_why(deepest.map(|_| count(entries)), standing),
+        Ok(count(splits)),
+        Ok(disturbed),
+    ]
+}
+
+fn members<'s>(scene: &'s Scene<'_>, ids: &[HumanId]) -> Vec<&'s Track> {
+    ids.iter().filter_map(|id| scene.tracks.human(*id)).collect()
+}
+
+/// Distance of the robot's disc from the o-space over time, negative inside; only while all stand.
+fn outside(robot: &Track, group: &[&Track]) -> Series {
+    let mut found = Vec::new();
+    for (index, r) in robot.samples.iter().enumerate() {
+        let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).collect();
+        if now.len() < group.len() || now.iter().any(|sample| sample.speed() > 0.25) {
+            continue;
+        }
+        let Some(center) = o_center(&now) else { continue };
+        let reach: f64 = now.iter().map(|sample| (sample.at - center).norm()).sum::<f64>() / count(now.len());
+        let radius = group.first().map_or(0.0, |track| track.radius_m);
+        found.push((r.t, (r.at - center).norm() - robot.radius_m - (reach - radius).max(0.1)));
+    }
+    found.into_iter().collect()
+}
+
+/// The point nearest to all lines of sight in the sense of least squares; the middle of the members
+/// where the lines are nearly parallel or meet behind their backs.
+fn o_center(now: &[&Sample]) -> Option<Point> {
+    let first = now.first()?;
+    let sum: Vector = now.iter().map(|sample| sample.at - first.at).sum();
+    let middle = first.at + sum / count(now.len());
+    // Sum of (I - d dᵀ), and of its product with the positions relative to the middle.
+    let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for sample in now {
+        let d = sample.facing();
+        let p = sample.at - middle;
+        let (a, b, c) = (1.0 - d.x * d.x, -d.x * d.y, 1.0 - d.y * d.y);
+        xx += a;
+        xy += b;
+        yy += c;
+        bx += a * p.x + b * p.y;
+        by += b * p.x + c * p.y;
+    }
+    let determinant = xx * yy - xy * xy;
+    if determinant < 0.05 * count(now.len()) {
+        return Some(middle);
+    }
+    let center = middle + Vector::new((yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant);
+    let spread = now.iter().map(|sample| (sample.at - middle).norm()).fold(0.0, f64::max);
+    Some(if (center - middle).norm() <= spread { center } else { middle })
+}
+
+fn crossings(robot: &Track, a: &Track, b: &Track) -> usize {
+    let steps = robot.samples.iter().zip(robot.samples.iter().skip(1));
+    let pairs = a.samples.iter().zip(&b.samples);
+    steps
+        .zip(pairs)
+        .filter(|((_, _), (p, q))| (p.at - q.at).norm() < TOGETHER_M)
+        .filter(|((r, s), (p, q))| {
+            // A sample on the line itself belongs to the step that ends there.
+            let side = |point: &Point| (q.at - p.at).perp(&(point - p.at));
+            (side(&r.at) > 0.0) != (side(&s.at) > 0.0)
+                && socrates_model::geometry::segments_cross(&r.at, &s.at, &p.at, &q.at)
+        })
+        .count()
+}
+
+/// Negative while the robot is beside the line between the two, nearer than the limit.
+fn disturbance(robot: &Track, a: &Track, b: &Track) -> Series {
+    robot
+        .samples
+        .iter()
+        .zip(a.samples.iter().zip(&b.samples))
+        .map(|(r, (p, q))| {
+            let line = q.at - p.at;
+            let length = line.norm().max(1e-9);
+            let along = (r.at - p.at).dot(&line) / length;
+            let beyond = (-along).max(along - length);
+            let aside = ((r.at - p.at).perp(&line) / length).abs();
+            (r.t, beyond.max(aside - RELATION_M))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use crate::evidence::Evidence;
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::value_of;
+    use crate::scenarios::{group_of, proposal};
+
+    #[test]
+    fn a_robot_through_the_middle_of_four_is_as_deep_as_the_circle_and_itself() {
+        let stand = |n: u32, x: f64, y: f64, yaw: f64| Walk::human(n, x, y, 0., 0.).facing(yaw);
+        let group = |robot: Walk| {
+            vec![
+                robot,
+                stand(1, 1., 1., -3. * PI / 4.),
+                stand(2, -1., 1., -PI / 4.),
+                stand(3, -1., -1., PI / 4.),
+                stand(4, 1., -1., 3. * PI / 4.),
+            ]
+        };
+        let plan = group_of(proposal(4, vec![]), &[1, 2, 3, 4]);
+        let run = recording(&group(Walk::robot(-6., 0., 1., 0.)), 12.0, 0.05);
+        let evidence = Evidence { proposal: Some(&plan), ..Evidence::of(&run) };
+        // Mean distance √2 m less the radius of a person is the o-space; the robot's disc goes in by its radius more.
+        let reach = 2.0_f64.sqrt() - 0.28;
+        assert!((value_of(&evidence, "o_space_depth_max").unwrap() - (reach + 0.25)).abs() < 0.01);
+        assert!((value_of(&evidence, "o_space_seconds").unwrap() - 2.0 * (reach + 0.25)).abs() < 0.02);
+        assert_eq!(value_of(&evidence, "o_space_entries"), Some(1.0));
+        assert!(value_of(&evidence, "group_splits").unwrap() >= 2.0);
+        let wide = recording(&group(Walk::robot(-6., 3., 1., 0.)), 12.0, 0.05);
+        let evidence = Evidence { proposal: Some(&plan), ..Evidence::of(&wide) };
+        assert_eq!(value_of(&evidence, "o_space_seconds"), Some(0.0));
+        assert_eq!(value_of(&evidence, "group_splits"), Some(0.0));
+    }
+}

@@ -1,0 +1,308 @@
+//! Metrics: how well the robot did. A catalogue of families, one file each.
+//!
+//! Every value is independent of the recording's sampling rate: times and shares are taken on the
+//! piecewise-linear curve, sums over changes on an even 0.1 s grid. Robot metrics are taken from the start to
+//! the robot's arrival (or the end, where it never arrives).
+
+mod blame;
+mod collisions;
+mod crowding;
+mod distances;
+mod drac;
+mod forces;
+mod goal;
+mod groups;
+mod intrusion;
+mod near_misses;
+mod passing;
+mod path;
+mod pet;
+mod progress;
+mod response;
+mod scene;
+mod smoothness;
+mod space;
+mod speeds;
+mod stalls;
+mod success;
+mod table;
+mod ttc;
+mod yielding;
+mod zones;
+
+use socrates_model::MetricValue;
+
+pub use scene::Scene;
+pub use success::succeeded;
+pub use table::csv;
+
+/// What a metric needs (`spec/evaluation` §2).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    /// Trajectories alone.
+    Tracks,
+    /// A robot among them.
+    Robot,
+    /// At least one human.
+    Humans,
+    /// The map.
+    Map,
+    /// The robot's goal.
+    Goal,
+    /// Group labels.
+    Groups,
+    /// The event log: gestures.
+    Events,
+}
+
+/// Whether more is better.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Larger is better.
+    Up,
+    /// Smaller is better.
+    Down,
+    /// Neither.
+    Neutral,
+}
+
+impl Direction {
+    /// As reports have it: 1, -1 or 0.
+    #[must_use]
+    pub const fn sign(self) -> i8 {
+        match self {
+            Self::Up => 1,
+            Self::Down => -1,
+            Self::Neutral => 0,
+        }
+    }
+}
+
+/// The fact sheet of one metric.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sheet {
+    /// Id, as in reports and tables.
+    pub id: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Whether more is better.
+    pub direction: Direction,
+    /// What it needs.
+    pub needs: &'static [Need],
+    /// Where the definition comes from.
+    pub source: &'static str,
+    /// What it is, with its formula and convention.
+    pub about: &'static str,
+}
+
+/// A value, or why there is none.
+pub type Measured = Result<f64, String>;
+
+/// Metrics that are computed together.
+#[derive(Debug, Clone, Copy)]
+pub struct Family {
+    /// Fact sheets, in the order of the values.
+    pub sheets: &'static [Sheet],
+    /// Computes the values, one per sheet.
+    pub measure: fn(&Scene<'_>) -> Vec<Measured>,
+}
+
+/// Every metric, in report order. Adding one is a sheet in its family's file, or a new file and a line here.
+pub const CATALOG: &[Family] = &[
+    success::FAMILY,
+    collisions::FAMILY,
+    blame::FAMILY,
+    distances::FAMILY,
+    near_misses::FAMILY,
+    ttc::FAMILY,
+    pet::FAMILY,
+    drac::FAMILY,
+    progress::FAMILY,
+    stalls::FAMILY,
+    path::FAMILY,
+    goal::FAMILY,
+    speeds::FAMILY,
+    smoothness::FAMILY,
+    zones::FAMILY,
+    space::FAMILY,
+    intrusion::FAMILY,
+    groups::FAMILY,
+    forces::FAMILY,
+    crowding::FAMILY,
+    yielding::FAMILY,
+    passing::FAMILY,
+    response::FAMILY,
+];
+
+/// Fact sheets of every metric, in report order.
+pub fn sheets() -> impl Iterator<Item = &'static Sheet> {
+    CATALOG.iter().flat_map(|family| family.sheets)
+}
+
+/// The fact sheet of a metric.
+#[must_use]
+pub fn sheet(id: &str) -> Option<&'static Sheet> {
+    sheets().find(|sheet| sheet.id == id)
+}
+
+/// Computes every metric.
+#[must_use]
+pub fn measure(scene: &Scene<'_>) -> Vec<MetricValue> {
+    CATALOG
+        .iter()
+        .flat_map(|family| {
+            let missing = family.sheets.iter().map(|sheet| scene.lacks(sheet.needs)).collect::<Vec<_>>();
+            // A family runs when at least one of its metrics can be had.
+            let values = if missing.iter().any(Option::is_none) { (family.measure)(scene) } else { Vec::new() };
+            family
+                .sheets
+                .iter()
+                .zip(missing)
+                .enumerate()
+                .map(|(index, (sheet, missing))| {
+                    let value = match missing {
+                        Some(why) => Err(why),
+                        None => values.get(index).cloned().unwrap_or_else(|| Err("not computed".to_owned())),
+                    };
+                    valued(sheet, value)
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// Every metric as not applicable, for one reason.
+#[must_use]
+pub fn none(why: &str) -> Vec<MetricValue> {
+    sheets().map(|sheet| valued(sheet, Err(why.to_owned()))).collect()
+}
+
+fn valued(sheet: &Sheet, value: Measured) -> MetricValue {
+    let (value, note) = match value {
+        Ok(value) if value.is_finite() => (Some((value * 1e6).round() / 1e6), String::new()),
+        Ok(_) => (None, "not applicable: the value is not finite".to_owned()),
+        Err(why) => (None, format!("not applicable: {why}")),
+    };
+    MetricValue { id: sheet.id.to_owned(), unit: sheet.unit.to_owned(), value, direction: sheet.direction.sign(), note }
+}
+
+/// A mean over a stretch of time, or why there is none.
+fn or_why(value: Option<f64>, why: &str) -> Measured {
+    value.ok_or_else(|| why.to_owned())
+}
+
+/// A count as a value.
+#[expect(clippy::cast_precision_loss, reason = "counts of a run are far below 2^53")]
+const fn count(count: usize) -> f64 {
+    count as f64
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::collections::BTreeSet;
+
+    use socrates_model::Recording;
+
+    use super::*;
+    use crate::evidence::Evidence;
+    use crate::fidelity::Signals;
+    use crate::fixture::{Walk, recording};
+    use crate::tracks::Tracks;
+
+    /// One metric of a run.
+    pub(crate) fn value_of(evidence: &Evidence<'_>, id: &str) -> Option<f64> {
+        let tracks = Tracks::read(evidence.recording).unwrap();
+        let signals = Signals::new(evidence, &tracks);
+        let values = measure(&Scene::new(&signals));
+        values.into_iter().find(|value| value.id == id).unwrap_or_else(|| panic!("no metric {id}")).value
+    }
+
+    pub(crate) fn value(run: &Recording, id: &str) -> Option<f64> {
+        value_of(&Evidence::of(run), id)
+    }
+
+    /// Asserts a value to a tolerance at 10 Hz and at 100 Hz.
+    pub(crate) fn at_both_rates(walks: &dyn Fn() -> Vec<Walk>, seconds: f64, id: &str, wanted: f64, tolerance: f64) {
+        for step in [0.1, 0.01] {
+            let found = value(&recording(&walks(), seconds, step), id).unwrap_or_else(|| panic!("{id} has no value"));
+            assert!((found - wanted).abs() <= tolerance, "{id} at a step of {step} s: {found}, wanted {wanted}");
+        }
+    }
+
+    #[test]
+    fn ids_are_unique_and_every_family_gives_as_many_values_as_sheets() {
+        let ids: BTreeSet<&str> = sheets().map(|sheet| sheet.id).collect();
+        assert_eq!(ids.len(), sheets().count());
+        assert!(ids.len() >= 60, "{}", ids.len());
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 6., 1., -1., 0.)], 10.0, 0.1);
+        let evidence = Evidence::of(&run);
+        let tracks = Tracks::read(&run).unwrap();
+        let signals = Signals::new(&evidence, &tracks);
+        let scene = Scene::new(&signals);
+        for family in CATALOG.iter().filter(|family| family.sheets.iter().any(|s| scene.lacks(s.needs).is_none())) {
+            assert_eq!((family.measure)(&scene).len(), family.sheets.len(), "{}", family.sheets[0].id);
+        }
+        for sheet in sheets() {
+            assert!(!sheet.about.is_empty() && !sheet.source.is_empty() && !sheet.unit.is_empty(), "{}", sheet.id);
+        }
+    }
+
+    #[test]
+    fn missing_data_is_a_note_and_never_zero() {
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.)], 4.0, 0.1);
+        let evidence = Evidence::of(&run);
+        let tracks = Tracks::read(&run).unwrap();
+        let signals = Signals::new(&evidence, &tracks);
+        for value in measure(&Scene::new(&signals)) {
+            let needs = sheet(&value.id).unwrap().needs;
+            if needs.contains(&Need::Humans) || needs.contains(&Need::Map) || needs.contains(&Need::Goal) {
+                assert_eq!(value.value, None, "{}", value.id);
+                assert!(value.note.starts_with("not applicable: "), "{}", value.id);
+            }
+        }
+    }
+
+    #[test]
+    fn values_do_not_change_when_the_world_is_moved_turned_or_renamed() {
+        let turn = |x: f64, y: f64| (3.0 - y, 7.0 + x);
+        let plain = recording(
+            &[Walk::robot(0., 0., 0.6, 0.), Walk::human(1, 9., 0.6, -1., 0.), Walk::human(2, 4., -3., 0., 0.8)],
+            12.0,
+            0.05,
+        );
+        let moved = {
+            let (r, a, b) = (turn(0., 0.), turn(9., 0.6), turn(4., -3.));
+            recording(
+                &[
+                    Walk::robot(r.0, r.1, 0., 0.6),
+                    Walk::human(1, b.0, b.1, -0.8, 0.),
+                    Walk::human(2, a.0, a.1, 0., -1.),
+                ],
+                12.0,
+                0.05,
+            )
+        };
+        for sheet in sheets() {
+            match (value(&plain, sheet.id), value(&moved, sheet.id)) {
+                (Some(a), Some(b)) => assert!((a - b).abs() < 1e-4, "{}: {a} and {b}", sheet.id),
+                (None, None) => {}
+                other => panic!("{}: {other:?}", sheet.id),
+            }
+        }
+    }
+
+    #[test]
+    fn ten_and_a_hundred_hertz_agree_within_two_percent() {
+        let walks = [
+            Walk::robot(0., 0., 0.6, 0.),
+            Walk::human(1, 9., 0.6, -1., 0.),
+            Walk::human_through(2, &[(0., 4., -3.), (6., 4., 2.), (9., 8., 2.)]),
+        ];
+        let (coarse, fine) = (recording(&walks, 12.0, 0.1), recording(&walks, 12.0, 0.01));
+        for sheet in sheets() {
+            if let (Some(a), Some(b)) = (value(&coarse, sheet.id), value(&fine, sheet.id)) {
+                assert!((a - b).abs() <= 0.02 * b.abs() + 0.02, "{}: {a} at 10 Hz, {b} at 100 Hz", sheet.id);
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Post-encroachment time.
+
+use socrates_model::Point;
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::tracks::Track;
+
+/// Spacing of the points at which two ways are compared, m.
+const STEP_M: f64 = 0.1;
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[Sheet {
+        id: "post_encroachment_time",
+        unit: "s",
+        direction: Direction::Up,
+        needs: &[Need::Robot, Need::Humans],
+        source: "Allen, Shin and Cooper 1978 (PET)",
+        about: "smallest time between one agent leaving the place where the ways cross (a disc of both radii) and the other entering it; 0 when both are in it at once",
+    }],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let gap = scene.pairs().filter_map(|(robot, human)| gap_s(robot, human)).min_by(f64::total_cmp);
+    vec![or_why(gap, "the robot's way crosses nobody's")]
+}
+
+/// The smallest gap over the places that both come through.
+fn gap_s(robot: &Track, human: &Track) -> Option<f64> {
+    let reach = robot.radius_m + human.radius_m;
+    let theirs = points(human);
+    // The places of conflict: points of the robot's way that the human's way touches, grouped by
+    // where the two are nearest.
+    let place = points(robot)
+        .into_iter()
+        .filter_map(|at| {
+            let apart = theirs.iter().map(|other| (at - other).norm()).min_by(f64::total_cmp)?;
+            Some((apart, at))
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(apart, _)| *apart <= reach)?
+        .1;
+    let (r_in, r_out) = stay(robot, &place, reach)?;
+    let (h_in, h_out) = stay(human, &place, reach)?;
+    Some((h_in - r_out).max(r_in - h_out).max(0.0))
+}
+
+/// Points of a way, one per step.
+fn points(track: &Track) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for sample in &track.samples {
+        if kept.last().is_none_or(|last| (sample.at - last).norm() >= STEP_M) {
+            kept.push(sample.at);
+        }
+    }
+    kept
+}
+
+/// First time inside a disc, and last time of that stay.
+fn stay(track: &Track, at: &Point, reach: f64) -> Option<(f64, f64)> {
+    let distance: crate::series::Series =
+        track.samples.iter().map(|sample| (sample.t, (sample.at - at).norm())).collect();
+    distance.stretches_below(reach, 0.05, 0.5).first().map(|span| (span.from_s, span.to_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn the_gap_at_a_crossing_is_the_time_between_leaving_and_entering() {
+        // The robot leaves the disc of 0.53 m about the origin at t = 4.53 s, the human enters at 6.47 s.
+        let walks = || vec![Walk::robot(-4., 0., 1., 0.), Walk::human(1, 0., -7., 0., 1.)];
+        at_both_rates(&walks, 10.0, "post_encroachment_time", 7.0 - 4.0 - 1.06, 0.12);
+    }
+
+    #[test]
+    fn parallel_ways_have_no_gap() {
+        let run = recording(&[Walk::robot(-4., 0., 1., 0.), Walk::human(1, 4., 2., -1., 0.)], 8.0, 0.1);
+        assert_eq!(value(&run, "post_encroachment_time"), None);
+    }
+}

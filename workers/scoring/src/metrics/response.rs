@@ -1,0 +1,70 @@
+//! How fast the robot answers a gesture.
+
+use socrates_model::Gesture;
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::tracks::MOVING_MPS;
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Events];
+const SOURCE: &str = "Francis et al. 2023, gesture cards g and h, as a delay";
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "wait_response",
+            unit: "s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: SOURCE,
+            about: "longest time from a human's WAIT to the robot standing (below 0.1 m/s)",
+        },
+        Sheet {
+            id: "proceed_response",
+            unit: "s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: SOURCE,
+            about: "longest time from a human's PROCEED to the robot going (above 0.1 m/s)",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let delay = |gesture: Gesture, goes: bool| -> Measured {
+        let Some(robot) = scene.robot() else { return Err("there is no robot in the recording".to_owned()) };
+        let mut longest: Option<f64> = None;
+        for human in &scene.tracks.humans {
+            let mut saying = false;
+            for sample in &human.samples {
+                let says = sample.gesture == gesture;
+                if says && !saying {
+                    let done = robot.samples.iter().find(|r| r.t >= sample.t && (r.speed() > MOVING_MPS) == goes);
+                    let Some(done) = done else { return Err(format!("the robot never answers {gesture}")) };
+                    longest = Some(longest.map_or(done.t - sample.t, |old: f64| old.max(done.t - sample.t)));
+                }
+                saying = says;
+            }
+        }
+        or_why(longest, &format!("nobody says {gesture}"))
+    };
+    vec![delay(Gesture::Wait, false), delay(Gesture::Proceed, true)]
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::{AgentId, Gesture};
+
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::value;
+
+    #[test]
+    fn the_delay_is_from_the_gesture_to_the_stop() {
+        let robot = Walk::through(AgentId::Robot, &[(0., 0., 0.), (5., 4., 0.), (9., 4., 0.), (12., 6., 0.)]);
+        let human = Walk::human(1, 8., 0., 0., 0.).says(3.5, 6.0, Gesture::Wait);
+        let run = recording(&[robot, human], 12.0, 0.1);
+        assert!((value(&run, "wait_response").unwrap() - 1.5).abs() < 0.11);
+        assert_eq!(value(&run, "proceed_response"), None);
+    }
+}

@@ -1,0 +1,146 @@
+//! What the metrics look at: the run cut to the robot's trip, with distances ready.
+
+use socrates_maps::Geodesic;
+use socrates_model::Point;
+
+use crate::fidelity::{GOAL_M, Signals};
+use crate::metrics::Need;
+use crate::series::Series;
+use crate::tracks::{Sample, Track, Tracks};
+
+/// Step of the even grid on which sums over changes are taken, s.
+pub(super) const EVEN_SECS: f64 = 0.1;
+
+/// The robot's trip.
+pub struct Scene<'a> {
+    /// Signals of the whole run.
+    pub signals: &'a Signals<'a>,
+    /// Tracks from the start to the robot's arrival.
+    pub tracks: Tracks,
+    /// The robot's goal, if known.
+    pub goal: Option<Point>,
+    /// When the robot arrived, s.
+    pub arrived_s: Option<f64>,
+    /// Shortest ways to the goal for the robot's disc.
+    pub geodesic: Option<Geodesic>,
+    /// The robot on the even grid.
+    pub even: Vec<Sample>,
+    /// Surface distance to each human over time, in the order of `tracks.humans`.
+    pub distances: Vec<Series>,
+    /// Surface distance to the nearest human over time.
+    pub nearest: Series,
+}
+
+impl<'a> Scene<'a> {
+    /// Cuts the run to the robot's trip and computes distances.
+    #[must_use]
+    pub fn new(signals: &'a Signals<'a>) -> Self {
+        let full = signals.full;
+        let robot_end = signals.arrived_s.and_then(|t| full.robot.as_ref()?.at(t)).map(|sample| sample.at);
+        let goal = crate::fidelity::robot_goal(signals).or(robot_end);
+        let reached = goal.and_then(|goal| {
+            let robot = full.robot.as_ref()?;
+            robot.samples.iter().find(|sample| (sample.at - goal).norm() <= GOAL_M).map(|sample| sample.t)
+        });
+        let arrived_s = signals.arrived_s.or(reached);
+        let tracks = full.until(arrived_s.unwrap_or(f64::INFINITY));
+        let distances: Vec<Series> = tracks
+            .robot
+            .as_ref()
+            .map(|robot| tracks.humans.iter().map(|human| surface(robot, human)).collect())
+            .unwrap_or_default();
+        let nearest = least_of(&distances);
+        let radius = tracks.robot.as_ref().map_or(0.0, |robot| robot.radius_m);
+        let geodesic =
+            signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
+        let even = tracks.robot.as_ref().map(|robot| robot.even(EVEN_SECS)).unwrap_or_default();
+        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest }
+    }
+
+    /// Why metrics with these needs cannot be had; `None` when they can.
+    #[must_use]
+    pub fn lacks(&self, needs: &[Need]) -> Option<String> {
+        needs.iter().find_map(|need| {
+            let (there, what) = match need {
+                Need::Tracks => (true, ""),
+                Need::Robot => (self.tracks.robot.is_some(), "there is no robot in the recording"),
+                Need::Humans => (!self.tracks.humans.is_empty(), "there is no human in the recording"),
+                Need::Map => (self.signals.field.is_some(), "there is no map"),
+                Need::Goal => (self.goal.is_some(), "the robot's goal is not known"),
+                Need::Groups => {
+                    let groups = self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty());
+                    (groups, "no groups are known")
+                }
+                Need::Events => (
+                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
+                    "nobody makes a gesture",
+                ),
+            };
+            (!there).then(|| what.to_owned())
+        })
+    }
+
+    /// The robot; metrics that need one are not computed without.
+    #[must_use]
+    pub const fn robot(&self) -> Option<&Track> {
+        self.tracks.robot.as_ref()
+    }
+
+    /// Length of the trip, s.
+    #[must_use]
+    pub fn length_s(&self) -> f64 {
+        self.nearest_or_robot().length_s()
+    }
+
+    /// The curve of nearest distances, or one of the robot's times where there is no human.
+    fn nearest_or_robot(&self) -> Series {
+        if self.nearest.samples().is_empty() {
+            self.robot().map(|robot| robot.samples.iter().map(|s| (s.t, 0.0)).collect()).unwrap_or_default()
+        } else {
+            self.nearest.clone()
+        }
+    }
+
+    /// Robot and human side by side through time.
+    pub fn pairs(&self) -> impl Iterator<Item = (&Track, &Track)> {
+        self.tracks.robot.iter().flat_map(|robot| self.tracks.humans.iter().map(move |human| (robot, human)))
+    }
+
+    /// Shortest way from a point to the goal, m; straight where there is no map.
+    #[must_use]
+    pub fn to_goal_m(&self, from: &Point) -> Option<f64> {
+        let goal = self.goal?;
+        match &self.geodesic {
+            Some(geodesic) => geodesic.distance(from),
+            None => Some((goal - from).norm()),
+        }
+    }
+
+    /// Way of the robot on the even grid, m.
+    #[must_use]
+    pub fn path_length_m(&self) -> f64 {
+        self.even.iter().zip(self.even.iter().skip(1)).map(|(a, b)| (b.at - a.at).norm()).sum()
+    }
+}
+
+/// Surface distance of two agents over time, m.
+fn surface(robot: &Track, human: &Track) -> Series {
+    robot
+        .samples
+        .iter()
+        .zip(&human.samples)
+        .map(|(r, h)| (r.t, (r.at - h.at).norm() - robot.radius_m - human.radius_m))
+        .collect()
+}
+
+/// The smallest of several curves with the same times.
+fn least_of(curves: &[Series]) -> Series {
+    let Some((first, rest)) = curves.split_first() else { return Series::default() };
+    let mut least: Vec<(f64, f64)> = first.samples().to_vec();
+    for curve in rest {
+        for (slot, (_, value)) in least.iter_mut().zip(curve.samples()) {
+            slot.1 = slot.1.min(*value);
+        }
+    }
+    least.into_iter().collect()
+}

@@ -1,0 +1,66 @@
+//! Keeping a distance.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+
+/// Distance to be kept, m (Francis et al. 2023; `SocNavGym` takes 0.45).
+const KEPT_M: f64 = 0.5;
+/// Nearer than this is uncomfortable, m (`CrowdNav`).
+const DISCOMFORT_M: f64 = 0.2;
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "space_compliance",
+            unit: "share",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (SC)",
+            about: "share of time with every human's surface at least 0.5 m away",
+        },
+        Sheet {
+            id: "discomfort_share",
+            unit: "share",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "CrowdNav, discomfort frequency",
+            about: "share of time with a human's surface nearer than 0.2 m",
+        },
+        Sheet {
+            id: "discomfort_distance",
+            unit: "m",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "CrowdNav, mean distance in discomfort",
+            about: "mean surface distance to the closest human while that is below 0.2 m",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let nearest = &scene.nearest;
+    let length = nearest.length_s();
+    let short = "the recording has no length";
+    vec![
+        or_why((length > 0.0).then(|| 1.0 - nearest.time_below(KEPT_M) / length), short),
+        or_why((length > 0.0).then(|| nearest.time_below(DISCOMFORT_M) / length), short),
+        or_why(nearest.mean_while_below(nearest, DISCOMFORT_M), "nobody comes within 0.2 m"),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::Walk;
+    use crate::metrics::tests::at_both_rates;
+
+    #[test]
+    fn the_share_that_is_not_kept_is_the_chord_of_half_a_metre() {
+        let walks = || vec![Walk::robot(-6., 0., 0.8, 0.), Walk::human(1, 0., 0.8, 0., 0.)];
+        let chord = 2.0 * (1.03_f64 * 1.03 - 0.64).sqrt() / 0.8 / 15.0;
+        at_both_rates(&walks, 15.0, "space_compliance", 1.0 - chord, 0.001);
+        at_both_rates(&walks, 15.0, "discomfort_share", 0.0, 1e-9);
+    }
+}

@@ -1,0 +1,70 @@
+//! Whether the robot did its task.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, collisions};
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "success",
+            unit: "0/1",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (S)",
+            about: "1 when the robot came within 0.5 m of its goal (or said that it arrived) without touching a human or a wall",
+        },
+        Sheet {
+            id: "arrived",
+            unit: "0/1",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "HuNavSim, `completed`",
+            about: "1 when the robot came within 0.5 m of its goal (or said that it arrived), collisions or not",
+        },
+        Sheet {
+            id: "time_to_goal",
+            unit: "s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (T)",
+            about: "time from the start to the arrival; not applicable when the robot never arrives",
+        },
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let flag = |yes: bool| Ok(if yes { 1.0 } else { 0.0 });
+    vec![
+        flag(succeeded(scene)),
+        flag(scene.arrived_s.is_some()),
+        scene.arrived_s.ok_or_else(|| "the robot never arrives".to_owned()),
+    ]
+}
+
+/// Whether the robot reached its goal without a collision.
+#[must_use]
+pub fn succeeded(scene: &Scene<'_>) -> bool {
+    scene.arrived_s.is_some()
+        && collisions::human_contacts(scene).is_empty()
+        && collisions::wall_contacts(scene).is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::EventKind;
+
+    use crate::fixture::{Walk, event, recording};
+    use crate::metrics::tests::value;
+
+    #[test]
+    fn a_robot_that_arrives_through_a_person_has_no_success() {
+        let mut run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 3., 0.2, 0., 0.)], 8.0, 0.1);
+        event(&mut run, 6.0, EventKind::RobotArrived);
+        assert_eq!(value(&run, "success"), Some(0.0));
+        assert_eq!(value(&run, "arrived"), Some(1.0));
+        assert_eq!(value(&run, "time_to_goal"), Some(6.0));
+    }
+}

@@ -1,0 +1,41 @@
+//! Metrics as a table for spreadsheets and scripts.
+
+use socrates_model::Report;
+
+/// One line per metric: `run,planner,seed,id,value,unit,direction,note`. An absent value is an empty cell.
+#[must_use]
+pub fn csv(report: &Report) -> String {
+    let mut text = String::from("run,planner,seed,id,value,unit,direction,note\n");
+    for metric in &report.metrics {
+        let value = metric.value.map_or_else(String::new, |value| value.to_string());
+        let cells = [
+            report.run.as_str(),
+            &report.planner,
+            &report.seed.to_string(),
+            &metric.id,
+            &value,
+            &metric.unit,
+            &metric.direction.to_string(),
+            &metric.note,
+        ];
+        text.push_str(&cells.map(quoted).join(","));
+        text.push('\n');
+    }
+    text
+}
+
+/// A cell as RFC 4180 has it.
+fn quoted(cell: &str) -> String {
+    if cell.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_with_a_comma_is_quoted() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(quoted("plain"), "plain");
+    }
+}

@@ -1,0 +1,126 @@
+//! Time to collision at constant velocity.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::series::Series;
+use crate::tracks::Sample;
+
+/// Below this time to collision somebody is exposed, s (1.5 to 3 s are in use).
+pub(crate) const EXPOSED_SECS: f64 = 3.0;
+/// Longer times count as this one, so that curves have a number, s.
+const FAR_SECS: f64 = 100.0;
+
+const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "ttc_min",
+            unit: "s",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (TTC)",
+            about: "smallest time to collision of the discs at constant velocity; 0 in contact",
+        },
+        Sheet {
+            id: "ttc_p5",
+            unit: "s",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (TTC)",
+            about: "time to collision that is undershot for 5 % of the time on a collision course",
+        },
+        Sheet {
+            id: "time_exposed_ttc",
+            unit: "s",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Minderhoud and Bovy 2001 (TET)",
+            about: "time with a time to collision below 3 s",
+        },
+        Sheet {
+            id: "time_integrated_ttc",
+            unit: "s^2",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Minderhoud and Bovy 2001 (TIT)",
+            about: "integral of (3 s - time to collision)+ over time",
+        },
+    ],
+    measure,
+};
+
+/// Time to collision of two discs at constant velocity, s; `None` when they never touch. With
+/// `p = x_h - x_r`, `w = v_h - v_r`, `R` the sum of radii, `a = w.w`, `b = p.w`, `c = p.p - R²`:
+/// `(-b - √(b² - a c)) / a`.
+pub(crate) fn time_to_collision(r: &Sample, h: &Sample, radii_m: f64) -> Option<f64> {
+    let (p, w) = (h.at - r.at, h.velocity - r.velocity);
+    let c = p.norm_squared() - radii_m * radii_m;
+    if c < 0.0 {
+        return Some(0.0);
+    }
+    let (a, b) = (w.norm_squared(), p.dot(&w));
+    let root = b * b - a * c;
+    (b < 0.0 && root >= 0.0 && a > 1e-12).then(|| (-b - root.sqrt()) / a)
+}
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let mut least: Vec<(f64, f64)> = Vec::new();
+    for (robot, human) in scene.pairs() {
+        let radii = robot.radius_m + human.radius_m;
+        let times = robot
+            .samples
+            .iter()
+            .zip(&human.samples)
+            .map(|(r, h)| (r.t, time_to_collision(r, h, radii).unwrap_or(FAR_SECS).min(FAR_SECS)));
+        if least.is_empty() {
+            least = times.collect();
+        } else {
+            for (slot, (_, time)) in least.iter_mut().zip(times) {
+                slot.1 = slot.1.min(time);
+            }
+        }
+    }
+    let curve: Series = least.iter().copied().collect();
+    let why = "never on a collision course";
+    let smallest = curve.least().map(|(_, time)| time).filter(|time| *time < FAR_SECS);
+    let on_course = curve.time_below(FAR_SECS - 1e-6);
+    let fifth = (curve.length_s() > 0.0 && smallest.is_some())
+        .then(|| curve.time_quantile(0.05 * on_course / curve.length_s()))
+        .flatten()
+        .filter(|time| *time < FAR_SECS);
+    // A curve that jumps from far to near between two samples must not be cut in a straight line: the
+    // exposed time is that of pieces with both ends near, and half of those with one.
+    let (mut exposed, mut integrated) = (0.0, 0.0);
+    for ((t0, v0), (t1, v1)) in least.iter().zip(least.iter().skip(1)) {
+        let near = |v: f64| if v < EXPOSED_SECS { 1.0 } else { 0.0 };
+        let short = |v: f64| (EXPOSED_SECS - v).max(0.0);
+        exposed += (t1 - t0) * (near(*v0) + near(*v1)) / 2.0;
+        integrated += (t1 - t0) * (short(*v0) + short(*v1)) / 2.0;
+    }
+    vec![or_why(smallest, why), or_why(fifth, why), Ok(exposed), Ok(integrated)]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn two_discs_head_on_have_the_time_of_their_gap() {
+        // 10 m apart, closing at 2 m/s, radii 0.53 m together: 4.735 s at the start, 1.735 s after 3 s.
+        let walks = || vec![Walk::robot(0., 0., 1., 0.), Walk::human(1, 10., 0., -1., 0.)];
+        at_both_rates(&walks, 3.0, "ttc_min", 1.735, 1e-6);
+        at_both_rates(&walks, 3.0, "time_exposed_ttc", 3.0 - 1.735, 0.06);
+        at_both_rates(&walks, 3.0, "time_integrated_ttc", (3.0_f64 - 1.735).powi(2) / 2.0, 0.02);
+    }
+
+    #[test]
+    fn a_tangent_outside_the_radii_is_no_collision_course() {
+        let run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 10., 0.54, -1., 0.)], 10.0, 0.1);
+        assert_eq!(value(&run, "ttc_min"), None);
+        assert_eq!(value(&run, "time_exposed_ttc"), Some(0.0));
+        let graze = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 10., 0.52, -1., 0.)], 4.0, 0.1);
+        assert!(value(&graze, "ttc_min").is_some());
+    }
+}

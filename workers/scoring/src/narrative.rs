@@ -1,0 +1,188 @@
+//! The story of a run in lines with times, and what the robot did in one sentence.
+
+use socrates_model::report::Standing;
+use socrates_model::{Action, AgentId, ClauseRole, EventKind, Gesture};
+
+use crate::fidelity::{Judged, Signals, does};
+use crate::metrics::Scene;
+use crate::tracks::MOVING_MPS;
+
+/// Longest story, lines; what is over is counted in a last line.
+const MAX_LINES: usize = 120;
+/// Shorter stops of the robot are not worth a line, s.
+const STOP_SECS: f64 = 0.8;
+
+/// One line per thing that happened, in time order: `3.2 s  human_1 sees the robot at 4.8 m`.
+pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
+    let mut lines: Vec<(f64, String)> = Vec::new();
+    let mut add = |t: f64, text: String| lines.push((t, text));
+    for event in &signals.evidence.recording.events {
+        if let Some(text) = told(&event.kind) {
+            add(event.time.secs(), text);
+        }
+    }
+    let has_gestures =
+        signals.evidence.recording.events.iter().any(|event| matches!(event.kind, EventKind::Gesture { .. }));
+    for track in signals.tracks.all().filter(|_| !has_gestures) {
+        let mut before = Gesture::None;
+        for sample in &track.samples {
+            if sample.gesture != before && sample.gesture != Gesture::None {
+                add(sample.t, format!("{} says {}", track.agent, sample.gesture));
+            }
+            before = sample.gesture;
+        }
+    }
+    for (t, text) in robot_stops(signals).into_iter().chain(closest(signals)) {
+        add(t, text);
+    }
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    lines.dedup();
+    let over = lines.len().saturating_sub(MAX_LINES);
+    lines.truncate(MAX_LINES);
+    let mut story: Vec<String> = lines.into_iter().map(|(t, text)| format!("{t:.1} s  {text}")).collect();
+    if over > 0 {
+        story.push(format!("and {over} more"));
+    }
+    story
+}
+
+/// An event in words; steps along paths are not told.
+fn told(kind: &EventKind) -> Option<String> {
+    Some(match kind {
+        EventKind::Gesture { gesture: Gesture::None, .. } | EventKind::Node { .. } => return None,
+        EventKind::Gesture { agent, gesture } => format!("{agent} says {gesture}"),
+        EventKind::Leaf { human, leaf } => match phrase(leaf) {
+            Some(words) => format!("{human} {words}"),
+            None => format!("{human} runs {leaf}"),
+        },
+        EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
+        EventKind::Encounter { human, node, gap_s } => {
+            format!("{human} and the robot meet at {node}, gap {:.1} s", gap_s.abs())
+        }
+        EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
+        EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {:.0} mm deep", depth_m * 1e3),
+        EventKind::Door { door, open } => format!("{door} {}", if *open { "opens" } else { "closes" }),
+        EventKind::RobotArrived => "the robot is at its goal".to_owned(),
+        EventKind::Stuck { agent } => format!("{agent} is stuck"),
+        EventKind::End { reason } => format!("the run ends: {reason}"),
+    })
+}
+
+/// What a leaf does, in words.
+fn phrase(leaf: &str) -> Option<String> {
+    let plain = [
+        Action::FollowRobot,
+        Action::RunAway,
+        Action::GiveWay,
+        Action::Block,
+        Action::LookAtRobot,
+        Action::Approach,
+        Action::StandStill,
+        Action::Navigate,
+    ];
+    if leaf.is_empty() {
+        return None;
+    }
+    plain.iter().find(|action| does(leaf, action)).map(Action::phrase)
+}
+
+/// Stops of the robot before it is at its goal, with who is nearest ahead.
+fn robot_stops(signals: &Signals<'_>) -> Vec<(f64, String)> {
+    let Some(robot) = &signals.tracks.robot else { return Vec::new() };
+    let end = signals.arrived_s.unwrap_or(f64::INFINITY);
+    let mut found = Vec::new();
+    let mut since: Option<f64> = None;
+    let mut moved = false;
+    for sample in robot.samples.iter().filter(|sample| sample.t < end) {
+        if sample.speed() > MOVING_MPS {
+            if let Some(from) = since.take().filter(|from| moved && sample.t - from >= STOP_SECS) {
+                found.push((from, format!("the robot stops for {:.1} s{}", sample.t - from, near(signals, from))));
+            }
+            moved = true;
+        } else {
+            since.get_or_insert(sample.t);
+        }
+    }
+    if let Some(from) = since.filter(|_| moved) {
+        found.push((from, format!("the robot stops for good{}", near(signals, from))));
+    }
+    found
+}
+
+fn near(signals: &Signals<'_>, t: f64) -> String {
+    let nearest = signals
+        .moments
+        .iter()
+        .filter_map(|(human, moments)| Some((human, moments.iter().find(|moment| moment.t >= t)?)))
+        .filter(|(_, moment)| moment.ahead_m > 0.0 && moment.distance_m < 3.0)
+        .min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m));
+    nearest.map_or_else(String::new, |(human, moment)| format!(", {human} {:.1} m ahead", moment.distance_m))
+}
+
+/// The closest approach of every human, where they come near at all.
+fn closest(signals: &Signals<'_>) -> Vec<(f64, String)> {
+    signals
+        .moments
+        .iter()
+        .filter_map(|(human, moments)| {
+            let moment = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))?;
+            (moment.distance_m < 5.0)
+                .then(|| (moment.t, format!("{human} and the robot are closest, {:.2} m", moment.distance_m)))
+        })
+        .collect()
+}
+
+/// What the robot did, in one sentence: `reference: arrived at 41.2 s · smallest distance 0.71 m …`.
+pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
+    let planner = &scene.signals.evidence.recording.header.planner;
+    if scene.robot().is_none() {
+        return format!("{planner}: no robot in the recording");
+    }
+    let mut parts = vec![match (scene.arrived_s, scene.goal) {
+        (Some(t), _) => format!("arrived at {t:.1} s"),
+        (None, Some(goal)) => {
+            let last = scene.robot().and_then(|robot| robot.samples.last());
+            let left = last
+                .map_or(f64::NAN, |sample| scene.to_goal_m(&sample.at).unwrap_or_else(|| (goal - sample.at).norm()));
+            format!("did not arrive, {left:.1} m short")
+        }
+        (None, None) => format!("went {:.1} m, goal not known", scene.path_length_m()),
+    }];
+    let outcome = || judged.clauses.iter().filter(|(clause, _)| clause.role == ClauseRole::Outcome);
+    let entered = outcome().find(|(clause, _)| clause.predicate == socrates_model::Predicate::RobotEntersLast);
+    if let Some((_, finding)) = entered {
+        match finding.standing {
+            Standing::Holds | Standing::Late => parts.push("entered after everybody had left".to_owned()),
+            Standing::Fails | Standing::NotTriggered => parts.push(finding.evidence.clone()),
+            Standing::NotApplicable => {}
+        }
+    }
+    let least = scene
+        .pairs()
+        .zip(&scene.distances)
+        .filter_map(|((_, human), distance)| Some((distance.least()?, human.agent)))
+        .min_by(|a, b| a.0.1.total_cmp(&b.0.1));
+    if let Some(((t, distance), who)) = least {
+        parts.push(format!("smallest distance {distance:.2} m ({who} at {t:.1} s)"));
+    }
+    let contacts = scene.distances.iter().filter(|distance| distance.least().is_some_and(|(_, d)| d < 0.0)).count();
+    if contacts > 0 {
+        parts.push(format!("touched {contacts} of {} humans", scene.distances.len()));
+    }
+    let judged_outcomes = outcome().filter(|(_, finding)| finding.standing != Standing::NotApplicable).count();
+    if judged_outcomes > 0 {
+        let good = outcome().filter(|(_, f)| matches!(f.standing, Standing::Holds | Standing::Late)).count();
+        parts.push(format!("{good} of {judged_outcomes} outcome clauses"));
+    }
+    let stuck = scene
+        .signals
+        .evidence
+        .recording
+        .events
+        .iter()
+        .any(|event| event.kind == (EventKind::Stuck { agent: AgentId::Robot }));
+    if stuck {
+        parts.push("got stuck".to_owned());
+    }
+    format!("{planner}: {}", parts.join(" · "))
+}

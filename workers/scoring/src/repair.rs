@@ -1,0 +1,110 @@
+//! What should be done again when the scenario did not happen, with the reasons its author reads next.
+
+use socrates_model::job::Stage;
+use socrates_model::report::{Repair, Standing};
+use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict};
+
+use crate::evidence::{Evidence, REFERENCE};
+use crate::fidelity::{Finding, Judged};
+use crate::score::is_meeting;
+use crate::tracks::TrackFault;
+
+/// The repair a verdict asks for, if it is the scenario's fault. Only the run with the reference
+/// robot can tell; what another planner prevented is its own result.
+pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> Option<Repair> {
+    if evidence.recording.header.planner != REFERENCE {
+        return None;
+    }
+    let mut faults: Vec<(Stage, Fault)> = Vec::new();
+    match verdict {
+        Verdict::Realised | Verdict::RealisedLate | Verdict::RobotPrevented => return None,
+        Verdict::NotTriggered | Verdict::Contradicted => {}
+        Verdict::Invalid => {
+            for flaw in &judged.flaws {
+                let code = if flaw.stuck { FaultCode::DStuck } else { FaultCode::DPen };
+                let at = flaw.agents.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                faults.push((Stage::Paths, Fault::new(code, at, format!("at {:.1} s: {}", flaw.t, flaw.text))));
+            }
+            if faults.is_empty() {
+                evidence.proposal?;
+                for missing in &judged.uncovered {
+                    let message = format!("{missing}; give expected_events a must-clause of role setup for it");
+                    faults.push((Stage::Proposal, Fault::new(FaultCode::PVerify, "expected_events", message)));
+                }
+            }
+        }
+    }
+    if faults.is_empty() {
+        for (clause, finding) in judged.deciding() {
+            if matches!(finding.standing, Standing::NotTriggered | Standing::Fails) {
+                faults.push(fault_of(clause, finding));
+            }
+        }
+    }
+    // One stage is done again at a time, the earliest: what depends on it is made anew anyway.
+    let stage = faults.iter().map(|(stage, _)| *stage).min()?;
+    let faults = faults.into_iter().filter(|(of, _)| *of == stage).map(|(_, fault)| fault).collect();
+    Some(Repair { stage, faults })
+}
+
+/// The repair for a recording that cannot be read: only states that are not finite are the scenario's fault.
+pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<Repair> {
+    let TrackFault::NotFinite { agent, .. } = fault else { return None };
+    (evidence.paths.is_some() && evidence.recording.header.planner == REFERENCE)
+        .then(|| Repair { stage: Stage::Paths, faults: vec![Fault::new(FaultCode::DPen, agent, fault.to_string())] })
+}
+
+/// Code, stage and message of a clause that was missed.
+fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
+    let (code, stage) = match &clause.predicate {
+        predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
+        Predicate::Reacts { .. } if finding.early => (FaultCode::DEarly, Stage::Behaviors),
+        // Who was never near could not act: that is for the paths.
+        Predicate::Blocks { .. }
+        | Predicate::Looks { .. }
+        | Predicate::RunsAway { .. }
+        | Predicate::GivesWay { .. }
+        | Predicate::Follows { .. }
+            if finding.standing == Standing::NotTriggered =>
+        {
+            (FaultCode::DNoMeet, Stage::Paths)
+        }
+        Predicate::Reacts { .. }
+        | Predicate::Blocks { .. }
+        | Predicate::Looks { .. }
+        | Predicate::StandsStill { .. }
+        | Predicate::RunsAway { .. }
+        | Predicate::GivesWay { .. }
+        | Predicate::Follows { .. }
+        | Predicate::Abreast { .. } => (FaultCode::DNoTrig, Stage::Behaviors),
+        Predicate::Gestures { .. } => (FaultCode::DNoGest, Stage::Behaviors),
+        Predicate::Formation { .. } | Predicate::WalksTogether { .. } => (FaultCode::DGroup, Stage::Paths),
+        Predicate::Plausible => (FaultCode::DPen, Stage::Paths),
+        Predicate::Humans { .. }
+        | Predicate::Meets { .. }
+        | Predicate::HeadOn { .. }
+        | Predicate::Crosses { .. }
+        | Predicate::Ahead { .. }
+        | Predicate::Overtakes { .. }
+        | Predicate::RobotPasses { .. }
+        | Predicate::Leaves { .. }
+        | Predicate::StaysInside { .. }
+        | Predicate::DoorOpens { .. }
+        | Predicate::HiddenUntil { .. }
+        | Predicate::Order { .. }
+        | Predicate::EncounterAt { .. }
+        | Predicate::Reaches { .. }
+        | Predicate::RobotArrives
+        | Predicate::RobotKeeps { .. }
+        | Predicate::RobotEntersLast
+        | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
+    };
+    let at = clause.predicate.human().map_or_else(|| clause.id.clone(), |human| human.to_string());
+    let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
+    let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
+    let message = format!(
+        "clause {} (\"{}\") {state}{when}, margin {:.2}: {}",
+        clause.id, clause.text, finding.margin, finding.evidence
+    );
+    (stage, Fault::new(code, at, message))
+}

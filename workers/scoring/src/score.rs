@@ -1,0 +1,77 @@
+//! Evidence in, report out.
+
+use socrates_model::{FORMAT, Predicate, Report, Verdict};
+
+use crate::evidence::Evidence;
+use crate::fidelity::{Signals, encounter_gaps, judge, rule};
+use crate::metrics::{self, Scene};
+use crate::tracks::{TrackFault, Tracks};
+use crate::{narrative, repair};
+
+/// Judges one recording: metrics, clauses, verdict, story. Pure; a broken recording gives a report
+/// with the verdict `invalid` and metrics that are not applicable.
+#[must_use]
+pub fn score(evidence: &Evidence<'_>) -> Report {
+    let recording = evidence.recording;
+    let mut report = Report {
+        format: FORMAT,
+        run: recording.header.run.clone(),
+        planner: recording.header.planner.clone(),
+        seed: recording.header.seed,
+        recording: recording.hash(),
+        verdict: Verdict::Invalid,
+        verdict_text: String::new(),
+        score: 0.0,
+        clauses: Vec::new(),
+        metrics: Vec::new(),
+        robot_text: String::new(),
+        success: false,
+        story: Vec::new(),
+        encounter_gaps_s: std::collections::BTreeMap::new(),
+        simulated_s: 0.0,
+        repair: None,
+    };
+    let tracks = match Tracks::read(recording) {
+        Ok(tracks) => tracks,
+        Err(fault) => {
+            report.verdict_text = format!("the recording proves nothing: {fault}");
+            report.robot_text = format!("{}: the recording cannot be judged", recording.header.planner);
+            report.metrics = metrics::none(&fault.to_string());
+            report.repair = repair::of_broken(evidence, &fault);
+            return report;
+        }
+    };
+    let signals = Signals::new(evidence, &tracks);
+    let judged = judge(&signals);
+    let gaps = encounter_gaps(&signals);
+    let reference =
+        evidence.reference.and_then(|recording| verdict_of(&Evidence { recording, reference: None, ..*evidence }).ok());
+    let ruling = rule(evidence, &judged, &gaps, reference);
+    let scene = Scene::new(&signals);
+    report.metrics = metrics::measure(&scene);
+    report.success = metrics::succeeded(&scene);
+    report.robot_text = narrative::robot_text(&scene, &judged);
+    report.story = narrative::story(&signals);
+    report.repair = repair::of(evidence, ruling.verdict, &judged);
+    report.clauses = judged.results();
+    report.verdict = ruling.verdict;
+    report.verdict_text = ruling.text;
+    report.score = ruling.score;
+    report.encounter_gaps_s = gaps.into_iter().map(|(human, gap)| (human, (gap * 1e3).round() / 1e3)).collect();
+    report.simulated_s = (tracks.end_s() * 1e3).round() / 1e3;
+    report
+}
+
+/// The verdict alone, without metrics.
+fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
+    let tracks = Tracks::read(evidence.recording)?;
+    let signals = Signals::new(evidence, &tracks);
+    let judged = judge(&signals);
+    Ok(rule(evidence, &judged, &encounter_gaps(&signals), None).verdict)
+}
+
+/// Whether a predicate tells of a meeting that the paths must make.
+#[must_use]
+pub(crate) const fn is_meeting(predicate: &Predicate) -> bool {
+    matches!(predicate, Predicate::Meets { .. })
+}

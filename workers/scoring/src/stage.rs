@@ -1,0 +1,151 @@
+//! The stage: decodes what the job brings, scores, hands back the report.
+
+use socrates_kit::{Done, Failure, Job, Output, Stage, media};
+use socrates_model::{Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request};
+
+use crate::evidence::{Evidence, REFERENCE};
+use crate::metrics;
+use crate::score::score;
+
+/// Longest remark of a job, characters.
+const REMARK_CHARS: usize = 160;
+
+/// Scores one recording per job.
+///
+/// Inputs: `recording` (MCAP); where there are any, `location`, `request`, `reading`, `proposal`, `paths` (JSON) and
+/// `reference` (MCAP, the same scenario and seed with the reference robot). Outputs: `report` (JSON) and `metrics`
+/// (CSV). A verdict that asks for repair is part of a job that was done, never a failure.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ScoringStage;
+
+/// The inputs, decoded.
+struct Inputs {
+    recording: Recording,
+    location: Option<Location>,
+    request: Option<Request>,
+    reading: Option<Reading>,
+    proposal: Option<Proposal>,
+    paths: Option<Paths>,
+    reference: Option<Recording>,
+}
+
+impl Inputs {
+    fn of(job: &Job) -> Result<Self, Failure> {
+        let wants_reference = job.has("reference") && job.spec().planner != REFERENCE;
+        Ok(Self {
+            recording: decode(job, "recording")?,
+            location: job.json_if_there("location")?,
+            request: job.json_if_there("request")?,
+            reading: job.json_if_there("reading")?,
+            proposal: job.json_if_there("proposal")?,
+            paths: job.json_if_there("paths")?,
+            reference: if wants_reference { Some(decode(job, "reference")?) } else { None },
+        })
+    }
+
+    fn score(&self) -> Report {
+        score(&Evidence {
+            recording: &self.recording,
+            location: self.location.as_ref(),
+            request: self.request.as_ref(),
+            reading: self.reading.as_ref(),
+            proposal: self.proposal.as_ref(),
+            paths: self.paths.as_ref(),
+            reference: self.reference.as_ref(),
+        })
+    }
+}
+
+fn decode(job: &Job, role: &str) -> Result<Recording, Failure> {
+    socrates_stream::mcap::read(job.bytes(role)?).map_err(|why| {
+        let message = format!("input `{role}` cannot be read as a recording: {why}");
+        Failure::from(Fault::new(FaultCode::JSpec, format!("{} {role}", job.spec().key), message))
+    })
+}
+
+impl Stage for ScoringStage {
+    const STAGE: socrates_model::job::Stage = socrates_model::job::Stage::Scoring;
+
+    async fn run(&self, job: &Job) -> Result<Done, Failure> {
+        let inputs = Inputs::of(job)?;
+        let run = inputs.recording.header.run.clone();
+        // Tens of milliseconds of computation do not belong on a thread that answers messages.
+        let report = tokio::task::spawn_blocking(move || inputs.score()).await.map_err(|why| {
+            let message = format!("scoring run `{run}` broke: {why}");
+            Failure::from(Fault::new(FaultCode::JPanic, job.spec().key.to_string(), message))
+        })?;
+        tracing::info!(run = %report.run, verdict = report.verdict.name(), score = report.score, "scored");
+        Ok(Done {
+            artifacts: vec![
+                Output::json("report", &report)?,
+                Output::text("metrics", media::CSV, metrics::csv(&report)),
+            ],
+            remark: shortened(&report.verdict_text),
+            repair: report.repair,
+            verdict: Some(report.verdict),
+            tokens: (0, 0),
+        })
+    }
+}
+
+/// The sentence on the verdict, cut for a status line.
+fn shortened(text: &str) -> String {
+    if text.chars().count() <= REMARK_CHARS {
+        return text.to_owned();
+    }
+    let mut short: String = text.chars().take(REMARK_CHARS - 1).collect();
+    short.push('…');
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use socrates_model::job::{JobKey, JobSpec};
+    use socrates_model::{FailureClass, ScenarioId, Verdict};
+
+    use super::*;
+    use crate::fixture::{Walk, recording};
+
+    fn job(inputs: BTreeMap<String, Vec<u8>>) -> Job {
+        let key = JobKey {
+            scenario: ScenarioId::new("test").unwrap(),
+            stage: socrates_model::job::Stage::Scoring,
+            item: "mppi-1".into(),
+            revision: 0,
+        };
+        let spec = JobSpec {
+            key,
+            inputs: BTreeMap::new(),
+            seed: 1,
+            planner: "mppi".into(),
+            run_seed: 1,
+            feedback: vec![],
+            refused: None,
+            settings: BTreeMap::new(),
+        };
+        Job::detached(spec, inputs)
+    }
+
+    #[tokio::test]
+    async fn a_recording_alone_gives_a_report_and_a_table() {
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 9., 1., -1., 0.)], 8.0, 0.01);
+        let bytes = socrates_stream::mcap::write(&run, None).unwrap();
+        let done = ScoringStage.run(&job([("recording".to_owned(), bytes)].into())).await.unwrap();
+        let report: Report = serde_json::from_slice(&done.artifacts[0].bytes).unwrap();
+        assert_eq!(report.recording, run.hash());
+        assert_eq!(done.verdict, Some(Verdict::Invalid));
+        let table = String::from_utf8(done.artifacts[1].bytes.clone()).unwrap();
+        assert_eq!(table.lines().count(), report.metrics.len() + 1);
+    }
+
+    #[tokio::test]
+    async fn bytes_that_are_no_recording_are_poison_with_a_reason() {
+        let failure = ScoringStage.run(&job([("recording".to_owned(), vec![1, 2, 3])].into())).await.unwrap_err();
+        assert_eq!(failure.class, FailureClass::Poison);
+        assert!(failure.faults[0].message.contains("recording"));
+        let missing = ScoringStage.run(&job(BTreeMap::new())).await.unwrap_err();
+        assert_eq!(missing.class, FailureClass::Poison);
+    }
+}

@@ -1,0 +1,203 @@
+//! Contacts: nobody overlaps anybody, a wall or a closed door.
+//!
+//! rapier2d's narrow phase finds depth and normal. It works in f32, so every pair is handed to it in a
+//! local frame around the first body; corrections below a tenth of a millimetre are left out, because
+//! they would only be rounding.
+
+use rapier2d::math::Pose;
+use rapier2d::parry::query;
+use rapier2d::parry::shape::{Ball, Segment};
+use socrates_model::{AgentId, Point, Vector};
+
+use crate::floor::Floor;
+
+/// Corrections smaller than this are not applied, m.
+const LEAST_M: f64 = 1e-4;
+/// Passes over all pairs; a crowd of 20 in a doorway settles in fewer.
+const PASSES: usize = 6;
+
+/// A disc that may have to give way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Body {
+    pub(crate) agent: AgentId,
+    pub(crate) at: Point,
+    pub(crate) velocity: Vector,
+    pub(crate) radius_m: f64,
+    /// Share of a correction it takes: 1 for somebody who walks, near 0 for somebody who stands.
+    pub(crate) yields: f64,
+}
+
+/// What touched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Touch {
+    Agents(AgentId, AgentId, f64),
+    Wall(AgentId, f64),
+}
+
+/// Moves overlapping bodies apart and takes the speed out of their contacts. Gives back what touched,
+/// with the depth before the correction.
+pub(crate) fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
+    let mut touches = Vec::new();
+    for pass in 0..PASSES {
+        let mut moved = false;
+        for first in 0..bodies.len() {
+            for second in first + 1..bodies.len() {
+                let (Some(a), Some(b)) = (bodies.get(first).copied(), bodies.get(second).copied()) else { continue };
+                let Some((depth, normal)) = disc_disc(&a, &b) else { continue };
+                if pass == 0 {
+                    touches.push(Touch::Agents(a.agent, b.agent, depth));
+                }
+                moved = true;
+                let total = (a.yields + b.yields).max(1e-9);
+                push(bodies, first, &(-normal * (depth * a.yields / total)), &-normal);
+                push(bodies, second, &(normal * (depth * b.yields / total)), &normal);
+            }
+        }
+        for place in 0..bodies.len() {
+            let Some(body) = bodies.get(place).copied() else { continue };
+            let Some((depth, normal)) = disc_wall(&body, floor) else { continue };
+            if pass == 0 {
+                touches.push(Touch::Wall(body.agent, depth));
+            }
+            moved = true;
+            push(bodies, place, &(normal * depth), &normal);
+        }
+        if !moved {
+            break;
+        }
+    }
+    touches
+}
+
+fn push(bodies: &mut [Body], place: usize, step: &Vector, away: &Vector) {
+    if let Some(body) = bodies.get_mut(place) {
+        body.at += step;
+        let into = body.velocity.dot(away);
+        if into < 0.0 {
+            body.velocity -= away * into;
+        }
+    }
+}
+
+/// Depth and normal (from `a` to `b`) of two overlapping discs.
+fn disc_disc(a: &Body, b: &Body) -> Option<(f64, Vector)> {
+    let apart = b.at - a.at;
+    let reach = a.radius_m + b.radius_m;
+    // The cheap test first: most pairs are far apart.
+    if apart.norm_squared() >= (reach - LEAST_M) * (reach - LEAST_M) {
+        return None;
+    }
+    if apart.norm() < 1e-6 {
+        // On one spot there is no normal; the frame number decides the side.
+        return Some((reach, Vector::new(1.0, 0.0)));
+    }
+    let contact = query::contact(
+        &Pose::translation(0.0, 0.0),
+        &Ball::new(narrow(a.radius_m)),
+        &Pose::translation(narrow(apart.x), narrow(apart.y)),
+        &Ball::new(narrow(b.radius_m)),
+        0.0,
+    );
+    let contact = contact.ok().flatten()?;
+    let normal = unit(&Vector::new(f64::from(contact.normal1.x), f64::from(contact.normal1.y)));
+    let depth = -f64::from(contact.dist);
+    (depth > LEAST_M).then_some((depth, normal))
+}
+
+/// Depth and normal (away from the wall) of a disc in a wall or closed door.
+fn disc_wall(body: &Body, floor: &Floor) -> Option<(f64, Vector)> {
+    if floor.clearance_m(&body.at) >= body.radius_m - LEAST_M {
+        return None;
+    }
+    for (from, to) in floor.closed() {
+        if let Some(found) = disc_segment(body, from, to) {
+            return Some(found);
+        }
+    }
+    let (distance, wall) = floor.nearest_wall(&body.at, body.radius_m + 0.5)?;
+    let depth = body.radius_m - distance;
+    let away = body.at - wall;
+    (depth > LEAST_M && away.norm() > 1e-6).then(|| (depth, unit(&away)))
+}
+
+fn disc_segment(body: &Body, from: &Point, to: &Point) -> Option<(f64, Vector)> {
+    let (a, b) = (from - body.at, to - body.at);
+    if a.norm().min(b.norm()) > 20.0 {
+        return None;
+    }
+    let segment = Segment::new([narrow(a.x), narrow(a.y)].into(), [narrow(b.x), narrow(b.y)].into());
+    let contact = query::contact(
+        &Pose::translation(0.0, 0.0),
+        &segment,
+        &Pose::translation(0.0, 0.0),
+        &Ball::new(narrow(body.radius_m)),
+        0.0,
+    );
+    let contact = contact.ok().flatten()?;
+    let normal = unit(&Vector::new(f64::from(contact.normal1.x), f64::from(contact.normal1.y)));
+    let depth = -f64::from(contact.dist);
+    (depth > LEAST_M).then_some((depth, normal))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "rapier works in f32; the frame is local, so a metre keeps 7 digits"
+)]
+const fn narrow(value: f64) -> f32 {
+    value as f32
+}
+
+fn unit(vector: &Vector) -> Vector {
+    let norm = vector.norm();
+    if norm > 0.0 { vector / norm } else { Vector::new(1.0, 0.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture;
+
+    fn body(number: u32, x: f64, yields: f64) -> Body {
+        Body {
+            agent: AgentId::from_number(number),
+            at: Point::new(x, 0.0),
+            velocity: Vector::new(1.0, 0.0),
+            radius_m: 0.28,
+            yields,
+        }
+    }
+
+    #[test]
+    fn overlapping_bodies_are_apart_afterwards_and_the_stander_stays() {
+        let floor = Floor::new(&fixture::hall(20.0, 10.0));
+        let mut bodies = [body(1, 5.0, 1.0), body(2, 5.4, 0.0)];
+        for body in &mut bodies {
+            body.at.y = 5.0;
+        }
+        let touches = resolve(&mut bodies, &floor);
+        assert_eq!(touches.len(), 1);
+        assert!((bodies[1].at - bodies[0].at).norm() > 0.56 - 2e-4);
+        assert!((bodies[1].at.x - 5.4).abs() < 1e-9);
+        assert!(bodies[0].velocity.x < 1e-6);
+    }
+
+    #[test]
+    fn a_closed_door_is_not_walked_through() {
+        let mut floor = Floor::new(&fixture::hall(20.0, 10.0));
+        floor.close(vec![(Point::new(10.0, 4.0), Point::new(10.0, 6.0))]);
+        let mut bodies = [body(1, 9.8, 1.0)];
+        bodies[0].at.y = 5.0;
+        resolve(&mut bodies, &floor);
+        assert!(bodies[0].at.x < 10.0 - 0.28 + 2e-4, "{}", bodies[0].at.x);
+    }
+
+    #[test]
+    fn a_wall_pushes_back() {
+        let floor = Floor::new(&fixture::hall(20.0, 10.0));
+        let mut bodies = [body(1, 0.3, 1.0)];
+        bodies[0].at.y = 5.0;
+        let wall = floor.clearance_m(&bodies[0].at);
+        resolve(&mut bodies, &floor);
+        assert!(wall < 0.28 && floor.clearance_m(&bodies[0].at) > 0.28 - 1e-3);
+    }
+}

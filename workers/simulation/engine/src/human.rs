@@ -1,0 +1,148 @@
+//! One human of the run: body, way, tree.
+
+use socrates_bt::{Tree, TreeState};
+use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
+
+/// Where a human meets the robot.
+#[derive(Debug, Clone)]
+pub(crate) struct Meeting {
+    pub(crate) node: NodeId,
+    pub(crate) at: Point,
+    /// Length along the human's way, m.
+    pub(crate) human_s: f64,
+    /// Length along the robot's way, m.
+    pub(crate) robot_s: f64,
+}
+
+/// A door on the way.
+#[derive(Debug, Clone)]
+pub(crate) struct DoorOnWay {
+    /// Place in the location's list.
+    pub(crate) door: usize,
+    /// Length along the way, m.
+    pub(crate) s: f64,
+}
+
+/// What the present action needs to remember.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Errand {
+    /// A spot that was chosen (to step aside, to run to).
+    pub(crate) spot: Option<Point>,
+    /// A way round walls that is being walked, and how far.
+    pub(crate) way: Option<(Polyline, f64)>,
+    /// When the spot was chosen, s.
+    pub(crate) since_s: f64,
+}
+
+/// A human.
+#[derive(Debug, Clone)]
+pub(crate) struct Human {
+    pub(crate) id: HumanId,
+    pub(crate) role: String,
+    pub(crate) relation: Relation,
+    pub(crate) group: Option<GroupId>,
+    /// Whether its group stands.
+    pub(crate) standing: bool,
+    /// Place beside the middle of a walking group, m to the left.
+    pub(crate) lane_m: f64,
+    pub(crate) tree: Tree,
+    pub(crate) state: TreeState,
+    pub(crate) route: Polyline,
+    /// Nodes of the path with their length along it.
+    pub(crate) nodes: Vec<(NodeId, f64)>,
+    pub(crate) next_node: usize,
+    pub(crate) s: f64,
+    pub(crate) meeting: Option<Meeting>,
+    pub(crate) doors: Vec<DoorOnWay>,
+    pub(crate) at: Point,
+    pub(crate) velocity: Vector,
+    pub(crate) yaw: f64,
+    pub(crate) omega: f64,
+    pub(crate) radius_m: f64,
+    pub(crate) speed_mps: f64,
+    pub(crate) action: Action,
+    pub(crate) gesture: Gesture,
+    pub(crate) errand: Errand,
+    /// Where it stands while it stands.
+    pub(crate) anchor: Option<Point>,
+    /// Sidestep that is being made on the way, m to the left.
+    pub(crate) aside_m: f64,
+    /// For how long it has been face to face with the robot without getting on, s.
+    pub(crate) jammed_s: f64,
+    /// Until when it lets the robot through, s.
+    pub(crate) yields_until_s: f64,
+    /// Whether it ever walked.
+    pub(crate) started: bool,
+    /// Where it walked, a point every decimetre.
+    pub(crate) trail: Polyline,
+}
+
+impl Human {
+    /// As an agent.
+    pub(crate) const fn agent(&self) -> AgentId {
+        AgentId::Human(self.id)
+    }
+
+    /// Whether it is at the end of its path.
+    pub(crate) fn at_goal(&self) -> bool {
+        self.route.end().is_none_or(|end| {
+            let reach = if self.route.length_m() > 0.0 { 0.45 + self.lane_m.abs() } else { 1.6 };
+            (self.at - end).norm() < reach && self.s > self.route.length_m() - 0.6
+        })
+    }
+
+    /// Direction it faces.
+    pub(crate) fn heading(&self) -> Vector {
+        Vector::new(libm::cos(self.yaw), libm::sin(self.yaw))
+    }
+
+    /// Direction of travel: along the way while there is some left, else where it faces.
+    pub(crate) fn travel(&self) -> Vector {
+        if self.velocity.norm() > 0.2 {
+            return self.velocity.normalize();
+        }
+        let ahead = self.route.direction(self.s);
+        if ahead.norm() > 0.5 && !self.at_goal() { ahead } else { self.heading() }
+    }
+
+    /// Whether it never leaves its place by itself.
+    pub(crate) fn stays(&self) -> bool {
+        self.route.length_m() < 0.05
+            || matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
+    }
+}
+
+/// Name of the leaf of an action, as recordings write it whatever the tree calls it.
+pub(crate) const fn leaf_name(action: &Action) -> &'static str {
+    match action {
+        Action::Navigate => "RegularNav",
+        Action::FollowRobot => "FollowRobot",
+        Action::FollowHuman(_) => "FollowHuman",
+        Action::RunAway => "RunAwayFromRobot",
+        Action::GiveWay => "GiveWaytoRobot",
+        Action::Block => "BlockRobot",
+        Action::LookAtRobot => "LookAtRobot",
+        Action::Approach => "ApproachRobot",
+        Action::StandStill => "StandStill",
+    }
+}
+
+/// Leaves by the number that frames carry; 0 is none.
+pub(crate) const LEAVES: [&str; 10] = [
+    "",
+    "RegularNav",
+    "FollowRobot",
+    "FollowHuman",
+    "RunAwayFromRobot",
+    "GiveWaytoRobot",
+    "BlockRobot",
+    "LookAtRobot",
+    "ApproachRobot",
+    "StandStill",
+];
+
+/// Number of the leaf of an action in [`LEAVES`].
+pub(crate) fn leaf_number(action: &Action) -> u16 {
+    let name = leaf_name(action);
+    LEAVES.iter().position(|leaf| *leaf == name).and_then(|place| u16::try_from(place).ok()).unwrap_or(0)
+}

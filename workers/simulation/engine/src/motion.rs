@@ -1,0 +1,400 @@
+//! From an action to a wish: where to, how fast, looking where.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use socrates_model::{Action, GroupId, HumanId, Location, NodeId, Point, Polyline, SceneGraph, Vector};
+
+use crate::floor::Floor;
+use crate::human::Human;
+use crate::robot::Robot;
+
+/// Length of the way that a walker looks ahead, m.
+const LOOK_AHEAD_M: f64 = 0.9;
+/// Speed of somebody who runs away, m/s.
+const RUN_MPS: f64 = 1.6;
+/// Fastest speed of somebody who keeps up with a leader, m/s.
+const KEEP_UP_MPS: f64 = 1.8;
+/// Gap that followers keep, along the way, m.
+const FOLLOW_GAP_M: f64 = 1.5;
+/// Where somebody stands who blocks: ahead of the robot's center, m.
+const BLOCK_AHEAD_M: f64 = 1.25;
+/// Where somebody curious stops, from the robot's center, m.
+const APPROACH_M: f64 = 1.2;
+/// Distance from the robot's line that gives it way, m.
+const ASIDE_M: f64 = 1.0;
+
+/// What a human wants this tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Want {
+    /// Where to; `None` stands.
+    pub(crate) target: Option<Point>,
+    /// How fast, m/s.
+    pub(crate) speed_mps: f64,
+    /// What it looks at while it stands.
+    pub(crate) face: Option<Point>,
+    /// Whether it walks near the robot on purpose, so that the robot does not push it away.
+    pub(crate) drawn: bool,
+}
+
+impl Want {
+    const STAND: Self = Self { target: None, speed_mps: 0.0, face: None, drawn: false };
+
+    fn stand_facing(point: Point) -> Self {
+        Self { face: Some(point), ..Self::STAND }
+    }
+
+    fn go(target: Point, speed_mps: f64) -> Self {
+        Self { target: Some(target), speed_mps, face: None, drawn: false }
+    }
+}
+
+/// Somebody else as a walker sees it.
+#[derive(Debug, Clone)]
+pub(crate) struct Other {
+    pub(crate) id: Option<HumanId>,
+    pub(crate) at: Point,
+    pub(crate) velocity: Vector,
+    pub(crate) radius_m: f64,
+    pub(crate) group: Option<GroupId>,
+}
+
+/// What motions look at.
+pub(crate) struct Scene<'a> {
+    pub(crate) location: &'a Location,
+    pub(crate) floor: &'a Floor,
+    pub(crate) now_s: f64,
+    pub(crate) robot: Option<&'a Robot>,
+    pub(crate) others: &'a [Other],
+    pub(crate) trails: &'a BTreeMap<HumanId, (Point, Vector, Polyline)>,
+}
+
+/// The wish of one human for this tick; `pace` is the speed of the rendezvous controller.
+pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
+    match human.action.clone() {
+        Action::Navigate => navigate(human, scene, pace),
+        Action::StandStill => Want::STAND,
+        Action::LookAtRobot => scene.robot.map_or(Want::STAND, |robot| Want::stand_facing(robot.at())),
+        Action::FollowRobot => follow_robot(human, scene),
+        Action::FollowHuman(id) => match scene.trails.get(&id) {
+            Some((at, velocity, trail)) => follow(human, scene, at, velocity, trail),
+            None => Want::STAND,
+        },
+        Action::Approach => approach(human, scene),
+        Action::Block => block(human, scene),
+        Action::GiveWay => give_way(human, scene),
+        Action::RunAway => run_away(human, scene),
+    }
+}
+
+fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
+    if human.stays() || human.at_goal() || pace <= 0.0 {
+        // Members of a standing group look at its middle; everybody else keeps the heading.
+        return Want::STAND;
+    }
+    if let Some(robot) = scene.robot
+        && jammed(human, robot, scene.now_s)
+    {
+        return give_way(human, scene);
+    }
+    let left = human.route.length_m() - human.s;
+    let speed = pace.min(0.25 + libm::sqrt(2.0 * left.max(0.0)));
+    let ahead = human.route.direction(human.s + 0.5 * LOOK_AHEAD_M);
+    let wish = human.lane_m + sidestep(human, scene, &ahead);
+    // The sidestep is taken up at 0.9 m/s sideways, so that nobody jumps.
+    human.aside_m += (wish - human.aside_m).clamp(-0.009, 0.009);
+    let base = human.route.point(human.s + LOOK_AHEAD_M);
+    let target = beside(scene.floor, &base, &ahead, human.aside_m, human.radius_m + 0.08);
+    if scene.floor.straight(&human.at, &target, 0.15) {
+        human.errand.way = None;
+        return Want::go(target, speed);
+    }
+    // Pushed off its way behind a corner: round it, back to the way.
+    let back = human.route.point(human.s + 0.4);
+    Want::go(round(human, scene, &back).unwrap_or(base), speed)
+}
+
+/// Whether it and the robot stand face to face: after 3 s of that it lets the robot through for 8 s, as people do.
+fn jammed(human: &mut Human, robot: &Robot, now_s: f64) -> bool {
+    if now_s < human.yields_until_s {
+        return true;
+    }
+    let way = robot.at() - human.at;
+    let facing = way.norm() < 1.6 && way.dot(&human.travel()) > 0.5 * way.norm() && robot.velocity.norm() < 0.1;
+    human.jammed_s =
+        if facing && human.velocity.norm() < 0.15 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
+    if human.jammed_s > 3.0 {
+        human.jammed_s = 0.0;
+        human.yields_until_s = now_s + 8.0;
+        human.errand.spot = None;
+    }
+    false
+}
+
+/// The point `aside` m to the left of `base`, as far as the floor allows.
+fn beside(floor: &Floor, base: &Point, ahead: &Vector, aside: f64, clearance_m: f64) -> Point {
+    let left = Vector::new(-ahead.y, ahead.x);
+    for share in [1.0, 0.75, 0.5, 0.25] {
+        let point = base + left * (aside * share);
+        if floor.clearance_m(&point) >= clearance_m {
+            return point;
+        }
+    }
+    *base
+}
+
+/// How far to go aside for whoever is ahead and in the way, m to the left.
+fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
+    let left = Vector::new(-ahead.y, ahead.x);
+    let mut nearest = (3.5, 0.0);
+    for other in scene.others {
+        if other.id == Some(human.id) || human.group.is_some() && other.group == human.group {
+            continue;
+        }
+        let way = other.at - human.at;
+        let (before, beside) = (way.dot(ahead), way.dot(&left));
+        let closing = (human.velocity - other.velocity).dot(ahead);
+        let across = other.velocity.dot(&left).abs();
+        let need = human.radius_m + other.radius_m + 0.35;
+        // Who crosses is left to the forces: going aside would lead into its way.
+        if before < 0.1 || before > nearest.0 || closing < 0.1 || beside.abs() > need || across > 0.5 {
+            continue;
+        }
+        // On the same line everybody goes to the right.
+        let side = if beside < -0.15 { 1.0 } else { -1.0 };
+        nearest = (before, side * (need - beside.abs() * if side * beside > 0.0 { -1.0 } else { 1.0 }).min(1.1));
+    }
+    nearest.1
+}
+
+/// The next point of a way round walls to `goal`; planned anew when the goal moves away from it.
+fn round(human: &mut Human, scene: &Scene<'_>, goal: &Point) -> Option<Point> {
+    if scene.floor.straight(&human.at, goal, 0.2) {
+        human.errand.way = None;
+        return Some(*goal);
+    }
+    let fits = human.errand.way.as_ref().is_some_and(|(way, _)| way.end().is_some_and(|end| (end - goal).norm() < 1.0));
+    let due = scene.now_s - human.errand.since_s > 0.5 || human.errand.way.is_none();
+    if !fits && due {
+        human.errand.way = scene.floor.way(&human.at, goal, human.radius_m + 0.04).map(|way| (way, 0.0));
+        human.errand.since_s = scene.now_s;
+    }
+    let at = human.at;
+    let (way, gone) = human.errand.way.as_mut()?;
+    let (s, _) = way.project_within(&at, *gone, *gone + 1.5);
+    *gone = s;
+    Some(way.point(s + 0.6))
+}
+
+fn follow_robot(human: &mut Human, scene: &Scene<'_>) -> Want {
+    let Some(robot) = scene.robot else { return Want::STAND };
+    let way = human.at - robot.at();
+    let intent = robot.intent();
+    let ahead = way.dot(&intent);
+    // In front of the robot: let it pass first, beside its line, then follow.
+    if ahead > 0.2 && robot.arrived_s.is_none() && robot.trail.project(&human.at).1 > 0.6 {
+        let passing = give_way(human, scene);
+        return if way.norm() < 5.0 { passing } else { Want::stand_facing(robot.at()) };
+    }
+    human.errand.spot = None;
+    follow(human, scene, &robot.at(), &robot.velocity, &robot.trail)
+}
+
+/// Behind a leader along its trail, at the gap; stands where the leader stands.
+fn follow(human: &mut Human, scene: &Scene<'_>, leader: &Point, velocity: &Vector, trail: &Polyline) -> Want {
+    let total = trail.length_m() + trail.end().map_or(0.0, |end| (leader - end).norm());
+    let distance = (human.at - leader).norm();
+    let (s, aside) = trail.project_within(&human.at, (trail.length_m() - 12.0).max(0.0), trail.length_m());
+    let on_trail = aside < 1.2 && trail.length_m() > 0.5;
+    let gap = if on_trail { (total - s).max(distance) } else { distance };
+    let lack = gap - FOLLOW_GAP_M;
+    let leader_mps = velocity.norm();
+    if lack <= 0.05 && leader_mps < 0.15 || distance < 0.9 {
+        return Want::stand_facing(*leader);
+    }
+    let speed = (leader_mps + 0.8 * lack).clamp(0.0, KEEP_UP_MPS);
+    if speed < 0.08 {
+        return Want::stand_facing(*leader);
+    }
+    let target =
+        if on_trail { Some(trail.point((s + 0.7).min((total - 0.9).max(s)))) } else { round(human, scene, leader) };
+    Want { target: target.or(Some(*leader)), speed_mps: speed, face: Some(*leader), drawn: true }
+}
+
+fn approach(human: &mut Human, scene: &Scene<'_>) -> Want {
+    let Some(robot) = scene.robot else { return Want::STAND };
+    let distance = (robot.at() - human.at).norm();
+    if distance <= APPROACH_M + 0.05 {
+        return Want::stand_facing(robot.at());
+    }
+    let speed = (1.5 * (distance - APPROACH_M) + 0.1).min(human.speed_mps);
+    let target = round(human, scene, &robot.at()).unwrap_or_else(|| robot.at());
+    Want { target: Some(target), speed_mps: speed, face: Some(robot.at()), drawn: true }
+}
+
+fn block(human: &mut Human, scene: &Scene<'_>) -> Want {
+    let Some(robot) = scene.robot else { return Want::STAND };
+    let intent = robot.intent();
+    let mut spot = robot.at() + intent * BLOCK_AHEAD_M;
+    if scene.floor.clearance_m(&spot) < human.radius_m {
+        // Round a corner the straight line ahead ends in a wall; the way itself does not.
+        spot = robot.route.point(robot.s + BLOCK_AHEAD_M);
+    }
+    let way = human.at - robot.at();
+    let left = Vector::new(-intent.y, intent.x);
+    let (ahead, aside) = (way.dot(&intent), way.dot(&left));
+    let in_place = ahead > 0.75 && ahead < 1.6 && aside.abs() < if human.anchor.is_some() { 0.3 } else { 0.12 };
+    if in_place || (spot - human.at).norm() < 0.1 {
+        return Want::stand_facing(robot.at());
+    }
+    // Far ahead it waits in the line instead of running against the robot.
+    let target = if ahead > 1.6 && aside.abs() > 0.12 && robot.v > 0.1 && ahead < 4.0 {
+        robot.at() + intent * ahead.min(2.0)
+    } else {
+        spot
+    };
+    let speed = (2.0 * (target - human.at).norm() + 0.1).min(human.speed_mps.max(1.0));
+    let next = round(human, scene, &target).unwrap_or(target);
+    Want { target: Some(next), speed_mps: speed, face: Some(robot.at()), drawn: true }
+}
+
+/// The robot's line: its way ahead while it keeps to it, else straight on.
+fn line(robot: &Robot) -> Polyline {
+    let (_, aside) = robot.route.project_within(&robot.at(), robot.s - 0.5, robot.s + 2.0);
+    if aside < 1.2 {
+        robot.route.from((robot.s - 0.3).max(0.0))
+    } else {
+        Polyline::new(&[robot.at(), robot.at() + robot.heading() * 8.0])
+    }
+}
+
+fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
+    let Some(robot) = scene.robot else { return Want::STAND };
+    let line = line(robot);
+    let off = |point: &Point| line.project(point).1;
+    let here = off(&human.at);
+    if human.errand.spot.is_none()
+        || human.errand.spot.is_some_and(|spot| off(&spot) < 0.85) && scene.now_s - human.errand.since_s > 1.0
+    {
+        human.errand.since_s = scene.now_s;
+        human.errand.spot = Some(if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) });
+    }
+    let spot = human.errand.spot.unwrap_or(human.at);
+    let left = (spot - human.at).norm();
+    if left < 0.08 {
+        return Want::stand_facing(robot.at());
+    }
+    Want { face: Some(robot.at()), ..Want::go(spot, (2.0 * left + 0.1).min(human.speed_mps.max(0.9))) }
+}
+
+/// The nearest free spot off the robot's line that can be reached straight; the farthest off where none is far enough.
+fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> Point {
+    let mut best = (off(&human.at), human.at);
+    for ring in 1..=12_u32 {
+        for turn in 0..24_u32 {
+            let angle = f64::from(turn) / 24.0 * TAU;
+            let spot = human.at + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.3 * f64::from(ring));
+            let crowded = scene.others.iter().any(|other| {
+                other.id.is_some()
+                    && other.id != Some(human.id)
+                    && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
+            });
+            if crowded
+                || !scene.floor.straight(&human.at, &spot, human.radius_m)
+                || scene.floor.clearance_m(&spot) < human.radius_m + 0.04
+            {
+                continue;
+            }
+            let distance = off(&spot).min(ASIDE_M + 0.05);
+            if distance > best.0 + 0.02 {
+                best = (distance, spot);
+            }
+        }
+        if best.0 >= ASIDE_M {
+            break;
+        }
+    }
+    best.1
+}
+
+fn run_away(human: &mut Human, scene: &Scene<'_>) -> Want {
+    let Some(robot) = scene.robot else { return Want::STAND };
+    let distance = (robot.at() - human.at).norm();
+    let there = human.errand.spot.is_none_or(|spot| (spot - human.at).norm() < 0.5);
+    if there
+        && (human.errand.spot.is_none() || distance < 5.0)
+        && (human.errand.since_s <= 0.0 || scene.now_s - human.errand.since_s > 1.0 || human.errand.spot.is_none())
+    {
+        human.errand.spot = refuge(human, scene, robot);
+        human.errand.way = None;
+        human.errand.since_s = scene.now_s;
+    }
+    let Some(spot) = human.errand.spot else { return Want::stand_facing(robot.at()) };
+    let left = (spot - human.at).norm();
+    if left < 0.3 {
+        return Want::stand_facing(robot.at());
+    }
+    let target = round(human, scene, &spot).unwrap_or(spot);
+    Want::go(target, RUN_MPS.min(0.3 + libm::sqrt(2.0 * left)))
+}
+
+/// The place of the scene graph that is best to run to: reached well before the robot, far from it, not too far away.
+fn refuge(human: &Human, scene: &Scene<'_>, robot: &Robot) -> Option<Point> {
+    let graph = &scene.location.graph;
+    let walk = |from: &Point| {
+        let start =
+            graph.nodes.iter().min_by(|a, b| (a.at - from).norm_squared().total_cmp(&(b.at - from).norm_squared()))?;
+        let offset = (start.at - from).norm();
+        let costs = walking(graph, &start.id);
+        Some(graph.nodes.iter().map(|node| costs.get(&node.id).map(|cost| cost + offset)).collect::<Vec<Option<f64>>>())
+    };
+    let (mine, robots) = (walk(&human.at)?, walk(&robot.at())?);
+    let away = human.at - robot.at();
+    let mut best: Option<(f64, Point)> = None;
+    for ((node, mine), robots) in graph.nodes.iter().zip(mine).zip(robots) {
+        let (Some(mine), Some(robots)) = (mine, robots) else { continue };
+        let way = node.at - human.at;
+        // Towards the robot is no way out, whatever the graph says.
+        if way.norm() < 0.8 || way.dot(&-away) > 0.3 * way.norm() * away.norm() {
+            continue;
+        }
+        let far = (node.at - robot.at()).norm();
+        let score = 2.0 * (robots - mine).min(far) + far.min(10.0) - 0.5 * (mine - 8.0).max(0.0);
+        if best.is_none_or(|(top, _)| score > top) {
+            best = Some((score, node.at));
+        }
+    }
+    best.map(|(_, at)| at).or_else(|| open_end(human, scene, &away))
+}
+
+/// Without a node to run to: the longest free line that leads away.
+fn open_end(human: &Human, scene: &Scene<'_>, away: &Vector) -> Option<Point> {
+    let heading = libm::atan2(away.y, away.x);
+    let mut best: Option<(f64, Point)> = None;
+    for turn in [0.0, 0.5, -0.5, 1.0, -1.0, 1.5, -1.5] {
+        let angle = heading + turn;
+        let free = (scene.floor.ray_m(&human.at, angle, 6.0) - 0.5).max(0.0);
+        let score = free * libm::cos(0.5 * turn);
+        if best.is_none_or(|(top, _)| score > top) {
+            best = Some((score, human.at + Vector::new(libm::cos(angle), libm::sin(angle)) * free));
+        }
+    }
+    best.map(|(_, at)| at)
+}
+
+/// Walking distance from one node to all others, m.
+fn walking(graph: &SceneGraph, from: &NodeId) -> BTreeMap<NodeId, f64> {
+    let mut costs = BTreeMap::from([(from.clone(), 0.0)]);
+    let mut open = vec![from.clone()];
+    while let Some(node) = open.pop() {
+        let here = costs.get(&node).copied().unwrap_or(0.0);
+        for next in graph.neighbors(&node) {
+            let cost = here + graph.edge_length_m(&node, &next).unwrap_or(0.0);
+            if costs.get(&next).is_none_or(|known| cost + 1e-9 < *known) {
+                costs.insert(next.clone(), cost);
+                open.push(next);
+            }
+        }
+    }
+    costs
+}

@@ -1,0 +1,247 @@
+//! Where everybody stands at tick 0: on free floor, apart from each other, in formation where asked.
+
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use socrates_model::{GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
+
+use crate::floor::Floor;
+use crate::human::Human;
+
+/// Smallest distance of two strangers' centers, m.
+const APART_M: f64 = 0.8;
+/// Smallest distance in a group or an elevator car, m.
+const APART_CLOSE_M: f64 = 0.65;
+/// Smallest distance to the robot at the start, m.
+const ROBOT_APART_M: f64 = 0.9;
+/// Free floor round a center beyond the body, m.
+const MARGIN_M: f64 = 0.04;
+/// Distance of neighbors in a standing circle, m.
+const NEIGHBOR_M: f64 = 1.1;
+/// Smallest distance from which somebody comes from behind, m.
+const BEHIND_M: f64 = 2.2;
+/// Lane distance of people who walk side by side, m.
+const LANE_M: f64 = 0.75;
+
+/// Places everybody. `inside` gives the door line and depth side for humans who start behind a door.
+pub(crate) fn place(
+    humans: &mut [Human],
+    groups: &[GroupProposal],
+    floor: &Floor,
+    robot: Option<(Pose, &Polyline)>,
+    doors: &BTreeMap<HumanId, Point>,
+) {
+    let mut taken: Vec<(Point, f64)> = robot.iter().map(|(pose, _)| (pose.point(), ROBOT_APART_M)).collect();
+    let route = robot.map(|(_, route)| route);
+    for group in groups {
+        if group.standing {
+            circle(humans, group, floor, route, &mut taken);
+        } else {
+            lanes(humans, group);
+        }
+    }
+    // Leavers first: they get the places near the door.
+    let mut order: Vec<usize> = (0..humans.len()).collect();
+    order.sort_by_key(|place| humans.get(*place).map(|human| (human.relation == Relation::Staying, human.id)));
+    for place in order {
+        let Some(human) = humans.get(place) else { continue };
+        if human.standing {
+            continue;
+        }
+        let (at, yaw) = spot(human, floor, robot.as_ref(), doors.get(&human.id), &taken);
+        if let Some(human) = humans.get_mut(place) {
+            human.at = at;
+            human.yaw = yaw;
+            let apart = if human.group.is_some() || doors.contains_key(&human.id) { APART_CLOSE_M } else { APART_M };
+            taken.push((at, apart));
+        }
+    }
+    for human in humans {
+        human.s = human.route.project_within(&human.at, 0.0, 2.0).0;
+        human.trail = Polyline::new(&[human.at]);
+    }
+}
+
+/// A free place near a human's first node, and its heading.
+fn spot(
+    human: &Human,
+    floor: &Floor,
+    robot: Option<&(Pose, &Polyline)>,
+    door: Option<&Point>,
+    taken: &[(Point, f64)],
+) -> (Point, f64) {
+    let home = human.route.point(0.0);
+    let ahead = human.route.direction(0.0);
+    let left = Vector::new(-ahead.y, ahead.x);
+    let wished = home + left * human.lane_m;
+    let apart = if human.group.is_some() || door.is_some() { APART_CLOSE_M } else { APART_M };
+    let behind = robot.filter(|_| human.relation == Relation::Behind);
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 0..=20_u32 {
+        for turn in 0..if ring == 0 { 1 } else { 24 } {
+            let angle = f64::from(turn) / 24.0 * TAU;
+            let at = wished + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.15 * f64::from(ring));
+            let crowded = taken
+                .iter()
+                .any(|(other, least)| (at - other).norm() < if *least > APART_M { *least } else { least.min(apart) });
+            if crowded
+                || floor.clearance_m(&at) < human.radius_m + MARGIN_M
+                || !reachable(floor, &home, &at, human.radius_m)
+            {
+                continue;
+            }
+            let mut cost = (at - wished).norm();
+            if let Some(door) = door {
+                let depth = (at - door).norm();
+                // Whoever leaves stands before whoever stays.
+                cost = if human.relation == Relation::Staying { cost - 1.5 * depth } else { cost + 0.6 * depth };
+                if depth < 0.7 || cost.is_nan() {
+                    cost += 5.0;
+                }
+            }
+            if human.relation == Relation::Staying || human.relation == Relation::Static && door.is_some() {
+                // The robot's own place stays free.
+                if let Some(end) = robot.and_then(|(_, route)| route.end()) {
+                    cost += 4.0 * (1.05 - (at - end).norm()).max(0.0);
+                }
+            }
+            if let Some((pose, _)) = behind {
+                let way = at - pose.point();
+                let depth = -(way.x * libm::cos(pose.yaw) + way.y * libm::sin(pose.yaw));
+                cost += 3.0 * (BEHIND_M - depth).max(0.0);
+            }
+            if best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+        if behind.is_none() && door.is_none() && best.is_some() {
+            break;
+        }
+        // In a car or room the search stays near the node; from behind it may go further back.
+        if door.is_some() && ring >= 11 {
+            break;
+        }
+    }
+    let at = best.map_or(wished, |(_, at)| at);
+    (at, facing(human, &at, door))
+}
+
+fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
+    let ahead = human.route.direction(0.0);
+    let toward = match door {
+        Some(door) => door - at,
+        None if ahead.norm() > 0.5 => ahead,
+        None => human.meeting.as_ref().map_or_else(|| Vector::new(1.0, 0.0), |_| human.heading()),
+    };
+    libm::atan2(toward.y, toward.x)
+}
+
+fn reachable(floor: &Floor, from: &Point, to: &Point, radius_m: f64) -> bool {
+    // The node itself may lie nearer to a wall than the body is wide (doorways); then sight is enough.
+    (floor.straight(from, to, radius_m.min(floor.wall_clearance_m(from)).min(0.25)) || floor.sees(from, to))
+        && !floor.shut_between(&(from + (to - from) * 0.3), to)
+}
+
+/// People who walk together go side by side, or in file where the floor is narrow (the lane is cut there).
+fn lanes(humans: &mut [Human], group: &GroupProposal) {
+    let count = group.members.len();
+    for (place, id) in group.members.iter().enumerate() {
+        if let Some(human) = humans.iter_mut().find(|human| human.id == *id) {
+            // At most three abreast; the others walk in a second row through the spread at the start.
+            let row = place % 3;
+            let width = count.min(3);
+            #[expect(clippy::cast_precision_loss, reason = "a few people")]
+            let lane = (row as f64 - (width as f64 - 1.0) / 2.0) * LANE_M;
+            human.lane_m = lane;
+        }
+    }
+}
+
+/// A circle facing its middle, on the side of the robot's way that leaves the wider passage.
+fn circle(
+    humans: &mut [Human],
+    group: &GroupProposal,
+    floor: &Floor,
+    route: Option<&Polyline>,
+    taken: &mut Vec<(Point, f64)>,
+) {
+    let members: Vec<usize> =
+        group.members.iter().filter_map(|id| humans.iter().position(|human| human.id == *id)).collect();
+    let Some(first) = members.first().and_then(|place| humans.get(*place)) else { return };
+    let home = first.meeting.as_ref().map_or_else(|| first.route.point(0.0), |meeting| meeting.at);
+    let body = first.radius_m;
+    let places = formation(&home, members.len(), body, floor, route, taken);
+    for (member, (at, yaw)) in members.iter().zip(places) {
+        if let Some(human) = humans.get_mut(*member) {
+            human.at = at;
+            human.yaw = yaw;
+            human.standing = true;
+            // It stands where it is: its way is this spot, whatever node it was given.
+            if human.route.length_m() < 0.05 {
+                human.route = Polyline::new(&[at]);
+            }
+            taken.push((at, APART_CLOSE_M));
+        }
+    }
+}
+
+/// Places and headings of a circle near `home`.
+fn formation(
+    home: &Point,
+    count: usize,
+    body: f64,
+    floor: &Floor,
+    route: Option<&Polyline>,
+    taken: &[(Point, f64)],
+) -> Vec<(Point, f64)> {
+    #[expect(clippy::cast_precision_loss, reason = "a few people")]
+    let n = count.max(1) as f64;
+    let ring = if count < 2 { 0.0 } else { (NEIGHBOR_M / (2.0 * libm::sin(std::f64::consts::PI / n))).min(1.45) };
+    let (s, along) = route.map_or((0.0, Vector::new(1.0, 0.0)), |route| {
+        let (s, _) = route.project(home);
+        (s, route.direction(s))
+    });
+    let heading = libm::atan2(along.y, along.x);
+    let on_way = route.map_or(*home, |route| route.point(s));
+    let mut best: Option<(f64, Vec<(Point, f64)>)> = None;
+    for ahead in -6..=6_i32 {
+        for aside in -5..=5_i32 {
+            let offset = along * (0.25 * f64::from(ahead)) + Vector::new(-along.y, along.x) * (0.25 * f64::from(aside));
+            let center = on_way + offset;
+            for turn in 0..4_u32 {
+                let phase = heading + f64::from(turn) / 4.0 * TAU / n;
+                let places = ring_places(&center, ring, count, phase);
+                let free = places.iter().all(|(at, _)| {
+                    floor.clearance_m(at) >= body + MARGIN_M
+                        && floor.straight(&center, at, body.min(0.2))
+                        && taken.iter().all(|(other, least)| (at - other).norm() >= *least)
+                });
+                if !free || route.is_some_and(|route| route.project(&center).1 > 1.45) {
+                    continue;
+                }
+                let side = |angle: f64| (floor.ray_m(&center, angle, 8.0) - ring - body).max(0.0);
+                let wide = side(heading + FRAC_PI_2).max(side(heading - FRAC_PI_2));
+                // A way round of 1.3 m is enough; beyond that, near the node and in the robot's line is better.
+                let score =
+                    4.0 * wide.min(1.3) - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
+                if best.as_ref().is_none_or(|(top, _)| score > *top + 1e-9) {
+                    best = Some((score, places));
+                }
+            }
+        }
+    }
+    best.map_or_else(|| ring_places(home, ring.min(0.6), count, heading), |(_, places)| places)
+}
+
+fn ring_places(center: &Point, ring: f64, count: usize, phase: f64) -> Vec<(Point, f64)> {
+    #[expect(clippy::cast_precision_loss, reason = "a few people")]
+    let n = count.max(1) as f64;
+    (0..count)
+        .map(|place| {
+            #[expect(clippy::cast_precision_loss, reason = "a few people")]
+            let angle = phase + (place as f64 + 0.5) / n * TAU;
+            let out = Vector::new(libm::cos(angle), libm::sin(angle));
+            (center + out * ring, socrates_model::geometry::wrap_angle(angle + std::f64::consts::PI))
+        })
+        .collect()
+}

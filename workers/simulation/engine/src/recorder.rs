@@ -1,0 +1,151 @@
+//! Writes frames and events of a run, each thing once.
+
+use std::collections::BTreeMap;
+
+use socrates_model::{
+    AgentId, AgentState, Event, EventKind, HumanId, NodeId, Point, Recording, RecordingHeader, SimTime,
+};
+
+use crate::contacts::Touch;
+
+/// A touch counts anew after so long without, s.
+const TOUCH_AGAIN_S: f64 = 1.0;
+/// Touches shallower than this are not told, m: forces bring shoulders together, not collisions.
+const TOUCH_LEAST_M: f64 = 1e-3;
+/// Sight counts anew after so long without, s.
+const SIGHT_AGAIN_S: f64 = 2.0;
+/// Both within this distance of the node meet there, m.
+const MEET_M: f64 = 1.5;
+/// Both within this distance of the node as they pass each other met near it, m.
+const NEAR_M: f64 = 3.0;
+
+/// How an encounter goes.
+#[derive(Debug, Clone, Default)]
+struct Meeting {
+    robot_s: Option<(f64, f64)>,
+    human_s: Option<(f64, f64)>,
+    closest_m: f64,
+    told: bool,
+}
+
+/// The recorder.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    recording: Recording,
+    now: SimTime,
+    fresh: Vec<Event>,
+    touches: BTreeMap<(AgentId, Option<AgentId>), f64>,
+    sights: BTreeMap<HumanId, f64>,
+    meetings: BTreeMap<HumanId, Meeting>,
+}
+
+impl Recorder {
+    pub(crate) fn new(header: RecordingHeader) -> Self {
+        Self {
+            recording: Recording { header, frames: Vec::new(), events: Vec::new() },
+            now: SimTime::ZERO,
+            fresh: Vec::new(),
+            touches: BTreeMap::new(),
+            sights: BTreeMap::new(),
+            meetings: BTreeMap::new(),
+        }
+    }
+
+    pub(crate) const fn at(&mut self, now: SimTime) {
+        self.now = now;
+    }
+
+    pub(crate) fn tell(&mut self, kind: EventKind) {
+        self.fresh.push(Event { time: self.now, kind });
+    }
+
+    pub(crate) fn touch(&mut self, touch: Touch) {
+        let (key, depth) = match touch {
+            Touch::Agents(a, b, depth) => ((a, Some(b)), depth),
+            Touch::Wall(a, depth) => ((a, None), depth),
+        };
+        let now = self.now.secs();
+        let known = self.touches.insert(key, now);
+        if depth < TOUCH_LEAST_M || known.is_some_and(|last| now - last < TOUCH_AGAIN_S) {
+            return;
+        }
+        self.tell(match touch {
+            Touch::Agents(a, b, depth_m) => EventKind::Contact { a, b, depth_m },
+            Touch::Wall(agent, depth_m) => EventKind::WallContact { agent, depth_m },
+        });
+    }
+
+    pub(crate) fn sight(&mut self, human: HumanId, distance_m: f64) {
+        let now = self.now.secs();
+        let known = self.sights.insert(human, now);
+        if known.is_none_or(|last| now - last >= SIGHT_AGAIN_S) {
+            self.tell(EventKind::Sees { human, distance_m });
+        }
+    }
+
+    /// One tick of an encounter; true from the tick on at which it has happened. Who stands there is never late.
+    pub(crate) fn meet(
+        &mut self,
+        human: HumanId,
+        (node, spot): (&NodeId, &Point),
+        robot: &Point,
+        person: &Point,
+        stands: bool,
+    ) -> bool {
+        let now = self.now.secs();
+        let meeting =
+            self.meetings.entry(human).or_insert_with(|| Meeting { closest_m: f64::INFINITY, ..Meeting::default() });
+        if meeting.told {
+            return true;
+        }
+        let (r, h) = ((robot - spot).norm(), (person - spot).norm());
+        arrive(&mut meeting.robot_s, r, now);
+        arrive(&mut meeting.human_s, h, now);
+        let apart = (robot - person).norm();
+        let near = r <= NEAR_M && h <= NEAR_M;
+        if near {
+            meeting.closest_m = meeting.closest_m.min(apart);
+        }
+        let met = r <= MEET_M && h <= MEET_M;
+        // They pass each other near the node: nearest so far, and drawing apart.
+        let passed = near && apart > meeting.closest_m + 0.3 && meeting.closest_m < NEAR_M;
+        if !(met || passed) {
+            return false;
+        }
+        meeting.told = true;
+        let time = |arrival: &Option<(f64, f64)>| arrival.map_or(now, |(at, _)| at);
+        let gap_s = if stands {
+            0.0
+        } else if met {
+            now_or(&meeting.human_s, now) - now_or(&meeting.robot_s, now)
+        } else {
+            time(&meeting.human_s) - time(&meeting.robot_s)
+        };
+        self.tell(EventKind::Encounter { human, node: node.clone(), gap_s });
+        true
+    }
+
+    /// Ends a tick: keeps its frame, hands frame and fresh events on.
+    pub(crate) fn frame(&mut self, states: &[AgentState], sink: &mut dyn FnMut(&[AgentState], &[Event])) {
+        sink(states, &self.fresh);
+        self.recording.frames.extend_from_slice(states);
+        self.recording.events.append(&mut self.fresh);
+    }
+
+    pub(crate) fn finish(self) -> Recording {
+        self.recording
+    }
+}
+
+/// First time within [`MEET_M`], else the time of the nearest so far.
+fn arrive(arrival: &mut Option<(f64, f64)>, distance: f64, now: f64) {
+    match arrival {
+        Some((_, nearest)) if *nearest <= MEET_M => {}
+        Some((_, nearest)) if distance >= *nearest => {}
+        Some(_) | None => *arrival = Some((now, distance)),
+    }
+}
+
+fn now_or(arrival: &Option<(f64, f64)>, now: f64) -> f64 {
+    arrival.map_or(now, |(at, _)| at)
+}

@@ -1,0 +1,145 @@
+//! The rendezvous controller: humans and robot come to their encounter at about the same time.
+//!
+//! Each tick it predicts when the robot will be at the encounter node, and chooses the human's start
+//! and speed so that both arrive together. A human who has not started and cannot be seen may wait as
+//! long as needed; one who walks is only made slower or faster within 0.6 to 1.8 m/s, and is held (at
+//! most 10 s in all) only where the robot cannot see it: nobody freezes in the robot's view.
+
+use socrates_model::{Point, Relation};
+
+use crate::human::Human;
+use crate::robot::Robot;
+
+/// Slowest walk the controller asks for, m/s.
+const SLOWEST_MPS: f64 = 0.6;
+/// Fastest walk the controller asks for, m/s.
+const FASTEST_MPS: f64 = 1.8;
+/// Longest hold of somebody who has started, s.
+const HOLD_MAX_S: f64 = 10.0;
+/// Nearer than this a human in line of sight is in the robot's view, m.
+const VIEW_M: f64 = 9.0;
+/// Nobody starts before this, s: the first moments show where everybody is.
+const FIRST_START_S: f64 = 0.5;
+/// Pause between an opened door and the first leaver, s.
+const AFTER_OPENING_S: f64 = 0.4;
+/// Pause between two leavers, s.
+const BETWEEN_LEAVERS_S: f64 = 1.1;
+/// A robot this near, along its way, makes people leave a place without a door, m.
+const LEAVE_AT_M: f64 = 4.0;
+/// Somebody who crosses aims at being there so long before the robot, s: on the last steps the robot's nearness slows it.
+const CROSS_S: f64 = 1.1;
+/// Somebody ahead is at the encounter so long before the robot, s.
+const AHEAD_S: f64 = 1.0;
+
+/// The controller's memory of one human.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Timing {
+    pub(crate) held_s: f64,
+    /// Since when the door on its way is open, s.
+    pub(crate) open_since_s: Option<f64>,
+    /// Its place among those who leave through the same door.
+    pub(crate) leaving_order: u32,
+    /// Whether the encounter is over.
+    pub(crate) over: bool,
+    /// Whether the robot's own way leads into the place that is left.
+    pub(crate) robot_enters: bool,
+}
+
+/// What is asked of a human who walks its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pace {
+    /// Speed, m/s; 0 holds.
+    pub(crate) speed_mps: f64,
+}
+
+/// What the controller knows of the moment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment {
+    pub(crate) now_s: f64,
+    pub(crate) dt: f64,
+    /// Whether human and robot are in line of sight.
+    pub(crate) sight: bool,
+    /// State of the first door ahead of the human: how far, and whether it is open.
+    pub(crate) door: Option<(f64, bool)>,
+}
+
+/// Speed for one human at one tick.
+pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, moment: &Moment) -> Pace {
+    let free = Pace { speed_mps: human.speed_mps };
+    let hold = Pace { speed_mps: 0.0 };
+    if moment.now_s < FIRST_START_S {
+        return hold;
+    }
+    let Some(robot) = robot else { return free };
+    if human.relation == Relation::Leaving && !human.started && timing.robot_enters {
+        return leave(human, timing, robot, moment);
+    }
+    if human.relation == Relation::Abreast && !timing.over {
+        return Pace { speed_mps: beside(human, robot) };
+    }
+    let Some(meeting) = &human.meeting else { return free };
+    let left = meeting.human_s - human.s;
+    if timing.over || left <= 0.0 || !robot.before(meeting.robot_s) {
+        return free;
+    }
+    let slowest = SLOWEST_MPS.min(human.speed_mps);
+    let fastest = if human.relation == Relation::Ahead { human.speed_mps.max(slowest) } else { FASTEST_MPS };
+    let due_s = due_s(human.relation, robot.eta_s(meeting.robot_s));
+    let needed = left / due_s.max(0.05);
+    let in_view = moment.sight && (human.at - robot.at()).norm() < VIEW_M;
+    if !human.started {
+        // Early: wait where the robot cannot see it, else stroll. Late or just right: go.
+        let early = needed < 0.97 * human.speed_mps;
+        if early && !in_view {
+            return hold;
+        }
+    } else if needed < 0.9 * slowest && !in_view && timing.held_s < HOLD_MAX_S {
+        timing.held_s += moment.dt;
+        return hold;
+    }
+    let mut speed = needed.clamp(slowest, fastest);
+    if human.relation == Relation::Behind {
+        // Catches up without treading on its heels.
+        let behind = robot.s - (human.s + meeting.robot_s - meeting.human_s);
+        speed = speed.min((robot.v.max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
+    }
+    Pace { speed_mps: speed }
+}
+
+fn due_s(relation: Relation, robot_eta_s: f64) -> f64 {
+    match relation {
+        Relation::Ahead => robot_eta_s - AHEAD_S,
+        // A little before the robot: who crosses is seen crossing, not waiting.
+        Relation::Crossing | Relation::Leaving => robot_eta_s - CROSS_S,
+        Relation::Frontal | Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => robot_eta_s,
+    }
+}
+
+/// People who leave the place that the robot enters: after the door has opened, one after the other.
+fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> Pace {
+    let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
+    let since = match moment.door {
+        Some((_, true)) => true,
+        Some((_, false)) => false,
+        None => (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at),
+    };
+    if !since {
+        timing.open_since_s = None;
+        return Pace { speed_mps: 0.0 };
+    }
+    let opened = *timing.open_since_s.get_or_insert(moment.now_s);
+    let go = moment.now_s - opened >= AFTER_OPENING_S + pause;
+    Pace { speed_mps: if go { human.speed_mps.max(0.9) } else { 0.0 } }
+}
+
+fn near_along(robot: &Robot, at: &Point) -> bool {
+    let (s, aside) = robot.route.project(at);
+    aside < 2.5 && s - robot.s <= LEAVE_AT_M
+}
+
+/// Speed of somebody who keeps level with the robot.
+fn beside(human: &Human, robot: &Robot) -> f64 {
+    let (s, _) = human.route.project_within(&robot.at(), human.s - 4.0, human.s + 4.0);
+    let ahead = s - human.s;
+    (robot.v.max(0.0) + 0.9 * ahead).clamp(0.0, FASTEST_MPS)
+}

@@ -1,0 +1,118 @@
+//! The robot's body: a disc with the motion limits of its base, and how far it has come.
+
+use socrates_model::time::STEP_SECS;
+use socrates_model::{AgentId, Command, Gesture, NodeId, Point, Polyline, Pose, RobotModel, Vector};
+
+/// Largest change of turning rate, rad/s².
+const ALPHA_MAX: f64 = 4.0;
+/// How long a gesture is held, s.
+const GESTURE_S: f64 = 2.0;
+/// Time over which the robot's own pace is averaged, s.
+const PACE_S: f64 = 3.0;
+
+/// The robot.
+#[derive(Debug, Clone)]
+pub(crate) struct Robot {
+    pub(crate) model: RobotModel,
+    pub(crate) pose: Pose,
+    pub(crate) v: f64,
+    pub(crate) omega: f64,
+    pub(crate) velocity: Vector,
+    pub(crate) command: Command,
+    pub(crate) calls: u64,
+    pub(crate) gesture: Gesture,
+    pub(crate) gesture_until_s: f64,
+    /// Intended way.
+    pub(crate) route: Polyline,
+    pub(crate) nodes: Vec<(NodeId, f64)>,
+    pub(crate) next_node: usize,
+    pub(crate) s: f64,
+    /// Pace along the way while it moves, m/s.
+    pub(crate) pace_mps: f64,
+    pub(crate) arrived_s: Option<f64>,
+    /// Since when it stands near an occupied goal, s.
+    pub(crate) at_full_goal_s: f64,
+    pub(crate) trail: Polyline,
+}
+
+impl Robot {
+    /// As a point.
+    pub(crate) fn at(&self) -> Point {
+        self.pose.point()
+    }
+
+    /// As an agent.
+    pub(crate) const fn agent() -> AgentId {
+        AgentId::Robot
+    }
+
+    /// Direction it faces.
+    pub(crate) fn heading(&self) -> Vector {
+        Vector::new(libm::cos(self.pose.yaw), libm::sin(self.pose.yaw))
+    }
+
+    /// Direction it means to go: of its way while it is near it, else where it faces.
+    pub(crate) fn intent(&self) -> Vector {
+        let (s, aside) = self.route.project_within(&self.at(), self.s - 0.5, self.s + 2.0);
+        let way = self.route.direction(s + 0.6);
+        if aside < 2.0 && way.norm() > 0.5 && self.arrived_s.is_none() { way } else { self.heading() }
+    }
+
+    /// Whether it is still on its way past the length `s`.
+    pub(crate) fn before(&self, s: f64) -> bool {
+        self.s < s && self.arrived_s.is_none()
+    }
+
+    /// Seconds until it is at length `s` of its way; 0 when it is past.
+    pub(crate) fn eta_s(&self, s: f64) -> f64 {
+        (s - self.s).max(0.0) / self.pace_mps.max(0.1)
+    }
+
+    /// One tick under the present command.
+    pub(crate) fn step(&mut self) {
+        let limit = self.model.a_max_mps2 * STEP_SECS;
+        let wish = finite(self.command.v).clamp(-0.25 * self.model.v_max_mps, self.model.v_max_mps);
+        // Braking may be twice as hard as starting: every base brakes harder than it starts.
+        let brake = if wish.abs() < self.v.abs() { 2.0 * limit } else { limit };
+        self.v += (wish - self.v).clamp(-brake, brake);
+        let turn = finite(self.command.omega).clamp(-self.model.omega_max_radps, self.model.omega_max_radps);
+        self.omega += (turn - self.omega).clamp(-ALPHA_MAX * STEP_SECS, ALPHA_MAX * STEP_SECS);
+        self.pose.yaw = socrates_model::geometry::wrap_angle(self.pose.yaw + self.omega * STEP_SECS);
+        self.velocity = self.heading() * self.v;
+        self.pose.x += self.velocity.x * STEP_SECS;
+        self.pose.y += self.velocity.y * STEP_SECS;
+    }
+
+    /// Takes over what contacts left of position and speed, and counts the progress.
+    pub(crate) fn settle(&mut self, at: Point, velocity: Vector) {
+        self.pose.x = at.x;
+        self.pose.y = at.y;
+        if (velocity - self.velocity).norm() > 1e-9 {
+            self.velocity = velocity;
+            self.v = velocity.dot(&self.heading());
+        }
+        let before = self.s;
+        let (s, aside) = self.route.project_within(&at, self.s - 0.3, self.s + 3.0);
+        // Far off its way the nearest point says little; then only progress counts.
+        if aside < 3.0 {
+            self.s = s.max(self.s - 0.02);
+        }
+        if self.v > 0.15 {
+            let share = STEP_SECS / PACE_S;
+            self.pace_mps += share * (((self.s - before) / STEP_SECS).clamp(0.3, self.model.v_max_mps) - self.pace_mps);
+        }
+        if self.trail.end().is_none_or(|end| (at - end).norm() > 0.1) {
+            self.trail.push(at);
+        }
+    }
+
+    /// Begins a gesture.
+    pub(crate) fn say(&mut self, gesture: Gesture, now_s: f64) {
+        self.gesture = gesture;
+        self.gesture_until_s = now_s + GESTURE_S;
+    }
+}
+
+fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { 0.0 }
+}

@@ -1,0 +1,267 @@
+//! From a setup to the world at tick 0.
+
+use std::collections::BTreeMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
+use socrates_bt::Tree;
+use socrates_model::geometry::{nearest_on_segment, segments_cross};
+use socrates_model::hash::derive_seed;
+use socrates_model::recording::AgentInfo;
+use socrates_model::time::STEP_SECS;
+use socrates_model::{
+    Action, AgentId, Command, Gesture, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, RecordingHeader,
+    Relation, Vector,
+};
+
+use crate::floor::Floor;
+use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
+use crate::placing;
+use crate::robot::Robot;
+use crate::setup::{PERSON_RADIUS_M, Setup};
+
+/// Desired speeds: mean, standard deviation and limits, m/s.
+const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
+
+/// A node sequence as a way, with the length at each node.
+fn way(setup: &Setup, nodes: &[NodeId]) -> (Polyline, Vec<(NodeId, f64)>) {
+    let graph = &setup.location.graph;
+    let mut line = Polyline::default();
+    let mut marks = Vec::new();
+    for (step, node) in nodes.iter().enumerate() {
+        let head = nodes.get(..=step).unwrap_or(&[]);
+        if let Some(last) = head.len().checked_sub(2).and_then(|from| head.get(from..)) {
+            for point in graph.polyline(last).into_iter().skip(1) {
+                line.push(point);
+            }
+        } else if let Some(place) = graph.node(node) {
+            line.push(place.at);
+        }
+        marks.push((node.clone(), line.length_m()));
+    }
+    (line, marks)
+}
+
+/// The robot on its first node.
+pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
+    let (route, nodes) = way(setup, &setup.paths.robot);
+    let home = route.point(0.0);
+    let ahead = route.direction(0.0);
+    let yaw = if ahead.norm() > 0.5 { libm::atan2(ahead.y, ahead.x) } else { 0.0 };
+    let at = free_near(floor, &home, setup.robot.radius_m + 0.03);
+    Robot {
+        model: setup.robot,
+        pose: Pose::new(at.x, at.y, yaw),
+        v: 0.0,
+        omega: 0.0,
+        velocity: Vector::zeros(),
+        command: Command::default(),
+        calls: 0,
+        gesture: Gesture::None,
+        gesture_until_s: 0.0,
+        route,
+        nodes,
+        next_node: 0,
+        s: 0.0,
+        pace_mps: 0.93 * setup.robot.v_max_mps,
+        arrived_s: None,
+        at_full_goal_s: 0.0,
+        trail: Polyline::new(&[at]),
+    }
+}
+
+fn free_near(floor: &Floor, home: &Point, radius: f64) -> Point {
+    let mut best = (floor.wall_clearance_m(home), *home);
+    for ring in 1..=10_u32 {
+        if best.0 >= radius {
+            break;
+        }
+        for turn in 0..16_u32 {
+            let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
+            let at = home + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.05 * f64::from(ring));
+            let free = floor.wall_clearance_m(&at);
+            if free > best.0 + 1e-9 {
+                best = (free, at);
+            }
+        }
+    }
+    best.1
+}
+
+/// Everybody, placed.
+pub(crate) fn humans(
+    setup: &Setup,
+    mut trees: BTreeMap<HumanId, Tree>,
+    floor: &Floor,
+    robot: Option<&Robot>,
+) -> Vec<Human> {
+    let (robot_way, _) = way(setup, &setup.paths.robot);
+    let mut inside = BTreeMap::new();
+    let mut humans = Vec::new();
+    for proposal in &setup.proposal.humans {
+        let Some(tree) = trees.remove(&proposal.id) else { continue };
+        let human = human(setup, proposal, tree, &robot_way, floor);
+        let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
+        if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
+            inside.insert(proposal.id, door.middle());
+        }
+        humans.push(human);
+    }
+    let robot = robot.map(|robot| (robot.pose, &robot.route));
+    placing::place(&mut humans, &setup.proposal.groups, floor, robot, &inside);
+    humans
+}
+
+/// Who walks to the robot's own goal ends beside it, so that both can arrive.
+fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
+    let (Some(end), Some(goal)) = (route.end(), robot_way.end()) else { return route };
+    if (end - goal).norm() > 0.9 {
+        return route;
+    }
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 0..=6_u32 {
+        for turn in 0..24_u32 {
+            let angle = f64::from(turn) / 24.0 * std::f64::consts::TAU;
+            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.0 + 0.2 * f64::from(ring));
+            let aside = robot_way.project(&at).1;
+            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 && floor.straight(&end, &at, 0.2);
+            let cost = (at - goal).norm() + 2.0 * (0.95 - aside).max(0.0);
+            if free && aside > 0.6 && best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+    }
+    let mut points: Vec<Point> = route.points().to_vec();
+    if let (Some(last), Some((_, at))) = (points.last_mut(), best) {
+        // Turns off before the goal instead of stepping on it.
+        let before = route.point(route.length_m() - 0.8);
+        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
+        points.push(at);
+    }
+    Polyline::new(&points)
+}
+
+fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyline, floor: &Floor) -> Human {
+    let nodes: &[NodeId] = setup.paths.humans.get(&proposal.id).map_or(&[], Vec::as_slice);
+    let (mut route, marks) = way(setup, nodes);
+    if route.length_m() > 1.0 {
+        route = clear_end(route, robot_way, floor);
+    }
+    let meeting = setup.paths.encounter_of(proposal.id).and_then(|node| {
+        let at = setup.location.graph.node(node)?.at;
+        let human_s = marks.iter().find(|(id, _)| id == node).map_or_else(|| route.project(&at).0, |(_, s)| *s);
+        Some(Meeting { node: node.clone(), at, human_s, robot_s: robot_way.project(&at).0 })
+    });
+    let doors = doors_on(setup, &route);
+    let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
+    let mut facing = 0.0;
+    if let Some(meeting) = &meeting
+        && route.length_m() < 0.05
+    {
+        // Somebody who stands in the robot's way looks along it, not at the robot.
+        let along = robot_way.direction(meeting.robot_s);
+        facing = libm::atan2(along.x, -along.y);
+    }
+    let state = tree.start_with(&BTreeMap::from([
+        ("id".to_owned(), proposal.id.number().to_string()),
+        ("dt".to_owned(), STEP_SECS.to_string()),
+    ]));
+    Human {
+        id: proposal.id,
+        role: proposal.role.clone(),
+        relation: proposal.relation,
+        group: proposal.group,
+        standing: false,
+        lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { 0.0 },
+        tree,
+        state,
+        at: route.point(0.0),
+        route,
+        nodes: marks,
+        next_node: 0,
+        s: 0.0,
+        meeting,
+        doors,
+        velocity: Vector::zeros(),
+        yaw: facing,
+        omega: 0.0,
+        radius_m: PERSON_RADIUS_M,
+        speed_mps,
+        action: Action::Navigate,
+        gesture: Gesture::None,
+        errand: Errand::default(),
+        anchor: None,
+        aside_m: 0.0,
+        jammed_s: 0.0,
+        yields_until_s: 0.0,
+        started: false,
+        trail: Polyline::default(),
+    }
+}
+
+/// Doors that a way goes through, in order.
+pub(crate) fn doors_on(setup: &Setup, route: &Polyline) -> Vec<DoorOnWay> {
+    let mut found = Vec::new();
+    for (ends, marks) in route.points().windows(2).zip(route.marks_m().windows(2)) {
+        let ([a, b], [s0, _]) = (ends, marks) else { continue };
+        for (place, door) in setup.location.doors.iter().enumerate() {
+            if segments_cross(a, b, &door.from, &door.to) {
+                let along = door.to - door.from;
+                let share = (door.from - a).perp(&along) / (b - a).perp(&along);
+                let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.5 };
+                found.push(DoorOnWay { door: place, s: s0 + share * (b - a).norm() });
+            }
+        }
+    }
+    // A way that ends in a doorway needs the door open as well.
+    if let Some(end) = route.end().filter(|_| route.length_m() > 0.0) {
+        for (place, door) in setup.location.doors.iter().enumerate() {
+            let near = nearest_on_segment(&end, &door.from, &door.to).0 < 0.35;
+            if near && found.iter().all(|known| known.door != place) {
+                found.push(DoorOnWay { door: place, s: route.length_m() });
+            }
+        }
+    }
+    found.sort_by(|a, b| a.s.total_cmp(&b.s));
+    found
+}
+
+/// A desired speed from N(1.2, 0.2), clipped; the same seed and human give the same.
+fn drawn_speed(seed: u64, human: HumanId) -> f64 {
+    let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["speed", &human.to_string()]));
+    // Box and Muller's transform of two uniform draws in (0, 1].
+    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
+    let mut uniform = || ((random.next_u64() >> 11) as f64 + 1.0) / 9_007_199_254_740_992.0;
+    let (a, b) = (uniform(), uniform());
+    let normal = libm::sqrt(-2.0 * libm::log(a)) * libm::cos(std::f64::consts::TAU * b);
+    (SPEED.0 + SPEED.1 * normal).clamp(SPEED.2, SPEED.3)
+}
+
+/// The header of the run.
+pub(crate) fn header(setup: &Setup, humans: &[Human], robot: Option<&Robot>) -> RecordingHeader {
+    let mut agents = Vec::new();
+    if let Some(robot) = robot {
+        agents.push(AgentInfo {
+            agent: AgentId::Robot,
+            radius_m: robot.model.radius_m,
+            speed_mps: robot.model.v_max_mps,
+            role: "robot".to_owned(),
+        });
+    }
+    agents.extend(humans.iter().map(|human| AgentInfo {
+        agent: human.agent(),
+        radius_m: human.radius_m,
+        speed_mps: human.speed_mps,
+        role: human.role.clone(),
+    }));
+    RecordingHeader {
+        format: socrates_model::FORMAT,
+        run: setup.run.clone(),
+        planner: setup.planner.clone(),
+        seed: setup.seed,
+        profile: "native".to_owned(),
+        step_s: STEP_SECS,
+        agents,
+        leaves: LEAVES.iter().map(|leaf| (*leaf).to_owned()).collect(),
+    }
+}

@@ -1,0 +1,157 @@
+//! What one human's tree sees and does: the tick's start in, wishes out.
+
+use std::cell::Cell;
+use std::collections::BTreeMap;
+
+use socrates_bt::World;
+use socrates_model::time::STEP_SECS;
+use socrates_model::{Action, Gesture, HumanId, Point, SimTime, Vector};
+
+use crate::floor::Floor;
+use crate::human::Human;
+
+/// Half of the field of view, rad: 100° to either side.
+pub(crate) const HALF_FIELD_OF_VIEW_RAD: f64 = 100.0 * std::f64::consts::PI / 180.0;
+/// The robot blocks somebody whose direction of travel points at it within this angle, rad.
+const BLOCKING_RAD: f64 = 0.5;
+/// A robot faster than this moves, m/s.
+const MOVING_MPS: f64 = 0.1;
+/// Within this distance of its encounter node a human is at it, m.
+const AT_ENCOUNTER_M: f64 = 1.0;
+
+/// The robot as a human may notice it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RobotSeen {
+    pub(crate) at: Point,
+    pub(crate) speed_mps: f64,
+    pub(crate) gesture: Gesture,
+}
+
+/// One human's view of the start of a tick.
+pub(crate) struct View<'a> {
+    pub(crate) floor: &'a Floor,
+    pub(crate) now: SimTime,
+    pub(crate) robot: Option<RobotSeen>,
+    pub(crate) gestures: &'a BTreeMap<HumanId, Gesture>,
+    at: Point,
+    heading: Vector,
+    travel: Vector,
+    at_goal: bool,
+    at_encounter: bool,
+    sight: Cell<Option<bool>>,
+    /// What the tree asked for.
+    pub(crate) act: Option<Action>,
+    pub(crate) say: Option<Gesture>,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn of(
+        human: &Human,
+        floor: &'a Floor,
+        now: SimTime,
+        robot: Option<RobotSeen>,
+        gestures: &'a BTreeMap<HumanId, Gesture>,
+    ) -> Self {
+        let at_encounter =
+            human.meeting.as_ref().is_some_and(|meeting| (human.at - meeting.at).norm() <= AT_ENCOUNTER_M);
+        Self {
+            floor,
+            now,
+            robot,
+            gestures,
+            at: human.at,
+            heading: human.heading(),
+            travel: human.travel(),
+            at_goal: human.at_goal(),
+            at_encounter,
+            sight: Cell::new(None),
+            act: None,
+            say: None,
+        }
+    }
+
+    fn in_sight(&self, robot: &RobotSeen) -> bool {
+        if let Some(known) = self.sight.get() {
+            return known;
+        }
+        let seen = self.floor.sees(&self.at, &robot.at);
+        self.sight.set(Some(seen));
+        seen
+    }
+
+    /// Whether the robot is in the field of view and in line of sight at any distance up to `within_m`.
+    pub(crate) fn sees_robot(&self, within_m: f64) -> Option<f64> {
+        let robot = self.robot?;
+        let way = robot.at - self.at;
+        let distance = way.norm();
+        let seen = distance <= within_m
+            && angle_between(&self.heading, &way) <= HALF_FIELD_OF_VIEW_RAD
+            && self.in_sight(&robot);
+        seen.then_some(distance)
+    }
+}
+
+/// Angle between two directions, rad, 0 to pi; 0 where one of them is zero.
+pub(crate) fn angle_between(a: &Vector, b: &Vector) -> f64 {
+    libm::atan2(a.perp(b).abs(), a.dot(b))
+}
+
+impl World for View<'_> {
+    fn robot_distance_m(&self) -> Option<f64> {
+        self.robot.map(|robot| (robot.at - self.at).norm())
+    }
+
+    fn robot_visible(&self, within_m: f64) -> bool {
+        self.sees_robot(within_m).is_some()
+    }
+
+    fn robot_blocking(&self, within_m: f64) -> bool {
+        self.robot.is_some_and(|robot| {
+            let way = robot.at - self.at;
+            way.norm() <= within_m && angle_between(&self.travel, &way) <= BLOCKING_RAD && self.in_sight(&robot)
+        })
+    }
+
+    fn robot_moving(&self) -> bool {
+        self.robot.is_some_and(|robot| robot.speed_mps > MOVING_MPS)
+    }
+
+    fn robot_gesture(&self) -> Gesture {
+        self.robot.map_or(Gesture::None, |robot| robot.gesture)
+    }
+
+    fn human_gesture(&self, id: HumanId) -> Gesture {
+        self.gestures.get(&id).copied().unwrap_or_default()
+    }
+
+    fn goal_reached(&self) -> bool {
+        self.at_goal
+    }
+
+    fn next_goal(&mut self) {
+        // The way is walked node by node by itself; there is no goal to take by hand.
+    }
+
+    fn at_encounter(&self) -> bool {
+        self.at_encounter
+    }
+
+    fn now(&self) -> SimTime {
+        self.now
+    }
+
+    fn step_s(&self) -> f64 {
+        STEP_SECS
+    }
+
+    fn act(&mut self, action: &Action, _leaf: u16) {
+        // One motion at a time: the first of a tick counts.
+        if self.act.is_none() {
+            self.act = Some(action.clone());
+        }
+    }
+
+    fn gesture(&mut self, gesture: Gesture) {
+        self.say = Some(gesture);
+    }
+}

@@ -1,0 +1,134 @@
+//! One step of a human: wish and social forces to velocity, heading and place.
+
+use socrates_crowd::{Goal, Params, Person, forces_on};
+use socrates_model::geometry::wrap_angle;
+use socrates_model::time::STEP_SECS;
+use socrates_model::{GroupId, Point, Vector};
+
+use crate::floor::Floor;
+use crate::human::Human;
+use crate::motion::{Other, Want};
+
+/// Largest acceleration of a person, m/s².
+const A_MAX: f64 = 3.0;
+/// Nobody is faster, m/s.
+const V_MAX: f64 = 1.95;
+/// Turning rate of somebody who stands and turns, rad/s.
+const TURN_STANDING: f64 = std::f64::consts::PI;
+/// Turning rate of the heading of somebody who walks, rad/s.
+const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
+/// Others farther away are not felt, m.
+const FEEL_M: f64 = 5.0;
+/// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
+const KEEP: (f64, f64) = (12.0, 7.0);
+
+/// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
+pub(crate) fn steer(human: &mut Human, want: &Want, floor: &Floor, others: &[Other], params: &Params) {
+    let wished = match want.target {
+        Some(target) if want.speed_mps > 0.0 => {
+            human.anchor = None;
+            human.velocity + pull(human, want, &target, floor, others, params) * STEP_SECS
+        }
+        Some(_) | None => stand(human),
+    };
+    let mut velocity = wished;
+    let most = want.speed_mps.max(human.velocity.norm() - A_MAX * STEP_SECS).min(V_MAX);
+    if want.target.is_some() && velocity.norm() > most {
+        velocity *= most / velocity.norm();
+    }
+    // A person stops before touching; forces alone would let shoulders meet.
+    for other in others {
+        let way = other.at - human.at;
+        let distance = way.norm();
+        let gap = distance - human.radius_m - other.radius_m;
+        if !(1e-6..1.5).contains(&distance.min(1.5 - 1e-6)) || gap > 0.8 {
+            continue;
+        }
+        let toward = way / distance;
+        let excess = velocity.dot(&toward) - (2.5 * (gap - 0.06)).max(0.0);
+        if excess > 0.0 {
+            velocity -= toward * excess;
+        }
+    }
+    human.velocity = velocity;
+}
+
+fn stand(human: &mut Human) -> Vector {
+    let Some(anchor) = human.anchor else {
+        let speed = human.velocity.norm();
+        if speed < 0.03 {
+            human.anchor = Some(human.at);
+            return Vector::zeros();
+        }
+        return human.velocity * ((speed - A_MAX * STEP_SECS).max(0.0) / speed);
+    };
+    let pull = (anchor - human.at) * KEEP.0 - human.velocity * KEEP.1;
+    let size = pull.norm();
+    let pull = if size > A_MAX { pull * (A_MAX / size) } else { pull };
+    let velocity = human.velocity + pull * STEP_SECS;
+    if velocity.norm() < 2e-3 && (anchor - human.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
+}
+
+fn pull(human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other], params: &Params) -> Vector {
+    let mut people = vec![person(0, human.at, human.velocity, human.radius_m)];
+    if let Some(me) = people.first_mut() {
+        me.speed_mps = want.speed_mps;
+        me.goal = Some(Goal { at: *target, radius_m: 0.02 });
+    }
+    for (number, other) in (1_u32..).zip(others) {
+        let near = (other.at - human.at).norm() < FEEL_M;
+        let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
+        let drawn = want.drawn && other.id.is_none();
+        if near && !mate && !drawn && floor.sees(&human.at, &other.at) {
+            people.push(person(number, other.at, other.velocity, other.radius_m));
+        }
+    }
+    // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
+    let meant =
+        want.face.is_some() && (target - human.at).norm() < 1.3 && floor.straight(&human.at, target, human.radius_m);
+    let walls = if meant { Vec::new() } else { floor.felt(&human.at) };
+    let force = forces_on(0, &people, &walls, params).total();
+    let size = force.norm();
+    if size > A_MAX { force * (A_MAX / size) } else { force }
+}
+
+fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
+    Person { velocity, radius_m, ..Person::standing(id, at) }
+}
+
+/// Takes over where contacts left it, turns, and counts progress along its way.
+pub(crate) fn settle(human: &mut Human, want: &Want, at: Point, velocity: Vector) {
+    human.at = at;
+    human.velocity = velocity;
+    let speed = velocity.norm();
+    let (goal, rate) = if speed > 0.15 && want.target.is_some() {
+        (Some(libm::atan2(velocity.y, velocity.x)), TURN_WALKING)
+    } else {
+        (want.face.map(|face| libm::atan2(face.y - at.y, face.x - at.x)), TURN_STANDING)
+    };
+    let before = human.yaw;
+    if let Some(goal) = goal {
+        let turn = wrap_angle(goal - human.yaw).clamp(-rate * STEP_SECS, rate * STEP_SECS);
+        human.yaw = wrap_angle(human.yaw + turn);
+    }
+    human.omega = wrap_angle(human.yaw - before) / STEP_SECS;
+    if human.trail.end().is_none_or(|end| (at - end).norm() > 0.1) {
+        human.trail.push(at);
+    }
+}
+
+/// Progress along the way while it is walked.
+pub(crate) fn progress(human: &mut Human) {
+    let (s, aside) = human.route.project_within(&human.at, human.s - 0.2, human.s + 1.5);
+    if aside < 2.0 {
+        human.s = s.max(human.s);
+    }
+}
+
+/// Takes the way up again after something else was done.
+pub(crate) fn resume(human: &mut Human) {
+    let (s, aside) = human.route.project_within(&human.at, human.s, human.route.length_m());
+    if aside < 2.5 {
+        human.s = human.s.max(s);
+    }
+}

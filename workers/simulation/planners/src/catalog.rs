@@ -1,0 +1,62 @@
+//! Every planner by name.
+
+use socrates_model::{Fault, FaultCode, RobotDriver};
+
+use crate::mission::Mission;
+use crate::reactive::Reactive;
+use crate::reference::Reference;
+
+/// The name of the planner that means: no robot (the twin run).
+pub const NO_ROBOT: &str = "none";
+
+/// Makes a planner.
+type Maker = fn(&Mission) -> Box<dyn RobotDriver>;
+
+/// What is known of a planner without making it.
+#[derive(Debug, Clone, Copy)]
+pub struct PlannerSheet {
+    /// Name in requests and reports.
+    pub name: &'static str,
+    /// One sentence for people.
+    pub about: &'static str,
+    make: Option<Maker>,
+}
+
+/// Every planner, `reference` first.
+pub const CATALOG: &[PlannerSheet] = &[
+    PlannerSheet {
+        name: "reference",
+        about: "keeps to the intended way, plays the robot script, steps round people and waits for them",
+        make: Some(|mission| Box::new(Reference::new(mission))),
+    },
+    PlannerSheet {
+        name: "reactive",
+        about: "dynamic window over lidar and moving people on the shortest way between the waypoints; no script",
+        make: Some(|mission| Box::new(Reactive::new(mission))),
+    },
+    PlannerSheet { name: NO_ROBOT, about: "no robot at all: the twin run", make: None },
+];
+
+/// Names in catalogue order.
+#[must_use]
+pub fn names() -> Vec<&'static str> {
+    CATALOG.iter().map(|sheet| sheet.name).collect()
+}
+
+/// The planner of this name; `None` for `none`.
+///
+/// # Errors
+/// `J-PLANNER` with the list of names.
+pub fn make(name: &str, mission: &Mission) -> Result<Option<Box<dyn RobotDriver>>, Fault> {
+    let Some(sheet) = CATALOG.iter().find(|sheet| sheet.name == name) else {
+        return Err(unknown(name));
+    };
+    Ok(sheet.make.map(|make| make(mission)))
+}
+
+/// The fault for a name that is not in the catalogue.
+#[must_use]
+pub fn unknown(name: &str) -> Fault {
+    let message = format!("there is no planner `{name}`; allowed: {}", names().join(", "));
+    Fault::new(FaultCode::JPlanner, "planner", message)
+}

@@ -1,0 +1,122 @@
+//! The floor as planners see it: walls, closed doors, people as discs.
+
+use std::sync::Arc;
+
+use socrates_maps::{DistanceField, shortest_path};
+use socrates_model::geometry::{nearest_on_segment, segments_cross};
+use socrates_model::{Grid, Observation, Point, Polyline, Vector};
+
+use crate::mission::Mission;
+
+/// Somebody slower than this stands, m/s.
+pub(crate) const STANDING_MPS: f64 = 0.2;
+
+/// Walls of the mission.
+#[derive(Debug, Clone)]
+pub(crate) struct Ground {
+    grid: Grid,
+    field: Arc<DistanceField>,
+    pub(crate) radius_m: f64,
+}
+
+/// A person as an obstacle: a stretch of floor with a radius, and whether going there is forbidden or only dear.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Obstacle {
+    pub(crate) from: Point,
+    pub(crate) to: Point,
+    pub(crate) radius_m: f64,
+    pub(crate) hard: bool,
+}
+
+impl Ground {
+    pub(crate) fn new(mission: &Mission) -> Self {
+        Self { grid: mission.grid.clone(), field: Arc::clone(&mission.field), radius_m: mission.robot.radius_m }
+    }
+
+    /// Distance to the nearest wall, m.
+    pub(crate) fn clearance_m(&self, point: &Point) -> f64 {
+        self.field.clearance(point)
+    }
+
+    /// Whether the robot's disc with a margin can go straight.
+    pub(crate) fn straight(&self, from: &Point, to: &Point, margin_m: f64) -> bool {
+        let way = to - from;
+        let length = way.norm();
+        let reach = self.radius_m + margin_m;
+        let mut gone = 0.0;
+        loop {
+            let here = if length > 0.0 { from + way * (gone / length) } else { *from };
+            let free = self.field.clearance(&here);
+            if free < reach {
+                return false;
+            }
+            if gone >= length {
+                return true;
+            }
+            gone = (gone + (free - reach).max(0.04)).min(length);
+        }
+    }
+
+    /// The shortest way over the whole map.
+    pub(crate) fn way(&self, from: &Point, to: &Point) -> Option<Polyline> {
+        if self.straight(from, to, 0.05) {
+            return Some(Polyline::new(&[*from, *to]));
+        }
+        shortest_path(&self.grid, &self.field, from, to, self.radius_m + 0.03).map(|points| Polyline::new(&points))
+    }
+}
+
+/// People near the way as obstacles: who stands, whoever comes the other way, and the space inside a circle of people.
+pub(crate) fn obstacles(seen: &Observation<'_>, ahead: &Vector, reach_m: f64) -> Vec<Obstacle> {
+    let at = seen.pose.point();
+    let mut found = Vec::new();
+    for person in seen.people {
+        let way = person.at - at;
+        if way.norm() > reach_m {
+            continue;
+        }
+        let speed = person.velocity.norm();
+        let to = if speed < STANDING_MPS {
+            person.at
+        } else if person.velocity.dot(ahead) < -0.6 * speed && way.dot(ahead) > 0.0 {
+            // Comes the other way: its next second and a half is taken.
+            person.at + person.velocity * 1.5
+        } else {
+            continue;
+        };
+        found.push(Obstacle { from: person.at, to, radius_m: person.radius_m, hard: true });
+    }
+    let standing: Vec<&socrates_model::SeenPerson> = seen
+        .people
+        .iter()
+        .filter(|person| person.velocity.norm() < STANDING_MPS && (person.at - at).norm() < reach_m)
+        .collect();
+    for (place, a) in standing.iter().enumerate() {
+        for b in standing.iter().skip(place + 1).filter(|b| (b.at - a.at).norm() < 2.2) {
+            found.push(Obstacle { from: a.at, to: b.at, radius_m: 0.1, hard: false });
+        }
+    }
+    found
+}
+
+impl Obstacle {
+    /// Distance from a point to the obstacle's surface, m.
+    pub(crate) fn gap_m(&self, point: &Point) -> f64 {
+        nearest_on_segment(point, &self.from, &self.to).0 - self.radius_m
+    }
+}
+
+/// Distance along a way, from `s` on, to the first closed door on it, m.
+pub(crate) fn closed_door_ahead(seen: &Observation<'_>, way: &Polyline, s: f64, reach_m: f64) -> Option<f64> {
+    let mut gone = 0.0;
+    let mut from = way.point(s);
+    while gone < reach_m {
+        let to = way.point(s + gone + 0.2);
+        if seen.doors.iter().any(|door| !door.open && segments_cross(&from, &to, &door.from, &door.to)) {
+            return Some(gone);
+        }
+        from = to;
+        gone += 0.2;
+    }
+    None
+}

@@ -1,0 +1,82 @@
+//! Following a way, at the largest speed at which nobody is hit.
+
+use socrates_model::geometry::wrap_angle;
+use socrates_model::{Command, Observation, Point, Polyline, RobotModel};
+
+use crate::ground::STANDING_MPS;
+
+/// Length of the way the robot steers at, m.
+const LOOK_AHEAD_M: f64 = 0.55;
+/// How far ahead in time people are looked at, s.
+const HORIZON_S: f64 = 2.6;
+
+/// Steering to a point ahead on a way: full speed straight on, a turn on the spot for a way behind.
+pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, robot: &RobotModel) -> Command {
+    let at = seen.pose.point();
+    let target = way.point(s + LOOK_AHEAD_M);
+    let left = (way.end().unwrap_or(at) - at).norm();
+    let way_to = target - at;
+    let turn = if way_to.norm() > 0.02 { wrap_angle(libm::atan2(way_to.y, way_to.x) - seen.pose.yaw) } else { 0.0 };
+    let straight = if turn.abs() > 1.0 { 0.0 } else { 1.0 - 0.8 * turn.abs() };
+    // Comes to rest at the end of the way.
+    let v = (speed * straight).min(libm::sqrt(2.0 * 0.7 * robot.a_max_mps2 * (left - 0.05).max(0.0)));
+    let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
+    Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
+}
+
+/// The largest share of full speed (1, ¾, ½, ¼, 0) at which nobody is nearer than allowed along the way.
+pub(crate) fn safe_share(
+    seen: &Observation<'_>,
+    way: &Polyline,
+    s: f64,
+    robot: &RobotModel,
+    standing_gap_m: f64,
+) -> f64 {
+    for share in [1.0, 0.75, 0.5, 0.25] {
+        if clear(seen, way, s, share * robot.v_max_mps, robot, standing_gap_m) {
+            return share;
+        }
+    }
+    0.0
+}
+
+fn clear(seen: &Observation<'_>, way: &Polyline, s: f64, v: f64, robot: &RobotModel, standing_gap_m: f64) -> bool {
+    let at = seen.pose.point();
+    let ahead = way.direction(s + 0.3);
+    seen.people.iter().all(|person| {
+        let to = person.at - at;
+        let reach = robot.radius_m + person.radius_m;
+        let now = to.norm() - reach;
+        if now > 6.0 || to.dot(&ahead) < -0.05 && now > 0.02 {
+            // Far away, or behind: who comes from behind keeps the distance.
+            return true;
+        }
+        let stands = person.velocity.norm() < STANDING_MPS;
+        let gap = if stands { standing_gap_m } else { 0.28 };
+        let mut t = 0.1;
+        while t <= HORIZON_S {
+            let me: Point = way.point(s + v * t);
+            let them = person.at + person.velocity * t;
+            let apart = (me - them).norm() - reach;
+            // Growing distance is allowed even from too near, else nobody ever gets free.
+            if apart < gap && apart < now - 1e-6 {
+                return false;
+            }
+            // After the time to stop only standing people and near ones matter.
+            t += 0.1;
+            if stands && v * t > 1.8 {
+                break;
+            }
+        }
+        true
+    })
+}
+
+/// Whether somebody is close ahead, so that the robot stands because of a person.
+pub(crate) fn somebody_ahead(seen: &Observation<'_>, reach_m: f64) -> bool {
+    let at = seen.pose.point();
+    seen.people.iter().any(|person| {
+        let to = person.at - at;
+        to.norm() < reach_m && wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw).abs() < 0.9
+    })
+}

@@ -1,0 +1,89 @@
+//! The robot's script as `reference` plays it: everything but gestures, which the engine makes for every planner.
+
+use std::collections::BTreeMap;
+
+use socrates_model::geometry::wrap_angle;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{HumanId, Observation, Point};
+
+/// Within this distance of an encounter the robot is at it, m.
+const AT_ENCOUNTER_M: f64 = 1.0;
+
+/// What the script wants now.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Wish {
+    /// Stand still.
+    pub(crate) hold: bool,
+    /// Wait outside until everybody who leaves is out.
+    pub(crate) wait_for_leavers: bool,
+    /// Keep behind this human.
+    pub(crate) follow: Option<HumanId>,
+    /// Keep level with this human.
+    pub(crate) abreast: Option<HumanId>,
+    /// Wait for followers farther behind than this, m.
+    pub(crate) lead_m: Option<f64>,
+}
+
+/// The script with its memory.
+#[derive(Debug, Clone)]
+pub(crate) struct Script {
+    lines: Vec<(RobotRule, f64, bool)>,
+    encounters: BTreeMap<HumanId, Point>,
+    hold_until_s: f64,
+    wish: Wish,
+}
+
+impl Script {
+    pub(crate) fn new(rules: &[RobotRule], encounters: &BTreeMap<HumanId, Point>) -> Self {
+        let lines =
+            rules.iter().filter(|rule| !matches!(rule.act, RobotDo::Say(_))).map(|rule| (rule.clone(), 0.0, false));
+        Self { lines: lines.collect(), encounters: encounters.clone(), hold_until_s: 0.0, wish: Wish::default() }
+    }
+
+    /// One call on, `dt` seconds after the last.
+    pub(crate) fn step(&mut self, seen: &Observation<'_>, dt: f64) -> Wish {
+        let now = seen.time.secs();
+        let at = seen.pose.point();
+        for (rule, held_s, done) in &mut self.lines {
+            let near = |reach: f64| seen.people.iter().any(|person| (person.at - at).norm() <= reach);
+            let holds = match &rule.when {
+                RobotWhen::Start => true,
+                RobotWhen::Blocked(secs) => {
+                    let blocked = seen.people.iter().any(|person| {
+                        let to = person.at - at;
+                        to.norm() < 1.2 && wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw).abs() < 0.8
+                    });
+                    *held_s = if blocked { *held_s + dt } else { 0.0 };
+                    *held_s >= *secs
+                }
+                RobotWhen::HumanNear(reach) => near(*reach),
+                RobotWhen::HumanSays(gesture) => {
+                    seen.people.iter().any(|person| person.gesture == *gesture && (person.at - at).norm() < 10.0)
+                }
+                RobotWhen::AtEncounter(human) => {
+                    self.encounters.get(human).is_some_and(|spot| (spot - at).norm() < AT_ENCOUNTER_M)
+                }
+                RobotWhen::AfterSecs(secs) => now >= *secs,
+            };
+            if !holds || *done {
+                continue;
+            }
+            *done = true;
+            match &rule.act {
+                RobotDo::Hold(secs) => self.hold_until_s = self.hold_until_s.max(now + secs),
+                RobotDo::WaitForLeavers => self.wish.wait_for_leavers = true,
+                RobotDo::Follow(human) => self.wish.follow = Some(*human),
+                RobotDo::Abreast(human) => self.wish.abreast = Some(*human),
+                RobotDo::Lead(reach) => self.wish.lead_m = Some(*reach),
+                RobotDo::Say(_) => {}
+            }
+        }
+        self.wish.hold = now < self.hold_until_s;
+        self.wish
+    }
+
+    /// Everybody who leaves is out.
+    pub(crate) const fn leavers_are_out(&mut self) {
+        self.wish.wait_for_leavers = false;
+    }
+}

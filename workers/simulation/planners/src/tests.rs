@@ -1,0 +1,141 @@
+//! Planners against hand-made observations; whole runs are tested next door, where the engine is.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use socrates_maps::DistanceField;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{
+    Cell, Command, Cues, Gesture, Grid, HumanId, Observation, Point, Pose, RobotDriver, RobotModel, SeenPerson,
+    SimTime, Vector,
+};
+
+use crate::{Mission, make, names};
+
+fn mission(script: Vec<RobotRule>) -> Mission {
+    let (width, height) = (200, 60);
+    let mut cells = vec![Cell::Free; width * height];
+    for (place, cell) in cells.iter_mut().enumerate() {
+        let (column, row) = (place % width, place / width);
+        if column < 2 || row < 2 || column >= width - 2 || row >= height - 2 {
+            *cell = Cell::Occupied;
+        }
+    }
+    let grid = Grid { width, height, resolution_m: 0.1, origin: Pose::new(0.0, 0.0, 0.0), cells };
+    let route = vec![Point::new(2.0, 3.0), Point::new(10.0, 3.0), Point::new(18.0, 3.0)];
+    Mission {
+        robot: RobotModel::default(),
+        field: Arc::new(DistanceField::new(&grid)),
+        grid,
+        doors: vec![],
+        waypoints: route.clone(),
+        route,
+        script,
+        encounters: BTreeMap::new(),
+    }
+}
+
+fn person(x: f64, y: f64, vx: f64, vy: f64) -> SeenPerson {
+    let id = HumanId::new(1);
+    SeenPerson {
+        id,
+        at: Point::new(x, y),
+        velocity: Vector::new(vx, vy),
+        yaw: 0.0,
+        radius_m: 0.28,
+        gesture: Gesture::None,
+    }
+}
+
+/// Drives a point robot without inertia for `secs`; gives back its places and commands.
+fn drive(driver: &mut dyn RobotDriver, people: &dyn Fn(f64) -> Vec<SeenPerson>, secs: f64) -> Vec<(Pose, Command)> {
+    let mut pose = Pose::new(2.0, 3.0, 0.0);
+    let dt = 1.0 / driver.rate_hz();
+    let mut v = 0.0;
+    let mut out = Vec::new();
+    let mut tick = 0_u64;
+    while (tick as f64) * dt < secs {
+        let now = (tick as f64) * dt;
+        let seen = people(now);
+        let lidar = || vec![12.0; 360];
+        let time = SimTime::from_nanos((now * 1e9).round() as u64);
+        let observation =
+            Observation { time, pose, v, omega: 0.0, people: &seen, doors: &[], lidar: &lidar, cues: Cues::default() };
+        let command = driver.drive(&observation);
+        v += (command.v - v).clamp(-2.0 * dt, dt);
+        pose.yaw += command.omega * dt;
+        pose.x += v * libm::cos(pose.yaw) * dt;
+        pose.y += v * libm::sin(pose.yaw) * dt;
+        out.push((pose, command));
+        tick += 1;
+    }
+    out
+}
+
+#[test]
+fn an_unknown_planner_is_refused_with_the_list_of_names() {
+    let fault = make("mppi9", &mission(vec![])).err().unwrap();
+    for name in names() {
+        assert!(fault.message.contains(name), "{}", fault.message);
+    }
+    assert!(make("none", &mission(vec![])).unwrap().is_none());
+}
+
+#[test]
+fn every_planner_reaches_the_goal_on_an_empty_floor() {
+    for name in ["reference", "reactive"] {
+        let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
+        let way = drive(driver.as_mut(), &|_| vec![], 40.0);
+        let (end, command) = way.last().unwrap();
+        assert!((end.x - 18.0).abs() < 0.35 && (end.y - 3.0).abs() < 0.35, "{name} ends at {end:?}");
+        assert!(command.v.abs() < 0.05);
+    }
+}
+
+#[test]
+fn every_planner_goes_round_somebody_who_stands_in_the_way() {
+    for name in ["reference", "reactive"] {
+        let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
+        let way = drive(driver.as_mut(), &|_| vec![person(9.0, 3.05, 0.0, 0.0)], 50.0);
+        let least =
+            way.iter().map(|(pose, _)| (pose.point() - Point::new(9.0, 3.05)).norm() - 0.53).fold(9.0, f64::min);
+        assert!(least > 0.05, "{name} comes within {least}");
+        if name == "reference" {
+            assert!(least > 0.3, "{name} comes within {least}");
+        }
+        assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "{name} ends at {:?}", way.last().unwrap().0);
+    }
+}
+
+#[test]
+fn the_reference_lets_somebody_who_crosses_go_first() {
+    let mut driver = make("reference", &mission(vec![])).unwrap().unwrap();
+    let cross = |now: f64| vec![person(9.0, 13.0 - 1.2 * now, 0.0, -1.2)];
+    let way = drive(driver.as_mut(), &cross, 40.0);
+    let least = way
+        .iter()
+        .enumerate()
+        .map(|(call, (pose, _))| (pose.point() - cross(call as f64 / 20.0)[0].at).norm() - 0.53)
+        .fold(9.0, f64::min);
+    assert!(least > 0.15, "comes within {least}");
+    assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4);
+}
+
+#[test]
+fn the_script_holds_and_says_that_it_waits() {
+    let hold = RobotRule { when: RobotWhen::AfterSecs(2.0), act: RobotDo::Hold(3.0) };
+    let mut driver = make("reference", &mission(vec![hold])).unwrap().unwrap();
+    let way = drive(driver.as_mut(), &|_| vec![], 8.0);
+    assert!(way[60].1.waiting && way[60].1.v.abs() < 1e-9);
+    assert!(!way[120].1.waiting && way[120].1.v > 0.3);
+}
+
+#[test]
+fn a_blocked_reference_asks_after_three_seconds() {
+    let wall =
+        |_: f64| (0..6).map(|place| person(6.0, 0.6 + f64::from(place) * 0.95, 0.0, 0.0)).collect::<Vec<SeenPerson>>();
+    let mut driver = make("reference", &mission(vec![])).unwrap().unwrap();
+    let way = drive(driver.as_mut(), &wall, 15.0);
+    assert!(way.iter().any(|(_, command)| command.gesture == Some(Gesture::ExcuseMe)));
+    assert!(way.iter().all(|(pose, _)| pose.x < 6.0 - 0.55));
+}

@@ -1,0 +1,132 @@
+//! The worker's stage: a job in, a recording and its summary out.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
+use socrates_model::{
+    AgentState, Event, Fault, FaultCode, Location, Reading, Recording, RecordingHeader, Request, RunId, fault,
+};
+use socrates_stream::{Fanout, FrameSink as _, LiveSink, ShmConfig, ShmSink, mcap};
+use tokio::runtime::Handle;
+
+use crate::pace::Pace;
+use crate::simulate::{Onlooker, setup, simulate_into};
+use crate::summary::Summary;
+
+/// How long the frames of a finished run can still be fetched from the bus.
+const LINGER: Duration = Duration::from_secs(3);
+
+/// The simulation stage. Settings: `pace` (`max` or simulated seconds per second), `live` (`off`, `bus`,
+/// `shm`, `on` for both; default `off`).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Simulation;
+
+/// Everything of a job, decoded.
+struct Inputs {
+    setup: socrates_engine::Setup,
+    planner: String,
+    location: Location,
+}
+
+fn inputs(job: &Job) -> Result<Inputs, Failure> {
+    let location: Location = job.json("location")?;
+    let (proposal, paths, behaviors) = (job.json("proposal")?, job.json("paths")?, job.json("behaviors")?);
+    let request: Option<Request> = job.json_if_there("request")?;
+    let reading: Option<Reading> = job.json_if_there("reading")?;
+    let hard = fault::hard(&socrates_checks::check_all(&location, reading.as_ref(), &proposal, &paths, &behaviors));
+    if !hard.is_empty() {
+        return Err(Failure::from_faults(hard));
+    }
+    let spec = job.spec();
+    let planner = if spec.planner.is_empty() { "reference".to_owned() } else { spec.planner.clone() };
+    let run = RunId::new(spec.run_name()).map_err(|why| {
+        Failure::from(Fault::new(FaultCode::JSpec, &spec.key, format!("the run has no good name: {why}")))
+    })?;
+    let setup = setup(location.clone(), proposal, paths, behaviors, request.as_ref(), run, spec.run_seed)?;
+    Ok(Inputs { setup, planner, location })
+}
+
+/// Hands frames to viewers and keeps the pace.
+struct Viewers {
+    sinks: Fanout,
+    pace: Pace,
+    start: Instant,
+    cancel: Cancel,
+    handle: Handle,
+}
+
+impl Onlooker for Viewers {
+    fn announce(&mut self, header: &RecordingHeader) {
+        self.sinks.announce(header);
+        self.start = Instant::now();
+    }
+
+    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
+        let tick = states.first().map_or(0, |state| state.tick);
+        self.sinks.tick(tick, states);
+        for event in events {
+            self.sinks.event(event);
+        }
+        let left = self.pace.left(self.start, tick + 1);
+        // Short waits are gathered; a canceled run is played to its end without waiting.
+        if left > Duration::from_millis(2) && !self.cancel.is_stopped() {
+            let _timed_out = self.handle.block_on(tokio::time::timeout(left, self.cancel.stopped()));
+        }
+    }
+}
+
+async fn viewers(job: &Job, run: &RunId) -> Result<Viewers, Failure> {
+    let live = job.setting("live").unwrap_or("off");
+    let (bus, shm) = match live {
+        "" | "off" | "0" | "false" => (false, false),
+        "bus" => (true, false),
+        "shm" => (false, true),
+        _ => (true, true),
+    };
+    let mut sinks = Fanout::new(Vec::new());
+    if shm && let Some(sink) = ShmSink::open_or_log(run, &ShmConfig::default()) {
+        sinks.add(Box::new(sink));
+    }
+    if bus {
+        match LiveSink::open(Arc::clone(&job.live_bus()), run, LINGER).await {
+            Ok(sink) => sinks.add(Box::new(sink)),
+            // Viewers never decide about a run.
+            Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
+        }
+    }
+    let pace = Pace::read(job.setting("pace"))?;
+    Ok(Viewers { sinks, pace, start: Instant::now(), cancel: job.cancel().clone(), handle: Handle::current() })
+}
+
+fn outputs(recording: &Recording, location: &Location) -> Result<Done, Failure> {
+    let summary = Summary::of(recording);
+    let bytes = mcap::write(recording, Some(location)).map_err(|why| {
+        Failure::from(Fault::new(
+            FaultCode::JBlob,
+            &recording.header.run,
+            format!("the recording cannot be written: {why}"),
+        ))
+    })?;
+    let recording = Output::bytes("recording", media::MCAP, bytes);
+    Ok(Done::with(vec![recording, Output::json("simulation", &summary)?]).remark(summary.remark()))
+}
+
+impl Stage for Simulation {
+    const STAGE: socrates_model::job::Stage = socrates_model::job::Stage::Simulation;
+
+    async fn run(&self, job: &Job) -> Result<Done, Failure> {
+        let Inputs { setup, planner, location } = inputs(job)?;
+        let run = setup.run.clone();
+        let mut viewers = viewers(job, &run).await?;
+        let work = tokio::task::spawn_blocking(move || {
+            let recording = simulate_into(setup, &planner, &mut viewers)?;
+            viewers.sinks.end(recording.ticks() as u64);
+            outputs(&recording, &location)
+        });
+        match work.await {
+            Ok(done) => done,
+            Err(why) => Err(Failure::from(Fault::new(FaultCode::JPanic, &run, format!("the simulation broke: {why}")))),
+        }
+    }
+}
