@@ -20,7 +20,7 @@ use crate::sink::FrameSink;
 pub struct LiveSink {
     shelf: Arc<Shelf>,
     news: Arc<Notify>,
-    publisher: JoinHandle<()>,
+    publisher: Option<JoinHandle<()>>,
 }
 
 impl LiveSink {
@@ -34,15 +34,26 @@ impl LiveSink {
         let ctl = bus.serve(&keys::live_ctl(run)).await.map_err(failed)?;
         let (shelf, news) = (Arc::new(Shelf::default()), Arc::new(Notify::new()));
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
-        let publisher = tokio::spawn(task.publish(meta, ctl, linger));
+        let publisher = Some(tokio::spawn(task.publish(meta, ctl, linger)));
         Ok(Self { shelf, news, publisher })
     }
 
     /// Waits until the run is on the bus to its end and the linger time is over.
-    pub async fn finished(self) {
-        if let Err(why) = self.publisher.await {
+    pub async fn finished(mut self) {
+        if let Some(Err(why)) = match self.publisher.take() {
+            Some(publisher) => Some(publisher.await),
+            None => None,
+        } {
             tracing::warn!(%why, "the live stream broke");
         }
+    }
+}
+
+/// A run that is given up in its midst ends for its watchers too, and its keys go after the linger time.
+impl Drop for LiveSink {
+    fn drop(&mut self) {
+        self.shelf.end();
+        self.news.notify_one();
     }
 }
 
@@ -114,6 +125,9 @@ impl Publisher {
             while told_ticks < ticks {
                 self.bus.publish(&agents_key, self.shelf.frame(told_ticks), Qos::Stream).await?;
                 told_ticks += 1;
+            }
+            if ended && !announced {
+                return Ok(());
             }
             if told_events < events || ended {
                 // Says how many there are; whoever wants them fetches them.

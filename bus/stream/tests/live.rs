@@ -8,7 +8,7 @@ use std::time::Duration;
 use socrates_link::{Bus, MemoryBus, Qos, keys};
 use socrates_model::recording::{Event, EventKind, Recording};
 use socrates_model::{RunId, SimTime};
-use socrates_stream::{FrameSink, LiveSink, Sight, TickRange, Watch, csv};
+use socrates_stream::{FrameSink as _, LiveSink, Sight, TickRange, Watch, csv};
 
 const WATCHDOG: Duration = Duration::from_secs(60);
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -166,6 +166,28 @@ async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
         let tally = watched(&mut watch).await;
         assert_eq!(tally.seen.len(), 101);
         drop(sink.await.unwrap());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let run = RunId::new("r5").unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::ZERO).await.unwrap();
+        let mut watch = Watch::open(Arc::clone(&bus), &run, 64).await.unwrap();
+        let recording = recording(1);
+        sink.announce(&recording.header);
+        for tick in 0..7 {
+            sink.tick(tick as u64, recording.tick(tick));
+        }
+        drop(sink);
+        let tally = watched(&mut watch).await;
+        assert_eq!((tally.seen.len(), tally.end), (7, Some(7)));
+        while bus.query(&keys::live_meta(&run), vec![], PATIENCE).await.is_ok() {
+            tokio::time::sleep(Duration::from_millis(2)).await;
+        }
     })
     .await;
 }

@@ -327,7 +327,7 @@ fn a_group_of_four_is_passed_without_going_through_it() {
         println!("{} → {} at {node}: {found:?}", way[0], way[way.len() - 1]);
         if !found.is_empty() {
             let people: Vec<_> = recording.tick(0).iter().map(|state| state.point()).collect();
-            println!("{people:?} {:?}", way.iter().map(line).collect::<Vec<_>>());
+            println!("{people:?} {:?}", way.iter().filter_map(|id| graph.node(id)).map(|node| node.at).collect::<Vec<_>>());
             for row in 0..50 {
                 let text: String = (0..60)
                     .map(|column| {
