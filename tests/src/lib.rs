@@ -10,6 +10,8 @@
 
 pub mod program;
 
+pub use tempfile;
+
 use std::path::PathBuf;
 
 /// The root of the repository.

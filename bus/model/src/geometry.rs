@@ -72,8 +72,10 @@ pub fn segments_cross(a: &Point, b: &Point, c: &Point, d: &Point) -> bool {
     }
     let on = |s: f64, p: &Point, q: &Point, r: &Point| {
         s.abs() <= f64::EPSILON
-            && r.x >= p.x.min(q.x) && r.x <= p.x.max(q.x)
-            && r.y >= p.y.min(q.y) && r.y <= p.y.max(q.y)
+            && r.x >= p.x.min(q.x)
+            && r.x <= p.x.max(q.x)
+            && r.y >= p.y.min(q.y)
+            && r.y <= p.y.max(q.y)
     };
     on(s1, a, b, c) || on(s2, a, b, d) || on(s3, c, d, a) || on(s4, c, d, b)
 }

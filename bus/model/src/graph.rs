@@ -134,7 +134,8 @@ impl SceneGraph {
     /// Points of a node sequence, via points included. Pairs without an edge are joined straight.
     #[must_use]
     pub fn polyline(&self, nodes: &[NodeId]) -> Vec<Point> {
-        let mut points: Vec<Point> = nodes.first().and_then(|id| self.node(id)).map(|node| node.at).into_iter().collect();
+        let mut points: Vec<Point> =
+            nodes.first().and_then(|id| self.node(id)).map(|node| node.at).into_iter().collect();
         for pair in nodes.windows(2) {
             let [a, b] = pair else { continue };
             if let Some(way) = self.edge_points(a, b) {
@@ -209,7 +210,8 @@ mod tests {
     }
 
     fn star() -> SceneGraph {
-        let node = |name: &str, x: f64, y: f64| GraphNode { id: id(name), kind: "SIMPLE NODE".into(), at: Point::new(x, y) };
+        let node =
+            |name: &str, x: f64, y: f64| GraphNode { id: id(name), kind: "SIMPLE NODE".into(), at: Point::new(x, y) };
         let edge = |a: &str, b: &str| GraphEdge { from: id(a), to: id(b), kind: "PASSAGEWAY".into(), via: vec![] };
         SceneGraph {
             nodes: vec![node("c", 0., 0.), node("e", 3., 0.), node("n", 0., 4.), node("w", -2., 0.), node("x", 9., 9.)],

@@ -55,9 +55,11 @@ impl fmt::Debug for Digest {
 impl FromStr for Digest {
     type Err = BadId;
     fn from_str(text: &str) -> Result<Self, BadId> {
-        blake3::Hash::from_hex(text.as_bytes())
-            .map(|hash| Self(*hash.as_bytes()))
-            .map_err(|_parse| BadId { what: "digest", found: text.chars().take(80).collect(), allowed: "64 hex digits" })
+        blake3::Hash::from_hex(text.as_bytes()).map(|hash| Self(*hash.as_bytes())).map_err(|_parse| BadId {
+            what: "digest",
+            found: text.chars().take(80).collect(),
+            allowed: "64 hex digits",
+        })
     }
 }
 

@@ -127,7 +127,15 @@ impl JobSpec {
     /// Idempotency key: stage, inputs, versions, seed, feedback; the same key is the same result.
     #[must_use]
     pub fn idem_key(&self, code_version: &str) -> Digest {
-        let mut text = format!("{}|{}|{}|{}|{}|{}", crate::FORMAT, self.key.stage, code_version, self.seed, self.planner, self.run_seed);
+        let mut text = format!(
+            "{}|{}|{}|{}|{}|{}",
+            crate::FORMAT,
+            self.key.stage,
+            code_version,
+            self.seed,
+            self.planner,
+            self.run_seed
+        );
         for (role, digest) in &self.inputs {
             text.push_str(&format!("|{role}={digest}"));
         }

@@ -10,8 +10,8 @@
 //!
 //! *Never here:* a runtime, a file, a socket, a clock, a random number, another room's rule.
 
-pub mod gesture;
 pub mod geometry;
+pub mod gesture;
 pub mod hash;
 pub mod ids;
 pub mod polyline;
@@ -44,7 +44,7 @@ pub use nalgebra;
 pub use behaviors::{Behaviors, HumanBehavior};
 pub use clause::{Clause, ClauseRole, Predicate};
 pub use drive::{Command, Cues, Observation, RobotDriver, RobotModel, SeenDoor, SeenPerson};
-pub use fault::{Fault, FaultCode, FailureClass, Remedy};
+pub use fault::{FailureClass, Fault, FaultCode, Remedy};
 pub use geometry::{Point, Pose, Vector};
 pub use gesture::Gesture;
 pub use graph::{GraphEdge, GraphNode, SceneGraph};

@@ -39,8 +39,17 @@ pub enum PlaceClass {
 impl PlaceClass {
     /// Every class in order.
     pub const ALL: [Self; 11] = [
-        Self::Corridor, Self::NarrowPassage, Self::Intersection, Self::BlindCorner, Self::Doorway, Self::Elevator,
-        Self::ElevatorLobby, Self::Room, Self::OpenArea, Self::Exit, Self::Plain,
+        Self::Corridor,
+        Self::NarrowPassage,
+        Self::Intersection,
+        Self::BlindCorner,
+        Self::Doorway,
+        Self::Elevator,
+        Self::ElevatorLobby,
+        Self::Room,
+        Self::OpenArea,
+        Self::Exit,
+        Self::Plain,
     ];
 
     /// Name as written in files.
@@ -67,10 +76,8 @@ impl PlaceClass {
     /// telling word wins (`NARROW AISLE` is narrow before it is an aisle).
     #[must_use]
     pub fn of_type(text: &str) -> Self {
-        let words: String = text
-            .chars()
-            .map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { ' ' })
-            .collect();
+        let words: String =
+            text.chars().map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { ' ' }).collect();
         let has = |needle: &str| words.contains(needle);
         if has("outside elevator") || (has("elevator") || has("lift")) && (has("lobby") || has("hall")) {
             Self::ElevatorLobby

@@ -170,10 +170,18 @@ impl Request {
             });
         }
         if let Err(why) = self.seeds() {
-            problems.push(BadRequest { key: "run.seeds", found: why, hint: "\"1\", \"1..20\" or \"1,4,9\"".to_owned() });
+            problems.push(BadRequest {
+                key: "run.seeds",
+                found: why,
+                hint: "\"1\", \"1..20\" or \"1,4,9\"".to_owned(),
+            });
         }
         if let Err(why) = self.duration_s() {
-            problems.push(BadRequest { key: "run.duration", found: why, hint: "\"auto\" or \"60s\" (1 to 600 s)".to_owned() });
+            problems.push(BadRequest {
+                key: "run.duration",
+                found: why,
+                hint: "\"auto\" or \"60s\" (1 to 600 s)".to_owned(),
+            });
         }
         if self.run.variants == 0 || self.run.variants > 100_000 {
             problems.push(BadRequest {
@@ -239,7 +247,10 @@ fn text_problems(key: &'static str, text: &str) -> Vec<BadRequest> {
         bad(format!("has {length} characters"), "at most 8000; a few sentences are enough");
     }
     if let Some(control) = text.chars().find(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t')) {
-        bad(format!("holds the control character U+{:04X}", u32::from(control)), "remove it; only text, line breaks and tabs are taken");
+        bad(
+            format!("holds the control character U+{:04X}", u32::from(control)),
+            "remove it; only text, line breaks and tabs are taken",
+        );
     }
     if matches!(text.trim(), "None" | "none" | "NONE" | "null" | "nil") {
         bad(format!("is the word `{}`", text.trim()), "leave the key out for an unguided scenario");

@@ -3,8 +3,20 @@
 use serde_json::Value;
 
 /// Names of the artifacts that have a schema.
-pub const NAMES: &[&str] =
-    &["request", "location", "reading", "proposal", "paths", "behaviors", "clause", "report", "fault", "job", "recording_header", "event"];
+pub const NAMES: &[&str] = &[
+    "request",
+    "location",
+    "reading",
+    "proposal",
+    "paths",
+    "behaviors",
+    "clause",
+    "report",
+    "fault",
+    "job",
+    "recording_header",
+    "event",
+];
 
 /// The schema of an artifact.
 #[must_use]

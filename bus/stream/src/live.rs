@@ -38,8 +38,10 @@ impl LiveSink {
         Ok(Self { shelf, news, publisher })
     }
 
-    /// Waits until the run is on the bus to its end and the linger time is over.
+    /// Waits until the run is on the bus to its end and the linger time is over; a run without an end ends here.
     pub async fn finished(mut self) {
+        self.shelf.end();
+        self.news.notify_one();
         if let Some(Err(why)) = match self.publisher.take() {
             Some(publisher) => Some(publisher.await),
             None => None,

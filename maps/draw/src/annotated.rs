@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use socrates_model::{Location, PlaceClass};
 
 use crate::label::{Area, Labels, text_width};
-use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale};
+use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale, wall_areas};
 use crate::palette;
 use crate::svg::Svg;
 
@@ -42,15 +42,25 @@ pub fn annotated_map(location: &Location) -> String {
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     let ink = palette::INK;
+    svg.heading((20.0, 30.0), &location.name, 20.0, ink);
     svg.text(
-        (20.0, 30.0),
-        &format!("{} · {} nodes, {} ways", location.name, location.graph.nodes.len(), location.graph.edges.len()),
-        &format!("font-size=\"18\" font-weight=\"600\" fill=\"{ink}\""),
+        (30.0 + text_width(&location.name, 20.0), 30.0),
+        &format!("{} nodes, {} ways", location.graph.nodes.len(), location.graph.edges.len()),
+        &format!("font-size=\"15\" fill=\"{}\"", palette::QUIET),
     );
     draw_floor(&mut svg, location, &frame);
     draw_graph(&mut svg, location, &frame, "#9fb4cc", 2.2);
     draw_doors(&mut svg, location, &frame);
     let mut labels = Labels::within(Area { x: 4.0, y: 34.0, w: width - 8.0, h: h + 24.0 });
+    labels.avoid(wall_areas(location, &frame));
+    for edge in &location.graph.edges {
+        if let Some(points) = location.graph.edge_points(&edge.from, &edge.to) {
+            labels.avoid_line(&points.iter().map(|p| frame.px(location, p)).collect::<Vec<_>>());
+        }
+    }
+    for door in &location.doors {
+        labels.avoid_line(&[frame.px(location, &door.from), frame.px(location, &door.to)]);
+    }
     for node in &location.graph.nodes {
         let (x, y) = frame.px(location, &node.at);
         labels.block(Area { x: x - 6.0, y: y - 6.0, w: 12.0, h: 12.0 });
@@ -60,13 +70,8 @@ pub fn annotated_map(location: &Location) -> String {
         let color = class_color(PlaceClass::of_type(&node.kind));
         svg.circle(at, 5.5, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
         let text = node.id.as_str();
-        let area = labels.place(at, (text_width(text, 13.0) + 6.0, 16.0), 8.0);
-        svg.rect((area.x, area.y), (area.w, area.h), "rx=\"3\" fill=\"#ffffff\" fill-opacity=\"0.85\"");
-        svg.text(
-            (area.x + area.w / 2.0, area.y + 12.5),
-            text,
-            &format!("font-size=\"13\" font-weight=\"600\" text-anchor=\"middle\" fill=\"{ink}\""),
-        );
+        let area = labels.place(at, (text_width(text, 14.0) + 4.0, 15.0), 8.0);
+        svg.label((area.x + area.w / 2.0, area.y + 12.0), text, 14.0, ink);
     }
     draw_scale(&mut svg, location, &frame, 18.0);
     for (index, (name, (class, count))) in types.into_iter().enumerate() {

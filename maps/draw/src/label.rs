@@ -23,10 +23,19 @@ impl Area {
     }
 }
 
+/// Cost of covering a label or a symbol, per px².
+const HIDES: f64 = 10.0;
+/// Cost of covering a line or a wall, per px².
+const CROSSES: f64 = 1.0;
+/// Cost of one ring further out: about as much as 4 px of a line under a label.
+const FURTHER: f64 = 24.0;
+/// Side of the boxes that stand for a line, px.
+const LINE_STEP_PX: f64 = 6.0;
+
 /// Places labels one after another.
 #[derive(Debug, Clone, Default)]
 pub struct Labels {
-    taken: Vec<Area>,
+    taken: Vec<(Area, f64)>,
     bounds: Option<Area>,
 }
 
@@ -37,9 +46,29 @@ impl Labels {
         Self { taken: Vec::new(), bounds: Some(bounds) }
     }
 
-    /// Marks a box as taken by something else.
+    /// Marks a box as taken by something that a label must not hide.
     pub fn block(&mut self, area: Area) {
-        self.taken.push(area);
+        self.taken.push((area, HIDES));
+    }
+
+    /// Marks boxes that a label rather avoids, such as walls.
+    pub fn avoid(&mut self, areas: impl IntoIterator<Item = Area>) {
+        self.taken.extend(areas.into_iter().map(|area| (area, CROSSES)));
+    }
+
+    /// Marks a line that a label rather does not cross.
+    pub fn avoid_line(&mut self, points: &[(f64, f64)]) {
+        for (from, to) in points.iter().zip(points.iter().skip(1)) {
+            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+            let n = (dx.hypot(dy) / LINE_STEP_PX).ceil().clamp(1.0, 400.0);
+            let mut i = 0.0;
+            while i < n {
+                let (x, y) = (from.0 + dx * i / n, from.1 + dy * i / n);
+                let half = LINE_STEP_PX / 2.0;
+                self.taken.push((Area { x: x - half, y: y - half, w: LINE_STEP_PX, h: LINE_STEP_PX }, CROSSES));
+                i += 1.0;
+            }
+        }
     }
 
     /// The top left corner for a label of this size near a point, `gap` px away from it.
@@ -60,19 +89,54 @@ impl Labels {
             ];
             for (order, (x, y)) in places.into_iter().enumerate() {
                 let area = Area { x, y, w, h };
-                let covered: f64 = self.taken.iter().map(|other| area.overlap(other)).sum();
+                let covered: f64 = self.taken.iter().map(|(other, cost)| area.overlap(other) * cost).sum();
                 let outside = self.bounds.as_ref().map_or(0.0, |bounds| w * h - area.overlap(bounds));
                 #[expect(clippy::cast_precision_loss, reason = "eight places")]
-                let cost = covered * 10.0 + outside * 20.0 + ring * 4.0 + order as f64 * 0.1;
+                let cost = covered + outside * 20.0 + ring * FURTHER + order as f64;
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, area));
                 }
             }
         }
         let area = best.map_or(Area { x: at.0, y: at.1, w, h }, |(_, area)| area);
-        self.taken.push(area);
+        self.taken.push((area, HIDES));
         area
     }
+}
+
+/// A text broken into at most so many lines of a width in px; what is left over ends in `…`.
+#[must_use]
+pub fn wrapped(text: &str, width: f64, size_px: f64, lines: usize) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    let mut line = String::new();
+    for word in text.split_whitespace() {
+        let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+        if line.is_empty() || text_width(&longer, size_px) <= width {
+            line = longer;
+        } else {
+            out.push(std::mem::replace(&mut line, word.to_owned()));
+        }
+    }
+    out.push(line);
+    let cut = out.len() > lines;
+    out.truncate(lines);
+    if let Some(last) = out.last_mut() {
+        if cut {
+            last.push('…');
+        }
+        if text_width(last, size_px) > width {
+            let mut kept = String::new();
+            for c in last.chars() {
+                if text_width(&kept, size_px) > width - size_px * 1.5 {
+                    break;
+                }
+                kept.push(c);
+            }
+            kept.push('…');
+            *last = kept;
+        }
+    }
+    out
 }
 
 /// Width of a text in the shipped font, px; a fair estimate is enough to keep labels apart.
@@ -103,5 +167,24 @@ mod tests {
                 assert!(a.overlap(b) < 1.0, "{a:?} {b:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_label_keeps_off_a_line_where_there_is_room_beside_it() {
+        let mut labels = Labels::within(Area { x: 0.0, y: 0.0, w: 400.0, h: 400.0 });
+        labels.avoid_line(&[(0.0, 200.0), (400.0, 200.0)]);
+        let area = labels.place((200.0, 200.0), (40.0, 14.0), 8.0);
+        assert!(area.y + area.h < 200.0 || area.y > 200.0, "{area:?}");
+    }
+
+    #[test]
+    fn a_long_text_is_broken_and_then_cut() {
+        let text = "one two three four five six seven eight nine ten";
+        let two = wrapped(text, 90.0, 12.0, 2);
+        assert_eq!(two.len(), 2);
+        assert!(two.iter().all(|line| text_width(line, 12.0) <= 100.0), "{two:?}");
+        assert!(two.last().unwrap().ends_with('…'));
+        assert_eq!(wrapped(text, 4000.0, 12.0, 2), [text]);
+        assert!(text_width(&wrapped(&"x".repeat(500), 100.0, 12.0, 3)[0], 12.0) <= 110.0);
     }
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use socrates_model::{Cell, Location, Point};
 
+use crate::label::Area;
 use crate::palette;
 use crate::svg::Svg;
 
@@ -21,6 +22,12 @@ pub struct Frame {
 
 /// Margin of unknown cells kept around the seen part.
 const MARGIN_CELLS: usize = 6;
+/// Room kept beside the tracks of a focused picture, m: enough to see the walls people keep off.
+const FOCUS_ROOM_M: f64 = 2.5;
+/// A focused picture shows at least so much, m a side: less would hide where it is.
+const FOCUS_LEAST_M: f64 = 9.0;
+/// A focus that keeps more than this share of the map is no focus.
+const FOCUS_SAVES: f64 = 0.75;
 
 impl Frame {
     /// The frame around everything that is not unknown, at most so large in pixels.
@@ -49,6 +56,39 @@ impl Frame {
         Self { cells: (x0, y0, w, h), scale, at }
     }
 
+    /// The frame around these points and some room beside them; the whole map where that saves little.
+    #[must_use]
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "cells of a map, clipped to its bounds"
+    )]
+    pub fn focused(location: &Location, points: &[Point], max_w: f64, max_h: f64, at: (f64, f64)) -> Self {
+        let whole = Self::around(location, max_w, max_h, at);
+        let (x0, y0, w, h) = whole.cells;
+        let cell = location.grid.resolution_m.max(1e-6);
+        let (mut left, mut top, mut right, mut bottom) = (f64::MAX, f64::MAX, f64::MIN, f64::MIN);
+        for point in points {
+            let (x, y) = location.grid.pixel_from_world(point);
+            (left, right) = (left.min(x), right.max(x));
+            (top, bottom) = (top.min(y), bottom.max(y));
+        }
+        if left > right || !(left + right + top + bottom).is_finite() {
+            return whole;
+        }
+        let (room, least) = (FOCUS_ROOM_M / cell, FOCUS_LEAST_M / cell);
+        let (wish_w, wish_h) = ((right - left + 2.0 * room).max(least), (bottom - top + 2.0 * room).max(least));
+        let (wish_w, wish_h) = (wish_w.max(wish_h * max_w / max_h), wish_h.max(wish_w * max_h / max_w));
+        let (left, width) = widened(left, right, wish_w, (x0 as f64, w as f64));
+        let (top, height) = widened(top, bottom, wish_h, (y0 as f64, h as f64));
+        if width * height > FOCUS_SAVES * (w as f64) * (h as f64) {
+            return whole;
+        }
+        let cells = (left.max(0.0) as usize, top.max(0.0) as usize, (width as usize).max(1), (height as usize).max(1));
+        Self { cells, scale: (max_w / cells.2 as f64).min(max_h / cells.3 as f64), at }
+    }
+
     /// Width and height in the picture, px.
     #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
@@ -71,12 +111,46 @@ impl Frame {
     }
 }
 
+/// Start and size of a span of this size around `lo..hi`, moved into bounds given by start and size.
+fn widened(lo: f64, hi: f64, wish: f64, bounds: (f64, f64)) -> (f64, f64) {
+    let size = wish.min(bounds.1);
+    let start = f64::midpoint(lo, hi) - size / 2.0;
+    (start.min(bounds.0 + bounds.1 - size).max(bounds.0), size)
+}
+
+/// A small map of the whole place with a box around what the frame shows.
+pub fn draw_locator(svg: &mut Svg, location: &Location, frame: &Frame, right: f64, top: f64, size: (f64, f64)) {
+    let mut small = Frame::around(location, size.0, size.1, (0.0, top));
+    small.at.0 = right - small.size().0;
+    draw_floor(svg, location, &small);
+    #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
+    let place = |cell: usize, first: usize| (cell as f64 - first as f64) * small.scale;
+    let (x, y, w, h) = frame.cells;
+    svg.rect(
+        (small.at.0 + place(x, small.cells.0), small.at.1 + place(y, small.cells.1)),
+        (place(w, 0), place(h, 0)),
+        &format!("fill=\"{0}\" fill-opacity=\"0.14\" stroke=\"{0}\" stroke-width=\"2\"", palette::ROBOT),
+    );
+}
+
+/// The boxes of the walls in the picture, for labels to keep off.
+#[must_use]
+pub fn wall_areas(location: &Location, frame: &Frame) -> Vec<Area> {
+    merged(location, frame, Cell::Occupied)
+}
+
 /// Draws floor and walls as merged rectangles.
 pub fn draw_floor(svg: &mut Svg, location: &Location, frame: &Frame) {
     let (w, h) = frame.size();
     svg.rect(frame.at, (w, h), &format!("fill=\"{}\"", palette::UNKNOWN));
     for (cell, color) in [(Cell::Free, palette::FLOOR), (Cell::Occupied, palette::WALL)] {
-        let path = merged(location, frame, cell);
+        let mut path = String::new();
+        for area in merged(location, frame, cell) {
+            // Writing into a String cannot fail.
+            if write!(path, "M{:.1} {:.1}h{:.1}v{:.1}h{:.1}z", area.x, area.y, area.w, area.h, -area.w).is_err() {
+                return;
+            }
+        }
         if !path.is_empty() {
             svg.raw(&format!("<path fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\" d=\"{path}\"/>"));
         }
@@ -114,12 +188,12 @@ pub fn draw_scale(svg: &mut Svg, location: &Location, frame: &Frame, below: f64)
     svg.text((x + w + 8.0, y + 4.0), &format!("{length_m:.0} m"), &format!("font-size=\"12\" fill=\"{ink}\""));
 }
 
-/// Path data of all cells of one kind: row runs, joined downward where they repeat.
-fn merged(location: &Location, frame: &Frame, wanted: Cell) -> String {
+/// Boxes of all cells of one kind: row runs, joined downward where they repeat.
+fn merged(location: &Location, frame: &Frame, wanted: Cell) -> Vec<Area> {
     let grid = &location.grid;
     let (x0, y0, w, h) = frame.cells;
     let mut open: BTreeMap<(usize, usize), usize> = BTreeMap::new();
-    let mut path = String::new();
+    let mut areas = Vec::new();
     for row in y0..=y0 + h {
         let mut runs: Vec<(usize, usize)> = Vec::new();
         if row < y0 + h {
@@ -139,23 +213,35 @@ fn merged(location: &Location, frame: &Frame, wanted: Cell) -> String {
         let ended: Vec<(usize, usize)> = open.keys().filter(|run| !runs.contains(run)).copied().collect();
         for run in ended {
             if let Some(top) = open.remove(&run) {
-                rectangle(&mut path, frame, run, top, row);
+                areas.push(rectangle(frame, run, top, row));
             }
         }
         for run in runs {
             open.entry(run).or_insert(row);
         }
     }
-    path
+    areas
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
-fn rectangle(path: &mut String, frame: &Frame, run: (usize, usize), top: usize, bottom: usize) {
-    let x = frame.at.0 + (run.0 - frame.cells.0) as f64 * frame.scale;
-    let y = frame.at.1 + (top - frame.cells.1) as f64 * frame.scale;
-    let (w, h) = ((run.1 - run.0) as f64 * frame.scale, (bottom - top) as f64 * frame.scale);
-    // Writing into a String cannot fail.
-    if write!(path, "M{x:.1} {y:.1}h{w:.1}v{h:.1}h-{w:.1}z").is_err() {
-        path.clear();
+fn rectangle(frame: &Frame, run: (usize, usize), top: usize, bottom: usize) -> Area {
+    Area {
+        x: frame.at.0 + (run.0 - frame.cells.0) as f64 * frame.scale,
+        y: frame.at.1 + (top - frame.cells.1) as f64 * frame.scale,
+        w: (run.1 - run.0) as f64 * frame.scale,
+        h: (bottom - top) as f64 * frame.scale,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_is_widened_and_stays_inside() {
+        assert_eq!(widened(4.0, 6.0, 4.0, (0.0, 20.0)), (3.0, 4.0));
+        assert_eq!(widened(0.0, 2.0, 10.0, (0.0, 20.0)), (0.0, 10.0));
+        assert_eq!(widened(19.0, 20.0, 10.0, (0.0, 20.0)), (10.0, 10.0));
+        assert_eq!(widened(5.0, 6.0, 90.0, (0.0, 20.0)), (0.0, 20.0));
     }
 }

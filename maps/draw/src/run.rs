@@ -1,16 +1,21 @@
 //! The picture of one run: where everybody went, and when.
 
-use socrates_model::{AgentId, EventKind, Location, Paths, Recording, Report};
+use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Report, Verdict};
 
-use crate::label::{Area, Labels, text_width};
-use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale};
+use crate::label::{Area, Labels, text_width, wrapped};
+use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
 use crate::palette;
 use crate::svg::Svg;
 
 /// Seconds between two time marks on a track.
 const MARK_SECS: f64 = 5.0;
+/// Below this speed somebody stands, m/s.
+const STANDS_MPS: f64 = 0.1;
 
-/// Draws the map, every track with marks every 5 s, starts, ends and encounters, and a legend.
+/// Height of the small map beside the heading, px.
+const LOCATOR_PX: f64 = 96.0;
+
+/// Draws the part of the map where it happens, every track with marks every 5 s, starts, ends and encounters, and a legend.
 #[must_use]
 pub fn run_picture(
     location: &Location,
@@ -19,85 +24,116 @@ pub fn run_picture(
     report: Option<&Report>,
     title: &str,
 ) -> String {
-    let frame = Frame::around(location, 1160.0, 820.0, (20.0, 70.0));
+    let way = paths.map(|paths| location.graph.polyline(&paths.robot)).unwrap_or_default();
+    let seen: Vec<Point> = recording
+        .header
+        .agents
+        .iter()
+        .flat_map(|info| recording.track(info.agent).map(|state| state.point()))
+        .chain(way.iter().copied())
+        .collect();
+    let head = 118.0;
+    let frame = Frame::focused(location, &seen, 1160.0, 800.0, (20.0, head));
+    let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, head)).cells;
     let (w, h) = frame.size();
-    let width = (w + 40.0).max(700.0);
+    let width = (w + 40.0).max(760.0);
     #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
     let rows = recording.header.agents.len().div_ceil(4) as f64;
-    let height = h + 70.0 + 48.0 + rows * 22.0 + 10.0;
+    let height = head + h + 40.0 + rows * 24.0 + 14.0;
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
-    svg.text(
-        (20.0, 30.0),
-        &shortened(title, width - 40.0, 19.0),
-        &format!("font-size=\"19\" font-weight=\"600\" fill=\"{}\"", palette::INK),
-    );
-    if let Some(report) = report {
-        let line = format!("{} · {}", report.verdict, report.verdict_text);
-        let color = if report.verdict == socrates_model::Verdict::Realised { palette::GOOD } else { palette::BAD };
-        svg.text((20.0, 54.0), &shortened(&line, width - 40.0, 14.0), &format!("font-size=\"14\" fill=\"{color}\""));
+    let mut words = width - 40.0;
+    if focused {
+        draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, (190.0, LOCATOR_PX));
+        words -= 210.0;
     }
+    draw_heading(&mut svg, report, title, words);
+    svg.begin_clip(frame.at, frame.size());
     draw_floor(&mut svg, location, &frame);
     draw_graph(&mut svg, location, &frame, palette::UNKNOWN, 1.5);
-    if let Some(paths) = paths {
-        let line: Vec<(f64, f64)> =
-            location.graph.polyline(&paths.robot).iter().map(|p| frame.px(location, p)).collect();
-        svg.polyline(
-            &line,
-            &format!("stroke=\"{}\" stroke-width=\"1.4\" stroke-dasharray=\"3 5\" opacity=\"0.6\"", palette::ROBOT),
-        );
-    }
+    let line: Vec<(f64, f64)> = way.iter().map(|p| frame.px(location, p)).collect();
+    svg.polyline(
+        &line,
+        &format!("stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"3 5\" opacity=\"0.7\"", palette::ROBOT),
+    );
     draw_doors(&mut svg, location, &frame);
-    let mut labels = Labels::within(Area { x: 4.0, y: 60.0, w: width - 8.0, h: h + 20.0 });
+    let mut labels = Labels::within(Area { x: frame.at.0, y: frame.at.1, w, h });
+    labels.avoid(wall_areas(location, &frame));
     // The robot is drawn last, so that its track lies on top.
     let mut agents: Vec<AgentId> = recording.header.agents.iter().map(|info| info.agent).collect();
     agents.reverse();
     for agent in &agents {
-        draw_track(&mut svg, location, recording, &frame, *agent);
+        draw_track(&mut svg, location, recording, &frame, *agent, &mut labels);
     }
     for agent in &agents {
         draw_ends(&mut svg, location, recording, &frame, *agent, &mut labels);
     }
     draw_encounters(&mut svg, location, recording, &frame, &mut labels);
+    // Names come last: by now it is known what they must not hide.
+    for agent in &agents {
+        if let Some(first) = recording.track(*agent).next() {
+            let gap = radius_px(location, recording, &frame, *agent) + 3.0;
+            let color = palette::agent_words(agent.number());
+            label(&mut svg, &mut labels, frame.px(location, &first.point()), &agent.to_string(), color, gap);
+        }
+    }
+    svg.end_clip();
     draw_scale(&mut svg, location, &frame, 18.0);
     svg.text(
         (frame.at.0 + w, frame.at.1 + h + 22.0),
-        &format!("a mark every {MARK_SECS:.0} s · ring: start · disc: end · diamond: encounter"),
-        &format!("font-size=\"12\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
+        &format!("ring: start · disc: end · arrow: every {MARK_SECS:.0} s · diamond: encounter · dots: intended way"),
+        &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
     for (index, info) in recording.header.agents.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-        let (x, y) = (26.0 + (index % 4) as f64 * (width - 40.0) / 4.0, h + 70.0 + 48.0 + (index / 4) as f64 * 22.0);
-        svg.circle((x, y - 4.5), 6.0, &format!("fill=\"{}\"", palette::agent(info.agent.number())));
+        let (column, row) = ((index % 4) as f64, (index / 4) as f64);
+        let (x, y) = (27.0 + column * (width - 40.0) / 4.0, head + h + 54.0 + row * 24.0);
+        svg.circle((x, y - 5.0), 6.5, &format!("fill=\"{}\"", palette::agent(info.agent.number())));
         let text = if info.agent == AgentId::Robot {
             format!("robot ({})", recording.header.planner)
         } else {
             format!("{} ({})", info.agent, info.role)
         };
-        svg.text((x + 13.0, y), &text, &format!("font-size=\"14\" fill=\"{}\"", palette::INK));
+        let text = wrapped(&text, (width - 40.0) / 4.0 - 24.0, 15.0, 1).concat();
+        svg.heading((x + 13.0, y), &text, 15.0, palette::INK);
     }
     svg.finish()
 }
 
-fn shortened(text: &str, width: f64, size: f64) -> String {
-    if text_width(text, size) <= width {
-        return text.to_owned();
+/// Title, verdict and what the robot did, each cut where it is too long.
+fn draw_heading(svg: &mut Svg, report: Option<&Report>, title: &str, width: f64) {
+    svg.heading((20.0, 34.0), &wrapped(title, width, 24.0, 1).concat(), 24.0, palette::INK);
+    let Some(report) = report else { return };
+    let good = matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate);
+    let color = if good { palette::GOOD } else { palette::BAD };
+    let verdict = report.verdict.name().replace('_', " ");
+    let pill = text_width(&verdict, 15.0) + 22.0;
+    svg.rect((20.0, 46.0), (pill, 24.0), &format!("rx=\"12\" fill=\"{color}\""));
+    let middle = 20.0 + pill / 2.0;
+    svg.text(
+        (middle, 63.0),
+        &verdict,
+        "font-size=\"15\" text-anchor=\"middle\" fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"0.6\"",
+    );
+    let first = wrapped(&report.verdict_text, width - pill - 12.0, 15.0, 1).concat();
+    svg.text((32.0 + pill, 63.0), &first, &format!("font-size=\"15\" fill=\"{}\"", palette::INK));
+    let robot = format!("robot: {} · seed {}", report.robot_text, report.seed);
+    for (line, y) in wrapped(&robot, width, 14.0, 2).iter().zip([90.0, 108.0]) {
+        svg.text((20.0, y), line, &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET));
     }
-    let mut out = String::new();
-    for c in text.chars() {
-        if text_width(&out, size) > width - size * 1.5 {
-            break;
-        }
-        out.push(c);
-    }
-    out.push('…');
-    out
 }
 
-fn draw_track(svg: &mut Svg, location: &Location, recording: &Recording, frame: &Frame, agent: AgentId) {
+fn draw_track(
+    svg: &mut Svg,
+    location: &Location,
+    recording: &Recording,
+    frame: &Frame,
+    agent: AgentId,
+    labels: &mut Labels,
+) {
     let color = palette::agent(agent.number());
     let mut line: Vec<(f64, f64)> = Vec::new();
-    let mut marks: Vec<(f64, f64)> = Vec::new();
+    let mut marks: Vec<((f64, f64), f64)> = Vec::new();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive constant")]
     let mark_ticks = (MARK_SECS / recording.header.step_s.max(1e-3)).round() as usize;
     for (tick, state) in recording.track(agent).enumerate() {
@@ -106,18 +142,28 @@ fn draw_track(svg: &mut Svg, location: &Location, recording: &Recording, frame: 
         if moved {
             line.push(at);
         }
-        if tick > 0 && tick % mark_ticks.max(1) == 0 {
-            marks.push(at);
+        // Somebody who stands has no direction of going, and a heap of marks at one place says nothing.
+        if tick > 0 && tick % mark_ticks.max(1) == 0 && state.vx.hypot(state.vy) > STANDS_MPS {
+            marks.push((at, -state.vy.atan2(state.vx).to_degrees()));
         }
     }
-    svg.polyline(&line, "stroke=\"#ffffff\" stroke-width=\"6\" stroke-linejoin=\"round\" opacity=\"0.8\"");
+    labels.avoid_line(&line);
+    svg.polyline(&line, "stroke=\"#ffffff\" stroke-width=\"6.5\" stroke-linejoin=\"round\" opacity=\"0.8\"");
     svg.polyline(
         &line,
-        &format!("stroke=\"{color}\" stroke-width=\"3.2\" stroke-linejoin=\"round\" stroke-linecap=\"round\""),
+        &format!("stroke=\"{color}\" stroke-width=\"3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\""),
     );
-    for at in marks {
-        svg.circle(at, 2.6, &format!("fill=\"#ffffff\" stroke=\"{color}\" stroke-width=\"1.6\""));
+    for ((x, y), degrees) in marks {
+        svg.raw(&format!(
+            "<path d=\"M8 0L-6 6.5L-3 0L-6 -6.5z\" transform=\"translate({x:.1} {y:.1}) rotate({degrees:.1})\" \
+             fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>"
+        ));
     }
+}
+
+fn radius_px(location: &Location, recording: &Recording, frame: &Frame, agent: AgentId) -> f64 {
+    let radius_m = recording.header.agents.iter().find(|info| info.agent == agent).map_or(0.28, |info| info.radius_m);
+    frame.len(location, radius_m).max(5.0)
 }
 
 fn draw_ends(
@@ -129,19 +175,20 @@ fn draw_ends(
     labels: &mut Labels,
 ) {
     let color = palette::agent(agent.number());
-    let radius_m = recording.header.agents.iter().find(|info| info.agent == agent).map_or(0.28, |info| info.radius_m);
-    let radius = frame.len(location, radius_m).max(5.0);
+    let radius = radius_px(location, recording, frame, agent);
     let mut track = recording.track(agent);
     let Some(first) = track.next() else { return };
     let last = track.last().unwrap_or(first);
     let (start, end) = (frame.px(location, &first.point()), frame.px(location, &last.point()));
-    svg.circle(start, radius, &format!("fill=\"#ffffff\" stroke=\"{color}\" stroke-width=\"2.6\""));
+    if (start.0 - end.0).hypot(start.1 - end.1) > 1.0 {
+        svg.circle(start, radius, &format!("fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"{color}\" stroke-width=\"3\""));
+    }
     svg.circle(end, radius, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
     let nose = (end.0 + radius * last.yaw.cos(), end.1 - radius * last.yaw.sin());
-    svg.line(end, nose, "stroke=\"#ffffff\" stroke-width=\"2\"");
-    labels.block(Area { x: start.0 - radius, y: start.1 - radius, w: radius * 2.0, h: radius * 2.0 });
-    labels.block(Area { x: end.0 - radius, y: end.1 - radius, w: radius * 2.0, h: radius * 2.0 });
-    label(svg, labels, start, &agent.to_string(), color, radius + 3.0);
+    svg.line(end, nose, "stroke=\"#ffffff\" stroke-width=\"2.4\"");
+    for (x, y) in [start, end] {
+        labels.block(Area { x: x - radius, y: y - radius, w: radius * 2.0, h: radius * 2.0 });
+    }
 }
 
 fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, frame: &Frame, labels: &mut Labels) {
@@ -161,11 +208,6 @@ fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, fr
 }
 
 fn label(svg: &mut Svg, labels: &mut Labels, at: (f64, f64), text: &str, color: &str, gap: f64) {
-    let area = labels.place(at, (text_width(text, 13.0) + 6.0, 17.0), gap);
-    svg.rect((area.x, area.y), (area.w, area.h), "rx=\"3\" fill=\"#ffffff\" fill-opacity=\"0.88\"");
-    svg.text(
-        (area.x + area.w / 2.0, area.y + 13.0),
-        text,
-        &format!("font-size=\"13\" font-weight=\"600\" text-anchor=\"middle\" fill=\"{color}\""),
-    );
+    let area = labels.place(at, (text_width(text, 15.0) + 6.0, 18.0), gap);
+    svg.label((area.x + area.w / 2.0, area.y + 14.0), text, 15.0, color);
 }

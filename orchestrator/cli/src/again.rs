@@ -12,9 +12,16 @@ use crate::prepare::load_location;
 use crate::talk::Talk;
 
 /// Simulates a bundle again and compares hashes.
-pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Option<u64>, out: Option<&PathBuf>) -> Result<(), Complaint> {
+pub(crate) fn simulate(
+    talk: &Talk,
+    dir: &Path,
+    planner: Option<&str>,
+    seed: Option<u64>,
+    out: Option<&PathBuf>,
+) -> Result<(), Complaint> {
     let bundle = bundle::read(dir)?;
-    let mut wanted: Vec<(String, u64)> = bundle.manifest.runs.iter().map(|run| (run.planner.clone(), run.seed)).collect();
+    let mut wanted: Vec<(String, u64)> =
+        bundle.manifest.runs.iter().map(|run| (run.planner.clone(), run.seed)).collect();
     if planner.is_some() || seed.is_some() {
         let first = bundle.manifest.runs.first().map_or(1, |run| run.seed);
         wanted = vec![(planner.unwrap_or("reference").to_owned(), seed.unwrap_or(first))];
@@ -24,7 +31,12 @@ pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Opt
     for (planner, seed) in wanted {
         let recording = run(&bundle, &planner, seed)?;
         let hash = recording.hash();
-        let known = bundle.manifest.runs.iter().find(|run| run.planner == planner && run.seed == seed).map(|run| run.recording_hash);
+        let known = bundle
+            .manifest
+            .runs
+            .iter()
+            .find(|run| run.planner == planner && run.seed == seed)
+            .map(|run| run.recording_hash);
         let word = match known {
             Some(known) if known == hash => "same hash as the bundle",
             Some(_) => {
@@ -36,9 +48,12 @@ pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Opt
         let last = recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
         talk.line(&format!("simulated  {planner} seed {seed}: {last:.1} s, {} ({word})", hash.short()));
         if let Some(folder) = out {
-            let bytes = socrates_stream::mcap::write(&recording, Some(&bundle.location)).map_err(|why| Complaint::input(why.to_string(), ""))?;
+            let bytes = socrates_stream::mcap::write(&recording, Some(&bundle.location))
+                .map_err(|why| Complaint::input(why.to_string(), ""))?;
             let path = folder.join(format!("{planner}-{seed}.mcap"));
-            let cannot = |why: std::io::Error| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder");
+            let cannot = |why: std::io::Error| {
+                Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+            };
             std::fs::create_dir_all(folder).map_err(cannot)?;
             std::fs::write(&path, bytes).map_err(cannot)?;
         }
@@ -46,7 +61,11 @@ pub(crate) fn simulate(talk: &Talk, dir: &Path, planner: Option<&str>, seed: Opt
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "runs": rows }));
     if differ > 0 {
-        return Err(Complaint::input(format!("{differ} recordings differ from the bundle's"), "the bundle was made by another version, or was changed by hand").with_code(Code::Ours));
+        return Err(Complaint::input(
+            format!("{differ} recordings differ from the bundle's"),
+            "the bundle was made by another version, or was changed by hand",
+        )
+        .with_code(Code::Ours));
     }
     Ok(())
 }
@@ -64,8 +83,12 @@ fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint
         run,
         seed,
     )
-    .map_err(|faults| Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do"))?;
-    socrates_simulation::simulate(setup, planner).map_err(|faults| Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do"))
+    .map_err(|faults| {
+        Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
+    })?;
+    socrates_simulation::simulate(setup, planner).map_err(|faults| {
+        Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
+    })
 }
 
 /// Scores a bundle again, or one file of tracks.
@@ -73,8 +96,18 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
     if what.is_dir() {
         return score_bundle(talk, what);
     }
-    let bytes = std::fs::read(what).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", what.display()), "name a bundle folder, a CSV or an MCAP file"))?;
-    let bad = |why: String| Complaint::input(format!("`{}`: {why}", what.display()), "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …");
+    let bytes = std::fs::read(what).map_err(|why| {
+        Complaint::input(
+            format!("cannot read `{}`: {why}", what.display()),
+            "name a bundle folder, a CSV or an MCAP file",
+        )
+    })?;
+    let bad = |why: String| {
+        Complaint::input(
+            format!("`{}`: {why}", what.display()),
+            "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …",
+        )
+    };
     let recording = if bytes.starts_with(b"\x89MCAP") {
         socrates_stream::mcap::read(&bytes).map_err(|why| bad(why.to_string()))?
     } else {
@@ -92,7 +125,9 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         reference: None,
     });
     for metric in &report.metrics {
-        let value = metric.value.map_or_else(|| format!("n/a ({})", metric.note), |value| format!("{value:.3} {}", metric.unit));
+        let value = metric
+            .value
+            .map_or_else(|| format!("n/a ({})", metric.note), |value| format!("{value:.3} {}", metric.unit));
         talk.line(&format!("{:<34} {value}", metric.id));
     }
     talk.line(&format!("verdict    {} · {}", report.verdict, report.verdict_text));
@@ -105,7 +140,9 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     let mut rows = Vec::new();
     let mut differ = 0;
     for (entry, (recording, old)) in bundle.manifest.runs.iter().zip(&bundle.runs) {
-        let reference = bundle.runs.iter().find(|(_, report)| report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference");
+        let reference = bundle.runs.iter().find(|(_, report)| {
+            report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference"
+        });
         let report = socrates_scoring::score(&Evidence {
             location: Some(&bundle.location),
             request: Some(&bundle.request),
@@ -117,12 +154,22 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
         });
         let same = report == *old;
         differ += usize::from(!same);
-        talk.line(&format!("scored     {} seed {}: {} ({})", entry.planner, entry.seed, report.verdict, if same { "same report as the bundle" } else { "ANOTHER report than the bundle" }));
+        talk.line(&format!(
+            "scored     {} seed {}: {} ({})",
+            entry.planner,
+            entry.seed,
+            report.verdict,
+            if same { "same report as the bundle" } else { "ANOTHER report than the bundle" }
+        ));
         rows.push(json!({ "planner": entry.planner, "seed": entry.seed, "verdict": report.verdict, "same": same, "metrics": values(&report) }));
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": bundle.manifest.verdict, "runs": rows }));
     if differ > 0 {
-        return Err(Complaint::input(format!("{differ} reports differ from the bundle's"), "the bundle was made by another version, or was changed by hand").with_code(Code::Ours));
+        return Err(Complaint::input(
+            format!("{differ} reports differ from the bundle's"),
+            "the bundle was made by another version, or was changed by hand",
+        )
+        .with_code(Code::Ours));
     }
     Ok(())
 }

@@ -6,7 +6,13 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// From a few sentences and a map to a social-navigation scenario that is simulated, checked and scored.
 #[derive(Debug, Parser)]
-#[command(name = "socrates", version, about, disable_help_subcommand = true, after_help = "First time? Run `socrates demo`.")]
+#[command(
+    name = "socrates",
+    version,
+    about,
+    disable_help_subcommand = true,
+    after_help = "First time? Run `socrates demo`."
+)]
 pub(crate) struct Cli {
     /// How results are printed; with json the last line of standard output is one object.
     #[arg(long, global = true, value_enum, default_value_t = Format::Text)]

@@ -94,12 +94,19 @@ pub(crate) fn manifest(dir: &Path) -> Option<Manifest> {
 pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
 
 /// Writes the bundle of a finished scenario.
-pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Bundle, Complaint> {
+pub(crate) fn write(
+    dir: &Path,
+    prepared: &Prepared,
+    seed: u64,
+    status: &ScenarioStatus,
+    fetch: &Fetch<'_>,
+) -> Result<Bundle, Complaint> {
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
         if let Some(pinned) = prepared.pins.get(role) {
             return Ok(pinned.clone());
         }
-        let artifact = newest(status, stage, "").and_then(|job| job.artifacts.iter().find(|artifact| artifact.role == role));
+        let artifact =
+            newest(status, stage, "").and_then(|job| job.artifacts.iter().find(|artifact| artifact.role == role));
         string(artifact.ok_or_else(|| missing(role))?, fetch)
     };
     let (proposal_text, paths_text, behaviors_text) =
@@ -118,9 +125,11 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, status: &Scenari
         };
         let report_text = string(report_file, fetch)?;
         let report: Report = parse("report", &report_text)?;
-        let recording_file = simulation.artifacts.iter().find(|a| a.role == "recording").ok_or_else(|| missing("recording"))?;
+        let recording_file =
+            simulation.artifacts.iter().find(|a| a.role == "recording").ok_or_else(|| missing("recording"))?;
         let bytes = fetch(&recording_file.digest)?;
-        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
+        let recording =
+            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
         out.put(&format!("details/recordings/{}.mcap", job.key.item), &bytes)?;
         let report_digest = out.put(&format!("details/reports/{}.json", job.key.item), pretty(&report)?.as_bytes())?;
         entries.push(RunEntry {
@@ -199,21 +208,37 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, status: &Scenari
 /// Reads a finished bundle back, here or wherever it was moved to.
 pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
     let manifest = manifest(dir).ok_or_else(|| {
-        Complaint::input(format!("`{}` is no finished bundle: details/manifest.json is missing or broken", dir.display()), "`socrates run` makes one; the same command again finishes an unfinished one")
+        Complaint::input(
+            format!("`{}` is no finished bundle: details/manifest.json is missing or broken", dir.display()),
+            "`socrates run` makes one; the same command again finishes an unfinished one",
+        )
     })?;
     let load = |name: &str| -> Result<String, Complaint> {
         let path = dir.join("details").join(name);
-        std::fs::read_to_string(&path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged; run its request.toml again"))
+        std::fs::read_to_string(&path).map_err(|why| {
+            Complaint::input(
+                format!("cannot read `{}`: {why}", path.display()),
+                "the bundle is damaged; run its request.toml again",
+            )
+        })
     };
-    let request_text = std::fs::read_to_string(dir.join("request.toml"))
-        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", dir.join("request.toml").display()), "the bundle is damaged"))?;
-    let request: Request = toml::from_str(&request_text).map_err(|why| Complaint::input(format!("request.toml of the bundle: {why}"), "the bundle is damaged"))?;
+    let request_text = std::fs::read_to_string(dir.join("request.toml")).map_err(|why| {
+        Complaint::input(
+            format!("cannot read `{}`: {why}", dir.join("request.toml").display()),
+            "the bundle is damaged",
+        )
+    })?;
+    let request: Request = toml::from_str(&request_text)
+        .map_err(|why| Complaint::input(format!("request.toml of the bundle: {why}"), "the bundle is damaged"))?;
     let mut runs = Vec::new();
     for entry in &manifest.runs {
         let item = format!("{}-{}", entry.planner, entry.seed);
         let path = dir.join(format!("details/recordings/{item}.mcap"));
-        let bytes = std::fs::read(&path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged"))?;
-        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Complaint::input(format!("`{}`: {why}", path.display()), "the bundle is damaged"))?;
+        let bytes = std::fs::read(&path).map_err(|why| {
+            Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged")
+        })?;
+        let recording = socrates_stream::mcap::read(&bytes)
+            .map_err(|why| Complaint::input(format!("`{}`: {why}", path.display()), "the bundle is damaged"))?;
         runs.push((recording, parse("report", &load(&format!("reports/{item}.json"))?)?));
     }
     Ok(Bundle {
@@ -244,7 +269,9 @@ impl Writer {
 
     fn put_outside(&self, name: &str, bytes: &[u8]) -> Result<(), Complaint> {
         let path = self.dir.join(name);
-        let cannot = |why: std::io::Error| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder");
+        let cannot = |why: std::io::Error| {
+            Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+        };
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(cannot)?;
         }
@@ -253,7 +280,8 @@ impl Writer {
 }
 
 fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "this is our fault; `details/provenance.json` holds what is needed to find it").with_code(crate::exit::Code::Ours)
+    Complaint::input(what, "this is our fault; `details/provenance.json` holds what is needed to find it")
+        .with_code(crate::exit::Code::Ours)
 }
 
 fn missing(role: &str) -> Complaint {
@@ -302,7 +330,9 @@ fn portable(prepared: &Prepared) -> Request {
     if socrates_maps::shipped::files(&request.location).is_none() {
         request.location = "details/location".to_owned();
     }
-    for (role, slot) in [("proposal", &mut request.proposal), ("paths", &mut request.paths), ("behaviors", &mut request.behaviors)] {
+    for (role, slot) in
+        [("proposal", &mut request.proposal), ("paths", &mut request.paths), ("behaviors", &mut request.behaviors)]
+    {
         if slot.is_some() {
             *slot = Some(format!("details/{role}.json"));
         }
@@ -326,7 +356,10 @@ fn metrics(runs: &[(Recording, Report)]) -> String {
         for metric in &report.metrics {
             let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
             let note = metric.note.replace('"', "'");
-            text.push_str(&format!("{},{},{},{value},{},{},\"{note}\"\n", report.planner, report.seed, metric.id, metric.unit, metric.direction));
+            text.push_str(&format!(
+                "{},{},{},{value},{},{},\"{note}\"\n",
+                report.planner, report.seed, metric.id, metric.unit, metric.direction
+            ));
         }
     }
     text
@@ -339,10 +372,21 @@ pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
     jobs.iter()
         .map(|job| {
             let item = if job.key.item.is_empty() { String::new() } else { format!(" {}", job.key.item) };
-            let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
+            let revision =
+                if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
             let faults: Vec<String> = job.faults.iter().map(ToString::to_string).collect();
-            let remark = [job.remark.clone(), faults.join("; ")].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · ");
-            StageRow { stage: format!("{}{item}{revision}", job.key.stage), state: job.state.clone(), attempts: job.attempts, wall_ms: job.wall_ms, remark }
+            let remark = [job.remark.clone(), faults.join("; ")]
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join(" · ");
+            StageRow {
+                stage: format!("{}{item}{revision}", job.key.stage),
+                state: job.state.clone(),
+                attempts: job.attempts,
+                wall_ms: job.wall_ms,
+                remark,
+            }
         })
         .collect()
 }

@@ -16,7 +16,15 @@ use crate::session::{Wanted, spec, submit as send};
 use crate::talk::Talk;
 
 /// Submits requests and returns; `socrates status ENDPOINT` shows how they stand.
-pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], connect: &str, namespace: &str, seed: u64, key_found: bool) -> Result<(), Complaint> {
+pub(crate) async fn submit(
+    talk: &Talk,
+    config: &Config,
+    requests: &[PathBuf],
+    connect: &str,
+    namespace: &str,
+    seed: u64,
+    key_found: bool,
+) -> Result<(), Complaint> {
     let options = RunOptions {
         out: None,
         seed,
@@ -29,10 +37,13 @@ pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], c
         workers: None,
     };
     let files = request_files(requests)?;
-    let prepared = files.iter().map(|file| prepare(file, Some(&options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
-    let bus = ZenohBus::open(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect))
-        .await
-        .map_err(|why| Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?").with_code(Code::Input))?;
+    let prepared =
+        files.iter().map(|file| prepare(file, Some(&options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    let bus =
+        ZenohBus::open(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect)).await.map_err(|why| {
+            Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?")
+                .with_code(Code::Input)
+        })?;
     let folder = std::env::temp_dir().join(format!("socrates-submit-{}", std::process::id()));
     let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
     let blobs = LocalBlobs::new(&folder, false);
@@ -43,14 +54,20 @@ pub(crate) async fn submit(talk: &Talk, config: &Config, requests: &[PathBuf], c
             specs.push(spec(&Wanted { id, seed: seed + u64::from(index), prepared: one }, config, &options, &blobs)?);
         }
     }
-    let mut digests: Vec<_> = specs.iter().flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied())).collect();
+    let mut digests: Vec<_> = specs
+        .iter()
+        .flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied()))
+        .collect();
     digests.sort();
     digests.dedup();
     let bus: Arc<dyn Bus> = Arc::new(bus);
     let remote = socrates_kit::Blobs::Bus;
     for digest in digests {
         let bytes = blobs.get(&digest).map_err(|why| ours(why.to_string()))?;
-        remote.put(&bus, bytes, Duration::from_secs(10)).await.map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
+        remote
+            .put(&bus, bytes, Duration::from_secs(10))
+            .await
+            .map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
     let count = specs.len();
     send(bus.as_ref(), "cluster", specs).await?;

@@ -30,7 +30,10 @@ impl Config {
         let found = file.map_or_else(|| Path::new("socrates.toml"), |path| path);
         if file.is_some() || found.is_file() {
             let text = std::fs::read_to_string(found).map_err(|why| {
-                Complaint::input(format!("cannot read the configuration `{}`: {why}", found.display()), "check the path after --config")
+                Complaint::input(
+                    format!("cannot read the configuration `{}`: {why}", found.display()),
+                    "check the path after --config",
+                )
             })?;
             let mut layer = BTreeMap::new();
             flatten("", &parse(&text, &found.display().to_string())?, &found.display().to_string(), &mut layer);
@@ -49,7 +52,10 @@ impl Config {
         }
         for flag in flags {
             let (key, text) = flag.split_once('=').ok_or_else(|| {
-                Complaint::input(format!("`--set {flag}` has no value"), "write --set key=value, for example --set supervisor.workers=2")
+                Complaint::input(
+                    format!("`--set {flag}` has no value"),
+                    "write --set key=value, for example --set supervisor.workers=2",
+                )
             })?;
             known(&values, key, "--set")?;
             let value = typed(&values, key, text, "--set")?;
@@ -65,7 +71,11 @@ impl Config {
 
     /// A whole number.
     pub(crate) fn number(&self, key: &str) -> u64 {
-        self.values.get(key).and_then(|(value, _)| value.as_integer()).and_then(|n| u64::try_from(n).ok()).unwrap_or_default()
+        self.values
+            .get(key)
+            .and_then(|(value, _)| value.as_integer())
+            .and_then(|n| u64::try_from(n).ok())
+            .unwrap_or_default()
     }
 
     /// Every value with its origin, in order of the keys.
@@ -79,8 +89,12 @@ impl Config {
 }
 
 fn parse(text: &str, origin: &str) -> Result<toml::Table, Complaint> {
-    text.parse::<toml::Table>()
-        .map_err(|why| Complaint::input(format!("the configuration `{origin}` is not valid TOML: {why}"), "`socrates config` prints a valid one"))
+    text.parse::<toml::Table>().map_err(|why| {
+        Complaint::input(
+            format!("the configuration `{origin}` is not valid TOML: {why}"),
+            "`socrates config` prints a valid one",
+        )
+    })
 }
 
 fn flatten(prefix: &str, table: &toml::Table, origin: &str, out: &mut BTreeMap<String, (toml::Value, String)>) {
@@ -108,17 +122,28 @@ fn known(values: &BTreeMap<String, (toml::Value, String)>, key: &str, origin: &s
     Err(Complaint::input(format!("{origin}: unknown configuration key `{key}`"), format!("allowed keys: {all}")))
 }
 
-fn typed(values: &BTreeMap<String, (toml::Value, String)>, key: &str, text: &str, origin: &str) -> Result<toml::Value, Complaint> {
+fn typed(
+    values: &BTreeMap<String, (toml::Value, String)>,
+    key: &str,
+    text: &str,
+    origin: &str,
+) -> Result<toml::Value, Complaint> {
     let wrong = |what: &str| {
-        Complaint::input(format!("{origin}: `{key}` is `{text}`"), format!("it takes {what}; `socrates config` prints the manual"))
+        Complaint::input(
+            format!("{origin}: `{key}` is `{text}`"),
+            format!("it takes {what}; `socrates config` prints the manual"),
+        )
     };
     match values.get(key).map(|(value, _)| value) {
-        Some(toml::Value::Integer(_)) => text.parse::<i64>().map(toml::Value::Integer).map_err(|_why| wrong("a whole number")),
-        Some(toml::Value::Float(_)) => text.parse::<f64>().map(toml::Value::Float).map_err(|_why| wrong("a number")),
-        Some(toml::Value::Boolean(_)) => text.parse::<bool>().map(toml::Value::Boolean).map_err(|_why| wrong("true or false")),
-        Some(toml::Value::String(_) | toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_)) | None => {
-            Ok(toml::Value::String(text.to_owned()))
+        Some(toml::Value::Integer(_)) => {
+            text.parse::<i64>().map(toml::Value::Integer).map_err(|_why| wrong("a whole number"))
         }
+        Some(toml::Value::Float(_)) => text.parse::<f64>().map(toml::Value::Float).map_err(|_why| wrong("a number")),
+        Some(toml::Value::Boolean(_)) => {
+            text.parse::<bool>().map(toml::Value::Boolean).map_err(|_why| wrong("true or false"))
+        }
+        Some(toml::Value::String(_) | toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_))
+        | None => Ok(toml::Value::String(text.to_owned())),
     }
 }
 

@@ -22,7 +22,10 @@ pub(crate) fn dev(talk: &Talk, verb: &DevVerb) -> Result<(), Complaint> {
 
 fn schema(talk: &Talk, artifact: &str) -> Result<(), Complaint> {
     let schema = socrates_model::schema::of(artifact).ok_or_else(|| {
-        Complaint::input(format!("there is no artifact `{artifact}`"), format!("artifacts: {}", socrates_model::schema::NAMES.join(", ")))
+        Complaint::input(
+            format!("there is no artifact `{artifact}`"),
+            format!("artifacts: {}", socrates_model::schema::NAMES.join(", ")),
+        )
     })?;
     let text = serde_json::to_string_pretty(&schema).unwrap_or_default();
     talk.line(&text);
@@ -31,9 +34,15 @@ fn schema(talk: &Talk, artifact: &str) -> Result<(), Complaint> {
 }
 
 fn import(talk: &Talk, file: &Path) -> Result<(), Complaint> {
-    let text = std::fs::read_to_string(file).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", file.display()), "name a JSON file of the published tool"))?;
-    let found = socrates_export::socrates_json::read(&text)
-        .map_err(|why| Complaint::input(format!("`{}`: {why}", file.display()), "the forms are scenario, trajectory, trees and combined"))?;
+    let text = std::fs::read_to_string(file).map_err(|why| {
+        Complaint::input(format!("cannot read `{}`: {why}", file.display()), "name a JSON file of the published tool")
+    })?;
+    let found = socrates_export::socrates_json::read(&text).map_err(|why| {
+        Complaint::input(
+            format!("`{}`: {why}", file.display()),
+            "the forms are scenario, trajectory, trees and combined",
+        )
+    })?;
     let object = json!({ "proposal": found.proposal, "paths": found.paths, "behaviors": found.behaviors });
     talk.line(&serde_json::to_string_pretty(&object).unwrap_or_default());
     talk.result(&object);
@@ -42,13 +51,18 @@ fn import(talk: &Talk, file: &Path) -> Result<(), Complaint> {
 
 fn export(talk: &Talk, dir: &Path, out: &Path) -> Result<(), Complaint> {
     let bundle = bundle::read(dir)?;
-    let cannot = |why: std::io::Error| Complaint::input(format!("cannot write into `{}`: {why}", out.display()), "--out chooses another folder");
+    let cannot = |why: std::io::Error| {
+        Complaint::input(format!("cannot write into `{}`: {why}", out.display()), "--out chooses another folder")
+    };
     std::fs::create_dir_all(out).map_err(cannot)?;
     let files = [
         ("scenario.json", socrates_export::socrates_json::scenario(&bundle.proposal)),
         ("trajectory.json", socrates_export::socrates_json::trajectory(&bundle.proposal, &bundle.paths)),
         ("bt.json", socrates_export::socrates_json::trees(&bundle.behaviors)),
-        ("response_traj.json", socrates_export::socrates_json::combined(&bundle.proposal, &bundle.paths, &bundle.behaviors)),
+        (
+            "response_traj.json",
+            socrates_export::socrates_json::combined(&bundle.proposal, &bundle.paths, &bundle.behaviors),
+        ),
     ];
     for (name, value) in &files {
         std::fs::write(out.join(name), serde_json::to_string_pretty(value).unwrap_or_default()).map_err(cannot)?;
@@ -90,7 +104,10 @@ fn bench(talk: &Talk, runs: u32) -> Result<(), Complaint> {
     let median = times.get(times.len() / 2).copied().unwrap_or(f64::NAN);
     let (least, most) = (times.first().copied().unwrap_or(f64::NAN), times.last().copied().unwrap_or(f64::NAN));
     let result: serde_json::Value = serde_json::from_str(&last).unwrap_or_default();
-    talk.line(&format!("warm run   {median:.0} ms wall, all processes (least {least:.0}, most {most:.0}, {} runs); target 1000 ms", times.len()));
+    talk.line(&format!(
+        "warm run   {median:.0} ms wall, all processes (least {least:.0}, most {most:.0}, {} runs); target 1000 ms",
+        times.len()
+    ));
     talk.line(&format!("budget     {:.2} of the target", median / 1000.0));
     for stage in result.get("stages").and_then(|stages| stages.as_array()).into_iter().flatten() {
         talk.line(&format!("  {:<28} {:>5} ms", stage["stage"].as_str().unwrap_or_default(), stage["ms"]));

@@ -21,9 +21,17 @@ pub(crate) fn explain(talk: &Talk, code: Option<&str>) -> Result<(), Complaint> 
     };
     let code: FaultCode = code.parse().map_err(|bad: socrates_model::ids::BadId| {
         let wanted = bad.found.to_ascii_uppercase();
-        let near: Vec<&str> =
-            FaultCode::ALL.iter().map(|code| code.code()).filter(|code| wanted.get(..2) == code.get(..2)).take(8).collect();
-        let hint = if near.is_empty() { "`socrates explain` lists every code".to_owned() } else { format!("codes of this kind: {}", near.join(", ")) };
+        let near: Vec<&str> = FaultCode::ALL
+            .iter()
+            .map(|code| code.code())
+            .filter(|code| wanted.get(..2) == code.get(..2))
+            .take(8)
+            .collect();
+        let hint = if near.is_empty() {
+            "`socrates explain` lists every code".to_owned()
+        } else {
+            format!("codes of this kind: {}", near.join(", "))
+        };
         Complaint::input(bad.to_string(), hint)
     })?;
     talk.line(code.page().trim_end());
@@ -35,7 +43,10 @@ pub(crate) fn explain(talk: &Talk, code: Option<&str>) -> Result<(), Complaint> 
 pub(crate) fn config(talk: &Talk, config: &Config, part: Option<&str>) -> Result<(), Complaint> {
     let lines = config.lines(part);
     if lines.is_empty() {
-        return Err(Complaint::input(format!("no configuration key begins with `{}`", part.unwrap_or_default()), "`socrates config` prints all of them"));
+        return Err(Complaint::input(
+            format!("no configuration key begins with `{}`", part.unwrap_or_default()),
+            "`socrates config` prints all of them",
+        ));
     }
     if talk.format == Format::Text && part.is_none() {
         talk.line(crate::config::BUILT_IN.trim_end());
@@ -59,11 +70,15 @@ pub(crate) fn config(talk: &Talk, config: &Config, part: Option<&str>) -> Result
 /// Writes a commented request.
 pub(crate) fn new(talk: &Talk, file: &Path, location: &str) -> Result<(), Complaint> {
     if file.exists() {
-        return Err(Complaint::input(format!("`{}` exists already", file.display()), "choose another name; nothing was written"));
+        return Err(Complaint::input(
+            format!("`{}` exists already", file.display()),
+            "choose another name; nothing was written",
+        ));
     }
     crate::prepare::load_location(location, Path::new("."))?;
     let text = include_str!("request.toml").replace("LOCATION", location);
-    std::fs::write(file, text).map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
+    std::fs::write(file, text)
+        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
     talk.line(&format!("wrote      {}", file.display()));
     talk.line(&format!("next       socrates read {}", file.display()));
     talk.result(&json!({ "request": file.display().to_string() }));
@@ -74,7 +89,10 @@ pub(crate) fn new(talk: &Talk, file: &Path, location: &str) -> Result<(), Compla
 pub(crate) fn open(talk: &Talk, bundle: &Path) -> Result<(), Complaint> {
     let page = bundle.join("report.html");
     if !page.is_file() {
-        return Err(Complaint::input(format!("`{}` has no report.html", bundle.display()), "name the folder that `socrates run` printed after `look`"));
+        return Err(Complaint::input(
+            format!("`{}` has no report.html", bundle.display()),
+            "name the folder that `socrates run` printed after `look`",
+        ));
     }
     let opened = ["xdg-open", "open"].into_iter().any(|program| {
         std::process::Command::new(program)
@@ -91,13 +109,20 @@ pub(crate) fn open(talk: &Talk, bundle: &Path) -> Result<(), Complaint> {
 
 /// Checks what this machine can do.
 pub(crate) fn doctor(talk: &Talk, key_found: bool) -> Result<(), Complaint> {
-    let program = |name: &str| std::env::var_os("PATH").is_some_and(|paths| std::env::split_paths(&paths).any(|dir| dir.join(name).is_file()));
+    let program = |name: &str| {
+        std::env::var_os("PATH").is_some_and(|paths| std::env::split_paths(&paths).any(|dir| dir.join(name).is_file()))
+    };
     let listen = std::net::TcpListener::bind("127.0.0.1:0").is_ok();
     let shm_free = shm_free_mib();
     let here = tempfile_ok();
     let checks: Vec<(&str, bool, bool, String)> = vec![
         ("loopback network", listen, true, "worker processes talk over 127.0.0.1".to_owned()),
-        ("this folder is writable", here, true, "bundles are written to runs/; --out chooses another folder".to_owned()),
+        (
+            "this folder is writable",
+            here,
+            true,
+            "bundles are written to runs/; --out chooses another folder".to_owned(),
+        ),
         (
             "shared memory",
             shm_free.is_some_and(|mib| mib >= 16),
@@ -106,18 +131,33 @@ pub(crate) fn doctor(talk: &Talk, key_found: bool) -> Result<(), Complaint> {
         ),
         ("language model key", key_found, false, "without it the offline author writes the scenarios".to_owned()),
         ("ffmpeg", program("ffmpeg"), false, "only for videos".to_owned()),
-        ("browser", program("xdg-open") || program("chromium") || program("firefox"), false, "only for `socrates open`".to_owned()),
+        (
+            "browser",
+            program("xdg-open") || program("chromium") || program("firefox"),
+            false,
+            "only for `socrates open`".to_owned(),
+        ),
     ];
     let mut missing = Vec::new();
     for (name, ok, needed, note) in &checks {
-        let mark = if *ok { "✔" } else if *needed { "✘" } else { "–" };
+        let mark = if *ok {
+            "✔"
+        } else if *needed {
+            "✘"
+        } else {
+            "–"
+        };
         talk.line(&format!("{mark} {name:<24} {note}"));
         if !ok && *needed {
             missing.push((*name).to_owned());
         }
     }
     talk.result(&json!({ "checks": checks.iter().map(|(name, ok, needed, _)| json!({"name": name, "ok": ok, "needed": needed})).collect::<Vec<_>>() }));
-    if missing.is_empty() { Ok(()) } else { Err(Complaint::input(format!("missing: {}", missing.join(", ")), "see the lines marked ✘")) }
+    if missing.is_empty() {
+        Ok(())
+    } else {
+        Err(Complaint::input(format!("missing: {}", missing.join(", ")), "see the lines marked ✘"))
+    }
 }
 
 fn tempfile_ok() -> bool {

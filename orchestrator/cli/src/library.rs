@@ -46,13 +46,17 @@ pub(crate) fn read(root: &Path) -> Option<Library> {
 /// Writes the list.
 pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
     let path = root.join(FILE);
-    let text = serde_json::to_string_pretty(library).map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
-    std::fs::write(&path, text).map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder"))
+    let text = serde_json::to_string_pretty(library)
+        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+    std::fs::write(&path, text).map_err(|why| {
+        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+    })
 }
 
 /// Prints what a library holds.
 pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<Code, Complaint> {
-    let library = read(root).ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
+    let library = read(root)
+        .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
     let mut verdicts = BTreeMap::<&str, u64>::new();
     for row in &library.scenarios {
         *verdicts.entry(row.verdict.as_str()).or_default() += 1;

@@ -49,7 +49,9 @@ fn main() -> ExitCode {
         Err(complaint) => {
             talk.warn(&format!("error: {complaint}"));
             if cli.format == Format::Json {
-                talk.result(&serde_json::json!({ "error": complaint.what, "causes": complaint.causes, "hint": complaint.hint }));
+                talk.result(
+                    &serde_json::json!({ "error": complaint.what, "causes": complaint.causes, "hint": complaint.hint }),
+                );
             }
             complaint.code
         }
@@ -61,11 +63,10 @@ fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
     let config = Config::load(cli.config.as_deref(), std::env::vars(), &cli.set)?;
     let key = std::env::var(config.text("author.key_variable")).ok().filter(|key| !key.is_empty());
     start_log(&config)?;
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(2)
-        .enable_all()
-        .build()
-        .map_err(|why| Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours))?;
+    let runtime =
+        tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
+            Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
+        })?;
     let code = runtime.block_on(act(talk, cli, &config, key));
     // A blocked reader of a child's pipe must not hold the exit.
     runtime.shutdown_background();
@@ -86,7 +87,9 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
             Ok(Code::Ok)
         }
         Verb::Open { bundle } => done(explain::open(talk, bundle)),
-        Verb::Simulate { bundle, planner, seed, out } => done(again::simulate(talk, bundle, planner.as_deref(), *seed, out.as_ref())),
+        Verb::Simulate { bundle, planner, seed, out } => {
+            done(again::simulate(talk, bundle, planner.as_deref(), *seed, out.as_ref()))
+        }
         Verb::Score { what, location } => done(again::score(talk, what, location.as_deref())),
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
         Verb::Status { what } => done(watch::status(talk, what).await),
@@ -108,8 +111,12 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
 }
 
 fn start_log(config: &Config) -> Result<(), Complaint> {
-    let filter = tracing_subscriber::EnvFilter::try_new(config.text("log.filter"))
-        .map_err(|why| Complaint::input(format!("`log.filter` is not a filter: {why}"), "for example \"warn\" or \"socrates_kit=debug\""))?;
+    let filter = tracing_subscriber::EnvFilter::try_new(config.text("log.filter")).map_err(|why| {
+        Complaint::input(
+            format!("`log.filter` is not a filter: {why}"),
+            "for example \"warn\" or \"socrates_kit=debug\"",
+        )
+    })?;
     tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().compact().init();
     Ok(())
 }

@@ -24,7 +24,8 @@ fn list(talk: &Talk) -> Result<(), Complaint> {
     for name in socrates_maps::shipped::names() {
         let (location, _) = load_location(name, Path::new("."))?;
         talk.line(&format!("{name:<11} {}", location.description));
-        let requests: Vec<String> = socrates_maps::shipped::requests(name).into_iter().map(|(stem, _)| stem.to_owned()).collect();
+        let requests: Vec<String> =
+            socrates_maps::shipped::requests(name).into_iter().map(|(stem, _)| stem.to_owned()).collect();
         talk.line(&format!("{:<11} requests: {}", "", requests.join(", ")));
         all.push(json!({ "name": name, "description": location.description, "requests": requests }));
     }
@@ -43,7 +44,11 @@ fn check(talk: &Talk, name: &str) -> Result<(), Complaint> {
         talk.line(&format!("warning    {fault}"));
     }
     if !hard.is_empty() {
-        return Err(Complaint::faults(format!("the location `{name}` has {}", plural(hard.len(), "fault")), &hard, "`socrates explain CODE` says what to do"));
+        return Err(Complaint::faults(
+            format!("the location `{name}` has {}", plural(hard.len(), "fault")),
+            &hard,
+            "`socrates explain CODE` says what to do",
+        ));
     }
     let grid = &location.grid;
     talk.line(&format!(
@@ -65,19 +70,33 @@ fn draw(talk: &Talk, name: &str, out: &Path) -> Result<(), Complaint> {
     let bytes = if out.extension().is_some_and(|ext| ext == "svg") {
         svg.into_bytes()
     } else {
-        socrates_draw::png_from_svg(&svg, 1.0).map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
+        socrates_draw::png_from_svg(&svg, 1.0)
+            .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
     };
-    std::fs::write(out, bytes).map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))?;
+    std::fs::write(out, bytes)
+        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))?;
     talk.line(&format!("look       {}", out.display()));
     talk.result(&json!({ "picture": out.display().to_string() }));
     Ok(())
 }
 
 fn generate(talk: &Talk, plan: &Path, out: &Path) -> Result<(), Complaint> {
-    let text = std::fs::read_to_string(plan).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", plan.display()), "see maps/README.md for the form of a floor plan"))?;
-    let files = socrates_maps::generate(&text)
-        .map_err(|faults| Complaint::faults(format!("the floor plan `{}` is not usable", plan.display()), &faults, "see maps/README.md for the form of a floor plan"))?;
-    let cannot = |path: &Path, why: std::io::Error| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder");
+    let text = std::fs::read_to_string(plan).map_err(|why| {
+        Complaint::input(
+            format!("cannot read `{}`: {why}", plan.display()),
+            "see maps/README.md for the form of a floor plan",
+        )
+    })?;
+    let files = socrates_maps::generate(&text).map_err(|faults| {
+        Complaint::faults(
+            format!("the floor plan `{}` is not usable", plan.display()),
+            &faults,
+            "see maps/README.md for the form of a floor plan",
+        )
+    })?;
+    let cannot = |path: &Path, why: std::io::Error| {
+        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
+    };
     std::fs::create_dir_all(out).map_err(|why| cannot(out, why))?;
     for (name, bytes) in &files {
         let path = out.join(name);

@@ -41,14 +41,22 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
     for path in paths {
         if path.is_dir() {
             let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
-                .map_err(|why| Complaint::input(format!("cannot list `{}`: {why}", path.display()), "name request files or a folder of them"))?
+                .map_err(|why| {
+                    Complaint::input(
+                        format!("cannot list `{}`: {why}", path.display()),
+                        "name request files or a folder of them",
+                    )
+                })?
                 .filter_map(Result::ok)
                 .map(|entry| entry.path())
                 .filter(|file| file.extension().is_some_and(|ext| ext == "toml"))
                 .collect();
             inside.sort();
             if inside.is_empty() {
-                return Err(Complaint::input(format!("`{}` holds no request (*.toml)", path.display()), "`socrates new my.toml` writes one"));
+                return Err(Complaint::input(
+                    format!("`{}` holds no request (*.toml)", path.display()),
+                    "`socrates new my.toml` writes one",
+                ));
             }
             files.extend(inside);
         } else {
@@ -59,7 +67,12 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 }
 
 /// Reads and checks one request file.
-pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config, key_found: bool) -> Result<Prepared, Complaint> {
+pub(crate) fn prepare(
+    file: &Path,
+    options: Option<&RunOptions>,
+    config: &Config,
+    key_found: bool,
+) -> Result<Prepared, Complaint> {
     let text = read_text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
@@ -77,7 +90,10 @@ pub(crate) fn prepare_text(
     key_found: bool,
 ) -> Result<Prepared, Complaint> {
     let mut request: Request = toml::from_str(text).map_err(|why| {
-        let mut complaint = Complaint::input(format!("the request `{shown}` cannot be read"), "`socrates new my.toml` writes a request with every key explained");
+        let mut complaint = Complaint::input(
+            format!("the request `{shown}` cannot be read"),
+            "`socrates new my.toml` writes a request with every key explained",
+        );
         complaint.causes = why.to_string().lines().map(str::to_owned).collect();
         complaint
     })?;
@@ -86,17 +102,18 @@ pub(crate) fn prepare_text(
     }
     let problems = request.problems();
     if !problems.is_empty() {
-        let mut complaint = Complaint::input(format!("the request `{shown}` has {}", plural(problems.len(), "problem")), String::new());
+        let mut complaint =
+            Complaint::input(format!("the request `{shown}` has {}", plural(problems.len(), "problem")), String::new());
         complaint.causes = problems.iter().map(|bad| format!("J-REQUEST {bad} ({})", bad.hint)).collect();
         complaint.hint = "`socrates explain J-REQUEST`".to_owned();
         return Err(complaint);
     }
     let known = socrates_planners::names();
     for planner in &request.robot.planners {
-        if planner != "none" && !known.contains(&planner.as_str()) {
+        if !known.contains(&planner.as_str()) {
             return Err(Complaint::input(
                 format!("J-PLANNER `robot.planners`: there is no planner `{planner}`"),
-                format!("planners: {}, none", known.join(", ")),
+                format!("planners: {}", known.join(", ")),
             ));
         }
     }
@@ -114,7 +131,9 @@ pub(crate) fn prepare_text(
         ));
     }
     let mut pins = BTreeMap::new();
-    for (role, pinned) in [("proposal", &request.proposal), ("paths", &request.paths), ("behaviors", &request.behaviors)] {
+    for (role, pinned) in
+        [("proposal", &request.proposal), ("paths", &request.paths), ("behaviors", &request.behaviors)]
+    {
         if let Some(pinned) = pinned {
             pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
         }
@@ -147,7 +166,16 @@ fn apply(request: &mut Request, options: &RunOptions) {
 
 /// A location by shipped name or folder, with its files.
 pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
-    let wrong = |faults: Vec<Fault>| Complaint::faults(format!("the location `{name}` is not usable"), &faults, format!("`socrates map check {name}` lists everything; shipped locations: {}", socrates_maps::shipped::names().join(", ")));
+    let wrong = |faults: Vec<Fault>| {
+        Complaint::faults(
+            format!("the location `{name}` is not usable"),
+            &faults,
+            format!(
+                "`socrates map check {name}` lists everything; shipped locations: {}",
+                socrates_maps::shipped::names().join(", ")
+            ),
+        )
+    };
     if let Some(files) = socrates_maps::shipped::files(name) {
         return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files));
     }
@@ -156,7 +184,10 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
     if !dir.is_dir() {
         return Err(Complaint::input(
             format!("there is no location `{name}`"),
-            format!("give a folder with map.yaml and scene_graph.json, or one of: {}", socrates_maps::shipped::names().join(", ")),
+            format!(
+                "give a folder with map.yaml and scene_graph.json, or one of: {}",
+                socrates_maps::shipped::names().join(", ")
+            ),
         ));
     }
     let location = socrates_maps::load(&dir).map_err(wrong)?;
@@ -181,7 +212,10 @@ fn read_pin(role: &str, path: &Path) -> Result<String, Complaint> {
     };
     let Err(own) = own else { return Ok(text) };
     let wrong = |cause: String| {
-        let mut complaint = Complaint::input(format!("the pinned {role} `{}` cannot be read", path.display()), format!("`socrates dev schema {role}` prints the form"));
+        let mut complaint = Complaint::input(
+            format!("the pinned {role} `{}` cannot be read", path.display()),
+            format!("`socrates dev schema {role}` prints the form"),
+        );
         complaint.causes = vec![format!("as our own form: {own}"), format!("as a file of the published tool: {cause}")];
         complaint
     };
@@ -208,7 +242,10 @@ fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, Strin
     if key_found && !model.is_empty() {
         (format!("openai:{model}"), format!("openai:{model}"))
     } else if key_found {
-        ("offline".to_owned(), "offline, rules (a key was found, but no model: `socrates config author` to change)".to_owned())
+        (
+            "offline".to_owned(),
+            "offline, rules (a key was found, but no model: `socrates config author` to change)".to_owned(),
+        )
     } else {
         ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
     }
@@ -219,17 +256,28 @@ fn read_text(path: &Path, max: u64, hint: &str) -> Result<String, Complaint> {
         .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?
         .len();
     if length > max {
-        return Err(Complaint::input(format!("`{}` has {length} bytes", path.display()), format!("at most {max} bytes are read")));
+        return Err(Complaint::input(
+            format!("`{}` has {length} bytes", path.display()),
+            format!("at most {max} bytes are read"),
+        ));
     }
-    let bytes = std::fs::read(path).map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?;
+    let bytes = std::fs::read(path)
+        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?;
     String::from_utf8(bytes).map_err(|why| {
-        Complaint::input(format!("`{}` is not UTF-8 text (byte {})", path.display(), why.utf8_error().valid_up_to()), "save it as UTF-8")
+        Complaint::input(
+            format!("`{}` is not UTF-8 text (byte {})", path.display(), why.utf8_error().valid_up_to()),
+            "save it as UTF-8",
+        )
     })
 }
 
 /// A word that is safe as folder and scenario id.
 pub(crate) fn slug(text: &str) -> String {
-    let mut out: String = text.chars().map(|c| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_') { c.to_ascii_lowercase() } else { '-' }).take(60).collect();
+    let mut out: String = text
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_') { c.to_ascii_lowercase() } else { '-' })
+        .take(60)
+        .collect();
     if out.trim_matches('-').is_empty() {
         out = "scenario".to_owned();
     }

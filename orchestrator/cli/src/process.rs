@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use socrates_author::Keys;
-use socrates_kit::{Blobs, FaultPlan, LocalBlobs, Stop, WorkerConfig};
+use socrates_kit::{Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
 use socrates_llm::ApiKey;
 use socrates_model::job::Stage;
@@ -20,32 +20,59 @@ const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Serves one stage until told to leave.
 pub(crate) async fn worker(config: &Config, options: &WorkerOptions, key: Option<String>) -> Result<(), Complaint> {
-    let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| Complaint::input(bad.to_string(), "`socrates cluster worker --help`"))?;
+    let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
+        Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
+    })?;
     let shutdown = leave(options.tied);
     let bus = client(&options.connect, &options.namespace, &format!("worker-{stage}")).await?;
     let blobs = options.blobs.as_ref().map_or(Blobs::Bus, |dir| Blobs::Local(LocalBlobs::new(dir, false)));
     let mut settings = WorkerConfig::new(blobs, &options.spool, CODE_VERSION);
-    settings.faults = FaultPlan::parse(&options.inject).map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
+    settings.faults = FaultPlan::parse(&options.inject)
+        .map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
     settings.host = host();
     if stage == Stage::Simulation && config.text("stream.live") != "off" {
         // Control and stream never share a session, so that a frozen viewer stalls no job.
         settings.live = Some(client(&options.connect, &options.namespace, "stream").await?);
     }
     let text = |name: &str| Some(config.text(name)).filter(|text| !text.is_empty());
-    let keys = Keys { openai: key.as_deref().map(ApiKey::new), openai_base_url: text("author.url"), openai_model: text("author.model"), ..Keys::default() };
+    let keys = Keys {
+        openai: key.as_deref().map(ApiKey::new),
+        openai_base_url: text("author.url"),
+        openai_model: text("author.model"),
+        ..Keys::default()
+    };
     let live = settings.live.clone();
     let served = match stage {
-        Stage::Proposal => socrates_kit::serve(socrates_proposal::ProposalStage::new(keys), bus.clone(), settings, shutdown).await,
-        Stage::Paths => socrates_kit::serve(socrates_paths::PathsStage::new(keys), bus.clone(), settings, shutdown).await,
-        Stage::Behaviors => socrates_kit::serve(socrates_behaviors::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await,
-        Stage::Simulation => socrates_kit::serve(socrates_simulation::Simulation::default(), bus.clone(), settings, shutdown).await,
-        Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage::default(), bus.clone(), settings, shutdown).await,
-        Stage::Review => return Err(Complaint::input("a review is done by a person", "stages of workers: proposal, paths, behaviors, simulation, scoring")),
+        Stage::Proposal => {
+            socrates_kit::serve(socrates_proposal::ProposalStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Paths => {
+            socrates_kit::serve(socrates_paths::PathsStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Behaviors => {
+            socrates_kit::serve(socrates_behaviors::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Simulation => {
+            socrates_kit::serve(socrates_simulation::Simulation::default(), bus.clone(), settings, shutdown).await
+        }
+        Stage::Scoring => {
+            socrates_kit::serve(socrates_scoring::ScoringStage::default(), bus.clone(), settings, shutdown).await
+        }
+        Stage::Review => {
+            return Err(Complaint::input(
+                "a review is done by a person",
+                "stages of workers: proposal, paths, behaviors, simulation, scoring",
+            ));
+        }
     };
     if let Some(live) = live {
         live.close().await;
     }
     bus.close().await;
+    if let Err(KitError::InjectedDeath { .. }) = served {
+        // An experiment asked for this death: as sudden as kill -9, without any farewell.
+        std::process::abort();
+    }
     served.map_err(|why| Complaint::input(format!("the {stage} worker stops: {why}"), "").with_code(Code::Ours))
 }
 
@@ -55,11 +82,19 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         (Some(listen), None) => {
             let settings = ZenohConfig::new(Mode::Router, &options.namespace, "orchestrator").listen(listen);
             let opened = ZenohBus::open(settings).await;
-            Arc::new(opened.map_err(|why| Complaint::input(format!("cannot listen on `{listen}`: {why}"), "another port, or end the program that has it"))?)
+            Arc::new(opened.map_err(|why| {
+                Complaint::input(
+                    format!("cannot listen on `{listen}`: {why}"),
+                    "another port, or end the program that has it",
+                )
+            })?)
         }
         (None, Some(connect)) => client(connect, &options.namespace, "orchestrator").await?,
         (Some(_), Some(_)) | (None, None) => {
-            return Err(Complaint::input("give either --listen or --connect", "for example `socrates cluster up --dir jobs --listen tcp/0.0.0.0:7447`"));
+            return Err(Complaint::input(
+                "give either --listen or --connect",
+                "for example `socrates cluster up --dir jobs --listen tcp/0.0.0.0:7447`",
+            ));
         }
     };
     let settings = OrchestratorConfig {
@@ -71,13 +106,24 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
     };
     let served = orchestrate::serve(settings, bus.clone(), leave(options.tied)).await;
     bus.close().await;
-    served.map_err(|why| Complaint::input(format!("the orchestrator stops: {why:#}"), format!("the jobs are kept in `{}`", options.dir.display())).with_code(Code::Ours))
+    served.map_err(|why| {
+        Complaint::input(
+            format!("the orchestrator stops: {why:#}"),
+            format!("the jobs are kept in `{}`", options.dir.display()),
+        )
+        .with_code(Code::Ours)
+    })
 }
 
 /// A client of a router.
 pub(crate) async fn client(endpoint: &str, namespace: &str, name: &str) -> Result<Arc<dyn Bus>, Complaint> {
     let bus = ZenohBus::open(ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint)).await;
-    let bus = bus.map_err(|why| Complaint::input(format!("cannot connect to `{endpoint}`: {why}"), "is `socrates run` or `socrates cluster up` running there?"))?;
+    let bus = bus.map_err(|why| {
+        Complaint::input(
+            format!("cannot connect to `{endpoint}`: {why}"),
+            "is `socrates run` or `socrates cluster up` running there?",
+        )
+    })?;
     Ok(Arc::new(bus))
 }
 
@@ -112,5 +158,7 @@ fn leave(tied: bool) -> watch::Receiver<Stop> {
 }
 
 fn host() -> String {
-    std::fs::read_to_string(Path::new("/proc/sys/kernel/hostname")).map(|name| name.trim().to_owned()).unwrap_or_default()
+    std::fs::read_to_string(Path::new("/proc/sys/kernel/hostname"))
+        .map(|name| name.trim().to_owned())
+        .unwrap_or_default()
 }

@@ -20,24 +20,43 @@ use crate::talk::Talk;
 const DEMO: (&str, &str) = ("hospital", "elevator");
 
 /// Runs the shipped request.
-pub(crate) async fn demo(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, key_found: bool) -> Result<Code, Complaint> {
+pub(crate) async fn demo(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    key_found: bool,
+) -> Result<Code, Complaint> {
     let requests = socrates_maps::shipped::requests(DEMO.0);
-    let (name, text) = requests
-        .into_iter()
-        .find(|(stem, _)| *stem == DEMO.1)
-        .ok_or_else(|| Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours))?;
+    let (name, text) = requests.into_iter().find(|(stem, _)| *stem == DEMO.1).ok_or_else(|| {
+        Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours)
+    })?;
     let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config, key_found)?;
     single_or_batch(talk, cli, config, options, vec![prepared]).await
 }
 
 /// Runs request files.
-pub(crate) async fn run(talk: &Talk, cli: &Cli, config: &Config, requests: &[PathBuf], options: &RunOptions, key_found: bool) -> Result<Code, Complaint> {
+pub(crate) async fn run(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    requests: &[PathBuf],
+    options: &RunOptions,
+    key_found: bool,
+) -> Result<Code, Complaint> {
     let files = request_files(requests)?;
-    let prepared = files.iter().map(|file| prepare(file, Some(options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    let prepared =
+        files.iter().map(|file| prepare(file, Some(options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
     single_or_batch(talk, cli, config, options, prepared).await
 }
 
-async fn single_or_batch(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Vec<Prepared>) -> Result<Code, Complaint> {
+async fn single_or_batch(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Vec<Prepared>,
+) -> Result<Code, Complaint> {
     pace(&options.pace)?;
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
     let mut prepared = prepared;
@@ -58,12 +77,25 @@ fn pace(text: &str) -> Result<(), Complaint> {
     Err(Complaint::input(format!("`--pace {text}` is no pace"), "`max`, or simulated seconds per second such as 1"))
 }
 
-async fn single(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Complaint> {
+async fn single(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Prepared,
+) -> Result<Code, Complaint> {
     let shipped = if socrates_maps::shipped::files(&prepared.request.location).is_some() { " (shipped)" } else { "" };
-    talk.line(&format!("location   {:<26}author  {}", format!("{}{shipped}", prepared.location.name), prepared.author_note));
+    talk.line(&format!(
+        "location   {:<26}author  {}",
+        format!("{}{shipped}", prepared.location.name),
+        prepared.author_note
+    ));
     print_reading(talk, &prepared);
     let wish = bundle::wish(&prepared, options.seed);
-    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
+    let base = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
     let dir = match place(&base, wish) {
         Place::Finished(dir) => {
             talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
@@ -77,7 +109,9 @@ async fn single(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, p
     let id = scenario_id(&prepared.name, options.seed, 0, 1)?;
     let wanted = vec![Wanted { id, seed: options.seed, prepared: &prepared }];
     let mut made = make(talk, cli, config, options, &work, &wanted).await?;
-    let status = made.statuses.pop().ok_or_else(|| Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours))?;
+    let status = made.statuses.pop().ok_or_else(|| {
+        Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
+    })?;
     let outcome = conclude(&dir, &prepared, options.seed, &status, &made);
     talk.line(&stage_line(&status));
     let result = match outcome {
@@ -95,17 +129,29 @@ async fn single(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, p
 }
 
 /// Writes the bundle, or says why there is none.
-fn conclude(dir: &Path, prepared: &Prepared, seed: u64, status: &ScenarioStatus, made: &Made) -> Result<Bundle, Complaint> {
-    let scored = status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
+fn conclude(
+    dir: &Path,
+    prepared: &Prepared,
+    seed: u64,
+    status: &ScenarioStatus,
+    made: &Made,
+) -> Result<Bundle, Complaint> {
+    let scored =
+        status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
     if scored {
         return bundle::write(dir, prepared, seed, status, &|digest| made.fetch(digest));
     }
-    let faults: Vec<socrates_model::Fault> = status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();
+    let faults: Vec<socrates_model::Fault> =
+        status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();
     let author = faults.iter().any(|fault| fault.code.code().starts_with("T-"));
     let mut complaint = Complaint::faults(
         format!("the scenario ended as `{}` before it could be simulated", status.result),
         &faults,
-        if author { "`socrates config author` shows which author is asked; `--author offline` needs none" } else { "`socrates explain CODE` says what each fault means; another --seed asks for another answer" },
+        if author {
+            "`socrates config author` shows which author is asked; `--author offline` needs none"
+        } else {
+            "`socrates explain CODE` says what each fault means; another --seed asks for another answer"
+        },
     );
     complaint.code = if author { Code::Author } else { Code::NotRealised };
     Err(complaint)
@@ -117,6 +163,10 @@ fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&Sc
     talk.line(&format!("{:<10} {}", report.verdict.name(), report.verdict_text));
     for (_, report) in &bundle.runs {
         let seed = if bundle.runs.len() > 1 { format!(" seed {}", report.seed) } else { String::new() };
+        if report.planner == "none" {
+            talk.line(&format!("twin       without the robot{seed}: {:.1} s", report.simulated_s));
+            continue;
+        }
         let verdict = if bundle.runs.len() > 1 { format!(" · {}", report.verdict) } else { String::new() };
         talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
     }
@@ -128,7 +178,14 @@ fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&Sc
     let next = if report.verdict == Verdict::Realised {
         format!("socrates run {dir}/request.toml --planner reactive --seeds 1..5")
     } else {
-        format!("socrates explain {}; or another --seed", report.repair.as_ref().and_then(|repair| repair.faults.first()).map_or("D-SETUP", |fault| fault.code.code()))
+        format!(
+            "socrates explain {}; or another --seed",
+            report
+                .repair
+                .as_ref()
+                .and_then(|repair| repair.faults.first())
+                .map_or("D-SETUP", |fault| fault.code.code())
+        )
     };
     talk.line(&format!("next       {next}"));
     talk.result(&json!({
@@ -148,7 +205,8 @@ async fn batch(
     count: u64,
 ) -> Result<Code, Complaint> {
     let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
-    let wishes: Vec<String> = prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
+    let wishes: Vec<String> =
+        prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
     let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
     let root = match place(&base, wish) {
         Place::Finished(root) => {
@@ -167,7 +225,11 @@ async fn batch(
     for one in &prepared {
         for index in 0..one.request.run.variants {
             let seed = options.seed + u64::from(index);
-            wanted.push(Wanted { id: scenario_id(&one.name, options.seed, index, one.request.run.variants)?, seed, prepared: one });
+            wanted.push(Wanted {
+                id: scenario_id(&one.name, options.seed, index, one.request.run.variants)?,
+                seed,
+                prepared: one,
+            });
         }
     }
     let made = make(talk, cli, config, options, &work, &wanted).await?;
@@ -219,7 +281,9 @@ enum Place {
 fn place(base: &Path, wish: socrates_model::Digest) -> Place {
     for number in 1.. {
         let dir = if number == 1 { base.to_path_buf() } else { PathBuf::from(format!("{}-{number}", base.display())) };
-        let made = bundle::manifest(&dir).map(|manifest| manifest.wish).or_else(|| library::read(&dir).map(|library| library.wish));
+        let made = bundle::manifest(&dir)
+            .map(|manifest| manifest.wish)
+            .or_else(|| library::read(&dir).map(|library| library.wish));
         if let Some(made) = made {
             if made == wish {
                 return Place::Finished(dir);
@@ -236,7 +300,9 @@ fn place(base: &Path, wish: socrates_model::Digest) -> Place {
 
 /// Makes the work folder and marks it with the wish, so that the same command resumes it.
 fn claim(dir: &Path, work: &Path, wish: socrates_model::Digest) -> Result<(), Complaint> {
-    let cannot = |why: std::io::Error| Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder");
+    let cannot = |why: std::io::Error| {
+        Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
+    };
     std::fs::create_dir_all(work).map_err(cannot)?;
     std::fs::write(work.join("wish"), wish.to_string()).map_err(cannot)
 }
@@ -253,7 +319,8 @@ fn stages(status: &ScenarioStatus) -> Vec<serde_json::Value> {
 pub(crate) fn stage_line(status: &ScenarioStatus) -> String {
     let mut parts = Vec::new();
     for stage in socrates_model::job::Stage::WORKERS {
-        let jobs: Vec<_> = status.jobs.iter().filter(|job| job.key.stage == stage && job.state != "superseded").collect();
+        let jobs: Vec<_> =
+            status.jobs.iter().filter(|job| job.key.stage == stage && job.state != "superseded").collect();
         let Some(last) = jobs.iter().max_by_key(|job| job.key.revision) else { continue };
         let mark = match last.state.as_str() {
             "succeeded" => "✔",
@@ -267,9 +334,18 @@ pub(crate) fn stage_line(status: &ScenarioStatus) -> String {
             format!("{ms} ms")
         };
         let retries: u32 = jobs.iter().map(|job| job.attempts.saturating_sub(1)).sum::<u32>() + last.key.revision;
-        let mut codes: Vec<&str> = status.jobs.iter().filter(|job| job.key.stage == stage).flat_map(|job| job.faults.iter().map(|fault| fault.code.code())).collect();
+        let mut codes: Vec<&str> = status
+            .jobs
+            .iter()
+            .filter(|job| job.key.stage == stage)
+            .flat_map(|job| job.faults.iter().map(|fault| fault.code.code()))
+            .collect();
         codes.dedup();
-        let again = if retries > 0 { format!(" ({}{}{})", plural_retry(retries), if codes.is_empty() { "" } else { ": " }, codes.join(", ")) } else { String::new() };
+        let again = if retries > 0 {
+            format!(" ({}{}{})", plural_retry(retries), if codes.is_empty() { "" } else { ": " }, codes.join(", "))
+        } else {
+            String::new()
+        };
         parts.push(format!("{stage} {mark} {what}{again}"));
     }
     parts.join("   ")

@@ -57,7 +57,14 @@ const AWAY: Duration = Duration::from_secs(60);
 const SUBMIT_AT_ONCE: usize = 40;
 
 /// Makes the scenarios, resuming what the work folder holds.
-pub(crate) async fn make(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions, work: &Path, wanted: &[Wanted<'_>]) -> Result<Made, Complaint> {
+pub(crate) async fn make(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    work: &Path,
+    wanted: &[Wanted<'_>],
+) -> Result<Made, Complaint> {
     let blobs = LocalBlobs::new(work.join("blobs"), false);
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
@@ -81,11 +88,23 @@ fn passed_on(cli: &Cli) -> Vec<String> {
 }
 
 /// Stores the inputs of a scenario and names them.
-pub(crate) fn spec(want: &Wanted<'_>, config: &Config, options: &RunOptions, blobs: &LocalBlobs) -> Result<ScenarioSpec, Complaint> {
+pub(crate) fn spec(
+    want: &Wanted<'_>,
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<ScenarioSpec, Complaint> {
     let prepared = want.prepared;
-    let put = |text: String| blobs.put(text.as_bytes()).map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"));
+    let put = |text: String| {
+        blobs
+            .put(text.as_bytes())
+            .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
+    };
     let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
-    let mut settings = std::collections::BTreeMap::from([("author".to_owned(), prepared.author.clone()), ("pace".to_owned(), options.pace.clone())]);
+    let mut settings = std::collections::BTreeMap::from([
+        ("author".to_owned(), prepared.author.clone()),
+        ("pace".to_owned(), options.pace.clone()),
+    ]);
     if config.text("stream.live") != "off" {
         settings.insert("live".to_owned(), "on".to_owned());
     }
@@ -117,8 +136,12 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
         loop {
             match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
                 Ok(Submitted::Accepted { .. }) => break,
-                Ok(Submitted::Refused { why }) => return Err(Complaint::input(format!("the orchestrator refuses: {why}"), "")),
-                Ok(Submitted::Busy { retry_after_ms }) => tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await,
+                Ok(Submitted::Refused { why }) => {
+                    return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
+                }
+                Ok(Submitted::Busy { retry_after_ms }) => {
+                    tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await
+                }
                 Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
                     tokio::time::sleep(Duration::from_millis(50)).await;
                 }
@@ -130,12 +153,18 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
 }
 
 /// Submits and waits until everything is done.
-async fn follow(talk: &Talk, supervisor: &mut Supervisor, specs: Vec<ScenarioSpec>) -> Result<Vec<ScenarioStatus>, Complaint> {
+async fn follow(
+    talk: &Talk,
+    supervisor: &mut Supervisor,
+    specs: Vec<ScenarioSpec>,
+) -> Result<Vec<ScenarioStatus>, Complaint> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
-    let mut notices = bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
+    let mut notices =
+        bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
     submit(bus.as_ref(), BATCH, specs).await?;
-    let mut interrupted = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate()).map_err(|why| ours(&why.to_string()))?;
+    let mut interrupted = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())
+        .map_err(|why| ours(&why.to_string()))?;
     let mut last_heard = Instant::now();
     // Notices hasten; the poll behind them decides.
     let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
@@ -170,7 +199,9 @@ async fn follow(talk: &Talk, supervisor: &mut Supervisor, specs: Vec<ScenarioSpe
                     return all(bus.as_ref(), &ids).await;
                 }
             }
-            Err(why) if last_heard.elapsed() > AWAY => return Err(ours(&format!("the orchestrator does not answer: {why}"))),
+            Err(why) if last_heard.elapsed() > AWAY => {
+                return Err(ours(&format!("the orchestrator does not answer: {why}")));
+            }
             Err(_) => {}
         }
     }

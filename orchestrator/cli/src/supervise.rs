@@ -45,13 +45,19 @@ struct Role {
 
 impl Supervisor {
     /// Binds the listener, then starts the children and waits until the orchestrator answers.
-    pub(crate) async fn start(work: &Path, config: &Config, workers: u32, passed_on: &[String]) -> Result<Self, Complaint> {
+    pub(crate) async fn start(
+        work: &Path,
+        config: &Config,
+        workers: u32,
+        passed_on: &[String],
+    ) -> Result<Self, Complaint> {
         let namespace = "run";
         let (bus, endpoint) = listen(config.number("supervisor.port"), namespace).await?;
         let bus = Arc::new(bus);
         let mut presence = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.map_err(|why| ours(&why.to_string()))?;
-        std::fs::write(work.join(ENDPOINT_FILE), format!("{endpoint}\n{namespace}\n"))
-            .map_err(|why| Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder"))?;
+        std::fs::write(work.join(ENDPOINT_FILE), format!("{endpoint}\n{namespace}\n")).map_err(|why| {
+            Complaint::input(format!("cannot write into `{}`: {why}", work.display()), "--out chooses another folder")
+        })?;
         let (stop, stopped) = watch::channel(false);
         let (report, gave_up) = mpsc::channel(16);
         let restarts = usize::try_from(config.number("supervisor.restarts")).unwrap_or(20);
@@ -113,14 +119,19 @@ async fn listen(port: u64, namespace: &str) -> Result<(ZenohBus, String), Compla
             Err(why) => last = why.to_string(),
         }
         if port != 0 {
-            return Err(Complaint::input(format!("port {port} of 127.0.0.1 cannot be used: {last}"), "set supervisor.port to 0 for a free one, or to another number"));
+            return Err(Complaint::input(
+                format!("port {port} of 127.0.0.1 cannot be used: {last}"),
+                "set supervisor.port to 0 for a free one, or to another number",
+            ));
         }
     }
     Err(ours(&format!("no port of 127.0.0.1 could be used: {last}")))
 }
 
 fn free_port() -> Result<u64, Complaint> {
-    let port = std::net::TcpListener::bind("127.0.0.1:0").and_then(|listener| listener.local_addr()).map(|address| address.port());
+    let port = std::net::TcpListener::bind("127.0.0.1:0")
+        .and_then(|listener| listener.local_addr())
+        .map(|address| address.port());
     port.map(u64::from).map_err(|why| ours(&format!("127.0.0.1 cannot be used: {why}")))
 }
 
@@ -168,7 +179,13 @@ fn spawn(role: &Role) -> Result<Child, Complaint> {
 }
 
 /// Keeps one child alive until told to stop.
-async fn keep(role: Role, mut child: Child, mut stopped: watch::Receiver<bool>, report: mpsc::Sender<String>, restarts: usize) {
+async fn keep(
+    role: Role,
+    mut child: Child,
+    mut stopped: watch::Receiver<bool>,
+    report: mpsc::Sender<String>,
+    restarts: usize,
+) {
     let mut deaths: VecDeque<Instant> = VecDeque::new();
     // Waiting for a child closes its standard input, unless somebody else holds the pipe.
     let mut pipe = child.stdin.take();
@@ -198,7 +215,11 @@ async fn keep(role: Role, mut child: Child, mut stopped: watch::Receiver<bool>, 
         let how = status.map_or_else(|why| why.to_string(), |status| status.to_string());
         tracing::warn!(role = role.name, how, "a child died and is started again");
         if deaths.len() > restarts {
-            drop(report.send(format!("the {} process died {} times in a minute, last with {how}", role.name, deaths.len())).await);
+            drop(
+                report
+                    .send(format!("the {} process died {} times in a minute, last with {how}", role.name, deaths.len()))
+                    .await,
+            );
             return;
         }
         match spawn(&role) {

@@ -16,6 +16,7 @@ pub mod stage;
 pub mod summary;
 
 #[cfg(test)]
+#[expect(clippy::print_stdout, reason = "what went wrong in which of many runs is told run by run")]
 mod runs;
 
 pub use simulate::{setup, simulate, simulate_into};

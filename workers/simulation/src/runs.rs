@@ -169,7 +169,7 @@ fn on_every_shipped_map_the_reference_arrives_and_meets_who_it_should() {
         let location = socrates_maps::shipped::load(name).unwrap();
         for way in ways(&location, 37) {
             for (relation, cast, node) in relations(&location, &way) {
-                let made = scenario(&location, way.clone(), cast, &[node.clone()], vec![], false);
+                let made = scenario(&location, way.clone(), cast, std::slice::from_ref(&node), vec![], false);
                 // One behind the other they pass the node one after the other.
                 let loose = if relation == "ahead" || relation == "behind" { 4.0 } else { 1.5 };
                 let start = std::time::Instant::now();
@@ -179,7 +179,7 @@ fn on_every_shipped_map_the_reference_arrives_and_meets_who_it_should() {
                 runs += 1;
                 let found = troubles(&recording, 1, loose);
                 if let Some(gap) = Summary::of(&recording).encounter_gaps_s.values().next() {
-                    gaps.entry(relation).or_insert_with(Vec::new).push(*gap);
+                    gaps.entry(relation).or_default().push(*gap);
                 }
                 if !found.is_empty() {
                     bad += 1;
@@ -245,7 +245,7 @@ fn in_the_hospital_two_leave_the_car_one_stays_and_the_robot_enters_last() {
         let exit = |k: usize| {
             let mut path = vec![entry.clone(), lobby.clone()];
             path.extend(aside.get(k % aside.len()).cloned());
-            if k % aside.len() == 0 && deep != entry {
+            if k.is_multiple_of(aside.len()) && deep != entry {
                 path.insert(0, deep.clone());
             }
             path
@@ -325,25 +325,6 @@ fn a_group_of_four_is_passed_without_going_through_it() {
             .filter(|trouble| !trouble.contains("gap") && !trouble.contains("met"))
             .collect();
         println!("{} → {} at {node}: {found:?}", way[0], way[way.len() - 1]);
-        if !found.is_empty() {
-            let people: Vec<_> = recording.tick(0).iter().map(|state| state.point()).collect();
-            println!("{people:?} {:?}", way.iter().filter_map(|id| graph.node(id)).map(|node| node.at).collect::<Vec<_>>());
-            for row in 0..50 {
-                let text: String = (0..60)
-                    .map(|column| {
-                        let at = socrates_model::Point::new(4.2 + 0.1 * f64::from(column), 12.5 - 0.1 * f64::from(row));
-                        if people[1..].iter().any(|person| (person - at).norm() < 0.28) {
-                            'P'
-                        } else if location.grid.is_free(&at) {
-                            '.'
-                        } else {
-                            '#'
-                        }
-                    })
-                    .collect();
-                println!("{text}");
-            }
-        }
         let start = recording.tick(0);
         for state in &start[1..] {
             let nearest = start[1..]

@@ -1,7 +1,7 @@
 //! Where everybody stands at tick 0: on free floor, apart from each other, in formation where asked.
 
 use std::collections::BTreeMap;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 use socrates_model::{GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
 
@@ -18,6 +18,8 @@ const ROBOT_APART_M: f64 = 0.9;
 const MARGIN_M: f64 = 0.04;
 /// Distance of neighbors in a standing circle, m.
 const NEIGHBOR_M: f64 = 1.1;
+/// Free width beside a standing group that lets a robot pass, m: its diameter and 0.4 m.
+const WAY_ROUND_M: f64 = 0.9;
 /// Smallest distance from which somebody comes from behind, m.
 const BEHIND_M: f64 = 2.2;
 /// Lane distance of people who walk side by side, m.
@@ -219,11 +221,9 @@ fn formation(
                 if !free || route.is_some_and(|route| route.project(&center).1 > 1.45) {
                     continue;
                 }
-                let side = |angle: f64| (floor.ray_m(&center, angle, 8.0) - ring - body).max(0.0);
-                let wide = side(heading + FRAC_PI_2).max(side(heading - FRAC_PI_2));
-                // A way round of 1.3 m is enough; beyond that, near the node and in the robot's line is better.
-                let score =
-                    4.0 * wide.min(1.3) - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
+                let wide = way_round(floor, &center, ring + body, heading);
+                // A way round is what matters; then near the node and in the robot's line is better.
+                let score = 5.0 * wide - 0.5 * offset.norm() - 0.6 * (offset.perp(&along).abs() - 0.4).max(0.0);
                 if best.as_ref().is_none_or(|(top, _)| score > *top + 1e-9) {
                     best = Some((score, places));
                 }
@@ -231,6 +231,19 @@ fn formation(
         }
     }
     best.map_or_else(|| ring_places(home, ring.min(0.6), count, heading), |(_, places)| places)
+}
+
+/// How free the better of the two half circles round a group is for a robot, 0 to 1.
+fn way_round(floor: &Floor, center: &Point, rim: f64, heading: f64) -> f64 {
+    let free = |side: f64| {
+        let open = (0..=12_u32).filter(|step| {
+            let angle = heading + side * f64::from(*step) / 12.0 * std::f64::consts::PI;
+            let at = center + Vector::new(libm::cos(angle), libm::sin(angle)) * (rim + WAY_ROUND_M / 2.0);
+            floor.clearance_m(&at) >= WAY_ROUND_M / 2.0
+        });
+        f64::from(u32::try_from(open.count()).unwrap_or(0)) / 13.0
+    };
+    free(1.0).max(free(-1.0))
 }
 
 fn ring_places(center: &Point, ring: f64, count: usize, phase: f64) -> Vec<(Point, f64)> {
