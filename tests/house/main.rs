@@ -279,6 +279,7 @@ fn only_the_command_line_reads_the_environment_or_exits() {
             || name.starts_with("tests/")
             || name.contains("/tests/")
             || name.contains("/benches/")
+            || name.contains("/examples/")
         {
             continue;
         }

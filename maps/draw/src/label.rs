@@ -76,7 +76,7 @@ impl Labels {
         let (w, h) = size;
         let mut best: Option<(f64, Area)> = None;
         // Right, left, above, below, the diagonals, then the same further out.
-        for (ring, reach) in [(0.0, gap), (1.0, gap * 2.2), (2.0, gap * 3.6)] {
+        for (ring, reach) in [(0.0, gap), (1.0, gap + 9.0), (2.0, gap + 20.0)] {
             let places = [
                 (at.0 + reach, at.1 - h / 2.0),
                 (at.0 - reach - w, at.1 - h / 2.0),

@@ -12,6 +12,7 @@ pub mod annotated;
 pub mod label;
 pub mod map_layer;
 pub mod page;
+mod page_data;
 pub mod palette;
 pub mod png;
 pub mod run;

@@ -1,9 +1,11 @@
 //! The report page of a bundle: one self-contained HTML file that needs no network.
 
-use serde_json::{Value, json};
-use socrates_model::{ClauseRole, EventKind, Location, Paths, Proposal, Reading, Recording, Report, Request};
+use std::collections::BTreeSet;
 
-use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_scale};
+use socrates_model::{Location, Paths, Proposal, Reading, Recording, Report, Request};
+
+use crate::map_layer::{Frame, draw_floor, draw_graph};
+use crate::page_data::page_data;
 use crate::palette;
 use crate::svg::{Svg, escape};
 
@@ -11,8 +13,8 @@ const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// Samples per second of the animation.
-const SAMPLE_HZ: usize = 10;
+/// Width of the map's drawing units; the page scales it.
+const WIDTH: f64 = 1120.0;
 
 /// One line of the stage table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,42 +69,42 @@ impl Page<'_> {
     /// The page.
     #[must_use]
     pub fn html(&self) -> String {
-        let frame = Frame::around(self.location, 1120.0, 720.0, (0.0, 0.0));
-        let (w, h) = frame.size();
-        let mut map = Svg::new(w, h + 30.0);
+        let frame = Frame::around(self.location, WIDTH, 720.0, (0.0, 0.0));
+        let whole = frame.size();
+        let mut map = Svg::new(whole.0, whole.1);
         draw_floor(&mut map, self.location, &frame);
         draw_graph(&mut map, self.location, &frame, palette::UNKNOWN, 1.5);
-        let robot: Vec<(f64, f64)> =
-            self.location.graph.polyline(&self.paths.robot).iter().map(|p| frame.px(self.location, p)).collect();
-        map.polyline(
-            &robot,
-            &format!("stroke=\"{}\" stroke-width=\"1.4\" stroke-dasharray=\"3 5\" opacity=\"0.55\"", palette::ROBOT),
-        );
-        draw_doors(&mut map, self.location, &frame);
-        draw_scale(&mut map, self.location, &frame, 16.0);
-        map.raw("<g id=\"trails\"></g><g id=\"agents\"></g>");
+        let way = self.location.graph.polyline(&self.paths.robot);
+        let line: Vec<(f64, f64)> = way.iter().map(|p| frame.px(self.location, p)).collect();
+        let style = "stroke-width=\"1.6\" stroke-dasharray=\"3 5\" opacity=\"0.65\"";
+        map.polyline(&line, &format!("stroke=\"{}\" {style}", palette::ROBOT));
+        map.raw("<g id=\"trails\"></g><g id=\"agents\"></g><g id=\"scale\"></g>");
         let map =
             map.finish().replacen("<svg ", "<svg id=\"map\" role=\"img\" aria-label=\"animation of the run\" ", 1);
-        let runs: Vec<Value> =
-            self.runs.iter().map(|(recording, report)| run_data(self.location, &frame, recording, report)).collect();
-        // `</` must not end the script early, whatever a user wrote in a request.
-        let data = json!({ "runs": runs, "height": h }).to_string().replace("</", "<\\/");
-        let verdict = self.runs.first().map_or("not run", |(_, report)| report.verdict.name());
-        TEMPLATE
-            .replace("{{style}}", STYLE)
-            .replace("{{title}}", &escape(self.title))
-            .replace("{{verdict}}", &escape(verdict))
-            .replace("{{verdict_class}}", if verdict == "realised" { "good" } else { "bad" })
-            .replace("{{author}}", &escape(&self.proposal.author))
-            .replace("{{location}}", &escape(&self.location.name))
-            .replace("{{description}}", &escape(&self.proposal.description))
-            .replace("{{reading}}", &self.reading_html())
-            .replace("{{people}}", &self.people_html())
-            .replace("{{stages}}", &self.stages_html())
-            .replace("{{provenance}}", &self.provenance_html())
-            .replace("{{map}}", &map)
-            .replace("{{script}}", SCRIPT)
-            .replace("{{data}}", &data)
+        let data = page_data(self.location, &frame, &way, self.runs);
+        let style = STYLE.to_owned();
+        let location = match self.location.description.as_str() {
+            "" => escape(&self.location.name),
+            about => format!("<abbr title=\"{}\">{}</abbr>", escape(about), escape(&self.location.name)),
+        };
+        fill(
+            TEMPLATE,
+            &[
+                ("style", style),
+                ("title", escape(self.title)),
+                ("author", escape(&self.proposal.author)),
+                ("location", location),
+                ("reading_line", escape(self.reading_line)),
+                ("reading", self.reading_html()),
+                ("people", self.people_html()),
+                ("stages", self.stages_html()),
+                ("provenance", self.provenance_html()),
+                ("map", map),
+                ("script", SCRIPT.to_owned()),
+                // No `<` at all: neither the end of a script nor a comment can begin, whatever a user wrote.
+                ("data", data.to_string().replace('<', "\\u003c")),
+            ],
+        )
     }
 
     fn reading_html(&self) -> String {
@@ -114,18 +116,19 @@ impl Page<'_> {
         ];
         for (name, text) in request {
             let text = text.unwrap_or_default();
-            out.push_str(&format!("<dt>{name}</dt><dd>{}</dd>", escape(text)));
+            out.push_str(&format!("<dt>{name}</dt><dd class=\"said\">{}</dd>", escape(text.trim())));
         }
         let ignored =
             if self.reading.ignored.is_empty() { "nothing".to_owned() } else { self.reading.ignored.join(", ") };
         out.push_str(&format!("<dt>Ignored words</dt><dd>{}</dd>", escape(&ignored)));
-        for note in self.reading.notes.iter().chain(&self.proposal.notes) {
+        let notes: BTreeSet<&str> = self.reading.notes.iter().chain(&self.proposal.notes).map(String::as_str).collect();
+        for note in notes {
             out.push_str(&format!("<dt>Assumed</dt><dd>{}</dd>", escape(note)));
         }
         for problem in &self.reading.problems {
             out.push_str(&format!("<dt>Problem</dt><dd class=\"bad\">{}</dd>", escape(&problem.to_string())));
         }
-        out.push_str("</dl>");
+        out.push_str(&format!("<dt>Proposed</dt><dd>{}</dd></dl>", escape(&self.proposal.description)));
         out
     }
 
@@ -175,84 +178,97 @@ impl Page<'_> {
     }
 }
 
-fn run_data(location: &Location, frame: &Frame, recording: &Recording, report: &Report) -> Value {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number of ticks")]
-    let every = ((1.0 / recording.header.step_s.max(1e-4)).round() as usize / SAMPLE_HZ).max(1);
-    let round = |x: f64| (x * 10.0).round() / 10.0;
-    let agents: Vec<Value> = recording
-        .header
-        .agents
-        .iter()
-        .map(|info| {
-            let track: Vec<Value> = recording
-                .track(info.agent)
-                .step_by(every)
-                .map(|state| {
-                    let (x, y) = frame.px(location, &state.point());
-                    json!([round(x), round(y), (state.yaw * 100.0).round() / 100.0, state.gesture().code()])
-                })
-                .collect();
-            json!({
-                "name": info.agent.to_string(), "role": info.role, "color": palette::agent(info.agent.number()),
-                "radius": frame.len(location, info.radius_m).max(4.0), "track": track,
-            })
-        })
-        .collect();
-    let doors: Vec<Value> = location
-        .doors
-        .iter()
-        .map(|door| {
-            let times: Vec<Value> = recording
-                .events
-                .iter()
-                .filter_map(|event| {
-                    let EventKind::Door { door: id, open } = &event.kind else { return None };
-                    (*id == door.id).then(|| json!([event.time.secs(), open]))
-                })
-                .collect();
-            let (from, to) = (frame.px(location, &door.from), frame.px(location, &door.to));
-            json!({ "id": door.id, "line": [from.0, from.1, to.0, to.1], "times": times })
-        })
-        .collect();
-    let events: Vec<Value> =
-        recording.events.iter().filter_map(|event| timeline_mark(event.time.secs(), &event.kind)).collect();
-    let clauses: Vec<Value> = report
-        .clauses
-        .iter()
-        .map(|clause| {
-            json!({
-                "id": clause.id, "text": clause.text, "setup": clause.role == ClauseRole::Setup, "must": clause.must,
-                "standing": clause.standing, "times": clause.times_s, "evidence": clause.evidence, "source": clause.source,
-            })
-        })
-        .collect();
-    json!({
-        "name": format!("{} · seed {}", report.planner, report.seed), "verdict": report.verdict.name(),
-        "verdict_text": report.verdict_text, "robot_text": report.robot_text, "hz": SAMPLE_HZ, "agents": agents,
-        "doors": doors, "events": events, "clauses": clauses, "metrics": report.metrics, "story": report.story,
-        "simulated": report.simulated_s,
-    })
+/// The template with every `{{name}}` replaced in one pass: a value that looks like a name stays as it is.
+fn fill(template: &str, values: &[(&str, String)]) -> String {
+    let mut out = String::with_capacity(template.len());
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        out.push_str(before);
+        let Some((name, tail)) = after.split_once("}}") else {
+            out.push_str("{{");
+            rest = after;
+            break;
+        };
+        if let Some((_, value)) = values.iter().find(|(known, _)| *known == name) {
+            out.push_str(value);
+        }
+        rest = tail;
+    }
+    out.push_str(rest);
+    out
 }
 
-/// A mark on the time line: time, lane (agent number), kind and words.
-fn timeline_mark(secs: f64, kind: &EventKind) -> Option<Value> {
-    let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
-    match kind {
-        EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
-            mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_value_that_looks_like_a_place_is_not_filled_again() {
+        let out = fill("<{{a}}|{{b}}>", &[("a", "{{b}}".to_owned()), ("b", "2".to_owned())]);
+        assert_eq!(out, "<{{b}}|2>");
+    }
+
+    #[test]
+    fn every_place_of_the_template_has_a_value_and_the_page_loads_nothing() {
+        let names: Vec<&str> =
+            TEMPLATE.split("{{").skip(1).filter_map(|rest| rest.split_once("}}")).map(|(name, _)| name).collect();
+        assert_eq!(names.len(), 13, "{names:?}");
+        for part in [TEMPLATE, STYLE, SCRIPT] {
+            let part = part.replace("http://www.w3.org/2000/svg", "");
+            assert!(!part.contains("://") && !part.contains("@import") && !part.contains("url("));
         }
-        EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human}: {leaf}")),
-        EventKind::Sees { human, distance_m } => {
-            mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
+    }
+
+    #[test]
+    fn words_of_a_user_cannot_become_markup() {
+        const EVIL: &str = "</script><script>alert(1)</script>{{data}}<!--\"'";
+        fn read<T: serde::de::DeserializeOwned>(value: serde_json::Value) -> T {
+            serde_json::from_value(value).unwrap()
         }
-        EventKind::Encounter { human, gap_s, .. } => {
-            mark(human.number(), "encounter", format!("encounter of {human} and the robot, gap {gap_s:.1} s"))
-        }
-        EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
-        EventKind::WallContact { agent, .. } => mark(agent.number(), "contact", format!("{agent} touches a wall")),
-        EventKind::Door { door, open } => mark(0, "door", format!("{door} {}", if *open { "opens" } else { "closes" })),
-        EventKind::RobotArrived => mark(0, "goal", "the robot is at its goal".to_owned()),
-        EventKind::Stuck { agent } => mark(agent.number(), "contact", format!("{agent} is stuck")),
-        EventKind::Gesture { .. } | EventKind::Node { .. } | EventKind::End { .. } => None,
+        let request: Request = read(json!({
+            "location": EVIL, "social_context": EVIL, "task": EVIL, "rough_scenario": EVIL,
+        }));
+        let reading = Reading {
+            task: EVIL.to_owned(),
+            ignored: vec![EVIL.to_owned()],
+            notes: vec![EVIL.to_owned()],
+            ..Reading::default()
+        };
+        let proposal: Proposal = read(json!({
+            "format": 1, "title": EVIL, "description": EVIL, "pattern": EVIL, "place": "corridor",
+            "humans": [{"id": "human_1", "role": EVIL, "behavior": EVIL, "relation": "frontal", "rules": [], "speed_mps": 1.0}],
+            "robot": {"task": EVIL, "script": [], "expected_behavior": EVIL}, "expected_events": [], "author": EVIL,
+        }));
+        let paths: Paths = read(json!({ "format": 1, "robot": [], "humans": {}, "encounters": [], "author": EVIL }));
+        let location: Location = read(json!({
+            "format": 1, "name": EVIL, "description": EVIL, "graph": { "nodes": [], "edges": [] },
+            "grid": { "width": 4, "height": 1, "resolution_m": 0.1, "origin": { "x": 0.0, "y": 0.0, "yaw": 0.0 }, "cells": "1o2f1o" },
+        }));
+        let stages = [StageRow {
+            stage: EVIL.to_owned(),
+            state: EVIL.to_owned(),
+            attempts: 1,
+            wall_ms: 2,
+            remark: EVIL.to_owned(),
+        }];
+        let provenance = [ProvenanceRow { name: EVIL.to_owned(), value: EVIL.to_owned() }];
+        let page = Page {
+            title: EVIL,
+            request: &request,
+            reading: &reading,
+            reading_line: EVIL,
+            location: &location,
+            proposal: &proposal,
+            paths: &paths,
+            runs: &[],
+            stages: &stages,
+            provenance: &provenance,
+        };
+        let html = page.html();
+        assert!(!html.contains("<script>alert") && !html.contains("<!--"));
+        assert_eq!(html.matches("</script>").count(), 2, "only the page's own two scripts end");
+        assert!(html.matches("{{data}}").count() > 10, "what looks like a place of the template stays text");
     }
 }

@@ -36,8 +36,7 @@ pub fn agent(number: u32) -> &'static str {
     if number == 0 { ROBOT } else { human(number) }
 }
 
-const HUMAN_WORDS: [&str; 8] =
-    ["#a84a00", "#00755a", "#9c3f75", "#8a5f00", "#5d4596", "#784a40", "#3f7a1a", "#a8155f"];
+const HUMAN_WORDS: [&str; 8] = ["#a84a00", "#00755a", "#9c3f75", "#8a5f00", "#5d4596", "#784a40", "#3f7a1a", "#a8155f"];
 
 /// Color for words about an agent: the agent's own, darkened until it has a contrast of 4.5 on white.
 #[must_use]

@@ -78,6 +78,7 @@ pub fn run_picture(
         }
     }
     svg.end_clip();
+    svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
     svg.text(
         (frame.at.0 + w, frame.at.1 + h + 22.0),
@@ -117,7 +118,7 @@ fn draw_heading(svg: &mut Svg, report: Option<&Report>, title: &str, width: f64)
     );
     let first = wrapped(&report.verdict_text, width - pill - 12.0, 15.0, 1).concat();
     svg.text((32.0 + pill, 63.0), &first, &format!("font-size=\"15\" fill=\"{}\"", palette::INK));
-    let robot = format!("robot: {} · seed {}", report.robot_text, report.seed);
+    let robot = format!("{} · seed {}", report.robot_text, report.seed);
     for (line, y) in wrapped(&robot, width, 14.0, 2).iter().zip([90.0, 108.0]) {
         svg.text((20.0, y), line, &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET));
     }
@@ -181,7 +182,11 @@ fn draw_ends(
     let last = track.last().unwrap_or(first);
     let (start, end) = (frame.px(location, &first.point()), frame.px(location, &last.point()));
     if (start.0 - end.0).hypot(start.1 - end.1) > 1.0 {
-        svg.circle(start, radius, &format!("fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"{color}\" stroke-width=\"3\""));
+        svg.circle(
+            start,
+            radius,
+            &format!("fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"{color}\" stroke-width=\"3\""),
+        );
     }
     svg.circle(end, radius, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
     let nose = (end.0 + radius * last.yaw.cos(), end.1 - radius * last.yaw.sin());

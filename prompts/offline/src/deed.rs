@@ -179,11 +179,23 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         if let Some(when) = kept.filter(|_| !stated) {
             read.rule.when = when;
         }
-        person.rules.push(read);
-    } else {
-        person.rules.push(read);
+        return Some(once(person, read));
     }
-    Some(person.rules.len() - 1)
+    Some(once(person, read))
+}
+
+/// Adds a rule, unless the text only says again what another rule holds already: `is surprised, stops and looks`.
+fn once(person: &mut Person, read: ReadRule) -> usize {
+    let again = person.rules.iter().position(|old| {
+        old.rule.act == read.rule.act
+            && old.rule.gesture.is_none()
+            && !read.then
+            && (old.rule.when == read.rule.when || !read.stated)
+    });
+    again.unwrap_or_else(|| {
+        person.rules.push(read);
+        person.rules.len() - 1
+    })
 }
 
 fn gesture(person: &mut Person, around: &Around) -> Option<usize> {

@@ -1,8 +1,8 @@
 //! The clauses of a proposal: every human and every fact gets one that must hold.
 
 use socrates_model::{
-    Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, Predicate,
-    Proposal, Reading, Relation, Rule, Trigger,
+    Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, PlaceClass,
+    Predicate, Proposal, Reading, Relation, Rule, Trigger,
 };
 
 use crate::card::Card;
@@ -13,6 +13,8 @@ use crate::understand::Extra;
 
 /// A robot that does its part has met somebody once they were this near, m: the usual distance of passing in a corridor.
 const MEETS_M: f64 = 2.5;
+/// People at a blind corner see each other from no farther, m.
+const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross, s.
 const GAP_S: f64 = 4.0;
 
@@ -88,7 +90,7 @@ pub(crate) fn events(
         for rule in &human.rules {
             of_rule(&mut list, "", human, rule, false);
         }
-        of_relation(&mut list, "", human);
+        of_relation(&mut list, "", human, proposal.place);
     }
     if place::has(location, proposal.place) {
         let text = format!("it happens at {}", place::an(proposal.place));
@@ -120,7 +122,7 @@ fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) 
         }
         FactKind::Relates { human, .. } => {
             if let Some(who) = proposal.human(*human) {
-                of_relation(list, &fact.id, who);
+                of_relation(list, &fact.id, who, proposal.place);
             }
         }
         FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),
@@ -190,7 +192,7 @@ fn follows(follower: HumanId, leader: AgentId) -> Predicate {
 }
 
 /// What must be seen of how a human stands to the robot's way.
-fn of_relation(list: &mut List, source: &str, human: &HumanProposal) {
+fn of_relation(list: &mut List, source: &str, human: &HumanProposal, place: PlaceClass) {
     let id = human.id;
     let said = !source.is_empty();
     let does = |act: &Action| human.rules.iter().any(|rule| rule.act == *act);
@@ -215,6 +217,12 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal) {
         );
     };
     match human.relation {
+        // Two ways meet at a corner at a right angle: who stops on seeing the robot never comes straight towards it.
+        Relation::Frontal if place == PlaceClass::BlindCorner && halts => {
+            meets(list, true, MEETS_M);
+            let text = format!("{id} comes round the corner, unseen until then");
+            list.setup(said, source, text, Predicate::HiddenUntil { human: id, within_m: CORNER_M });
+        }
         Relation::Frontal => {
             meets(list, true, MEETS_M);
             list.setup(said, source, format!("{id} comes towards the robot"), Predicate::HeadOn { human: id });

@@ -51,8 +51,10 @@ impl Story {
             if let Some((relation, _)) = others.iter().find_map(|p| p.relation.as_ref()) {
                 return Some(*relation);
             }
+            // Who follows and who flees at the sight of the robot have to see it come: they stand where it passes.
             if others.iter().any(|p| does(p, &Action::FollowRobot)) {
-                return Some(Relation::Behind);
+                let flees = others.iter().any(|p| does(p, &Action::RunAway));
+                return Some(if flees { Relation::Static } else { Relation::Behind });
             }
             let walks =
                 others.iter().any(|p| p.doings.iter().any(|doing| doing.starts_with("walks")) || !p.rules.is_empty());

@@ -207,7 +207,16 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
             let off = |i: usize| (net.length_m(route.nodes.get(..=i).unwrap_or_default()) - wanted).abs();
             off(*a).total_cmp(&off(*b))
         })?;
-    let nodes = route.nodes.get(start..)?.to_vec();
+    let mut nodes = route.nodes.get(start..)?.to_vec();
+    // Into a car or room the robot goes alone: whoever walks ahead ends before its door and lets it through.
+    let shared = (route.meet - start + 2).min(nodes.len());
+    let out = nodes.iter().skip(shared).position(|node| net.inside(*node)).map_or(nodes.len(), |n| shared + n);
+    if out < nodes.len() {
+        nodes.truncate(out);
+        while nodes.len() > shared && nodes.last().is_some_and(|node| net.kind(*node) == PlaceClass::Doorway) {
+            nodes.pop();
+        }
+    }
     let cost = if start == route.meet { 4.0 } else { 0.0 };
     Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
 }

@@ -132,11 +132,10 @@ fn closest(signals: &Signals<'_>) -> Vec<(f64, String)> {
         .collect()
 }
 
-/// What the robot did, in one sentence: `reference: arrived at 41.2 s · smallest distance 0.71 m …`.
+/// What the robot did, in one sentence: `arrived at 41.2 s · smallest distance 0.71 m …`.
 pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
-    let planner = &scene.signals.evidence.recording.header.planner;
     if scene.robot().is_none() {
-        return format!("{planner}: no robot in the recording");
+        return "no robot in the recording".to_owned();
     }
     let mut parts = vec![match (scene.arrived_s, scene.goal) {
         (Some(t), _) => format!("arrived at {t:.1} s"),
@@ -184,5 +183,5 @@ pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
     if stuck {
         parts.push("got stuck".to_owned());
     }
-    format!("{planner}: {}", parts.join(" · "))
+    parts.join(" · ")
 }

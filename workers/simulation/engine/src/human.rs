@@ -87,7 +87,10 @@ impl Human {
     pub(crate) fn at_goal(&self) -> bool {
         self.route.end().is_none_or(|end| {
             let reach = if self.route.length_m() > 0.0 { 0.45 + self.lane_m.abs() } else { 1.6 };
-            (self.at - end).norm() < reach && self.s > self.route.length_m() - 0.6
+            let left = (self.at - end).norm();
+            // Where somebody else stands at the end already, next to it is the end.
+            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12;
+            left < reach && self.s > self.route.length_m() - 0.6 || beside && self.s > self.route.length_m() - 1.2
         })
     }
 

@@ -21,6 +21,12 @@ const FOLLOW_GAP_M: f64 = 1.5;
 const BLOCK_AHEAD_M: f64 = 1.25;
 /// Where somebody curious stops, from the robot's center, m.
 const APPROACH_M: f64 = 1.2;
+/// Somebody ahead is stepped aside for from this far on, m.
+const SEE_AHEAD_M: f64 = 4.5;
+/// Gap to whom it passes that a walker wants, surface to surface, m: the near edge of personal space.
+const BERTH_M: f64 = 0.45;
+/// Whoever is this far behind is passed, m.
+const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
 const ASIDE_M: f64 = 1.0;
 
@@ -73,7 +79,13 @@ pub(crate) struct Scene<'a> {
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     match human.action.clone() {
         Action::Navigate => navigate(human, scene, pace),
-        Action::StandStill => Want::STAND,
+        Action::StandStill => match scene.robot {
+            // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
+            Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s) => {
+                give_way(human, scene)
+            }
+            Some(_) | None => Want::STAND,
+        },
         Action::LookAtRobot => scene.robot.map_or(Want::STAND, |robot| Want::stand_facing(robot.at())),
         Action::FollowRobot => follow_robot(human, scene),
         Action::FollowHuman(id) => match scene.trails.get(&id) {
@@ -88,14 +100,17 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
 }
 
 fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
-    if human.stays() || human.at_goal() || pace <= 0.0 {
-        // Members of a standing group look at its middle; everybody else keeps the heading.
+    if human.stays() {
+        // Members of a standing group look at its middle.
         return Want::STAND;
     }
     if let Some(robot) = scene.robot
         && jammed(human, robot, scene.now_s)
     {
         return give_way(human, scene);
+    }
+    if human.at_goal() || pace <= 0.0 {
+        return Want::STAND;
     }
     let left = human.route.length_m() - human.s;
     let speed = pace.min(0.25 + libm::sqrt(2.0 * left.max(0.0)));
@@ -114,13 +129,16 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     Want::go(round(human, scene, &back).unwrap_or(base), speed)
 }
 
-/// Whether it and the robot stand face to face: after 3 s of that it lets the robot through for 8 s, as people do.
+/// Whether it and the robot stand face to face, or it has ended up in the line of a robot that stands because of
+/// it: after 3 s of that it lets the robot through for 8 s, as people do.
 fn jammed(human: &mut Human, robot: &Robot, now_s: f64) -> bool {
     if now_s < human.yields_until_s {
         return true;
     }
     let way = robot.at() - human.at;
-    let facing = way.norm() < 1.6 && way.dot(&human.travel()) > 0.5 * way.norm() && robot.velocity.norm() < 0.1;
+    let stands = way.norm() < 1.6 && robot.velocity.norm() < 0.1;
+    let in_line = human.at_goal() && -way.dot(&robot.intent()) > 0.5 * way.norm();
+    let facing = stands && (in_line || way.dot(&human.travel()) > 0.5 * way.norm());
     human.jammed_s =
         if facing && human.velocity.norm() < 0.15 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
     if human.jammed_s > 3.0 {
@@ -146,7 +164,10 @@ fn beside(floor: &Floor, base: &Point, ahead: &Vector, aside: f64, clearance_m: 
 /// How far to go aside for whoever is ahead and in the way, m to the left.
 fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
     let left = Vector::new(-ahead.y, ahead.x);
-    let mut nearest = (3.5, 0.0);
+    // Where it walks now, beside the line that it would keep to without anybody in the way.
+    let lane_m = (human.at - human.route.point(human.s)).dot(&left) - human.lane_m;
+    let left_m = human.route.length_m() - human.s;
+    let mut nearest = (SEE_AHEAD_M, 0.0);
     for other in scene.others {
         if other.id == Some(human.id) || human.group.is_some() && other.group == human.group {
             continue;
@@ -155,14 +176,35 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
         let (before, beside) = (way.dot(ahead), way.dot(&left));
         let closing = (human.velocity - other.velocity).dot(ahead);
         let across = other.velocity.dot(&left).abs();
-        let need = human.radius_m + other.radius_m + 0.35;
+        let need = human.radius_m + other.radius_m + BERTH_M;
+        let off = beside + lane_m;
+        // Somebody level with it is still passed: going back to the line now would run into its side.
+        let level = before > -PASSED_M && before < 0.1 && human.aside_m.abs() > 0.1;
         // Who crosses is left to the forces: going aside would lead into its way.
-        if before < 0.1 || before > nearest.0 || closing < 0.1 || beside.abs() > need || across > 0.5 {
+        if !level && (before < 0.1 || closing < 0.1) || before > nearest.0 || off.abs() > need || across > 0.5 {
             continue;
         }
-        // On the same line everybody goes to the right.
-        let side = if beside < -0.15 { 1.0 } else { -1.0 };
-        nearest = (before, side * (need - beside.abs() * if side * beside > 0.0 { -1.0 } else { 1.0 }).min(1.1));
+        // Whoever stands where its way ends is joined, not passed.
+        if before > left_m - 0.5 && other.velocity.norm() < 0.1 {
+            continue;
+        }
+        let free = |side: f64| {
+            scene.floor.clearance_m(&(other.at + left * (side * (human.radius_m + other.radius_m + 0.1))))
+                >= human.radius_m + 0.05
+        };
+        // The side once taken is kept; on the same line everybody goes to the right, if there is room.
+        let taken = human.aside_m - human.lane_m;
+        let mut side = if taken.abs() > 0.2 {
+            taken.signum()
+        } else if off < -0.15 {
+            1.0
+        } else {
+            -1.0
+        };
+        if !free(side) && free(-side) {
+            side = -side;
+        }
+        nearest = (before, (off + side * need).clamp(-1.3, 1.3));
     }
     nearest.1
 }
@@ -277,7 +319,11 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
         || human.errand.spot.is_some_and(|spot| off(&spot) < 0.85) && scene.now_s - human.errand.since_s > 1.0
     {
         human.errand.since_s = scene.now_s;
-        human.errand.spot = Some(if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) });
+        let found = if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) };
+        // Between two spots that are about as good it would go to and fro before the robot.
+        if human.errand.spot.is_none_or(|spot| off(&found) > off(&spot) + 0.25) {
+            human.errand.spot = Some(found);
+        }
     }
     let spot = human.errand.spot.unwrap_or(human.at);
     let left = (spot - human.at).norm();
@@ -290,6 +336,10 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
 /// The nearest free spot off the robot's line that can be reached straight; the farthest off where none is far enough.
 fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> Point {
     let mut best = (off(&human.at), human.at);
+    let toward = scene.robot.map_or_else(Vector::zeros, |robot| {
+        let way = robot.at() - human.at;
+        way / way.norm().max(0.1)
+    });
     for ring in 1..=12_u32 {
         for turn in 0..24_u32 {
             let angle = f64::from(turn) / 24.0 * TAU;
@@ -305,13 +355,12 @@ fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> 
             {
                 continue;
             }
-            let distance = off(&spot).min(ASIDE_M + 0.05);
+            // Back or aside rather than towards the robot, and no farther than it takes.
+            let nearer = (spot - human.at).dot(&toward).max(0.0);
+            let distance = off(&spot).min(ASIDE_M + 0.05) - 0.15 * (nearer + (spot - human.at).norm());
             if distance > best.0 + 0.02 {
                 best = (distance, spot);
             }
-        }
-        if best.0 >= ASIDE_M {
-            break;
         }
     }
     best.1

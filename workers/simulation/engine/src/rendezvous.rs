@@ -28,6 +28,9 @@ const BETWEEN_LEAVERS_S: f64 = 1.1;
 const LEAVE_AT_M: f64 = 4.0;
 /// Somebody who crosses aims at being there so long before the robot, s: on the last steps the robot's nearness slows it.
 const CROSS_S: f64 = 1.1;
+/// Somebody who comes towards the robot aims at being there so long before it, s: who stops on seeing the robot
+/// stops near the place of the meeting, not far before it.
+const TOWARD_S: f64 = 0.7;
 /// Somebody ahead is at the encounter so long before the robot, s.
 const AHEAD_S: f64 = 1.0;
 
@@ -111,7 +114,8 @@ fn due_s(relation: Relation, robot_eta_s: f64) -> f64 {
         Relation::Ahead => robot_eta_s - AHEAD_S,
         // A little before the robot: who crosses is seen crossing, not waiting.
         Relation::Crossing | Relation::Leaving => robot_eta_s - CROSS_S,
-        Relation::Frontal | Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => robot_eta_s,
+        Relation::Frontal => robot_eta_s - TOWARD_S,
+        Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => robot_eta_s,
     }
 }
 

@@ -100,7 +100,13 @@ pub(crate) fn humans(
     let mut humans = Vec::new();
     for proposal in &setup.proposal.humans {
         let Some(tree) = trees.remove(&proposal.id) else { continue };
-        let human = human(setup, proposal, tree, &robot_way, floor);
+        let mut human = human(setup, proposal, tree, &robot_way, floor);
+        let taken: Vec<Point> = humans
+            .iter()
+            .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
+            .filter_map(|other| other.route.end())
+            .collect();
+        human.route = apart(human.route, &taken, floor);
         let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
         if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
             inside.insert(proposal.id, door.middle());
@@ -138,6 +144,33 @@ fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
         *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
         points.push(at);
     }
+    Polyline::new(&points)
+}
+
+/// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive.
+fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
+    let crowded = |at: &Point| taken.iter().any(|other| (other - at).norm() < 0.75);
+    let Some(end) = route.end().filter(|end| route.length_m() > 1.0 && crowded(end)) else { return route };
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 0..=4_u32 {
+        for turn in 0..16_u32 {
+            let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
+            let at = end + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.8 + 0.2 * f64::from(ring));
+            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.1 && floor.straight(&end, &at, 0.2);
+            // Short of the others, so that nobody has to walk round them.
+            let cost = (at - end).norm() + 0.3 * (at - route.point(route.length_m() - 1.0)).norm();
+            if free && !crowded(&at) && best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+    }
+    let Some((_, at)) = best else { return route };
+    let mut points: Vec<Point> = route.points().to_vec();
+    let before = route.point(route.length_m() - 0.9);
+    if let Some(last) = points.last_mut() {
+        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
+    }
+    points.push(at);
     Polyline::new(&points)
 }
 

@@ -45,7 +45,9 @@ pub(crate) fn steer(human: &mut Human, want: &Want, floor: &Floor, others: &[Oth
             continue;
         }
         let toward = way / distance;
-        let excess = velocity.dot(&toward) - (2.5 * (gap - 0.06)).max(0.0);
+        // Nobody brushes past a robot the way people brush past each other.
+        let least = if other.id.is_none() && !want.drawn { 0.18 } else { 0.06 };
+        let excess = velocity.dot(&toward) - (2.5 * (gap - least)).max(0.0);
         if excess > 0.0 {
             velocity -= toward * excess;
         }

@@ -16,7 +16,9 @@ const SIDE: usize = 65;
 /// Never nearer to a body's surface than this, m.
 const HARD_GAP_M: f64 = 0.1;
 /// Nearer than this to a body's surface is dear, m.
-const SOFT_GAP_M: f64 = 0.55;
+const SOFT_GAP_M: f64 = 0.65;
+/// How much dearer a metre is on the left of the way, 1 m off it.
+const KEEP_RIGHT: f64 = 0.3;
 /// Nearer than this to a wall is dear, m.
 const WALL_SOFT_M: f64 = 0.25;
 
@@ -84,8 +86,11 @@ impl Window<'_> {
         if wall < 0.02 {
             return None;
         }
-        let mut weight =
-            1.0 + 2.0 * ((WALL_SOFT_M - wall) / WALL_SOFT_M).max(0.0) + 0.25 * self.route.project(at).1.min(4.0);
+        let (s, off) = self.route.project(at);
+        let left = self.route.direction(s).perp(&(at - self.route.point(s))).clamp(0.0, 1.0);
+        let mut weight = 1.0 + 2.0 * ((WALL_SOFT_M - wall) / WALL_SOFT_M).max(0.0) + 0.25 * off.min(4.0);
+        // Where both sides are as good it keeps to the right, like those who come towards it.
+        weight += KEEP_RIGHT * left;
         for obstacle in self.obstacles {
             let gap = obstacle.gap_m(at) - self.ground.radius_m;
             if obstacle.hard && gap < HARD_GAP_M {

@@ -7,6 +7,8 @@ use crate::ground::STANDING_MPS;
 
 /// Length of the way the robot steers at, m.
 const LOOK_AHEAD_M: f64 = 0.55;
+/// Gap to a person below which the robot goes slowly, m.
+const PERSONAL_M: f64 = 0.45;
 /// How far ahead in time people are looked at, s.
 const HORIZON_S: f64 = 2.6;
 
@@ -33,14 +35,18 @@ pub(crate) fn safe_share(
     standing_gap_m: f64,
 ) -> f64 {
     for share in [1.0, 0.75, 0.5, 0.25] {
-        if clear(seen, way, s, share * robot.v_max_mps, robot, standing_gap_m) {
+        // Near people it goes slowly: only at half speed and below may somebody come as near as 0.28 m.
+        let moving_gap_m = if share > 0.5 { PERSONAL_M } else { 0.28 };
+        let gaps = (standing_gap_m, moving_gap_m);
+        if clear(seen, way, s, share * robot.v_max_mps, robot, gaps) {
             return share;
         }
     }
     0.0
 }
 
-fn clear(seen: &Observation<'_>, way: &Polyline, s: f64, v: f64, robot: &RobotModel, standing_gap_m: f64) -> bool {
+/// Whether nobody who stands comes nearer than the first gap, and nobody who walks nearer than the second.
+fn clear(seen: &Observation<'_>, way: &Polyline, s: f64, v: f64, robot: &RobotModel, gaps: (f64, f64)) -> bool {
     let at = seen.pose.point();
     let ahead = way.direction(s + 0.3);
     seen.people.iter().all(|person| {
@@ -52,7 +58,7 @@ fn clear(seen: &Observation<'_>, way: &Polyline, s: f64, v: f64, robot: &RobotMo
             return true;
         }
         let stands = person.velocity.norm() < STANDING_MPS;
-        let gap = if stands { standing_gap_m } else { 0.28 };
+        let gap = if stands { gaps.0 } else { gaps.1 };
         let mut t = 0.1;
         while t <= HORIZON_S {
             let me: Point = way.point(s + v * t);
@@ -70,6 +76,17 @@ fn clear(seen: &Observation<'_>, way: &Polyline, s: f64, v: f64, robot: &RobotMo
         }
         true
     })
+}
+
+/// Share of full speed beside people: half where somebody is nearer than personal space allows and not yet passed.
+pub(crate) fn beside_people(seen: &Observation<'_>, robot: &RobotModel) -> f64 {
+    let at = seen.pose.point();
+    let near = seen.people.iter().any(|person| {
+        let to = person.at - at;
+        to.norm() < robot.radius_m + person.radius_m + PERSONAL_M
+            && wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw).abs() < 1.9
+    });
+    if near { 0.5 } else { 1.0 }
 }
 
 /// Whether somebody is close ahead, so that the robot stands because of a person.

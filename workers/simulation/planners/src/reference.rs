@@ -6,7 +6,7 @@ use socrates_model::{Command, Door, Gesture, Observation, Point, Polyline, Robot
 use crate::detour;
 use crate::ground::{Ground, closed_door_ahead, obstacles};
 use crate::mission::Mission;
-use crate::pursuit::{safe_share, somebody_ahead, steer};
+use crate::pursuit::{beside_people, safe_share, somebody_ahead, steer};
 use crate::script::{Script, Wish};
 use crate::waiting::{WaitingSpot, spot};
 
@@ -74,6 +74,7 @@ impl Reference {
             self.planned_s = now;
             self.plan = self.detour(seen).map(|way| (way, 0.0));
         }
+        let limit = limit.min(beside_people(seen, &self.robot) * self.robot.v_max_mps);
         let (command, share) = if let Some((plan, s)) = &mut self.plan {
             *s = plan.project_within(&at, *s, *s + 1.0).0;
             let share = safe_share(seen, plan, *s, &self.robot, 0.06);
