@@ -1,4 +1,5 @@
 //! Kill -9 of any process during a batch: every scenario ends with one result, none twice, nothing left running.
+#![cfg(test)]
 
 use std::path::Path;
 

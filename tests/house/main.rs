@@ -1,4 +1,5 @@
 //! The house rules, each as a test.
+#![cfg(test)]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

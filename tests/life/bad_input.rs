@@ -4,6 +4,9 @@ use std::path::Path;
 
 use crate::{WAREHOUSE, socrates};
 
+/// What becomes of a file of a location: other bytes, or nothing.
+type Change<'a> = dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>> + 'a;
+
 fn refused(folder: &Path, name: &str, request: &str, words: &[&str]) {
     let file = folder.join(format!("{name}.toml"));
     std::fs::write(&file, request).unwrap();
@@ -54,7 +57,7 @@ fn wrong_requests_are_refused_with_the_value_and_a_hint() {
 fn wrong_locations_are_refused_with_file_and_value() {
     let folder = tempfile::tempdir().unwrap();
     let files = socrates_maps::shipped::files("office").unwrap();
-    let broken = |name: &str, change: &dyn Fn(&str, Vec<u8>) -> Option<Vec<u8>>| {
+    let broken = |name: &str, change: &Change<'_>| {
         let dir = folder.path().join(name);
         std::fs::create_dir_all(&dir).unwrap();
         for (file, bytes) in &files {

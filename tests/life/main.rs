@@ -1,4 +1,5 @@
 //! The main job with real processes: requests in, bundles out.
+#![cfg(test)]
 
 mod bad_input;
 mod bundles;

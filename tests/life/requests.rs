@@ -35,6 +35,7 @@ fn every_request_of_the_office_is_realised() {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "a skipped test says why")]
 fn a_foreign_location_is_realised_with_its_own_request_and_without_any() {
     let Some(data) = socrates_tests::shared_data() else {
         println!("skipped: there is no shared data beside this checkout");

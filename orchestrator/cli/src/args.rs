@@ -83,7 +83,7 @@ pub(crate) enum Verb {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Score a bundle again, or tracks of your own (CSV with t,id,x,y[,yaw], or MCAP).
+    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).
     Score {
         /// Bundle folder, CSV or MCAP file.
         what: PathBuf,

@@ -27,7 +27,7 @@ impl Config {
         let mut values = BTreeMap::new();
         let built_in = parse(BUILT_IN, "built-in")?;
         flatten("", &built_in, "built-in", &mut values);
-        let found = file.map_or_else(|| Path::new("socrates.toml"), |path| path);
+        let found = file.unwrap_or_else(|| Path::new("socrates.toml"));
         if file.is_some() || found.is_file() {
             let text = std::fs::read_to_string(found).map_err(|why| {
                 Complaint::input(

@@ -53,11 +53,9 @@ pub(crate) async fn worker(config: &Config, options: &WorkerOptions, key: Option
             socrates_kit::serve(socrates_behaviors::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await
         }
         Stage::Simulation => {
-            socrates_kit::serve(socrates_simulation::Simulation::default(), bus.clone(), settings, shutdown).await
+            socrates_kit::serve(socrates_simulation::Simulation, bus.clone(), settings, shutdown).await
         }
-        Stage::Scoring => {
-            socrates_kit::serve(socrates_scoring::ScoringStage::default(), bus.clone(), settings, shutdown).await
-        }
+        Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage, bus.clone(), settings, shutdown).await,
         Stage::Review => {
             return Err(Complaint::input(
                 "a review is done by a person",

@@ -9,7 +9,7 @@ use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig, keys};
+use socrates_link::{Bus as _, Mode, ZenohBus, ZenohConfig, keys};
 use socrates_model::job::Stage;
 use tokio::process::{Child, Command};
 use tokio::sync::{mpsc, watch};
