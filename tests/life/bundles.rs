@@ -51,6 +51,17 @@ fn a_bundle_holds_everything_and_can_be_moved() {
     let page = std::fs::read_to_string(bundle.join("report.html")).unwrap();
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
     assert!(!bundle.join(".socrates").exists(), "the work folder was left");
+    let provenance = std::fs::read_to_string(bundle.join("details/provenance.json")).unwrap();
+    let provenance: serde_json::Value = serde_json::from_str(&provenance).unwrap();
+    let jobs = provenance["jobs"].as_array().unwrap();
+    for stage in ["proposal", "paths", "behaviors", "simulation", "scoring"] {
+        let job =
+            jobs.iter().find(|job| job["job"]["stage"] == stage).unwrap_or_else(|| panic!("no {stage} in {jobs:?}"));
+        assert!(job["attempts"].as_array().is_some_and(|attempts| !attempts.is_empty()), "{job}");
+        assert!(job["seed"].is_number() && job["inputs"].is_object(), "{job}");
+    }
+    let proposal = jobs.iter().find(|job| job["job"]["stage"] == "proposal").unwrap();
+    assert!(proposal["exchanges"].as_array().is_some_and(|exchanges| !exchanges.is_empty()), "{proposal}");
     let elsewhere = folder.path().join("else/where");
     copy(&bundle, &elsewhere);
     std::fs::remove_dir_all(&bundle).unwrap();

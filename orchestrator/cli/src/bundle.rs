@@ -17,6 +17,7 @@ use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Behaviors, Digest, Location, Paths, Proposal, Reading, Recording, Report, Request, Verdict};
 
 use crate::exit::Complaint;
+use crate::history::PastJob;
 use crate::prepare::Prepared;
 
 /// One run in the manifest.
@@ -99,6 +100,7 @@ pub(crate) fn write(
     prepared: &Prepared,
     seed: u64,
     status: &ScenarioStatus,
+    past: &[PastJob],
     fetch: &Fetch<'_>,
 ) -> Result<Bundle, Complaint> {
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
@@ -164,7 +166,7 @@ pub(crate) fn write(
         out.put(&format!("details/behaviors/{id}.xml"), human.tree.as_bytes())?;
     }
     let stages = stage_rows(status);
-    let provenance = provenance(prepared, seed, status, fetch);
+    let provenance = provenance(prepared, seed, status, past, fetch);
     let rows = provenance_rows(prepared, seed, &entries);
     let reading_line = socrates_offline::summary(&prepared.reading);
     let page = Page {
@@ -404,23 +406,40 @@ fn provenance_rows(prepared: &Prepared, seed: u64, runs: &[RunEntry]) -> Vec<Pro
     rows.into_iter().map(|(name, value)| ProvenanceRow { name: name.to_owned(), value }).collect()
 }
 
-/// Versions, seeds, every question, answer, fault and attempt.
-fn provenance(prepared: &Prepared, seed: u64, status: &ScenarioStatus, fetch: &Fetch<'_>) -> serde_json::Value {
-    let jobs: Vec<serde_json::Value> = status
-        .jobs
+/// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.
+fn provenance(
+    prepared: &Prepared,
+    seed: u64,
+    status: &ScenarioStatus,
+    past: &[PastJob],
+    fetch: &Fetch<'_>,
+) -> serde_json::Value {
+    // What passed between the stage and its author, as text or as the object it is.
+    let exchanges = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
+        artifacts
+            .iter()
+            .filter(|artifact| matches!(artifact.role.as_str(), "exchange" | "refused"))
+            .filter_map(|artifact| string(artifact, fetch).ok())
+            .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+            .collect()
+    };
+    let names = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
+        artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect()
+    };
+    let jobs: Vec<serde_json::Value> = past
         .iter()
         .map(|job| {
-            let exchanges: Vec<serde_json::Value> = job
-                .artifacts
+            let attempts: Vec<serde_json::Value> = job
+                .attempts
                 .iter()
-                .filter(|artifact| matches!(artifact.role.as_str(), "exchange" | "refused"))
-                .filter_map(|artifact| string(artifact, fetch).ok())
-                .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+                .map(|attempt| {
+                    json!({ "attempt": attempt.number, "end": attempt.end, "class": attempt.class, "faults": attempt.faults,
+                            "wall_ms": attempt.wall_ms, "tokens": attempt.tokens, "remark": attempt.remark,
+                            "artifacts": names(&attempt.artifacts), "exchanges": exchanges(&attempt.artifacts) })
+                })
                 .collect();
-            let artifacts: Vec<serde_json::Value> =
-                job.artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect();
-            json!({ "job": job.key, "state": job.state, "attempts": job.attempts, "wall_ms": job.wall_ms, "remark": job.remark,
-                    "faults": job.faults, "artifacts": artifacts, "exchanges": exchanges })
+            json!({ "job": job.key, "state": job.state, "seed": job.seed, "inputs": job.inputs, "sent_back": job.sent_back,
+                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts) })
         })
         .collect();
     json!({ "version": env!("CARGO_PKG_VERSION"), "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })

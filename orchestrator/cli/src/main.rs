@@ -15,6 +15,7 @@ mod config;
 mod dev;
 mod exit;
 mod explain;
+mod history;
 mod library;
 mod map;
 mod orchestrate;

@@ -139,7 +139,7 @@ fn conclude(
     let scored =
         status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
     if scored {
-        return bundle::write(dir, prepared, seed, status, &|digest| made.fetch(digest));
+        return bundle::write(dir, prepared, seed, status, made.history.of(&status.id), &|digest| made.fetch(digest));
     }
     let faults: Vec<socrates_model::Fault> =
         status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();

@@ -12,6 +12,7 @@ use tokio::time::Instant;
 use crate::args::{Cli, RunOptions};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::history::{self, History};
 use crate::prepare::Prepared;
 use crate::run::stage_line;
 use crate::supervise::Supervisor;
@@ -33,6 +34,8 @@ pub(crate) struct Wanted<'a> {
 pub(crate) struct Made {
     /// One status per scenario, in order of submission.
     pub(crate) statuses: Vec<ScenarioStatus>,
+    /// Every revision and attempt of each scenario.
+    pub(crate) history: History,
     blobs: LocalBlobs,
 }
 
@@ -72,7 +75,13 @@ pub(crate) async fn make(
     let followed = follow(talk, &mut supervisor, specs).await;
     talk.clear();
     supervisor.stop().await;
-    Ok(Made { statuses: followed?, blobs })
+    let statuses = followed?;
+    // The store is free once its orchestrator has left; a history that cannot be read fails no scenario.
+    let history = history::read(&work.join("jobs.sqlite")).unwrap_or_else(|why| {
+        talk.warn(&format!("the history of attempts cannot be read: {why}"));
+        Default::default()
+    });
+    Ok(Made { statuses, history, blobs })
 }
 
 /// Global flags that the children need too.
