@@ -65,6 +65,10 @@ const WALLS: &[(&str, &[&str])] = &[
         "workers/simulation/engine",
         &["tokio", "zenoh", "iceoryx2", "socrates-planners", "socrates-stream", "socrates-kit", "socrates-link"],
     ),
+    (
+        "workers/simulation/hunav",
+        &["tokio", "zenoh", "iceoryx2", "rapier2d", "socrates-planners", "socrates-stream", "socrates-kit", "socrates-link"],
+    ),
     ("workers/simulation/planners", &["tokio", "zenoh", "rapier2d", "socrates-bt", "socrates-engine", "socrates-kit"]),
     (
         "workers/scoring",
