@@ -143,7 +143,8 @@ impl Turn<'_> {
         self.state.next_fence += 1;
         let job = self.job_mut(key)?;
         let number = job.attempts.last().map_or(0, |attempt| attempt.number) + 1;
-        job.attempts.push(Attempt::new(number, instance, fence, job.trial, now));
+        let attempt = Attempt { ready: job.ready, ..Attempt::new(number, instance, fence, job.trial, now) };
+        job.attempts.push(attempt);
         job.lease_until = lease_until;
         job.deadline_at = deadline_at;
         self.attempt_mut(key, number);
@@ -201,10 +202,12 @@ impl Attempt {
             class: None,
             faults: Vec::new(),
             wall_ms: 0,
+            span_ms: 0,
             tokens: (0, 0),
             remark: String::new(),
             artifacts: Vec::new(),
             granted,
+            ready: granted,
         }
     }
 }

@@ -53,6 +53,7 @@ impl State {
         for (key, mut attempt) in snapshot.attempts {
             state.next_fence = state.next_fence.max(attempt.fence + 1);
             attempt.granted = now;
+            attempt.ready = now;
             if let Some(job) = state.jobs.get_mut(&key) {
                 job.attempts.push(attempt);
             }

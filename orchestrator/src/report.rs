@@ -78,9 +78,11 @@ impl Turn<'_> {
 
     /// Writes into the attempt what its worker said, whatever becomes of it.
     fn annotate(&mut self, report: &Report) {
+        let now = self.now;
         let Some(attempt) = self.attempt_mut(&report.key, report.attempt) else { return };
         attempt.reported = true;
         attempt.wall_ms = report.wall_ms;
+        attempt.span_ms = now.saturating_sub(attempt.ready);
         attempt.tokens = report.tokens;
         attempt.remark.clone_from(&report.remark);
         if let Outcome::Failed { class, faults, .. } = &report.outcome {

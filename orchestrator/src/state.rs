@@ -123,6 +123,10 @@ pub struct Attempt {
     pub faults: Vec<Fault>,
     /// Working time as reported, ms.
     pub wall_ms: u64,
+    /// From the moment the job was ready to its report, ms; what is more than the working time is waiting
+    /// and carrying.
+    #[serde(default)]
+    pub span_ms: u64,
     /// Tokens in and out.
     pub tokens: (u64, u64),
     /// Remark of the report.
@@ -132,6 +136,9 @@ pub struct Attempt {
     /// When it was granted, on this reign's clock.
     #[serde(skip)]
     pub granted: Millis,
+    /// When its job became ready, on this reign's clock.
+    #[serde(skip)]
+    pub ready: Millis,
 }
 
 /// The one result of a job.
@@ -204,6 +211,9 @@ pub struct Job {
     /// Jobs whose inputs come from this one.
     #[serde(skip)]
     pub children: Vec<JobKey>,
+    /// When it became ready last, on this reign's clock.
+    #[serde(skip)]
+    pub ready: Millis,
     /// When something happens to it by itself.
     #[serde(skip)]
     pub due: Option<Millis>,

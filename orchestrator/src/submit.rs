@@ -172,6 +172,7 @@ impl Turn<'_> {
             due: None,
             lease_until: 0,
             deadline_at: 0,
+            ready: 0,
         });
         Some(key)
     }

@@ -151,9 +151,13 @@ impl<'a> Turn<'a> {
             self.arm(key, None);
         }
         let reason = reason.into();
+        let now = self.now;
         if let Some(job) = self.job_mut(key) {
             job.state = next;
             job.reason = reason;
+            if next == JobState::Ready {
+                job.ready = now;
+            }
         }
         self.index(key);
         self.announce(key);

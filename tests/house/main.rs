@@ -16,6 +16,7 @@ const WALLS: &[(&str, &[&str])] = &[
     ("prompts/llm", &["zenoh", "socrates-"]),
     ("prompts/offline", &["tokio", "zenoh", "reqwest", "socrates-llm", "socrates-author"]),
     ("workers/kit", &["zenoh", "iceoryx2", "socrates-orchestrator", "socrates-store", "socrates-stream"]),
+    ("workers/desk", &["zenoh", "socrates-simulation", "socrates-scoring", "socrates-orchestrator", "socrates-store"]),
     (
         "workers/proposal",
         &[
@@ -67,7 +68,16 @@ const WALLS: &[(&str, &[&str])] = &[
     ),
     (
         "workers/simulation/hunav",
-        &["tokio", "zenoh", "iceoryx2", "rapier2d", "socrates-planners", "socrates-stream", "socrates-kit", "socrates-link"],
+        &[
+            "tokio",
+            "zenoh",
+            "iceoryx2",
+            "rapier2d",
+            "socrates-planners",
+            "socrates-stream",
+            "socrates-kit",
+            "socrates-link",
+        ],
     ),
     ("workers/simulation/planners", &["tokio", "zenoh", "rapier2d", "socrates-bt", "socrates-engine", "socrates-kit"]),
     (

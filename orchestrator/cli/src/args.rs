@@ -160,7 +160,7 @@ pub(crate) struct RunOptions {
     /// Scenarios to make from each request; wins over the request.
     #[arg(long)]
     pub(crate) variants: Option<u32>,
-    /// Author: `auto`, `offline`, `openai:MODEL`, `cassette:FILE`; wins over the request.
+    /// Author: `auto`, `offline`, `openai:MODEL`, `cassette:FOLDER`; wins over the request.
     #[arg(long)]
     pub(crate) author: Option<String>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
@@ -172,6 +172,10 @@ pub(crate) struct RunOptions {
     /// Worker processes of the simulation stage.
     #[arg(long)]
     pub(crate) workers: Option<u32>,
+    /// Faults put into the author's answers, for experiments: `gdisc=0.3,bxml=0.1,first_only=true`; each number is
+    /// a probability per ask.
+    #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
+    pub(crate) inject: String,
 }
 
 /// Verbs of `map`.
@@ -295,6 +299,9 @@ pub(crate) struct OrchestratorOptions {
     /// Namespace.
     #[arg(long, default_value = "main")]
     pub(crate) namespace: String,
+    /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
+    #[arg(long, default_value = "disk", value_parser = ["disk", "process"])]
+    pub(crate) durable: String,
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(crate) tied: bool,

@@ -81,7 +81,7 @@ pub(crate) struct Bundle {
 pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     let text = json!({
         "request": prepared.request, "location": prepared.location, "pins": prepared.pins, "seed": seed,
-        "author": prepared.author, "version": env!("CARGO_PKG_VERSION"),
+        "author": prepared.author, "injected": prepared.injected, "version": env!("CARGO_PKG_VERSION"),
     });
     Digest::of(text.to_string().as_bytes())
 }
@@ -434,7 +434,7 @@ fn provenance(
                 .iter()
                 .map(|attempt| {
                     json!({ "attempt": attempt.number, "end": attempt.end, "class": attempt.class, "faults": attempt.faults,
-                            "wall_ms": attempt.wall_ms, "tokens": attempt.tokens, "remark": attempt.remark,
+                            "wall_ms": attempt.wall_ms, "span_ms": attempt.span_ms, "tokens": attempt.tokens, "remark": attempt.remark,
                             "artifacts": names(&attempt.artifacts), "exchanges": exchanges(&attempt.artifacts) })
                 })
                 .collect();

@@ -35,6 +35,7 @@ pub(crate) async fn submit(
         pace: "max".to_owned(),
         require: "any".to_owned(),
         workers: None,
+        inject: String::new(),
     };
     let files = request_files(requests)?;
     let prepared =

@@ -33,18 +33,31 @@ pub(crate) struct Complaint {
     pub(crate) causes: Vec<String>,
     /// What helps.
     pub(crate) hint: String,
+    /// What there is of a result all the same, for programs.
+    pub(crate) result: Option<Box<serde_json::Value>>,
 }
 
 impl Complaint {
     /// Bad input.
     pub(crate) fn input(what: impl Into<String>, hint: impl Into<String>) -> Self {
-        Self { code: Code::Input, what: what.into(), causes: Vec::new(), hint: hint.into() }
+        Self { code: Code::Input, what: what.into(), causes: Vec::new(), hint: hint.into(), result: None }
     }
 
     /// Bad input with several problems.
     pub(crate) fn faults(what: impl Into<String>, faults: &[Fault], hint: impl Into<String>) -> Self {
         let causes = faults.iter().map(ToString::to_string).collect();
-        Self { code: Code::Input, what: what.into(), causes, hint: hint.into() }
+        Self { code: Code::Input, what: what.into(), causes, hint: hint.into(), result: None }
+    }
+
+    /// The object that programs get: what there is of a result, and the error.
+    pub(crate) fn object(&self) -> serde_json::Value {
+        let mut object = self.result.as_deref().cloned().unwrap_or_else(|| serde_json::json!({}));
+        if let Some(members) = object.as_object_mut() {
+            members.insert("error".to_owned(), self.what.clone().into());
+            members.insert("causes".to_owned(), self.causes.clone().into());
+            members.insert("hint".to_owned(), self.hint.clone().into());
+        }
+        object
     }
 
     /// With another exit code.

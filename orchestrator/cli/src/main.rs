@@ -31,7 +31,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use crate::args::{Cli, ClusterVerb, Format, Verb};
+use crate::args::{Cli, ClusterVerb, Verb};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
@@ -49,11 +49,7 @@ fn main() -> ExitCode {
         Ok(code) => code,
         Err(complaint) => {
             talk.warn(&format!("error: {complaint}"));
-            if cli.format == Format::Json {
-                talk.result(
-                    &serde_json::json!({ "error": complaint.what, "causes": complaint.causes, "hint": complaint.hint }),
-                );
-            }
+            talk.result(&complaint.object());
             complaint.code
         }
     };

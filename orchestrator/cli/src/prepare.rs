@@ -29,7 +29,9 @@ pub(crate) struct Prepared {
     pub(crate) reading: Reading,
     /// Pinned artifacts as JSON by role.
     pub(crate) pins: BTreeMap<String, String>,
-    /// Resolved author: `offline`, `openai:MODEL`, `cassette:FILE`.
+    /// Faults to be put into the author's answers, as settings of its jobs; empty for none.
+    pub(crate) injected: BTreeMap<String, String>,
+    /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
     pub(crate) author_note: String,
@@ -138,8 +140,27 @@ pub(crate) fn prepare_text(
             pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
         }
     }
-    let (author, author_note) = choose_author(&request.run.author, config, key_found);
-    Ok(Prepared { name: slug(name), request, location, location_files, reading, pins, author, author_note })
+    let (author, mut author_note) = choose_author(&request.run.author, config, key_found);
+    let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
+    if !injected.is_empty() {
+        author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
+    }
+    Ok(Prepared { name: slug(name), request, location, location_files, reading, pins, injected, author, author_note })
+}
+
+/// The settings of `--inject`.
+fn injected(text: &str) -> Result<BTreeMap<String, String>, Complaint> {
+    let mut settings = BTreeMap::new();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let (kind, rate) = part.split_once('=').ok_or_else(|| {
+            Complaint::input(format!("`--inject {part}` has no rate"), "write --inject gdisc=0.3, for example")
+        })?;
+        settings.insert(format!("fault.{}", kind.trim()), rate.trim().to_owned());
+    }
+    socrates_author::FaultRates::from_settings(&settings).map_err(|why| {
+        Complaint::input(format!("--inject: {}", why.message), "write --inject gdisc=0.3, for example")
+    })?;
+    Ok(settings)
 }
 
 /// Flags win over the request.

@@ -8,6 +8,7 @@ use socrates_kit::{Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
 use socrates_llm::ApiKey;
 use socrates_model::job::Stage;
+use socrates_store::Durability;
 use tokio::sync::watch;
 
 use crate::args::{OrchestratorOptions, WorkerOptions};
@@ -30,6 +31,8 @@ pub(crate) async fn worker(config: &Config, options: &WorkerOptions, key: Option
     settings.faults = FaultPlan::parse(&options.inject)
         .map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
     settings.host = host();
+    // A worker that leaves with its supervisor shares the machine with whoever records its reports.
+    settings.durable = !options.tied;
     if stage == Stage::Simulation && config.text("stream.live") != "off" {
         // Control and stream never share a session, so that a frozen viewer stalls no job.
         settings.live = Some(client(&options.connect, &options.namespace, "stream").await?);
@@ -100,6 +103,7 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         lease_ms: config.number("orchestrator.lease_ms").clamp(1_000, 600_000),
         beat_ms: config.number("orchestrator.beat_ms").clamp(100, 200_000),
         repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
+        durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };
     let served = orchestrate::serve(settings, bus.clone(), leave(options.tied)).await;

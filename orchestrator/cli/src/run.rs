@@ -120,8 +120,10 @@ async fn single(
             drop(std::fs::remove_dir_all(&work));
             finish(talk, options, &bundle, Some(&status))
         }
-        Err(complaint) => {
-            talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": stages(&status), "metrics": {}, "reading": prepared.reading }));
+        Err(mut complaint) => {
+            complaint.result = Some(Box::new(
+                json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": stages(&status), "metrics": {}, "reading": prepared.reading }),
+            ));
             return Err(complaint);
         }
     };

@@ -114,6 +114,7 @@ pub(crate) fn spec(
         ("author".to_owned(), prepared.author.clone()),
         ("pace".to_owned(), options.pace.clone()),
     ]);
+    settings.extend(prepared.injected.clone());
     if config.text("stream.live") != "off" {
         settings.insert("live".to_owned(), "on".to_owned());
     }

@@ -145,7 +145,17 @@ fn roles(work: &Path, endpoint: &str, namespace: &str, simulations: u32, passed_
         args.extend(["--connect", endpoint, "--namespace", namespace, "--tied"].map(str::to_owned));
         roles.push(Role { name, args });
     };
-    role("orchestrator".to_owned(), vec!["orchestrator".to_owned(), "--dir".to_owned(), text(work.to_path_buf())]);
+    role(
+        "orchestrator".to_owned(),
+        vec![
+            "orchestrator".to_owned(),
+            "--dir".to_owned(),
+            text(work.to_path_buf()),
+            // Whoever knows of a commit runs on this machine.
+            "--durable".to_owned(),
+            "process".to_owned(),
+        ],
+    );
     for stage in Stage::WORKERS {
         let count = if stage == Stage::Simulation { simulations.clamp(1, 64) } else { 1 };
         for number in 0..count {

@@ -23,7 +23,7 @@ use socrates_model::Digest;
 use socrates_orchestrator::{Row, Snapshot};
 
 pub use memory::MemoryStore;
-pub use sqlite::SqliteStore;
+pub use sqlite::{Durability, SqliteStore};
 
 /// Layout number of the tables. A store with a larger one is refused.
 pub const SCHEMA_VERSION: u32 = 1;

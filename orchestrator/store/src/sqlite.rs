@@ -21,13 +21,41 @@ pub struct SqliteStore {
     _lock: File,
 }
 
+/// What a commit outlives. Either way it is whole or not there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Durability {
+    /// The machine: the log is on the disk before a commit returns. For orchestrators whose workers run elsewhere.
+    #[default]
+    Disk,
+    /// The process, by whatever signal. A power cut may take the last commits, and with them everybody who knew of
+    /// them: right where all workers share the machine, and a commit costs no wait for the disk.
+    Process,
+}
+
+impl Durability {
+    const fn pragma(self) -> &'static str {
+        match self {
+            Self::Disk => "pragma synchronous = full;",
+            Self::Process => "pragma synchronous = normal;",
+        }
+    }
+}
+
 impl SqliteStore {
+    /// Opens or makes the store at `path`, for this process alone; every commit outlives the machine.
+    ///
+    /// # Errors
+    /// As [`Self::open_with`].
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        Self::open_with(path, Durability::Disk)
+    }
+
     /// Opens or makes the store at `path`, for this process alone.
     ///
     /// # Errors
     /// [`StoreError::Locked`] when another process has it, [`StoreError::Unwritable`],
     /// [`StoreError::Newer`], [`StoreError::Sqlite`] when the file is no store.
-    pub fn open(path: &Path) -> Result<Self, StoreError> {
+    pub fn open_with(path: &Path, durability: Durability) -> Result<Self, StoreError> {
         let unwritable = |source| StoreError::Unwritable { path: path.to_owned(), source };
         if let Some(dir) = path.parent() {
             std::fs::create_dir_all(dir).map_err(unwritable)?;
@@ -46,6 +74,7 @@ impl SqliteStore {
         let failed = |source| failure(path, source);
         let connection = Connection::open(path).map_err(failed)?;
         connection.execute_batch(schema::PRAGMAS).map_err(failed)?;
+        connection.execute_batch(durability.pragma()).map_err(failed)?;
         let mut store = Self { path: path.to_owned(), connection, _lock: lock };
         store.prepare()?;
         Ok(store)

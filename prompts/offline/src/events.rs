@@ -76,7 +76,11 @@ pub(crate) fn events(
     list.setup(
         true,
         source(|kind| matches!(kind, FactKind::Humans(_))),
-        format!("{count} humans are there all the time"),
+        if count == 1 {
+            "one human is there all the time".to_owned()
+        } else {
+            format!("{count} humans are there all the time")
+        },
         Predicate::Humans { count },
     );
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);

@@ -61,6 +61,9 @@ pub struct Exchange {
     pub question: Digest,
     /// Seed of the question.
     pub seed: u64,
+    /// What the question says was wrong with earlier answers; the rest of it are the inputs of the job.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub feedback: Vec<Fault>,
     /// What was sent, for authors that read messages.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub messages: Vec<Message>,
@@ -117,6 +120,7 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
         model: String::new(),
         question: asked.unwrap_or_else(|_no_json| Digest::of(&[])),
         seed: question.seed,
+        feedback: question.feedback.clone(),
         messages: Vec::new(),
         answer: String::new(),
         tokens: (0, 0),

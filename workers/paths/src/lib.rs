@@ -4,12 +4,10 @@
 //! request, reading, location, proposal ──► question ──► author ──► paths + exchange
 //! ```
 //!
-//! Thin on purpose: it carries papers from the job to the author's desk and the answer back. A refused answer is
-//! reported with every reason and kept as the artifact `refused`, so that the next ask can show it to the author.
+//! Thin on purpose: what the authoring stages share is in `socrates-desk`.
 //!
 //! *Never here:* another stage, the orchestrator, a second ask, a wait, an environment variable.
 
-mod report;
 mod stage;
 
 pub use stage::PathsStage;

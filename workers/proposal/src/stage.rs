@@ -1,10 +1,8 @@
 //! The stage itself.
 
-use socrates_author::{Desk, Keys, Papers};
+use socrates_author::{Desk, Keys};
 use socrates_kit::{Done, Failure, Job, Stage};
 use socrates_model::job;
-
-use crate::report;
 
 /// Serves jobs of the proposal stage.
 ///
@@ -26,25 +24,7 @@ impl Stage for ProposalStage {
     const STAGE: job::Stage = job::Stage::Proposal;
 
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
-        let spec = job.spec();
-        let papers = Papers {
-            stage: Self::STAGE,
-            request: job.json("request")?,
-            reading: job.json("reading")?,
-            location: job.json("location")?,
-            proposal: None,
-            only: Vec::new(),
-            feedback: spec.feedback.clone(),
-            refused: job.refused().map(str::to_owned),
-            seed: spec.seed,
-            settings: spec.settings.clone(),
-            attempt: job.grant().attempt,
-        };
-        tracing::debug!(job = %spec.key, attempt = papers.attempt, "author asked");
-        match self.desk.answer(papers).await {
-            Ok(answer) => report::done(answer),
-            Err(refusal) => Err(report::failure(refusal)),
-        }
+        socrates_desk::serve(&self.desk, Self::STAGE, job).await
     }
 }
 

@@ -24,7 +24,7 @@ use anyhow::Context as _;
 use socrates_kit::{LocalBlobs, Stop};
 use socrates_link::{Bus, keys};
 use socrates_orchestrator::{Event, Policy, Row, State, step};
-use socrates_store::{SqliteStore, Store as _};
+use socrates_store::{Durability, SqliteStore, Store as _};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 
@@ -46,6 +46,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) beat_ms: u64,
     /// New revisions that a scenario may have.
     pub(crate) repairs: u32,
+    /// What a commit of the job store outlives.
+    pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
     pub(crate) code_version: String,
 }
@@ -62,7 +64,7 @@ pub(crate) async fn serve(
     mut shutdown: watch::Receiver<Stop>,
 ) -> anyhow::Result<()> {
     let started = Instant::now();
-    let blobs = LocalBlobs::new(config.dir.join("blobs"), false);
+    let blobs = LocalBlobs::new(config.dir.join("blobs"), config.durability == Durability::Disk);
     let policy = Policy {
         lease_ms: config.lease_ms,
         beat_ms: config.beat_ms,
@@ -70,9 +72,10 @@ pub(crate) async fn serve(
         code_version: config.code_version,
         ..Policy::default()
     };
-    let (at, kept) = (config.dir.join("jobs.sqlite"), blobs.clone());
-    let (store, state) =
-        tokio::task::spawn_blocking(move || open(&at, policy, &kept)).await.context("opening the job store")??;
+    let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
+    let (store, state) = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept))
+        .await
+        .context("opening the job store")??;
     let epoch = state.epoch;
     tracing::info!(epoch, scenarios = state.counts().0, "the orchestrator begins");
 
@@ -115,8 +118,13 @@ pub(crate) async fn serve(
 }
 
 /// Opens the store, begins a new reign, and puts small texts back where workers look for them.
-fn open(at: &std::path::Path, policy: Policy, blobs: &LocalBlobs) -> anyhow::Result<(SqliteStore, State)> {
-    let mut store = SqliteStore::open(at)?;
+fn open(
+    at: &std::path::Path,
+    durability: Durability,
+    policy: Policy,
+    blobs: &LocalBlobs,
+) -> anyhow::Result<(SqliteStore, State)> {
+    let mut store = SqliteStore::open_with(at, durability)?;
     let snapshot = store.load().context("reading the job store")?;
     for digest in store.texts()? {
         if !blobs.has(&digest)

@@ -36,6 +36,7 @@ async fn open(dir: &Path) -> Site {
         lease_ms: 15_000,
         beat_ms: 2_000,
         repairs: 3,
+        durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
@@ -225,6 +226,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         lease_ms: 15_000,
         beat_ms: 2_000,
         repairs: 3,
+        durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());

@@ -1,0 +1,141 @@
+//! Requests in people's words against what a careful person reads in them; see `corpus/README.md`.
+#![cfg(test)]
+
+use serde::Deserialize;
+use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Trigger};
+
+#[derive(Deserialize)]
+struct Corpus {
+    request: Vec<Case>,
+}
+
+#[derive(Deserialize)]
+struct Case {
+    on: String,
+    text: String,
+    facts: Vec<String>,
+}
+
+/// Facts that hold, all facts, and a line for each that does not.
+fn judge(corpus: &str) -> (usize, usize, Vec<String>) {
+    let corpus: Corpus = toml::from_str(corpus).unwrap();
+    let (mut right, mut all, mut wrong) = (0, 0, Vec::new());
+    for case in &corpus.request {
+        let request: Request = serde_json::from_value(serde_json::json!({
+            "location": case.on, "social_context": "", "task": "Deliver mail", "rough_scenario": case.text,
+        }))
+        .unwrap();
+        let location = socrates_maps::shipped::load(&case.on).unwrap();
+        let reading = socrates_offline::read(&request, &location);
+        for fact in &case.facts {
+            all += 1;
+            if holds(fact, &reading) {
+                right += 1;
+            } else {
+                wrong.push(format!("`{fact}` in “{}”\n    read: {}", case.text, socrates_offline::summary(&reading)));
+            }
+        }
+    }
+    (right, all, wrong)
+}
+
+fn holds(fact: &str, reading: &Reading) -> bool {
+    if let Some(rest) = fact.strip_prefix("not ") {
+        return !holds(rest, reading);
+    }
+    let words: Vec<&str> = fact.split_whitespace().collect();
+    let kinds = || reading.facts.iter().map(|fact| &fact.kind);
+    match words[..] {
+        ["humans", count] => reading.humans.len() == count.parse::<usize>().unwrap(),
+        ["group", ..] => {
+            let members: Vec<HumanId> = words[1..].iter().map(|n| id(n)).collect();
+            kinds().any(|kind| matches!(kind, FactKind::Group { members: found, .. } if *found == members))
+        }
+        ["place", class] => reading.place == Some(class.parse::<PlaceClass>().unwrap()),
+        ["robot", "says", gesture] => kinds().any(|kind| *kind == FactKind::RobotSays(gesture.parse().unwrap())),
+        ["robot", "start", class] => kinds().any(|kind| *kind == FactKind::RobotStart(class.parse().unwrap())),
+        ["robot", "goal", class] => kinds().any(|kind| *kind == FactKind::RobotGoal(class.parse().unwrap())),
+        ["problem", code] => reading.problems.iter().any(|fault| fault.code.code() == code),
+        ["ignored", word] => reading.ignored.iter().any(|ignored| ignored == word),
+        [who, "role", role] => human(who, reading).is_some_and(|human| human.role == role),
+        [who, "says", gesture] => {
+            let gesture: Gesture = gesture.parse().unwrap();
+            kinds().any(|kind| *kind == FactKind::Gestures { human: id(who), gesture })
+                || human(who, reading).is_some_and(|human| human.rules.iter().any(|rule| rule.gesture == Some(gesture)))
+        }
+        [who, relation] if !who.ends_with(':') => {
+            let relation: Relation = serde_json::from_value(serde_json::json!(relation)).unwrap();
+            human(who, reading).is_some_and(|human| human.relation == Some(relation))
+        }
+        [who, ..] => human(who.trim_end_matches(':'), reading)
+            .is_some_and(|human| human.rules.iter().any(|rule| does(&words[1..], rule))),
+        [] => false,
+    }
+}
+
+fn id(number: &str) -> HumanId {
+    HumanId::new(number.parse().unwrap())
+}
+
+fn human<'a>(number: &str, reading: &'a Reading) -> Option<&'a socrates_model::reading::ReadHuman> {
+    reading.humans.iter().find(|human| human.id == id(number))
+}
+
+/// `look_at_robot when near`, `block for 10`, `follow_human 1`.
+fn does(words: &[&str], rule: &Rule) -> bool {
+    let [action, rest @ ..] = words else { return false };
+    let (same, rest) = if *action == "follow_human" {
+        (rule.act == Action::FollowHuman(id(rest[0])), &rest[1..])
+    } else {
+        (rule.act == serde_json::from_value::<Action>(serde_json::json!(action)).unwrap(), rest)
+    };
+    same && match *rest {
+        [] => true,
+        ["for", seconds] => rule.for_s == Some(seconds.parse().unwrap()),
+        ["at", value] => rule.when.iter().any(|trigger| amount(trigger) == Some(value.parse().unwrap())),
+        ["when", kind, ..] => rule.when.iter().any(|trigger| is(trigger, kind, &rest[2..])),
+        _ => panic!("the corpus says {words:?}"),
+    }
+}
+
+fn amount(trigger: &Trigger) -> Option<f64> {
+    match trigger {
+        Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) | Trigger::AfterSecs(m) => {
+            Some(*m)
+        }
+        Trigger::Always
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::GoalReached
+        | Trigger::AtEncounter => None,
+    }
+}
+
+fn is(trigger: &Trigger, kind: &str, more: &[&str]) -> bool {
+    match (kind, trigger) {
+        ("visible", Trigger::RobotVisible(_))
+        | ("near", Trigger::RobotNear(_))
+        | ("blocking", Trigger::RobotBlocking(_))
+        | ("moving", Trigger::RobotMoving)
+        | ("stopped", Trigger::RobotStopped)
+        | ("goal", Trigger::GoalReached)
+        | ("encounter", Trigger::AtEncounter)
+        | ("after", Trigger::AfterSecs(_)) => true,
+        ("robot_says", Trigger::RobotSays(gesture)) => gesture.name() == more[0],
+        ("human_says", Trigger::HumanSays(who, gesture)) => *who == id(more[0]) && gesture.name() == more[1],
+        _ => false,
+    }
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
+fn what_people_write_is_read() {
+    let (right, all, wrong) = judge(include_str!("../corpus/open.toml"));
+    for line in &wrong {
+        println!("{line}");
+    }
+    println!("open: {right} of {all} facts");
+    assert!(right * 100 >= all * 95, "{right} of {all} facts");
+}
