@@ -7,7 +7,7 @@ use socrates_model::{Fault, FaultCode};
 use crate::blackboard::{Input, Value, read_flag};
 use crate::parse::{Document, GUARDS, key_in_braces};
 use crate::script::Script;
-use crate::sheet::{Kind, PortKind, Role};
+use crate::sheet::{Kind, Library, PortKind, Role};
 use crate::tree::{Format, Guards, Node, Tree};
 use crate::xml::Element;
 
@@ -121,6 +121,7 @@ impl Builder<'_> {
             children: Vec::new(),
             parent,
             leaf,
+            asks_world: is_leaf && sheet.library != Library::BuiltIn && sheet.role.is_catalogued(),
             guards,
             script,
             site: it.site.clone(),
@@ -190,9 +191,10 @@ impl Builder<'_> {
         };
         let text = it.attr(name).or(port.default).unwrap_or("");
         match (port.kind, key_in_braces(text)) {
-            (PortKind::Key, Some(key)) => Input::Slot(self.slot(scope, key)),
-            (PortKind::Key, None) => Input::Slot(self.slot(scope, text)),
-            (PortKind::Own | PortKind::Code, _) | (_, None) => Input::Fixed(text.to_owned()),
+            (PortKind::Key | PortKind::Output, Some(key)) => Input::Slot(self.slot(scope, key)),
+            (PortKind::Output, None) if text.is_empty() => Input::Fixed(String::new()),
+            (PortKind::Key | PortKind::Output, None) => Input::Slot(self.slot(scope, text)),
+            (PortKind::Code, _) | (_, None) => Input::Fixed(text.to_owned()),
             (_, Some(key)) => Input::Slot(self.slot(scope, key)),
         }
     }

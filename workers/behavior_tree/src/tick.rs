@@ -1,6 +1,7 @@
 //! Ticking: the rules that hold for every kind of node. What a kind does is in [`crate::nodes`].
 
 use crate::blackboard::{Ports, Value};
+use crate::leaf::LeafCall;
 use crate::script::Script;
 use crate::sheet::Kind;
 use crate::status::Status;
@@ -43,7 +44,10 @@ impl Ticker<'_> {
             Some(outcome) => outcome,
             None => {
                 self.cell(node).seen = ticks;
-                (it.sheet.tick)(self, node)
+                match self.asked(node, it) {
+                    Some(outcome) => outcome,
+                    None => (it.sheet.tick)(self, node),
+                }
             }
         };
         if outcome.is_finished()
@@ -63,6 +67,15 @@ impl Ticker<'_> {
             self.set(child, Status::Idle);
         }
         outcome
+    }
+
+    /// What the world makes of a leaf, if it does.
+    fn asked(&mut self, node: usize, it: &Node) -> Option<Status> {
+        if !it.asks_world {
+            return None;
+        }
+        let running = self.status(node) == Status::Running;
+        self.world.leaf(&mut leaf_call(it, running, &mut self.state.board))
     }
 
     /// What the pre-conditions of a node decide, if they do.
@@ -107,6 +120,9 @@ impl Ticker<'_> {
     pub(crate) fn halt(&mut self, node: usize) {
         let tree = self.tree;
         let Some(it) = tree.nodes.get(node) else { return };
+        if it.asks_world {
+            self.world.leaf_halted(&mut leaf_call(it, true, &mut self.state.board));
+        }
         (it.sheet.halt)(self, node);
         if let Some(guards) = &it.guards {
             self.run(guards.on_halted.as_ref());
@@ -197,4 +213,8 @@ impl Ticker<'_> {
     pub(crate) fn is_v4(&self) -> bool {
         self.tree.format == Format::V4
     }
+}
+
+fn leaf_call<'a>(it: &'a Node, running: bool, board: &'a mut [Option<Value>]) -> LeafCall<'a> {
+    LeafCall { sheet: it.sheet, leaf: it.leaf, running, inputs: &it.inputs, board }
 }

@@ -45,6 +45,8 @@ pub(crate) struct Node {
     pub(crate) children: Vec<usize>,
     pub(crate) parent: Option<usize>,
     pub(crate) leaf: u16,
+    /// Whether [`World::leaf`] is asked first.
+    pub(crate) asks_world: bool,
     pub(crate) guards: Option<Box<Guards>>,
     /// For a `Script` node its code, for `SetBlackboard` nothing.
     pub(crate) script: Option<Script>,
@@ -88,6 +90,8 @@ pub struct TreeState {
     pub(crate) cells: Vec<Cell>,
     pub(crate) board: Vec<Option<Value>>,
     pub(crate) ticks: u64,
+    /// First leaf without a native meaning that the world did not tick.
+    pub(crate) unanswered: Option<u16>,
     pub(crate) spare: Cell,
 }
 
@@ -96,6 +100,13 @@ impl TreeState {
     #[must_use]
     pub fn statuses(&self) -> Vec<Status> {
         self.cells.iter().map(|cell| cell.status).collect()
+    }
+
+    /// The first leaf that failed because neither [`World::leaf`](crate::World::leaf) nor this crate could tick
+    /// it. Only in trees read with [`Meaning::World`](crate::Meaning::World).
+    #[must_use]
+    pub const fn unanswered(&self) -> Option<u16> {
+        self.unanswered
     }
 
     /// Whether the last tick came to a node, in the order of [`Tree::node_names`].
@@ -138,7 +149,13 @@ impl Tree {
                 *entry = Some(Value::Text(value.clone()));
             }
         }
-        TreeState { cells: vec![Cell::default(); self.nodes.len()], board, ticks: 0, spare: Cell::default() }
+        TreeState {
+            cells: vec![Cell::default(); self.nodes.len()],
+            board,
+            ticks: 0,
+            unanswered: None,
+            spare: Cell::default(),
+        }
     }
 
     /// Ticks once.
@@ -224,6 +241,12 @@ impl Tree {
         found
     }
 
+    /// Leaves that only [`World::leaf`](crate::World::leaf) can tick, by number (see [`Tree::leaf_names`]).
+    #[must_use]
+    pub fn world_leaves(&self) -> Vec<u16> {
+        self.nodes.iter().filter(|node| !node.sheet.is_native()).map(|node| node.leaf).collect()
+    }
+
     /// Tags used that a simulator with this library could not load.
     #[must_use]
     pub fn foreign_to(&self, library: Library) -> Vec<&'static str> {
@@ -231,7 +254,7 @@ impl Tree {
             .nodes
             .iter()
             .map(|node| node.sheet)
-            .filter(|sheet| sheet.library != Library::BuiltIn && !crate::nodes::is_known_to(sheet.tag, library))
+            .filter(|sheet| sheet.role.is_catalogued() && !crate::nodes::is_known_to(sheet.tag, library))
             .map(|sheet| sheet.tag)
             .collect();
         tags.sort_unstable();

@@ -242,7 +242,7 @@ impl<'a> Cases<'a> {
         for leaf in leaves {
             match leaf.sheet.role {
                 Role::Moves(means) if means(&self.tree.ports(leaf)) == Some(Action::Navigate) => walks = true,
-                Role::Moves(_) | Role::Foreign => return false,
+                Role::Moves(_) | Role::World | Role::Foreign => return false,
                 Role::Flow | Role::Asks(_) | Role::Timer | Role::Says | Role::Quiet => {}
             }
         }
@@ -267,6 +267,6 @@ fn keeps_places(tree: &Tree) -> bool {
                 | "KeepRunningUntilFailure"
                 | "RunOnce"
                 | "Parallel"
-        ) || matches!(node.sheet.role, Role::Foreign)
+        ) || node.sheet.role.is_opaque()
     })
 }

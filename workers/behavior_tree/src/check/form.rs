@@ -51,7 +51,7 @@ fn parts(tree: &Tree, child: usize) -> Parts {
                 parts.says = true;
                 parts.only_asks = false;
             }
-            Role::Quiet | Role::Foreign => parts.only_asks = false,
+            Role::Quiet | Role::World | Role::Foreign => parts.only_asks = false,
         }
     }
     parts

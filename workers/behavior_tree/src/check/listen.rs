@@ -41,7 +41,7 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
                     target(id, node, ctx, &mut faults);
                 }
             }
-            Role::Flow | Role::Timer | Role::Says | Role::Quiet | Role::Foreign => {}
+            Role::Flow | Role::Timer | Role::Says | Role::Quiet | Role::World | Role::Foreign => {}
         }
     }
     faults.sort();
