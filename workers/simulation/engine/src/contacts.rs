@@ -17,26 +17,35 @@ const LEAST_M: f64 = 1e-4;
 const PASSES: usize = 6;
 
 /// A disc that may have to give way.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Body {
-    pub(crate) agent: AgentId,
-    pub(crate) at: Point,
-    pub(crate) velocity: Vector,
-    pub(crate) radius_m: f64,
-    /// Share of a correction it takes: 1 for somebody who walks, near 0 for somebody who stands.
-    pub(crate) yields: f64,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Who.
+    pub agent: AgentId,
+    /// Center in the map frame, m. Where it would be without contacts in, where it is out.
+    pub at: Point,
+    /// Velocity in the map frame, m/s. The part that leads into a contact is taken out.
+    pub velocity: Vector,
+    /// Radius, m.
+    pub radius_m: f64,
+    /// Share of a correction it takes, 0 to 1: 1 for somebody who walks, near 0 for somebody who stands.
+    /// Of two bodies with 0 neither moves.
+    pub yields: f64,
 }
 
 /// What touched.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Touch {
+pub enum Touch {
+    /// Two bodies, in the order of the list, and how deep they were in each other, m.
     Agents(AgentId, AgentId, f64),
+    /// A body and a wall or closed door, and how deep it was in it, m.
     Wall(AgentId, f64),
 }
 
-/// Moves overlapping bodies apart and takes the speed out of their contacts. Gives back what touched,
-/// with the depth before the correction.
-pub(crate) fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
+/// Moves overlapping bodies apart and out of walls and closed doors, and takes the speed out of their contacts.
+///
+/// Give it the bodies where they would be after the step; take places and velocities back. A contact of
+/// less than 0.1 mm is none. Gives back what touched, with the depth before the correction.
+pub fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
     let mut touches = Vec::new();
     for pass in 0..PASSES {
         let mut moved = false;

@@ -6,6 +6,8 @@ use socrates_maps::{DistanceField, Sight, shortest_path, sight_clear};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::{Grid, Point, Polyline, Vector};
 
+use crate::cells::Cells;
+
 /// Reach of the wall points that people feel, m (8 sectors).
 const WALL_REACH_M: f64 = 3.0;
 /// Sectors of the wall points.
@@ -17,6 +19,7 @@ pub struct Floor {
     grid: Grid,
     field: Arc<DistanceField>,
     sight: Sight,
+    cells: Cells,
     closed: Vec<(Point, Point)>,
 }
 
@@ -28,6 +31,7 @@ impl Floor {
             grid: grid.clone(),
             field: Arc::new(DistanceField::new(grid)),
             sight: Sight::new(grid),
+            cells: Cells::new(grid),
             closed: Vec::new(),
         }
     }
@@ -129,6 +133,12 @@ impl Floor {
             return Some(Polyline::new(&[*from, *to]));
         }
         shortest_path(&self.grid, &self.field, from, to, radius_m).map(|points| Polyline::new(&points))
+    }
+
+    /// Distance to the first wall along a unit heading, closed doors not counted, m, at most `max_m`; 0 in a wall.
+    #[must_use]
+    pub fn wall_ray_m(&self, from: &Point, heading: &Vector, max_m: f64) -> f64 {
+        self.cells.ray(self.cells.position(from), self.cells.direction(heading), max_m)
     }
 
     /// Distance to the first wall or closed door in a direction, m, at most `max_m`.

@@ -12,18 +12,19 @@
 //! *Never here:* a file, a socket, the wall clock, a thread, a random number outside the seed, another
 //! library's math types in the interface.
 
+pub mod contacts;
 pub mod floor;
 pub mod lidar;
+pub mod recorder;
 pub mod run;
 pub mod setup;
 
-mod contacts;
+mod cells;
 mod doors;
 mod ending;
 mod human;
 mod motion;
 mod placing;
-mod recorder;
 mod rendezvous;
 mod robot;
 mod script;
@@ -36,6 +37,9 @@ mod fixture;
 #[cfg(test)]
 mod tests;
 
+pub use contacts::{Body, Touch, resolve};
 pub use floor::Floor;
+pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
+pub use recorder::Recorder;
 pub use run::{Engine, NO_ROBOT};
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

@@ -14,6 +14,7 @@ use crate::doors::{Doors, Passer};
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Human, leaf_name, leaf_number};
+use crate::lidar::{self, Disc};
 use crate::motion::{self, Other, Scene, Want};
 use crate::recorder::Recorder;
 use crate::rendezvous::{self, Moment, Timing};
@@ -21,7 +22,7 @@ use crate::robot::Robot;
 use crate::script::{Cue, Script};
 use crate::setup::{self, Setup};
 use crate::view::{RobotSeen, View};
-use crate::{lidar, start, walk};
+use crate::{start, walk};
 
 /// The name of the planner that means: no robot (the twin run).
 pub const NO_ROBOT: &str = "none";
@@ -232,7 +233,8 @@ impl Engine {
                     open: live.open,
                 })
                 .collect();
-            let discs: Vec<(Point, f64)> = self.humans.iter().map(|human| (human.at, human.radius_m)).collect();
+            let disc = |human: &Human| Disc { center: human.at, radius_m: human.radius_m };
+            let discs: Vec<Disc> = self.humans.iter().map(disc).collect();
             let (floor, pose, range) = (&self.floor, robot.pose, robot.model.lidar_range_m);
             let scan = || lidar::scan(floor, &pose, &discs, range);
             let leavers = self.humans.iter().filter(|human| inside_still(human)).count();
