@@ -88,10 +88,10 @@ fn scans(people: u32) {
     let (scene, side): (Scene, f64) = cross(people);
     let spots = spots(side);
     let oracle = Oracle::new(&scene);
-    let ours = median(9, 400, |call| {
+    let ours = median(9, 8_000, |call| {
         black_box(scan_shapes(&spots[call % 50], &scene.discs, &scene.segments, 12.0).unwrap());
     });
-    let theirs = median(5, 50, |call| {
+    let theirs = median(7, 1_000, |call| {
         black_box(oracle.scan(&spots[call % 50], 12.0));
     });
     let (mut hits, mut their_hits, mut sum, mut their_sum) = (0_usize, 0_usize, 0.0, 0.0);
@@ -124,10 +124,10 @@ fn map_scans(name: &str) {
         let at = nodes[call % nodes.len()];
         Pose::new(at.x + 0.4, at.y + 0.1, 0.1 * call as f64)
     };
-    let ours = median(9, 200, |call| {
+    let ours = median(7, 2_000, |call| {
         black_box(scan(&floor, &pose(call), &people, 12.0));
     });
-    let one_by_one = median(5, 100, |call| {
+    let one_by_one = median(5, 1_000, |call| {
         let from = pose(call);
         for beam in 0..BEAMS {
             black_box(floor.ray_m(&from.point(), from.yaw + (beam as f64).to_radians(), 12.0));

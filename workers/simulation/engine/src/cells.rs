@@ -59,6 +59,12 @@ impl Cells {
         usize::try_from(place).ok().and_then(|place| self.gaps.get(place)).copied().unwrap_or(0)
     }
 
+    /// Whether the straight line between two points meets only free floor.
+    pub(crate) fn clear(&self, a: &Point, b: &Point) -> bool {
+        let (from, to) = (self.position(a), self.position(b));
+        self.ray(from, (to.0 - from.0, to.1 - from.1), 1.0) >= 1.0
+    }
+
     /// Distance to the first blocked cell, m, at most `max_m`; 0 from inside one or from outside the map.
     pub(crate) fn ray(&self, from: (f64, f64), step: (f64, f64), max_m: f64) -> f64 {
         let inside =

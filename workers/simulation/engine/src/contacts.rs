@@ -16,6 +16,9 @@ const LEAST_M: f64 = 1e-4;
 /// Passes over all pairs; a crowd of 20 in a doorway settles in fewer.
 const PASSES: usize = 6;
 
+/// Bodies farther apart than this, surface to surface, never touch while one tick's contacts are resolved, m.
+const MARGIN_M: f64 = 0.5;
+
 /// A disc that may have to give way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
@@ -47,20 +50,21 @@ pub enum Touch {
 /// less than 0.1 mm is none. Gives back what touched, with the depth before the correction.
 pub fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
     let mut touches = Vec::new();
+    let pairs = pairs(bodies);
     for pass in 0..PASSES {
         let mut moved = false;
-        for first in 0..bodies.len() {
-            for second in first + 1..bodies.len() {
-                let (Some(a), Some(b)) = (bodies.get(first).copied(), bodies.get(second).copied()) else { continue };
-                let Some((depth, normal)) = disc_disc(&a, &b) else { continue };
-                if pass == 0 {
-                    touches.push(Touch::Agents(a.agent, b.agent, depth));
-                }
-                moved = true;
-                let total = (a.yields + b.yields).max(1e-9);
-                push(bodies, first, &(-normal * (depth * a.yields / total)), &-normal);
-                push(bodies, second, &(normal * (depth * b.yields / total)), &normal);
+        for (first, second) in &pairs {
+            let (first, second) = (*first, *second);
+            let (Some(a), Some(b)) = (bodies.get(first), bodies.get(second)) else { continue };
+            let Some((depth, normal)) = disc_disc(a, b) else { continue };
+            if pass == 0 {
+                touches.push(Touch::Agents(a.agent, b.agent, depth));
             }
+            moved = true;
+            let total = (a.yields + b.yields).max(1e-9);
+            let (back, on) = (depth * a.yields / total, depth * b.yields / total);
+            push(bodies, first, &(-normal * back), &-normal);
+            push(bodies, second, &(normal * on), &normal);
         }
         for place in 0..bodies.len() {
             let Some(body) = bodies.get(place).copied() else { continue };
@@ -76,6 +80,27 @@ pub fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
         }
     }
     touches
+}
+
+/// Pairs that may touch while contacts are resolved, in the order of the list: everybody nearer than [`MARGIN_M`].
+fn pairs(bodies: &[Body]) -> Vec<(usize, usize)> {
+    let mut order: Vec<(f64, usize)> = bodies.iter().enumerate().map(|(place, body)| (body.at.x, place)).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let widest = bodies.iter().fold(0.0_f64, |most, body| most.max(body.radius_m));
+    let mut pairs = Vec::new();
+    for (step, (x, first)) in order.iter().enumerate() {
+        let Some(a) = bodies.get(*first) else { continue };
+        let reach = a.radius_m + widest + MARGIN_M;
+        for (_, second) in order.iter().skip(step + 1).take_while(|(other, _)| *other - x < reach) {
+            let Some(b) = bodies.get(*second) else { continue };
+            let near = a.radius_m + b.radius_m + MARGIN_M;
+            if (b.at - a.at).norm_squared() < near * near {
+                pairs.push((*first.min(second), *first.max(second)));
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
 }
 
 fn push(bodies: &mut [Body], place: usize, step: &Vector, away: &Vector) {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use socrates_maps::{DistanceField, Sight, shortest_path, sight_clear};
+use socrates_maps::{DistanceField, Sight, shortest_path};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::{Grid, Point, Polyline, Vector};
 
@@ -97,7 +97,7 @@ impl Floor {
     /// Whether two points see each other now.
     #[must_use]
     pub fn sees(&self, a: &Point, b: &Point) -> bool {
-        sight_clear(&self.sight, a, b, &self.closed)
+        self.closed.iter().all(|(from, to)| !segments_cross(a, b, from, to)) && self.cells.clear(a, b)
     }
 
     /// Whether a disc can go straight from `a` to `b`, doors taken as open.

@@ -19,11 +19,14 @@ pub mod recorder;
 pub mod run;
 pub mod setup;
 
+mod advance;
 mod cells;
 mod doors;
+mod drive;
 mod ending;
 mod human;
 mod motion;
+mod near;
 mod placing;
 mod rendezvous;
 mod robot;

@@ -1,7 +1,6 @@
 //! What one human's tree sees and does: the tick's start in, wishes out.
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 use socrates_bt::World;
 use socrates_model::time::STEP_SECS;
@@ -32,7 +31,8 @@ pub(crate) struct View<'a> {
     pub(crate) floor: &'a Floor,
     pub(crate) now: SimTime,
     pub(crate) robot: Option<RobotSeen>,
-    pub(crate) gestures: &'a BTreeMap<HumanId, Gesture>,
+    /// Gestures of all humans, in the order of ids.
+    pub(crate) gestures: &'a [(HumanId, Gesture)],
     at: Point,
     heading: Vector,
     travel: Vector,
@@ -50,7 +50,7 @@ impl<'a> View<'a> {
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
-        gestures: &'a BTreeMap<HumanId, Gesture>,
+        gestures: &'a [(HumanId, Gesture)],
     ) -> Self {
         let at_encounter =
             human.meeting.as_ref().is_some_and(|meeting| (human.at - meeting.at).norm() <= AT_ENCOUNTER_M);
@@ -77,6 +77,11 @@ impl<'a> View<'a> {
         let seen = self.floor.sees(&self.at, &robot.at);
         self.sight.set(Some(seen));
         seen
+    }
+
+    /// Whether robot and human are in line of sight, where that was asked.
+    pub(crate) const fn looked(&self) -> Option<bool> {
+        self.sight.get()
     }
 
     /// Whether the robot is in the field of view and in line of sight at any distance up to `within_m`.
@@ -121,7 +126,8 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Gesture {
-        self.gestures.get(&id).copied().unwrap_or_default()
+        let place = self.gestures.binary_search_by_key(&id, |(human, _)| *human);
+        place.ok().and_then(|place| self.gestures.get(place)).map(|(_, gesture)| *gesture).unwrap_or_default()
     }
 
     fn goal_reached(&self) -> bool {
