@@ -62,6 +62,12 @@ impl Cells {
     /// Whether the straight line between two points meets only free floor.
     pub(crate) fn clear(&self, a: &Point, b: &Point) -> bool {
         let (from, to) = (self.position(a), self.position(b));
+        let ((column, row), (to_column, to_row)) = ((whole(from.0), whole(from.1)), (whole(to.0), whole(to.1)));
+        let apart = (column - to_column).abs().max((row - to_row).abs());
+        // On open floor one of the two stands in a free square that holds the other.
+        if apart < i32::from(self.gap(column, row).max(self.gap(to_column, to_row))) {
+            return true;
+        }
         self.ray(from, (to.0 - from.0, to.1 - from.1), 1.0) >= 1.0
     }
 
@@ -118,9 +124,11 @@ const fn inner(next: i32, step: f64) -> i32 {
     if step > 0.0 { next - 1 } else { next + 1 }
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "cell numbers of a map fit; rounding down is meant")]
+/// The whole number below; without the library call that rounding down is on the oldest processors.
 fn whole(value: f64) -> i32 {
-    value.floor() as i32
+    #[expect(clippy::cast_possible_truncation, reason = "cell numbers of a map fit")]
+    let cut = value as i32;
+    if f64::from(cut) > value { cut - 1 } else { cut }
 }
 
 /// Distance of every cell to the nearest blocked one or to the outside, in king's moves, at most 255.

@@ -135,10 +135,13 @@ impl Floor {
         shortest_path(&self.grid, &self.field, from, to, radius_m).map(|points| Polyline::new(&points))
     }
 
-    /// Distance to the first wall along a unit heading, closed doors not counted, m, at most `max_m`; 0 in a wall.
-    #[must_use]
-    pub fn wall_ray_m(&self, from: &Point, heading: &Vector, max_m: f64) -> f64 {
-        self.cells.ray(self.cells.position(from), self.cells.direction(heading), max_m)
+    /// Shortens every range to the distance of the first wall along its unit heading, m, closed doors not
+    /// counted; 0 in a wall.
+    pub fn wall_ranges(&self, from: &Point, ranges: &mut [f64], heading: impl Fn(usize) -> Vector) {
+        let at = self.cells.position(from);
+        for (beam, range) in ranges.iter_mut().enumerate() {
+            *range = self.cells.ray(at, self.cells.direction(&heading(beam)), *range);
+        }
     }
 
     /// Distance to the first wall or closed door in a direction, m, at most `max_m`.

@@ -2,8 +2,9 @@
 //!
 //! Each disc and each segment is projected to the interval of beams that can meet it; only those are solved.
 //! The interval comes from a rough bearing with slack, so no arc function is called; whether a beam meets a
-//! shape is decided by the exact test alone. The grid is walked in leaps over open floor. All sums run in the
-//! order written, beam by beam, so the same scene gives the same bytes everywhere.
+//! shape is decided by the exact test alone. The grid is walked in leaps over open floor. The loops over beams
+//! are compiled for several instruction sets and chosen at run time; each beam is reckoned by itself, without
+//! fused operations, so the same scene gives the same bytes on all of them.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 use std::sync::LazyLock;
@@ -73,12 +74,18 @@ pub enum BadScan {
 }
 
 /// Unit vectors of the beams in the scanner's frame.
-static HEADINGS: LazyLock<[Vector; BEAMS]> = LazyLock::new(|| {
-    std::array::from_fn(|beam| {
-        #[expect(clippy::cast_precision_loss, reason = "360 beams")]
-        let (sin, cos) = libm::sincos((beam as f64).to_radians());
-        Vector::new(cos, sin)
-    })
+struct Headings {
+    cos: [f64; BEAMS],
+    sin: [f64; BEAMS],
+}
+
+static HEADINGS: LazyLock<Headings> = LazyLock::new(|| {
+    #[expect(clippy::cast_precision_loss, reason = "360 beams")]
+    let angle = |beam: usize| (beam as f64).to_radians();
+    Headings {
+        cos: std::array::from_fn(|beam| libm::cos(angle(beam))),
+        sin: std::array::from_fn(|beam| libm::sin(angle(beam))),
+    }
 });
 
 /// Ranges of one scan over a floor with its closed doors, and over people, m; a beam that meets nothing reads
@@ -89,15 +96,8 @@ static HEADINGS: LazyLock<[Vector; BEAMS]> = LazyLock::new(|| {
 pub fn scan(floor: &Floor, from: &Pose, people: &[Disc], max_m: f64) -> Vec<f64> {
     let frame = Frame::new(from);
     let mut ranges = [max_m; BEAMS];
-    for (range, heading) in ranges.iter_mut().zip(HEADINGS.iter()) {
-        *range = floor.wall_ray_m(&frame.origin, &frame.map_from_local(heading), max_m);
-    }
-    for (a, b) in floor.closed() {
-        meet_segment(&mut ranges, &frame.local_from_map(a), &frame.local_from_map(b), max_m);
-    }
-    for disc in people {
-        meet_disc(&mut ranges, &frame.local_from_map(&disc.center), disc.radius_m, max_m);
-    }
+    floor.wall_ranges(&frame.origin, &mut ranges, |beam| frame.heading(beam));
+    meet_shapes(&mut ranges, &frame, people, floor.closed(), max_m);
     ranges.to_vec()
 }
 
@@ -115,15 +115,21 @@ pub fn scan_shapes(
     max_m: f64,
 ) -> Result<[f64; BEAMS], BadScan> {
     check(from, discs, segments, max_m)?;
-    let frame = Frame::new(from);
     let mut ranges = [max_m; BEAMS];
-    for (a, b) in segments {
-        meet_segment(&mut ranges, &frame.local_from_map(a), &frame.local_from_map(b), max_m);
-    }
-    for disc in discs {
-        meet_disc(&mut ranges, &frame.local_from_map(&disc.center), disc.radius_m, max_m);
-    }
+    meet_shapes(&mut ranges, &Frame::new(from), discs, segments, max_m);
     Ok(ranges)
+}
+
+fn meet_shapes(ranges: &mut [f64; BEAMS], frame: &Frame, discs: &[Disc], segments: &[(Point, Point)], max_m: f64) {
+    pulp::Arch::new().dispatch(|| {
+        let headings = &*HEADINGS;
+        for (a, b) in segments {
+            meet_segment(ranges, headings, &frame.local_from_map(a), &frame.local_from_map(b), max_m);
+        }
+        for disc in discs {
+            meet_disc(ranges, headings, &frame.local_from_map(&disc.center), disc.radius_m, max_m);
+        }
+    });
 }
 
 fn check(from: &Pose, discs: &[Disc], segments: &[(Point, Point)], max_m: f64) -> Result<(), BadScan> {
@@ -160,19 +166,24 @@ impl Frame {
         Self { origin: pose.point(), cos, sin }
     }
 
+    #[inline(always)]
     fn local_from_map(&self, point: &Point) -> Vector {
         let away = point - self.origin;
         Vector::new(away.x * self.cos + away.y * self.sin, away.y * self.cos - away.x * self.sin)
     }
 
-    fn map_from_local(&self, heading: &Vector) -> Vector {
-        Vector::new(heading.x * self.cos - heading.y * self.sin, heading.x * self.sin + heading.y * self.cos)
+    /// Direction of a beam in the map frame.
+    fn heading(&self, beam: usize) -> Vector {
+        let (cos, sin) = (HEADINGS.cos.get(beam), HEADINGS.sin.get(beam));
+        let (x, y) = (cos.copied().unwrap_or(1.0), sin.copied().unwrap_or(0.0));
+        Vector::new(x * self.cos - y * self.sin, x * self.sin + y * self.cos)
     }
 }
 
 /// Shortens the beams that meet a disc; `to` is its center in the scanner's frame.
-fn meet_disc(ranges: &mut [f64; BEAMS], to: &Vector, radius_m: f64, max_m: f64) {
-    let (distance2, radius2) = (to.norm_squared(), radius_m * radius_m);
+#[inline(always)]
+fn meet_disc(ranges: &mut [f64; BEAMS], headings: &Headings, to: &Vector, radius_m: f64, max_m: f64) {
+    let (distance2, radius2) = (to.x * to.x + to.y * to.y, radius_m * radius_m);
     if distance2 < radius2 {
         ranges.fill(0.0);
         return;
@@ -187,80 +198,102 @@ fn meet_disc(ranges: &mut [f64; BEAMS], to: &Vector, radius_m: f64, max_m: f64) 
     // No smaller than the arc sine on 0 to 1, and equal at both ends.
     let half = sine + (FRAC_PI_2 - 1.0) * sine * sine * sine + SLACK_RAD;
     let middle = bearing(to);
-    span(ranges, middle - half, middle + half, |range, heading| {
-        let (along, aside) = (heading.dot(to), heading.perp(to));
-        let inside = radius2 - aside * aside;
-        let hit = along - inside.max(0.0).sqrt();
-        if inside >= 0.0 && along > 0.0 && hit < *range {
-            *range = hit.max(0.0);
+    for beams in span(middle - half, middle + half) {
+        let Some((ranges, cos, sin)) = slices(ranges, headings, beams) else { continue };
+        for ((range, cos), sin) in ranges.iter_mut().zip(cos).zip(sin) {
+            let along = cos * to.x + sin * to.y;
+            let aside = cos * to.y - sin * to.x;
+            let inside = radius2 - aside * aside;
+            let hit = (along - inside.max(0.0).sqrt()).max(0.0);
+            let meets = (inside >= 0.0) & (along > 0.0) & (hit < *range);
+            *range = if meets { hit } else { *range };
         }
-    });
+    }
 }
 
 /// Shortens the beams that meet a segment; its ends are in the scanner's frame.
-fn meet_segment(ranges: &mut [f64; BEAMS], a: &Vector, b: &Vector, max_m: f64) {
+#[inline(always)]
+fn meet_segment(ranges: &mut [f64; BEAMS], headings: &Headings, a: &Vector, b: &Vector, max_m: f64) {
     let along = b - a;
-    let length2 = along.norm_squared();
+    let length2 = along.x * along.x + along.y * along.y;
     if length2 <= 0.0 {
         return;
     }
     // Nearest point first: most segments of a large place are out of reach.
-    let share = (-a.dot(&along) / length2).clamp(0.0, 1.0);
-    let in_reach = (a + along * share).norm_squared() < max_m * max_m;
+    let share = (-(a.x * along.x + a.y * along.y) / length2).clamp(0.0, 1.0);
+    let nearest = Vector::new(a.x + along.x * share, a.y + along.y * share);
+    let in_reach = nearest.x * nearest.x + nearest.y * nearest.y < max_m * max_m;
     if !in_reach {
         return;
     }
-    let area = a.perp(&along);
+    let area = a.x * along.y - a.y * along.x;
     let length = length2.sqrt();
     let (right, left) = if area > 0.0 { (a, b) } else { (b, a) };
     let (from, to) = if area.abs() < 1e-9 * length {
+        meet_edge_on(ranges, headings, a, b, area.abs() < PARALLEL * length);
         // On the segment's line which side the ends are on is rounding: all beams are asked.
         (0.0, TAU)
     } else {
         let (from, to) = (bearing(right), bearing(left));
         (from - SLACK_RAD, if to < from - SLACK_RAD { to + TAU } else { to } + SLACK_RAD)
     };
-    span(ranges, from, to, |range, heading| {
-        let across = heading.perp(&along);
-        if across.abs() < PARALLEL * length {
-            if area.abs() < PARALLEL * length {
-                let (first, second) = (heading.dot(a), heading.dot(b));
-                let hit = if first.min(second) <= 0.0 && first.max(second) >= 0.0 { 0.0 } else { first.min(second) };
-                if hit >= 0.0 && hit < *range {
-                    *range = hit;
-                }
-            }
-            return;
-        }
-        let hit = area / across;
-        let (place, whole) = if across > 0.0 { (a.perp(heading), across) } else { (-a.perp(heading), -across) };
-        if hit >= 0.0 && hit < *range && place >= 0.0 && place <= whole {
-            *range = hit;
-        }
-    });
-}
-
-/// Asks the beams between two bearings, rad, the second not smaller than the first.
-fn span(ranges: &mut [f64; BEAMS], from: f64, to: f64, mut ask: impl FnMut(&mut f64, &Vector)) {
-    #[expect(clippy::cast_precision_loss, reason = "360 beams")]
-    let whole_turn = BEAMS as f64;
-    let start = from.to_degrees().ceil();
-    let count = (to.to_degrees().floor() - start + 1.0).clamp(0.0, whole_turn);
-    let start = start - whole_turn * (start / whole_turn).floor();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 360")]
-    let (start, count) = (start as usize, count as usize);
-    let end = start + count;
-    for beams in [start..end.min(BEAMS), 0..end.saturating_sub(BEAMS)] {
-        let (ranges, headings) = (ranges.get_mut(beams.clone()), HEADINGS.get(beams));
-        for (range, heading) in ranges.into_iter().flatten().zip(headings.into_iter().flatten()) {
-            ask(range, heading);
+    for beams in span(from, to) {
+        let Some((ranges, cos, sin)) = slices(ranges, headings, beams) else { continue };
+        for ((range, cos), sin) in ranges.iter_mut().zip(cos).zip(sin) {
+            let across = cos * along.y - sin * along.x;
+            let place = a.x * sin - a.y * cos;
+            // Parallel beams divide by zero: their range is no number below another.
+            let hit = area / across;
+            let meets = (hit >= 0.0) & (hit < *range) & (place * across >= 0.0) & (place.abs() <= across.abs());
+            *range = if meets { hit } else { *range };
         }
     }
+}
+
+/// The beams along a segment that is seen from its own line: they meet the nearer end.
+fn meet_edge_on(ranges: &mut [f64; BEAMS], headings: &Headings, a: &Vector, b: &Vector, in_line: bool) {
+    let along = b - a;
+    for ((range, cos), sin) in ranges.iter_mut().zip(&headings.cos).zip(&headings.sin) {
+        let across = cos * along.y - sin * along.x;
+        if !in_line || across.abs() >= PARALLEL * along.norm() {
+            continue;
+        }
+        let (first, second) = (cos * a.x + sin * a.y, cos * b.x + sin * b.y);
+        let hit = if first.min(second) <= 0.0 && first.max(second) >= 0.0 { 0.0 } else { first.min(second) };
+        if hit >= 0.0 && hit < *range {
+            *range = hit;
+        }
+    }
+}
+
+/// The beams between two bearings, rad, the second not smaller than the first: one or two runs of numbers.
+#[inline(always)]
+fn span(from: f64, to: f64) -> [std::ops::Range<usize>; 2] {
+    // Two turns added so that cutting off the fraction rounds down.
+    let turned = |angle: f64| angle.to_degrees() + 720.0;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bearing within two turns")]
+    let (before, last) = (turned(from) as usize, turned(to) as usize);
+    let count = last.saturating_sub(before).min(BEAMS);
+    let start = (before + 1) % BEAMS;
+    let end = start + count;
+    [start..end.min(BEAMS), 0..end.saturating_sub(BEAMS)]
+}
+
+type Beams<'a> = (&'a mut [f64], &'a [f64], &'a [f64]);
+
+#[inline(always)]
+fn slices<'a>(
+    ranges: &'a mut [f64; BEAMS],
+    headings: &'a Headings,
+    beams: std::ops::Range<usize>,
+) -> Option<Beams<'a>> {
+    Some((ranges.get_mut(beams.clone())?, headings.cos.get(beams.clone())?, headings.sin.get(beams)?))
 }
 
 /// Angle of a vector from the x axis, rad, within 0.004 rad: enough to say which beams to ask.
 ///
 /// Arc tangent of z in 0 to 1 as z (pi/4 + 0.273 (1 - z)), Rajan et al. 2006.
+#[inline(always)]
 fn bearing(to: &Vector) -> f64 {
     let (x, y) = (to.x.abs(), to.y.abs());
     let share = x.min(y) / x.max(y).max(f64::MIN_POSITIVE);

@@ -70,6 +70,12 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Whether a way lies in the field of view.
+    fn faces(&self, way: &Vector) -> bool {
+        // Ahead is always in it; only what is abeam or behind needs the angle.
+        self.heading.dot(way) > 0.0 || angle_between(&self.heading, way) <= HALF_FIELD_OF_VIEW_RAD
+    }
+
     fn in_sight(&self, robot: &RobotSeen) -> bool {
         if let Some(known) = self.sight.get() {
             return known;
@@ -89,9 +95,7 @@ impl<'a> View<'a> {
         let robot = self.robot?;
         let way = robot.at - self.at;
         let distance = way.norm();
-        let seen = distance <= within_m
-            && angle_between(&self.heading, &way) <= HALF_FIELD_OF_VIEW_RAD
-            && self.in_sight(&robot);
+        let seen = distance <= within_m && self.faces(&way) && self.in_sight(&robot);
         seen.then_some(distance)
     }
 }
