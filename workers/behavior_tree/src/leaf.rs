@@ -1,5 +1,7 @@
 //! What a world is told about a leaf that it may tick itself.
 
+use std::borrow::Cow;
+
 use crate::blackboard::{Input, Ports, Value};
 use crate::sheet::NodeSheet;
 
@@ -62,7 +64,7 @@ impl LeafCall<'_> {
 
     /// Text in a port; `None` where its entry is not set.
     #[must_use]
-    pub fn text(&self, port: usize) -> Option<String> {
+    pub fn text(&self, port: usize) -> Option<Cow<'_, str>> {
         self.ports().text(port)
     }
 
@@ -72,7 +74,7 @@ impl LeafCall<'_> {
         let Some(entry) = self.board.get_mut(*slot) else { return false };
         *entry = Some(match value.into() {
             LeafValue::Number(number) => Value::Number(number),
-            LeafValue::Text(text) => Value::Text(text),
+            LeafValue::Text(text) => Value::of_text(&text),
         });
         true
     }

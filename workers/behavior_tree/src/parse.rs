@@ -220,7 +220,7 @@ impl Reading<'_> {
             return self.fault(FaultCode::BMain, it, format!("a second tree has the ID `{id}`; allowed: each ID once"));
         }
         match it.children.as_slice() {
-            [root] => self.document.trees.push(TreeDef { id, root: root.clone() }),
+            [root] => self.document.trees.push(TreeDef { id, root: root.clone().short() }),
             children => {
                 let message = format!("the tree `{id}` has `{}` children; allowed: exactly 1", children.len());
                 self.fault(FaultCode::BArity, it, message);
@@ -264,10 +264,20 @@ impl Reading<'_> {
                 );
                 self.fault(FaultCode::BNode, it, message);
             }
+            Some(sheet) if sheet.only_in().is_some_and(|format| format != self.document.format) => {
+                let instead = if sheet.tag == "SubTreePlus" {
+                    "SubTree, which hands over {entries} there"
+                } else {
+                    "only with BTCPP_format=\"4\""
+                };
+                let message = format!("{} has no node `{}`; allowed: {instead}", self.document.format.name(), it.tag);
+                self.fault(FaultCode::BNode, it, message);
+            }
             Some(sheet) => {
                 let n = it.children.len();
-                if n < sheet.arity.least || n > sheet.arity.most {
-                    let message = format!("`{}` has `{n}` children; allowed: {}", it.tag, sheet.arity.allowed());
+                let arity = sheet.arity_in(self.document.format);
+                if n < arity.least || n > arity.most {
+                    let message = format!("`{}` has `{n}` children; allowed: {}", it.tag, arity.allowed());
                     self.fault(FaultCode::BArity, it, message);
                 }
                 if matches!(it.tag.as_str(), "SubTree" | "SubTreePlus") {

@@ -5,6 +5,7 @@ use socrates_model::{Action, Gesture, Trigger};
 use crate::blackboard::Ports;
 use crate::status::Status;
 use crate::tick::Ticker;
+use crate::tree::Format;
 
 /// Where a kind of node comes from, and so who else can load it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -282,6 +283,25 @@ impl NodeSheet {
     #[must_use]
     pub fn is_called(&self, tag: &str) -> bool {
         self.tag == tag || self.v3_tag == Some(tag)
+    }
+
+    /// Number of children in a format: `WhileDoElse` of version 3 demands all three.
+    #[must_use]
+    pub fn arity_in(&self, format: Format) -> Arity {
+        match (self.tag, format) {
+            ("WhileDoElse", Format::V3) => Arity { least: 3, ..self.arity },
+            _ => self.arity,
+        }
+    }
+
+    /// The only format that has this kind of node; `None` where both have it.
+    #[must_use]
+    pub fn only_in(&self) -> Option<Format> {
+        match self.tag {
+            "RunOnce" | "Script" | "TimeDelay" => Some(Format::V4),
+            "SubTreePlus" => Some(Format::V3),
+            _ => None,
+        }
     }
 
     /// Whether this crate ticks it without the help of [`World::leaf`](crate::World::leaf).

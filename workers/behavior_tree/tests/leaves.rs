@@ -54,8 +54,9 @@ impl World for Upstream {
     }
     fn gesture(&mut self, _gesture: Gesture) {}
     fn leaf(&mut self, call: &mut LeafCall<'_>) -> Option<Status> {
-        let ports: Vec<String> =
-            (0..call.sheet().ports.len()).map(|port| call.text(port).unwrap_or_else(|| "-".to_owned())).collect();
+        let ports: Vec<String> = (0..call.sheet().ports.len())
+            .map(|port| call.text(port).map_or_else(|| "-".to_owned(), Into::into))
+            .collect();
         self.told.push(format!("{} {} {} {}", call.leaf(), call.tag(), ports.join(","), call.is_running()));
         match call.tag() {
             "FindNearestAgent" => {

@@ -12,7 +12,7 @@ use crate::xml::Element;
 /// that nothing sets.
 pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    for node in &tree.nodes {
+    for node in tree.nodes.iter() {
         if matches!(node.sheet.tag, "Sequence" | "SequenceWithMemory" | "ReactiveSequence") {
             order(tree, ctx, &node.children, &mut faults);
         }

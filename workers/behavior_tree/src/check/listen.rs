@@ -10,7 +10,7 @@ use crate::tree::{Node, Tree};
 /// entries that nothing sets.
 pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    for node in &tree.nodes {
+    for node in tree.nodes.iter() {
         let ports = tree.ports(node);
         match node.sheet.role {
             Role::Asks(means) => match means(&ports) {

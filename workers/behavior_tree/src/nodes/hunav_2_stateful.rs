@@ -324,9 +324,9 @@ fn wait(t: &mut Ticker<'_>, node: usize) -> Status {
     let Some(seconds) = t.ports(node).real(1) else { return Status::Failure };
     let now = t.world.now().nanos();
     if t.status(node) != Status::Running {
-        t.cell(node).nanos = now;
+        t.set_word(node, 0, now);
     }
-    let waited = now.saturating_sub(t.cell(node).nanos);
+    let waited = now.saturating_sub(t.word(node, 0));
     if waited >= crate::nodes::time_expired::nanos(seconds) {
         return Status::Success;
     }
@@ -337,5 +337,5 @@ fn wait(t: &mut Ticker<'_>, node: usize) -> Status {
 
 /// A wait that is cut short starts anew.
 fn wait_halt(t: &mut Ticker<'_>, node: usize) {
-    t.cell(node).nanos = 0;
+    t.set_word(node, 0, 0);
 }

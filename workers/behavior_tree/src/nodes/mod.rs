@@ -1,8 +1,8 @@
 //! The catalogue: one file per kind of node. A new kind is a new file and a line in [`CATALOG`].
 
+mod again;
 mod always;
 mod at_encounter;
-mod fallback;
 mod follow_human;
 mod force;
 mod foreign;
@@ -13,6 +13,7 @@ mod hunav_1;
 mod hunav_2;
 mod hunav_2_stateful;
 mod if_then_else;
+mod in_order;
 mod inverter;
 mod keep_running;
 mod latch;
@@ -21,10 +22,7 @@ mod memory_sequence;
 mod motion;
 mod parallel;
 mod path_done;
-mod reactive_fallback;
-mod reactive_sequence;
-mod repeat;
-mod retry;
+mod reactive;
 mod robot_blocking;
 mod robot_moved;
 mod robot_nearby;
@@ -33,7 +31,6 @@ mod robot_stopped;
 mod robot_visible;
 mod run_once;
 mod script;
-mod sequence;
 mod set_blackboard;
 mod subtree;
 mod switch;
@@ -51,11 +48,11 @@ use crate::tick::Ticker;
 
 /// Every kind of node, control flow first, in the order of prompts and docs.
 pub const CATALOG: &[&NodeSheet] = &[
-    &sequence::SHEET,
-    &fallback::SHEET,
+    &in_order::SEQUENCE,
+    &in_order::FALLBACK,
     &inverter::SHEET,
-    &reactive_sequence::SHEET,
-    &reactive_fallback::SHEET,
+    &reactive::SEQUENCE,
+    &reactive::FALLBACK,
     &memory_sequence::SHEET,
     &parallel::SHEET,
     &if_then_else::SHEET,
@@ -67,8 +64,8 @@ pub const CATALOG: &[&NodeSheet] = &[
     &switch::SWITCH_6,
     &force::SUCCESS,
     &force::FAILURE,
-    &repeat::SHEET,
-    &retry::SHEET,
+    &again::REPEAT,
+    &again::RETRY,
     &keep_running::SHEET,
     &run_once::SHEET,
     &latch::SHEET,
@@ -163,13 +160,42 @@ fn halt_children(ticker: &mut Ticker<'_>, node: usize) {
     ticker.set(node, Status::Idle);
 }
 
-/// Halting a node with a place or counter: that too starts anew.
-fn halt_counting(ticker: &mut Ticker<'_>, node: usize) {
-    let cell = ticker.cell(node);
-    cell.index = 0;
-    cell.count = 0;
-    cell.tally = 0;
+/// Halting a node with a place: that too starts anew.
+fn halt_placed(ticker: &mut Ticker<'_>, node: usize) {
+    ticker.set_place(node, 0);
     halt_children(ticker, node);
+}
+
+/// Halting a sequence or fallback: its place, and in version 4 the count of children left out, start anew.
+fn halt_counting_skips(ticker: &mut Ticker<'_>, node: usize) {
+    if ticker.is_v4() {
+        ticker.set_word(node, 0, 0);
+    }
+    halt_placed(ticker, node);
+}
+
+/// Halting a node that counts in word 0.
+fn halt_counting(ticker: &mut Ticker<'_>, node: usize) {
+    ticker.set_word(node, 0, 0);
+    halt_children(ticker, node);
+}
+
+/// A remembered outcome as a word.
+pub(crate) const fn memory(outcome: Status) -> u64 {
+    match outcome {
+        Status::Success => 1,
+        Status::Failure => 2,
+        Status::Idle | Status::Running | Status::Skipped => 0,
+    }
+}
+
+/// The outcome that a word remembers.
+pub(crate) const fn remembered(word: u64) -> Option<Status> {
+    match word {
+        1 => Some(Status::Success),
+        2 => Some(Status::Failure),
+        _ => None,
+    }
 }
 
 #[cfg(test)]

@@ -19,23 +19,22 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt: halt_counting,
 };
 
-/// The library measures from the first tick by the wall clock; here by simulated time. `count` says whether
-/// the delay has begun.
+/// The library measures from the first tick by the wall clock; here by simulated time. Word 0 says whether
+/// the delay has begun, word 1 when.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     let delay = time_expired::nanos(t.ports(node).real(0).unwrap_or(0.0));
     let now = t.world.now().nanos();
-    let cell = t.cell(node);
-    if cell.count == 0 {
-        cell.count = 1;
-        cell.nanos = now;
+    if t.word(node, 0) == 0 {
+        t.set_word(node, 0, 1);
+        t.set_word(node, 1, now);
     }
-    if now.saturating_sub(cell.nanos) < delay {
+    if now.saturating_sub(t.word(node, 1)) < delay {
         return Status::Failure;
     }
     t.set(node, Status::Running);
     let outcome = t.tick_child(node, 0);
     if outcome.is_finished() {
-        t.cell(node).count = 0;
+        t.set_word(node, 0, 0);
         t.reset_child(node, 0);
     }
     outcome

@@ -31,12 +31,12 @@ pub(super) fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     };
     let step_s = ports.real(1).unwrap_or_else(|| t.world.step_s());
     let limit = nanos(seconds);
-    let cell = t.cell(node);
-    cell.nanos = cell.nanos.saturating_add(nanos(step_s));
-    if cell.nanos < limit {
+    let counted = t.word(node, 0).saturating_add(nanos(step_s));
+    if counted < limit {
+        t.set_word(node, 0, counted);
         return Status::Failure;
     }
-    cell.nanos = if only_once { limit } else { 0 };
+    t.set_word(node, 0, if only_once { limit } else { 0 });
     Status::Success
 }
 
