@@ -13,8 +13,9 @@ use crate::floor::Floor;
 
 /// Corrections smaller than this are not applied, m.
 const LEAST_M: f64 = 1e-4;
-/// Passes over all pairs; a crowd of 20 in a doorway settles in fewer.
-const PASSES: usize = 6;
+/// Most passes over all pairs. People who walk settle in two or three; thirty who press towards one spot are left
+/// with less than 1 cm of overlap.
+const PASSES: usize = 20;
 
 /// Bodies farther apart than this, surface to surface, never touch while one tick's contacts are resolved, m.
 const MARGIN_M: f64 = 0.5;
@@ -143,15 +144,17 @@ fn disc_wall(body: &Body, floor: &Floor) -> Option<(f64, Vector)> {
     if floor.clearance_m(&body.at) >= body.radius_m - LEAST_M {
         return None;
     }
-    for (from, to) in floor.closed() {
-        if let Some(found) = disc_segment(body, from, to) {
-            return Some(found);
-        }
-    }
-    let (distance, wall) = floor.nearest_wall(&body.at, body.radius_m + 0.5)?;
-    let depth = body.radius_m - distance;
-    let away = body.at - wall;
-    (depth > LEAST_M && away.norm() > 1e-6).then(|| (depth, unit(&away)))
+    // The deepest counts: between a wall and a closed door the other one has its turn in the next pass.
+    let doors = floor.closed().iter().filter_map(|(from, to)| disc_segment(body, from, to));
+    let wall = floor.nearest_wall(&body.at, body.radius_m + 0.5).and_then(|(distance, wall)| {
+        let depth = body.radius_m - distance;
+        let away = body.at - wall;
+        (depth > LEAST_M && away.norm() > 1e-6).then(|| (depth, unit(&away)))
+    });
+    doors.fold(wall, |deepest, found| match deepest {
+        Some(deepest) if deepest.0 > found.0 => Some(deepest),
+        Some(_) | None => Some(found),
+    })
 }
 
 fn disc_segment(body: &Body, from: &Point, to: &Point) -> Option<(f64, Vector)> {
