@@ -36,6 +36,8 @@ pub struct Recorder {
     recording: Recording,
     now: SimTime,
     fresh: Vec<Event>,
+    /// Where the events of the tick that ended last begin.
+    last: usize,
     touches: BTreeMap<(AgentId, Option<AgentId>), f64>,
     sights: BTreeMap<HumanId, f64>,
     meetings: BTreeMap<HumanId, Meeting>,
@@ -49,6 +51,7 @@ impl Recorder {
             recording: Recording { header, frames: Vec::new(), events: Vec::new() },
             now: SimTime::ZERO,
             fresh: Vec::new(),
+            last: 0,
             touches: BTreeMap::new(),
             sights: BTreeMap::new(),
             meetings: BTreeMap::new(),
@@ -137,7 +140,14 @@ impl Recorder {
     pub fn frame(&mut self, states: &[AgentState], sink: &mut dyn FnMut(&[AgentState], &[Event])) {
         sink(states, &self.fresh);
         self.recording.frames.extend_from_slice(states);
+        self.last = self.recording.events.len();
         self.recording.events.append(&mut self.fresh);
+    }
+
+    /// Events of the tick that ended last.
+    #[must_use]
+    pub fn last_tick(&self) -> &[Event] {
+        self.recording.events.get(self.last..).unwrap_or(&[])
     }
 
     /// The recording as it stands.

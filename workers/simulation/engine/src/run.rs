@@ -3,11 +3,11 @@
 use socrates_crowd::Params;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, Gesture, HumanId, Point, Recording, RecordingHeader,
-    RobotDriver, SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, Gesture, HumanId, Recording, RecordingHeader, RobotDriver,
+    SimTime,
 };
 
-use crate::doors::{Doors, Passer};
+use crate::doors::{self, Doors, Passer, Raised};
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Human, leaf_name, leaf_number};
@@ -97,12 +97,16 @@ impl Engine {
         loop {
             let now = SimTime::at_tick(tick);
             recorder.at(now);
-            let raised = self.raised();
-            let passers = self.passers();
-            for (door, open) in self.doors.step(now.secs(), STEP_SECS, &passers, &raised) {
-                recorder.tell(EventKind::Door { door, open });
+            if !self.doors.doors.is_empty() {
+                let raised = self.raised(&recorder);
+                let changed = self.doors.step(now.secs(), STEP_SECS, &self.passers(), &raised);
+                if !changed.is_empty() {
+                    self.floor.close(self.doors.closed());
+                }
+                for (door, open) in changed {
+                    recorder.tell(EventKind::Door { door, open });
+                }
             }
-            self.floor.close(self.doors.closed());
             self.think(now, tick == 0, &mut recorder);
             if let Some(driver) = driver.as_deref_mut() {
                 self.drive(driver, now, &mut recorder);
@@ -121,12 +125,19 @@ impl Engine {
         }
     }
 
-    /// Doors that the rendezvous controller opens: somebody is about to go through.
-    fn raised(&self) -> Vec<(String, Point)> {
+    /// What may open a door: somebody is about to go through, or something was told in the tick before.
+    fn raised(&self, recorder: &Recorder) -> Vec<Raised> {
         let mut raised = Vec::new();
+        if self.doors.listening {
+            let place = |agent: AgentId| match agent {
+                AgentId::Robot => self.robot.as_ref().map(Robot::at),
+                AgentId::Human(id) => self.humans.iter().find(|human| human.id == id).map(|human| human.at),
+            };
+            raised.extend(recorder.last_tick().iter().filter_map(|event| Raised::by(event, &place)));
+        }
         let mut raise = |door: usize| {
             if let Some(live) = self.doors.doors.get(door) {
-                raised.push(("encounter".to_owned(), live.door.middle()));
+                raised.push(Raised { name: doors::ENCOUNTER.to_owned(), at: Some(live.door.middle()) });
             }
         };
         for human in &self.humans {
