@@ -1,14 +1,15 @@
 //! From the document to flat arrays: subtrees unfold, names of entries become slots.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use socrates_model::{Fault, FaultCode};
 
 use crate::blackboard::{Input, Value, read_flag};
 use crate::parse::{Document, GUARDS, key_in_braces};
 use crate::script::Script;
-use crate::sheet::{Kind, PortKind, Role};
-use crate::tree::{Format, Guards, Node, Tree};
+use crate::sheet::{Kind, Library, PortKind, Role};
+use crate::tree::{Format, Guards, Node, Step, Tree};
 use crate::xml::Element;
 
 /// Most nodes of an unfolded tree.
@@ -59,18 +60,80 @@ pub(crate) fn build(document: Document) -> Result<Tree, Vec<Fault>> {
         return Err(faults);
     }
     let keys = scopes.drain(..).next().map(|scope| scope.known).unwrap_or_default();
-    Ok(Tree { nodes, board, keys, format: document.format, document })
+    let Flat { steps, kids, inputs, n_words } = flat(&nodes, document.format);
+    Ok(Tree {
+        nodes: nodes.into(),
+        steps: steps.into(),
+        kids: kids.into(),
+        inputs: inputs.into(),
+        n_words,
+        board: board.into(),
+        keys: Arc::new(keys),
+        format: document.format,
+        document: Arc::new(document),
+    })
+}
+
+/// What a tick needs of the nodes, side by side.
+struct Flat {
+    steps: Vec<Step>,
+    kids: Vec<u32>,
+    inputs: Vec<Input>,
+    n_words: usize,
+}
+
+fn flat(nodes: &[Node], format: Format) -> Flat {
+    let mut flat = Flat { steps: Vec::with_capacity(nodes.len()), kids: Vec::new(), inputs: Vec::new(), n_words: 0 };
+    let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    for node in nodes {
+        flat.steps.push(Step {
+            sheet: node.sheet,
+            tick: node.sheet.tick,
+            halt: node.sheet.halt,
+            first_kid: small(flat.kids.len()),
+            n_kids: small(node.children.len()),
+            first_input: small(flat.inputs.len()),
+            n_inputs: small(node.inputs.len()),
+            word: small(flat.n_words),
+            leaf: node.leaf,
+            asks_world: node.leaf > 0 && node.sheet.library != Library::BuiltIn && node.sheet.role.is_catalogued(),
+            is_guarded: node.guards.is_some(),
+            is_decorator: node.sheet.kind == Kind::Decorator,
+        });
+        flat.kids.extend(node.children.iter().map(|child| small(*child)));
+        flat.inputs.extend(node.inputs.iter().cloned());
+        flat.n_words += words(node, format);
+    }
+    flat
+}
+
+/// Words of memory a node needs beside its cell. Version 3 never leaves a child out, so that its sequences count
+/// nothing.
+fn words(node: &Node, format: Format) -> usize {
+    match node.sheet.tag {
+        "Sequence" | "Fallback" | "SequenceWithMemory" => usize::from(format == Format::V4),
+        "Repeat" | "RetryUntilSuccessful" | "RunOnce" | "Latch" | "TimeExpiredCondition" => 1,
+        "StopAndWaitTimerAction" => 1,
+        "Parallel" | "TimeDelay" => 2,
+        _ => 0,
+    }
 }
 
 impl Builder<'_> {
     /// The slot of a name as one scope sees it.
     fn slot(&mut self, scope: usize, key: &str) -> usize {
+        let v4 = self.document.format == Format::V4;
+        if v4 && let Some(key) = key.strip_prefix('@') {
+            // `{@key}` names an entry of the main tree from everywhere.
+            return self.slot(0, key);
+        }
         let Some(here) = self.scopes.get(scope) else { return usize::MAX };
         if let Some(slot) = here.known.get(key) {
             return *slot;
         }
         let slot = match (here.sight, here.above) {
-            (Sight::Above, Some(above)) => self.slot(above, key),
+            // Names that begin with `_` stay private in version 4.
+            (Sight::Above, Some(above)) if !(v4 && key.starts_with('_')) => self.slot(above, key),
             (Sight::Own | Sight::Above, _) => self.new_slot(None),
         };
         if let Some(here) = self.scopes.get_mut(scope) {
@@ -94,7 +157,12 @@ impl Builder<'_> {
         }
         let sheet = self.document.sheet(it)?;
         let is_subtree = matches!(it.tag.as_str(), "SubTree" | "SubTreePlus");
-        let named = if is_subtree && self.document.format == Format::V3 { it.attr("ID") } else { it.attr("name") };
+        // A subtree is called by its tree; version 4 lets a name go before that.
+        let named = match (is_subtree, self.document.format) {
+            (true, Format::V3) => it.attr("ID"),
+            (true, Format::V4) => it.attr("name").or(it.attr("ID")),
+            (false, _) => it.attr("name"),
+        };
         let name = named.map_or_else(|| it.tag.clone(), str::to_owned);
         let inputs = if is_subtree || matches!(sheet.role, Role::Foreign) {
             Vec::new()
@@ -156,28 +224,31 @@ impl Builder<'_> {
     fn scope_of(&mut self, it: &Element, outer: usize) -> usize {
         let v3 = self.document.format == Format::V3;
         let plain_names = v3 && it.tag == "SubTree";
+        let shares = match (self.document.format, it.tag.as_str()) {
+            (Format::V3, "SubTree") => "__shared_blackboard",
+            (Format::V3, _) => "__autoremap",
+            (Format::V4, _) => "_autoremap",
+        };
         let mut known = BTreeMap::new();
         let mut sight = Sight::Own;
         for (name, value) in &it.attrs {
-            match name.as_str() {
-                "ID" | "name" => {}
-                "__shared_blackboard" | "__autoremap" | "_autoremap" => {
-                    if read_flag(value) == Some(true) {
-                        sight = Sight::Above;
-                    }
+            if name == shares {
+                if read_flag(value) == Some(true) {
+                    sight = Sight::Above;
                 }
-                name if GUARDS.contains(&name) => {}
-                name => {
-                    let slot = if plain_names {
-                        self.slot(outer, value)
-                    } else if let Some(key) = key_in_braces(value) {
-                        self.slot(outer, if key == "=" { name } else { key })
-                    } else {
-                        self.new_slot(Some(Value::Text(value.clone())))
-                    };
-                    known.insert(name.to_owned(), slot);
-                }
+                continue;
             }
+            if matches!(name.as_str(), "ID" | "name") || (!plain_names && name.starts_with('_')) {
+                continue;
+            }
+            let slot = if plain_names {
+                self.slot(outer, value)
+            } else if let Some(key) = key_in_braces(value) {
+                self.slot(outer, if key == "=" { name } else { key })
+            } else {
+                self.new_slot(Some(Value::of_text(value)))
+            };
+            known.insert(name.to_owned(), slot);
         }
         self.scopes.push(Scope { known, above: Some(outer), sight });
         self.scopes.len() - 1
@@ -190,9 +261,10 @@ impl Builder<'_> {
         };
         let text = it.attr(name).or(port.default).unwrap_or("");
         match (port.kind, key_in_braces(text)) {
-            (PortKind::Key, Some(key)) => Input::Slot(self.slot(scope, key)),
-            (PortKind::Key, None) => Input::Slot(self.slot(scope, text)),
-            (PortKind::Own | PortKind::Code, _) | (_, None) => Input::Fixed(text.to_owned()),
+            (PortKind::Key | PortKind::Output, Some(key)) => Input::Slot(self.slot(scope, key)),
+            (PortKind::Output, None) if text.is_empty() => Input::fixed(""),
+            (PortKind::Key | PortKind::Output, None) => Input::Slot(self.slot(scope, text)),
+            (PortKind::Code, _) | (_, None) => Input::fixed(text),
             (_, Some(key)) => Input::Slot(self.slot(scope, key)),
         }
     }

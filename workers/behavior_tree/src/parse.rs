@@ -38,13 +38,27 @@ const MAX_INCLUDES: usize = 16;
 /// Finds an included file by the path as written.
 pub type Includes<'a> = &'a dyn Fn(&str) -> Option<String>;
 
+/// Who ticks the leaves of a tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Meaning {
+    /// This crate, through the senses and deeds of [`World`](crate::World). A leaf whose meaning is not plain there
+    /// is refused by name.
+    #[default]
+    Native,
+    /// The world, through [`World::leaf`](crate::World::leaf); every leaf of the library is taken.
+    World,
+}
+
 /// How a document is read.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// Finds included files by the path as written; `BTRegularNav.xml` is found without it.
     pub includes: Option<Includes<'a>>,
-    /// Nodes that are taken. Default: [`Library::Native`], the SocRATES fork and our own.
+    /// Whose nodes are taken, with their ports, defaults and ranges. Default: [`Library::Native`], the SocRATES fork
+    /// and our own.
     pub library: Library,
+    /// Who ticks the leaves. Default: [`Meaning::Native`].
+    pub meaning: Meaning,
     /// Leaves of other libraries by tag, ticked through [`World::foreign`](crate::World::foreign).
     pub foreign: &'a [(&'a str, Kind)],
     /// Whether leaves that the document declares in its `TreeNodesModel` are taken as foreign too.
@@ -53,7 +67,7 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { includes: None, library: Library::Native, foreign: &[], declared: false }
+        Self { includes: None, library: Library::Native, meaning: Meaning::Native, foreign: &[], declared: false }
     }
 }
 
@@ -71,6 +85,7 @@ pub(crate) struct Document {
     pub(crate) main: String,
     pub(crate) includes: Vec<String>,
     pub(crate) trees: Vec<TreeDef>,
+    library: Library,
     foreign: Vec<(String, Kind)>,
 }
 
@@ -87,7 +102,7 @@ impl Document {
 
     /// The sheet of an element.
     pub(crate) fn sheet(&self, it: &Element) -> Option<&'static NodeSheet> {
-        nodes::sheet_of(&it.tag).or_else(|| {
+        nodes::sheet_in(&it.tag, self.library).or_else(|| {
             let (_, kind) = self.foreign.iter().find(|(tag, _)| *tag == it.tag)?;
             Some(if *kind == Kind::Condition { &FOREIGN_CONDITION } else { &FOREIGN_ACTION })
         })
@@ -101,7 +116,14 @@ impl Document {
             Some(_) | None => Format::V3,
         };
         let foreign = options.foreign.iter().map(|(tag, kind)| ((*tag).to_owned(), *kind)).collect();
-        let document = Self { format, main: String::new(), includes: Vec::new(), trees: Vec::new(), foreign };
+        let document = Self {
+            format,
+            main: String::new(),
+            includes: Vec::new(),
+            trees: Vec::new(),
+            library: options.library,
+            foreign,
+        };
         let mut reading = Reading { document, options, faults: Vec::new(), seen: Vec::new() };
         reading.file(&root);
         reading.main(&root);
@@ -198,7 +220,7 @@ impl Reading<'_> {
             return self.fault(FaultCode::BMain, it, format!("a second tree has the ID `{id}`; allowed: each ID once"));
         }
         match it.children.as_slice() {
-            [root] => self.document.trees.push(TreeDef { id, root: root.clone() }),
+            [root] => self.document.trees.push(TreeDef { id, root: root.clone().short() }),
             children => {
                 let message = format!("the tree `{id}` has `{}` children; allowed: exactly 1", children.len());
                 self.fault(FaultCode::BArity, it, message);
@@ -228,14 +250,34 @@ impl Reading<'_> {
     fn element(&mut self, it: &Element, ids: &[&str]) {
         match self.document.sheet(it) {
             None => self.unknown(it),
-            Some(sheet) if !self.takes(sheet) => {
-                let message = format!("`{}` is a node of HuNavSim 1.x; allowed here: {}", it.tag, self.tags());
+            Some(sheet) if self.options.meaning == Meaning::Native && !sheet.is_native() => {
+                let native: Vec<&str> = nodes::known_to(self.options.library)
+                    .iter()
+                    .filter(|other| other.library == sheet.library && other.is_native())
+                    .map(|other| other.tag)
+                    .collect();
+                let message = format!(
+                    "`{}` of {} has no native meaning and runs in its own profile only; allowed in a native run: {}",
+                    it.tag,
+                    sheet.library.name(),
+                    native.join(", ")
+                );
+                self.fault(FaultCode::BNode, it, message);
+            }
+            Some(sheet) if sheet.only_in().is_some_and(|format| format != self.document.format) => {
+                let instead = if sheet.tag == "SubTreePlus" {
+                    "SubTree, which hands over {entries} there"
+                } else {
+                    "only with BTCPP_format=\"4\""
+                };
+                let message = format!("{} has no node `{}`; allowed: {instead}", self.document.format.name(), it.tag);
                 self.fault(FaultCode::BNode, it, message);
             }
             Some(sheet) => {
                 let n = it.children.len();
-                if n < sheet.arity.least || n > sheet.arity.most {
-                    let message = format!("`{}` has `{n}` children; allowed: {}", it.tag, sheet.arity.allowed());
+                let arity = sheet.arity_in(self.document.format);
+                if n < arity.least || n > arity.most {
+                    let message = format!("`{}` has `{n}` children; allowed: {}", it.tag, arity.allowed());
                     self.fault(FaultCode::BArity, it, message);
                 }
                 if matches!(it.tag.as_str(), "SubTree" | "SubTreePlus") {
@@ -250,10 +292,6 @@ impl Reading<'_> {
         }
     }
 
-    fn takes(&self, sheet: &NodeSheet) -> bool {
-        matches!(sheet.role, crate::sheet::Role::Foreign) || nodes::is_known_to(sheet.tag, self.options.library)
-    }
-
     fn tags(&self) -> String {
         let tags: Vec<&str> = nodes::known_to(self.options.library).iter().map(|sheet| sheet.tag).collect();
         tags.join(", ")
@@ -266,7 +304,19 @@ impl Reading<'_> {
             .min()
             .filter(|(distance, _)| *distance <= 6)
             .map_or_else(String::new, |(_, tag)| format!("; nearest: {tag}"));
-        let message = format!("there is no node `{}`{nearest}; allowed: {}", it.tag, self.tags());
+        let others: Vec<&str> = Library::ALL
+            .into_iter()
+            .filter(|library| nodes::is_known_to(&it.tag, *library))
+            .map(Library::name)
+            .collect();
+        let elsewhere =
+            if others.is_empty() { String::new() } else { format!("; it is a node of {}", others.join(", ")) };
+        let message = format!(
+            "there is no node `{}` in {}{elsewhere}{nearest}; allowed: {}",
+            it.tag,
+            self.options.library.name(),
+            self.tags()
+        );
         self.fault(FaultCode::BNode, it, message);
     }
 
@@ -357,7 +407,11 @@ fn wrong(kind: PortKind, value: &str) -> Option<(FaultCode, &'static str)> {
     let number: Option<f64> = value.trim().parse().ok().filter(|number: &f64| number.is_finite());
     match (kind, number) {
         (PortKind::Own, _) => port("is not this human"),
-        (PortKind::Text, _) => None,
+        (PortKind::Text | PortKind::Output, _) => None,
+        (PortKind::Agents, _) => {
+            let all_ids = value.split(',').all(|id| id.trim().parse::<u32>().is_ok());
+            if all_ids { None } else { port("is not a list of ids") }
+        }
         (PortKind::Key, _) if value.trim().is_empty() || value.contains(['{', '}']) => port("names no entry"),
         (PortKind::Key, _) => None,
         (PortKind::Code, _) => match Script::read(value, &mut |_| 0) {
@@ -376,6 +430,28 @@ fn wrong(kind: PortKind, value: &str) -> Option<(FaultCode, &'static str)> {
         }
         (_, None) => port("is not a number"),
         (PortKind::Number, Some(_)) => None,
+        (PortKind::Agent, Some(_)) => whole(value, |number| number >= 0),
+        (PortKind::Distance | PortKind::Span | PortKind::Speed, Some(number)) => {
+            if number >= 0.0 {
+                None
+            } else {
+                range("is out of range")
+            }
+        }
+        (PortKind::Angle, Some(angle)) => {
+            if (0.0..=6.2832).contains(&angle) {
+                None
+            } else {
+                range("is out of range")
+            }
+        }
+        (PortKind::Share, Some(share)) => {
+            if (0.0..=1.0).contains(&share) {
+                None
+            } else {
+                range("is out of range")
+            }
+        }
         (PortKind::Meters, Some(m)) => {
             if (0.3..=15.0).contains(&m) {
                 None

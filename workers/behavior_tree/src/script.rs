@@ -7,7 +7,7 @@ use crate::blackboard::Value;
 pub(crate) enum ScriptFault {
     /// A character or word that has no place here.
     #[error(
-        "`{found}` at character {at} of the script; allowed: names, numbers, 'texts', := = + - * / == != < <= > >= && || ! ( ) ;"
+        "`{found}` at character {at} of the script; allowed: names, numbers, 'texts', := = += -= *= /= + - * / .. == != < <= > >= && || ! & | ^ ~ ? : ( ) ;"
     )]
     Token { found: String, at: usize },
     /// The script ends too early.
@@ -38,7 +38,9 @@ enum Expr {
     Entry(usize),
     Not(Box<Expr>),
     Minus(Box<Expr>),
+    Flip(Box<Expr>),
     Pair(Op, Box<Expr>, Box<Expr>),
+    Choose { condition: Box<Expr>, holds: Box<Expr>, otherwise: Box<Expr> },
     Assign { slot: usize, creates: bool, value: Box<Expr> },
 }
 
@@ -56,22 +58,31 @@ enum Op {
     Subtract,
     Multiply,
     Divide,
+    BitOr,
+    BitXor,
+    BitAnd,
+    Join,
 }
 
 impl Op {
-    const ALL: [(&'static str, Self, u8); 12] = [
+    /// Signs with what they do and how strongly they bind. `..` joins texts.
+    const ALL: [(&'static str, Self, u8); 16] = [
         ("||", Self::Or, 1),
         ("&&", Self::And, 2),
-        ("==", Self::Equal, 3),
-        ("!=", Self::Unequal, 3),
-        ("<=", Self::LessEqual, 4),
-        (">=", Self::GreaterEqual, 4),
-        ("<", Self::Less, 4),
-        (">", Self::Greater, 4),
-        ("+", Self::Add, 5),
-        ("-", Self::Subtract, 5),
-        ("*", Self::Multiply, 6),
-        ("/", Self::Divide, 6),
+        ("|", Self::BitOr, 3),
+        ("^", Self::BitXor, 4),
+        ("&", Self::BitAnd, 5),
+        ("==", Self::Equal, 6),
+        ("!=", Self::Unequal, 6),
+        ("<=", Self::LessEqual, 7),
+        (">=", Self::GreaterEqual, 7),
+        ("<", Self::Less, 7),
+        (">", Self::Greater, 7),
+        ("..", Self::Join, 8),
+        ("+", Self::Add, 9),
+        ("-", Self::Subtract, 9),
+        ("*", Self::Multiply, 10),
+        ("/", Self::Divide, 10),
     ];
 }
 
@@ -117,8 +128,11 @@ enum Token {
     Sign(&'static str),
 }
 
-const SIGNS: [&str; 18] =
-    [":=", "==", "!=", "<=", ">=", "&&", "||", "=", "<", ">", "+", "-", "*", "/", "!", "(", ")", ";"];
+/// Longer signs come before those they begin with.
+const SIGNS: [&str; 29] = [
+    ":=", "==", "!=", "<=", ">=", "&&", "||", "+=", "-=", "*=", "/=", "..", "=", "<", ">", "+", "-", "*", "/", "!",
+    "~", "&", "|", "^", "?", ":", "(", ")", ";",
+];
 
 fn tokens(code: &str) -> Result<Vec<(Token, usize)>, ScriptFault> {
     let mut tokens = Vec::new();
@@ -133,12 +147,15 @@ fn tokens(code: &str) -> Result<Vec<(Token, usize)>, ScriptFault> {
         } else if first == '\'' {
             let body = rest.get(1..).unwrap_or("");
             let end = body.find('\'').ok_or(ScriptFault::End)?;
-            token = Token::Value(Value::Text(body.get(..end).unwrap_or("").to_owned()));
+            token = Token::Value(Value::of_text(body.get(..end).unwrap_or("")));
             length = end + 2;
         } else if first.is_ascii_digit() {
-            length = rest.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(rest.len());
+            length = number_length(rest);
             let text = rest.get(..length).unwrap_or("");
-            let number = text.parse().map_err(|_why| ScriptFault::Token { found: text.to_owned(), at })?;
+            let hex = text.strip_prefix("0x").or(text.strip_prefix("0X"));
+            let number =
+                hex.map_or_else(|| text.parse().ok(), |hex| i64::from_str_radix(hex, 16).ok().map(|n| n as f64));
+            let number = number.ok_or_else(|| ScriptFault::Token { found: text.to_owned(), at })?;
             token = Token::Value(Value::Number(number));
         } else if first.is_alphabetic() || first == '_' {
             length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
@@ -160,6 +177,28 @@ fn tokens(code: &str) -> Result<Vec<(Token, usize)>, ScriptFault> {
         rest = rest.get(length..).unwrap_or("");
     }
     Ok(tokens)
+}
+
+/// Length of the number a text begins with: `12`, `0.5`, `1e-3`, `0xff`; `1..2` is two numbers.
+fn number_length(text: &str) -> usize {
+    if text.starts_with("0x") || text.starts_with("0X") {
+        let digits = text.chars().skip(2).take_while(char::is_ascii_hexdigit).count();
+        return 2 + digits;
+    }
+    let digits = |from: usize| text.chars().skip(from).take_while(char::is_ascii_digit).count();
+    let mut length = digits(0);
+    let rest = |length: usize| text.get(length..).unwrap_or("");
+    if rest(length).starts_with('.') && !rest(length).starts_with("..") {
+        length += 1 + digits(length + 1);
+    }
+    if rest(length).starts_with(['e', 'E']) {
+        let sign = usize::from(rest(length + 1).starts_with(['+', '-']));
+        let power = digits(length + 1 + sign);
+        if power > 0 {
+            length += 1 + sign + power;
+        }
+    }
+    length
 }
 
 struct TokenReader<'a> {
@@ -195,14 +234,37 @@ impl TokenReader<'_> {
 
     fn statement(&mut self) -> Result<Expr, ScriptFault> {
         if let Some((Token::Name(name), _)) = self.tokens.get(self.at)
-            && let Some((Token::Sign(sign @ (":=" | "=")), _)) = self.tokens.get(self.at + 1)
+            && let Some((Token::Sign(sign @ (":=" | "=" | "+=" | "-=" | "*=" | "/=")), _)) =
+                self.tokens.get(self.at + 1)
         {
             let slot = (self.slot_of)(name);
             self.at += 2;
-            let value = Box::new(self.pair(1, 0)?);
-            return Ok(Expr::Assign { slot, creates: *sign == ":=", value });
+            let value = self.choice(0)?;
+            let changed = |op| Expr::Pair(op, Box::new(Expr::Entry(slot)), Box::new(value.clone()));
+            let value = match *sign {
+                "+=" => changed(Op::Add),
+                "-=" => changed(Op::Subtract),
+                "*=" => changed(Op::Multiply),
+                "/=" => changed(Op::Divide),
+                _ => value,
+            };
+            return Ok(Expr::Assign { slot, creates: *sign == ":=", value: Box::new(value) });
         }
-        self.pair(1, 0)
+        self.choice(0)
+    }
+
+    /// `condition ? value : other value`, or just a value.
+    fn choice(&mut self, depth: usize) -> Result<Expr, ScriptFault> {
+        let condition = self.pair(1, depth)?;
+        if !self.takes("?") {
+            return Ok(condition);
+        }
+        let holds = self.choice(depth + 1)?;
+        if !self.takes(":") {
+            return Err(self.stray());
+        }
+        let otherwise = self.choice(depth + 1)?;
+        Ok(Expr::Choose { condition: Box::new(condition), holds: Box::new(holds), otherwise: Box::new(otherwise) })
     }
 
     /// Operators of this rank and above, left to right.
@@ -232,8 +294,11 @@ impl TokenReader<'_> {
         if self.takes("-") {
             return Ok(Expr::Minus(Box::new(self.single(depth + 1)?)));
         }
+        if self.takes("~") {
+            return Ok(Expr::Flip(Box::new(self.single(depth + 1)?)));
+        }
         if self.takes("(") {
-            let inner = self.pair(1, depth + 1)?;
+            let inner = self.choice(depth + 1)?;
             return if self.takes(")") { Ok(inner) } else { Err(self.stray()) };
         }
         let expr = match self.tokens.get(self.at) {
@@ -252,6 +317,11 @@ fn evaluate(expr: &Expr, board: &mut [Option<Value>]) -> Result<Value, ScriptFau
         Expr::Entry(slot) => board.get(*slot).cloned().flatten().ok_or(ScriptFault::Unset)?,
         Expr::Not(inner) => truth(!evaluate(inner, board)?.flag()),
         Expr::Minus(inner) => Value::Number(-number(&evaluate(inner, board)?)?),
+        Expr::Flip(inner) => Value::Number(!bits(&evaluate(inner, board)?)? as f64),
+        Expr::Choose { condition, holds, otherwise } => {
+            let chosen = if evaluate(condition, board)?.flag() { holds } else { otherwise };
+            evaluate(chosen, board)?
+        }
         Expr::Pair(op, left, right) => {
             let left = evaluate(left, board)?;
             if (*op == Op::Or && left.flag()) || (*op == Op::And && !left.flag()) {
@@ -284,13 +354,17 @@ fn combine(op: Op, left: &Value, right: &Value) -> Result<Value, ScriptFault> {
         Op::Subtract => Value::Number(number(left)? - number(right)?),
         Op::Multiply => Value::Number(number(left)? * number(right)?),
         Op::Divide => Value::Number(number(left)? / number(right)?),
+        Op::BitOr => Value::Number((bits(left)? | bits(right)?) as f64),
+        Op::BitXor => Value::Number((bits(left)? ^ bits(right)?) as f64),
+        Op::BitAnd => Value::Number((bits(left)? & bits(right)?) as f64),
+        Op::Join => Value::of_text(&format!("{left}{right}")),
     })
 }
 
 /// Two texts are compared as texts; with a number on either side both must be numbers.
 fn equal(left: &Value, right: &Value) -> bool {
-    if let (Value::Text(a), Value::Text(b)) = (left, right) {
-        return a == b;
+    if left.is_text() && right.is_text() {
+        return left.same_text(right);
     }
     match (left.number(), right.number()) {
         (Some(a), Some(b)) => (a - b).abs() <= f64::EPSILON,
@@ -300,6 +374,11 @@ fn equal(left: &Value, right: &Value) -> bool {
 
 fn number(value: &Value) -> Result<f64, ScriptFault> {
     value.number().ok_or(ScriptFault::Number)
+}
+
+/// A number as a whole one; parts of one are cut off.
+fn bits(value: &Value) -> Result<i64, ScriptFault> {
+    Ok(number(value)? as i64)
 }
 
 fn truth(holds: bool) -> Value {
@@ -326,6 +405,18 @@ mod tests {
         assert_eq!(result("1 + 2 * 3 == 7").unwrap(), Value::Number(1.0));
         assert_eq!(result("(1 + 2) * 3 - 1 - 1").unwrap(), Value::Number(7.0));
         assert_eq!(result("n := 1; n = n + 1; n > 1 && !(n >= 3)").unwrap(), Value::Number(1.0));
+    }
+
+    #[test]
+    fn choices_changes_and_bits_are_computed() {
+        assert_eq!(result("n := 3; n += 2; n *= 4; n -= 1; n /= 19; n == 1 ? 10 : 20").unwrap(), Value::Number(10.0));
+        assert_eq!(result("a := false; a ? 1 : (a || true) ? 2 : 3").unwrap(), Value::Number(2.0));
+        assert_eq!(result("6 & 3 | 8").unwrap(), Value::Number(10.0));
+        assert_eq!(result("5 ^ 1").unwrap(), Value::Number(4.0));
+        assert_eq!(result("~0").unwrap(), Value::Number(-1.0));
+        assert_eq!(result("0x1F + 1e1 + .5 * 2").map_err(|_| ()), Err(()));
+        assert_eq!(result("0x1F + 1e1 + 0.5 * 2").unwrap(), Value::Number(42.0));
+        assert_eq!(result("'a' .. 'b' .. 1 == 'ab1'").unwrap(), Value::Number(1.0));
     }
 
     #[test]

@@ -5,18 +5,48 @@ use socrates_model::{Action, Gesture, Trigger};
 use crate::blackboard::Ports;
 use crate::status::Status;
 use crate::tick::Ticker;
+use crate::tree::Format;
 
 /// Where a kind of node comes from, and so who else can load it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Library {
     /// Part of BehaviorTree.CPP.
     BuiltIn,
-    /// The node library of HuNavSim 1.x.
-    HunavSim1,
+    /// The node library of HuNavSim 1.0.
+    HunavSim1_0,
+    /// The node library of HuNavSim 1.1: the nodes of 1.0, with the parameters of the reactions as ports.
+    HunavSim1_1,
+    /// The node library of HuNavSim 2.0, written for BehaviorTree.CPP 4.
+    HunavSim2,
     /// The node library of the SocRATES fork of HuNavSim.
     SocratesFork,
     /// Added here; other simulators do not know it.
     Native,
+}
+
+impl Library {
+    /// Every library, in order of appearance.
+    pub const ALL: [Self; 6] =
+        [Self::BuiltIn, Self::HunavSim1_0, Self::HunavSim1_1, Self::HunavSim2, Self::SocratesFork, Self::Native];
+
+    /// Name in messages, files and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::BuiltIn => "built-in",
+            Self::HunavSim1_0 => "hunav-1.0",
+            Self::HunavSim1_1 => "hunav-1.1",
+            Self::HunavSim2 => "hunav-2.0",
+            Self::SocratesFork => "socrates-fork",
+            Self::Native => "native",
+        }
+    }
+
+    /// The library of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|library| library.name() == name)
+    }
 }
 
 /// What a node does with its children.
@@ -72,6 +102,22 @@ pub enum PortKind {
     Key,
     /// A script (v4).
     Code,
+    /// An agent: `{id}` or its id, a whole number of at least 0.
+    Agent,
+    /// Ids of agents, separated by commas.
+    Agents,
+    /// A distance of at least 0 m.
+    Distance,
+    /// A time span of at least 0 s.
+    Span,
+    /// A speed of at least 0 m/s.
+    Speed,
+    /// An angle from 0 to 2π rad.
+    Angle,
+    /// A probability from 0 to 1.
+    Share,
+    /// The entry a result is written to, as `{entry}`.
+    Output,
 }
 
 impl PortKind {
@@ -95,6 +141,14 @@ impl PortKind {
             Self::Text => "any text".to_owned(),
             Self::Key => "the name of a blackboard entry without braces".to_owned(),
             Self::Code => "a script such as x := 1".to_owned(),
+            Self::Agent => "{id}, or the id of an agent, a whole number of at least 0".to_owned(),
+            Self::Agents => "ids of agents separated by commas, such as 2,3".to_owned(),
+            Self::Distance => "a distance of at least 0 m".to_owned(),
+            Self::Span => "seconds, at least 0".to_owned(),
+            Self::Speed => "a speed of at least 0 m/s".to_owned(),
+            Self::Angle => "an angle from 0 to 6.2832 rad".to_owned(),
+            Self::Share => "a probability from 0 to 1".to_owned(),
+            Self::Output => "the entry a result is written to, as {entry}".to_owned(),
         }
     }
 }
@@ -179,8 +233,22 @@ pub(crate) enum Role {
     Says,
     /// Changes the goal or the blackboard.
     Quiet,
+    /// A leaf of the catalogue that only [`World::leaf`](crate::World::leaf) can tick.
+    World,
     /// Not in the catalogue.
     Foreign,
+}
+
+impl Role {
+    /// Whether the catalogue knows the node.
+    pub(crate) const fn is_catalogued(self) -> bool {
+        !matches!(self, Self::Foreign)
+    }
+
+    /// Whether only the world knows what the leaf does.
+    pub(crate) const fn is_opaque(self) -> bool {
+        matches!(self, Self::World | Self::Foreign)
+    }
 }
 
 /// Ticks a node; the node is already chosen and its status is set by the caller.
@@ -215,6 +283,31 @@ impl NodeSheet {
     #[must_use]
     pub fn is_called(&self, tag: &str) -> bool {
         self.tag == tag || self.v3_tag == Some(tag)
+    }
+
+    /// Number of children in a format: `WhileDoElse` of version 3 demands all three.
+    #[must_use]
+    pub fn arity_in(&self, format: Format) -> Arity {
+        match (self.tag, format) {
+            ("WhileDoElse", Format::V3) => Arity { least: 3, ..self.arity },
+            _ => self.arity,
+        }
+    }
+
+    /// The only format that has this kind of node; `None` where both have it.
+    #[must_use]
+    pub fn only_in(&self) -> Option<Format> {
+        match self.tag {
+            "RunOnce" | "Script" | "TimeDelay" => Some(Format::V4),
+            "SubTreePlus" => Some(Format::V3),
+            _ => None,
+        }
+    }
+
+    /// Whether this crate ticks it without the help of [`World::leaf`](crate::World::leaf).
+    #[must_use]
+    pub const fn is_native(&self) -> bool {
+        !matches!(self.role, Role::World)
     }
 
     /// The sheet as one line of a prompt: `FollowHuman agent_id="{id}" target_id=…: …`.

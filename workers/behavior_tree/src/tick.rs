@@ -1,10 +1,10 @@
-//! Ticking: the rules that hold for every kind of node. What a kind does is in [`crate::nodes`].
+//! Ticking: what happens around every kind of node. What a kind does is in [`crate::nodes`].
 
-use crate::blackboard::{Ports, Value};
+use crate::blackboard::{Input, Ports, Value};
+use crate::leaf::LeafCall;
 use crate::script::Script;
-use crate::sheet::Kind;
 use crate::status::Status;
-use crate::tree::{Cell, Format, Node, Tree, TreeState};
+use crate::tree::{Cell, Format, Guards, Step, Tree, TreeState};
 use crate::world::World;
 
 /// Most nodes ticked in one tick of a tree. Nested repetitions could otherwise keep it for ever;
@@ -22,7 +22,9 @@ pub(crate) struct Ticker<'a> {
 impl Ticker<'_> {
     /// Ticks the root; a finished root is put back, so that it starts anew next time.
     pub(crate) fn root(&mut self) -> Status {
-        self.state.ticks += 1;
+        for cell in &mut self.state.cells {
+            cell.mark(Cell::SEEN, false);
+        }
         let outcome = self.tick(0);
         if outcome.is_finished() {
             self.set(0, Status::Idle);
@@ -33,30 +35,16 @@ impl Ticker<'_> {
     /// Ticks a node with its attributes, and keeps its status.
     pub(crate) fn tick(&mut self, node: usize) -> Status {
         let tree = self.tree;
-        let Some(it) = tree.nodes.get(node) else { return Status::Failure };
+        let Some(step) = tree.steps.get(node) else { return Status::Failure };
         self.steps += 1;
         if self.steps > MAX_STEPS {
             return Status::Running;
         }
-        let ticks = self.state.ticks;
-        let outcome = match self.decided_before(node, it) {
-            Some(outcome) => outcome,
-            None => {
-                self.cell(node).seen = ticks;
-                (it.sheet.tick)(self, node)
-            }
-        };
-        if outcome.is_finished()
-            && let Some(guards) = &it.guards
-        {
-            let first = if outcome == Status::Success { &guards.on_success } else { &guards.on_failure };
-            self.run(first.as_ref());
-            self.run(guards.post.as_ref());
-        }
+        let outcome = if step.is_guarded { self.guarded(node, step) } else { self.bare(node, step) };
         if outcome != Status::Skipped {
             self.set(node, outcome);
         }
-        if it.sheet.kind == Kind::Decorator
+        if step.is_decorator
             && let Some(child) = self.child(node, 0)
             && self.status(child).is_finished()
         {
@@ -65,9 +53,47 @@ impl Ticker<'_> {
         outcome
     }
 
+    /// Ticks a node by the rule of its kind; a leaf by the world's, where it has one.
+    #[inline]
+    fn bare(&mut self, node: usize, step: &Step) -> Status {
+        let mut running = false;
+        if let Some(cell) = self.state.cells.get_mut(node) {
+            cell.mark(Cell::SEEN, true);
+            running = cell.status == Status::Running;
+        }
+        if !step.asks_world {
+            return (step.tick)(self, node);
+        }
+        let answer = self.world.leaf(&mut leaf_call(self.tree, step, running, &mut self.state.board));
+        match answer {
+            // A leaf cannot be idle after a tick, nor leave itself out in version 3.
+            Some(Status::Idle) => Status::Failure,
+            Some(Status::Skipped) if !self.is_v4() => Status::Failure,
+            Some(outcome) => outcome,
+            None => (step.tick)(self, node),
+        }
+    }
+
+    /// The same between the attributes of version 4.
+    fn guarded(&mut self, node: usize, step: &Step) -> Status {
+        let tree = self.tree;
+        let Some(guards) = tree.nodes.get(node).and_then(|it| it.guards.as_deref()) else {
+            return self.bare(node, step);
+        };
+        let outcome = match self.decided_before(node, guards) {
+            Some(outcome) => outcome,
+            None => self.bare(node, step),
+        };
+        if outcome.is_finished() {
+            let first = if outcome == Status::Success { &guards.on_success } else { &guards.on_failure };
+            self.run(first.as_ref());
+            self.run(guards.post.as_ref());
+        }
+        outcome
+    }
+
     /// What the pre-conditions of a node decide, if they do.
-    fn decided_before(&mut self, node: usize, it: &Node) -> Option<Status> {
-        let guards = it.guards.as_ref()?;
+    fn decided_before(&mut self, node: usize, guards: &Guards) -> Option<Status> {
         let status = self.status(node);
         if status == Status::Idle {
             if self.holds(guards.failure_if.as_ref()) {
@@ -106,45 +132,65 @@ impl Ticker<'_> {
     /// Halts a node: its kind's own rule, then its `_onHalted`.
     pub(crate) fn halt(&mut self, node: usize) {
         let tree = self.tree;
-        let Some(it) = tree.nodes.get(node) else { return };
-        (it.sheet.halt)(self, node);
-        if let Some(guards) = &it.guards {
+        let Some(step) = tree.steps.get(node) else { return };
+        if step.asks_world {
+            self.world.leaf_halted(&mut leaf_call(tree, step, true, &mut self.state.board));
+        }
+        (step.halt)(self, node);
+        if step.is_guarded
+            && let Some(guards) = tree.nodes.get(node).and_then(|it| it.guards.as_deref())
+        {
             self.run(guards.on_halted.as_ref());
         }
     }
 
     /// Puts a child back: halts it where it runs.
     pub(crate) fn reset(&mut self, child: usize) {
-        if self.status(child) == Status::Running {
-            self.halt(child);
+        match self.state.cells.get_mut(child) {
+            Some(cell) if cell.status == Status::Running => {
+                self.halt(child);
+                self.set(child, Status::Idle);
+            }
+            Some(cell) => cell.status = Status::Idle,
+            None => {}
         }
-        self.set(child, Status::Idle);
     }
 
     /// Puts all children back, in order.
     pub(crate) fn reset_children(&mut self, node: usize) {
-        self.reset_children_from(node, 0, None);
+        for child in self.kids(node) {
+            self.reset(*child as usize);
+        }
     }
 
     /// Puts the children from `first` on back, in order, all but `spared`.
     pub(crate) fn reset_children_from(&mut self, node: usize, first: usize, spared: Option<usize>) {
-        for place in first..self.children(node) {
-            if Some(place) != spared
-                && let Some(child) = self.child(node, place)
-            {
-                self.reset(child);
+        for (place, child) in self.kids(node).iter().enumerate().skip(first) {
+            if Some(place) != spared {
+                self.reset(*child as usize);
             }
         }
     }
 
+    /// Children of a node.
+    pub(crate) fn kids<'t>(&self, node: usize) -> &'t [u32]
+    where
+        Self: 't,
+    {
+        let tree: &'t Tree = self.tree;
+        let Some(step) = tree.steps.get(node) else { return &[] };
+        let first = step.first_kid as usize;
+        tree.kids.get(first..first + step.n_kids as usize).unwrap_or(&[])
+    }
+
     /// Number of children.
     pub(crate) fn children(&self, node: usize) -> usize {
-        self.tree.nodes.get(node).map_or(0, |it| it.children.len())
+        self.tree.steps.get(node).map_or(0, |step| step.n_kids as usize)
     }
 
     /// The child at a place.
     pub(crate) fn child(&self, node: usize, place: usize) -> Option<usize> {
-        self.tree.nodes.get(node)?.children.get(place).copied()
+        self.kids(node).get(place).map(|child| *child as usize)
     }
 
     /// Ticks the child at a place; a place without a child fails.
@@ -166,35 +212,76 @@ impl Ticker<'_> {
 
     /// Status of a node.
     pub(crate) fn status(&self, node: usize) -> Status {
-        self.state.cells.get(node).map_or(Status::Idle, |cell| cell.status)
+        self.state.status(node)
     }
 
     /// Sets the status of a node.
     pub(crate) fn set(&mut self, node: usize, status: Status) {
-        self.cell(node).status = status;
+        if let Some(cell) = self.state.cells.get_mut(node) {
+            cell.status = status;
+        }
     }
 
-    /// Memory of a node.
-    pub(crate) fn cell(&mut self, node: usize) -> &mut Cell {
-        match self.state.cells.get_mut(node) {
-            Some(cell) => cell,
-            None => &mut self.state.spare,
+    /// The child a node goes on with, or the branch that runs, counted from 1.
+    pub(crate) fn place(&self, node: usize) -> usize {
+        self.state.cells.get(node).map_or(0, |cell| usize::from(cell.place))
+    }
+
+    /// Sets the place of a node. Places fit: a tree has at most 4096 nodes.
+    pub(crate) fn set_place(&mut self, node: usize, place: usize) {
+        if let Some(cell) = self.state.cells.get_mut(node) {
+            cell.place = u16::try_from(place).unwrap_or(u16::MAX);
+        }
+    }
+
+    /// Whether the parent of a node counts it as finished.
+    pub(crate) fn is_done(&self, node: usize) -> bool {
+        self.state.cells.get(node).is_some_and(|cell| cell.has(Cell::DONE))
+    }
+
+    /// Says whether the parent of a node counts it as finished.
+    pub(crate) fn set_done(&mut self, node: usize, done: bool) {
+        if let Some(cell) = self.state.cells.get_mut(node) {
+            cell.mark(Cell::DONE, done);
+        }
+    }
+
+    /// Word `k` of a node; 0 where it has none.
+    pub(crate) fn word(&self, node: usize, k: usize) -> u64 {
+        let place = self.tree.steps.get(node).map(|step| step.word as usize + k);
+        place.and_then(|place| self.state.words.get(place)).copied().unwrap_or(0)
+    }
+
+    /// Sets word `k` of a node. The caller's kind must have it (see `words` in `build.rs`).
+    pub(crate) fn set_word(&mut self, node: usize, k: usize, value: u64) {
+        let place = self.tree.steps.get(node).map(|step| step.word as usize + k);
+        if let Some(word) = place.and_then(|place| self.state.words.get_mut(place)) {
+            *word = value;
         }
     }
 
     /// Ports of a node.
     pub(crate) fn ports(&self, node: usize) -> Ports<'_> {
-        let inputs = self.tree.nodes.get(node).map_or(&[][..], |it| it.inputs.as_slice());
+        let inputs = self.tree.steps.get(node).map_or(&[][..], |step| inputs(self.tree, step));
         Ports { inputs, board: &self.state.board }
     }
 
     /// Number of the leaf, from 1; 0 for no leaf.
     pub(crate) fn leaf(&self, node: usize) -> u16 {
-        self.tree.nodes.get(node).map_or(0, |it| it.leaf)
+        self.tree.steps.get(node).map_or(0, |step| step.leaf)
     }
 
     /// Whether the rules of version 4 hold.
     pub(crate) fn is_v4(&self) -> bool {
         self.tree.format == Format::V4
     }
+}
+
+fn inputs<'a>(tree: &'a Tree, step: &Step) -> &'a [Input] {
+    let first = step.first_input as usize;
+    tree.inputs.get(first..first + step.n_inputs as usize).unwrap_or(&[])
+}
+
+fn leaf_call<'a>(tree: &'a Tree, step: &Step, running: bool, board: &'a mut [Option<Value>]) -> LeafCall<'a> {
+    LeafCall { sheet: step.sheet, leaf: step.leaf, running, inputs: inputs(tree, step), board }
 }

@@ -1,13 +1,14 @@
 //! The tree as flat arrays, shared by all agents, and the state of one agent in it.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use socrates_model::{Action, AgentId, Fault, Gesture, HumanId, Trigger};
 
 use crate::blackboard::{Input, Ports, Value};
 use crate::parse::{Document, Options};
 use crate::script::Script;
-use crate::sheet::{Library, NodeSheet, Role};
+use crate::sheet::{HaltFn, Library, NodeSheet, Role, TickFn};
 use crate::status::Status;
 use crate::tick::Ticker;
 use crate::world::World;
@@ -21,6 +22,17 @@ pub enum Format {
     V3,
     /// Version 4: `BTCPP_format="4"`, braced remaps, `SKIPPED`, pre- and post-conditions.
     V4,
+}
+
+impl Format {
+    /// Name in messages and on the command line: `v3` or `v4`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::V3 => "v3",
+            Self::V4 => "v4",
+        }
+    }
 }
 
 /// Attributes of version 4 that decide before, or run after, a node.
@@ -51,44 +63,83 @@ pub(crate) struct Node {
     pub(crate) site: Site,
 }
 
-/// A behavior tree; immutable and shared. Node 0 is the root, the others follow in pre-order.
-#[derive(Debug, Clone)]
-pub struct Tree {
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) board: Vec<Option<Value>>,
-    /// Entries of the main tree, by name.
-    pub(crate) keys: BTreeMap<String, usize>,
-    pub(crate) format: Format,
-    pub(crate) document: Document,
+/// What a tick needs of a node; a row of the flat array that all agents share.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Step {
+    pub(crate) sheet: &'static NodeSheet,
+    pub(crate) tick: TickFn,
+    pub(crate) halt: HaltFn,
+    /// Place of the first child in [`Tree::kids`].
+    pub(crate) first_kid: u32,
+    pub(crate) n_kids: u32,
+    /// Place of the first port in [`Tree::inputs`].
+    pub(crate) first_input: u32,
+    pub(crate) n_inputs: u32,
+    /// Place of the node's first word in [`TreeState::words`].
+    pub(crate) word: u32,
+    /// Number of the leaf, 0 for no leaf.
+    pub(crate) leaf: u16,
+    /// Whether [`World::leaf`] is asked first.
+    pub(crate) asks_world: bool,
+    pub(crate) is_guarded: bool,
+    pub(crate) is_decorator: bool,
 }
 
-/// Memory of one node.
+/// A behavior tree; immutable, and shared by its clones. Node 0 is the root, the others follow in pre-order.
+#[derive(Debug, Clone)]
+pub struct Tree {
+    pub(crate) nodes: Arc<[Node]>,
+    pub(crate) steps: Arc<[Step]>,
+    /// Children of all nodes, one node after the other.
+    pub(crate) kids: Arc<[u32]>,
+    /// Ports of all nodes, one node after the other.
+    pub(crate) inputs: Arc<[Input]>,
+    pub(crate) n_words: usize,
+    pub(crate) board: Arc<[Option<Value>]>,
+    /// Entries of the main tree, by name.
+    pub(crate) keys: Arc<BTreeMap<String, usize>>,
+    pub(crate) format: Format,
+    pub(crate) document: Arc<Document>,
+}
+
+/// Memory that every node has.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Cell {
     pub(crate) status: Status,
+    /// [`Cell::SEEN`] and [`Cell::DONE`].
+    marks: u8,
     /// Child to go on with, or branch that runs (counted from 1).
-    pub(crate) index: usize,
-    /// Repetitions, attempts, or successes.
-    pub(crate) count: usize,
-    /// Failures, or children left out.
-    pub(crate) tally: usize,
-    /// Whether the parent counts it as finished (children of `Parallel`), or it did its one run.
-    pub(crate) done: bool,
-    /// Outcome that is remembered.
-    pub(crate) outcome: Status,
-    /// Time counted, ns.
-    pub(crate) nanos: u64,
-    /// Number of the last tick that came here.
-    pub(crate) seen: u64,
+    pub(crate) place: u16,
 }
 
-/// The state of one agent in a tree.
+impl Cell {
+    /// The last tick came here.
+    pub(crate) const SEEN: u8 = 1;
+    /// The parent counts it as finished (children of `Parallel`).
+    pub(crate) const DONE: u8 = 2;
+
+    pub(crate) const fn has(self, mark: u8) -> bool {
+        self.marks & mark != 0
+    }
+
+    pub(crate) const fn mark(&mut self, mark: u8, on: bool) {
+        if on {
+            self.marks |= mark;
+        } else {
+            self.marks &= !mark;
+        }
+    }
+}
+
+/// The state of one agent in a tree. Its buffers are made once; no tick makes or grows any.
 #[derive(Debug, Clone)]
 pub struct TreeState {
-    pub(crate) cells: Vec<Cell>,
-    pub(crate) board: Vec<Option<Value>>,
-    pub(crate) ticks: u64,
-    pub(crate) spare: Cell,
+    pub(crate) cells: Box<[Cell]>,
+    /// Counts, times and remembered outcomes of the few nodes that have them.
+    pub(crate) words: Box<[u64]>,
+    pub(crate) board: Box<[Option<Value>]>,
+    /// First leaf without a native meaning that the world did not tick.
+    pub(crate) unanswered: Option<u16>,
 }
 
 impl TreeState {
@@ -98,10 +149,30 @@ impl TreeState {
         self.cells.iter().map(|cell| cell.status).collect()
     }
 
+    /// The first leaf that failed because neither [`World::leaf`](crate::World::leaf) nor this crate could tick
+    /// it. Only in trees read with [`Meaning::World`](crate::Meaning::World).
+    #[must_use]
+    pub const fn unanswered(&self) -> Option<u16> {
+        self.unanswered
+    }
+
     /// Whether the last tick came to a node, in the order of [`Tree::node_names`].
     #[must_use]
     pub fn visited(&self) -> Vec<bool> {
-        self.cells.iter().map(|cell| self.ticks > 0 && cell.seen == self.ticks).collect()
+        self.cells.iter().map(|cell| cell.has(Cell::SEEN)).collect()
+    }
+
+    /// Status of one node, in the order of [`Tree::node_names`].
+    #[must_use]
+    pub fn status(&self, node: usize) -> Status {
+        self.cells.get(node).map_or(Status::Idle, |cell| cell.status)
+    }
+
+    /// Bytes of this agent's state: the struct and its buffers. Texts that leaves or scripts wrote are shared
+    /// and not counted.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + size_of_val(&*self.cells) + size_of_val(&*self.words) + size_of_val(&*self.board)
     }
 }
 
@@ -132,13 +203,18 @@ impl Tree {
     /// The same with blackboard entries of the main tree set, such as `id`.
     #[must_use]
     pub fn start_with(&self, entries: &BTreeMap<String, String>) -> TreeState {
-        let mut board = self.board.clone();
+        let mut board: Box<[Option<Value>]> = self.board.iter().cloned().collect();
         for (key, value) in entries {
             if let Some(entry) = self.keys.get(key).and_then(|slot| board.get_mut(*slot)) {
-                *entry = Some(Value::Text(value.clone()));
+                *entry = Some(Value::of_text(value));
             }
         }
-        TreeState { cells: vec![Cell::default(); self.nodes.len()], board, ticks: 0, spare: Cell::default() }
+        TreeState {
+            cells: vec![Cell::default(); self.nodes.len()].into(),
+            words: vec![0; self.n_words].into(),
+            board,
+            unanswered: None,
+        }
     }
 
     /// Ticks once.
@@ -174,7 +250,7 @@ impl Tree {
     #[must_use]
     pub fn conditions(&self) -> Vec<Trigger> {
         let mut found = Vec::new();
-        for node in &self.nodes {
+        for node in self.nodes.iter() {
             if let Role::Asks(means) = node.sheet.role
                 && let Some(trigger) = means(&self.ports(node))
                 && !found.contains(&trigger)
@@ -189,7 +265,7 @@ impl Tree {
     #[must_use]
     pub fn actions(&self) -> Vec<Action> {
         let mut found = Vec::new();
-        for node in &self.nodes {
+        for node in self.nodes.iter() {
             if let Role::Moves(means) = node.sheet.role
                 && let Some(action) = means(&self.ports(node))
                 && !found.contains(&action)
@@ -224,6 +300,12 @@ impl Tree {
         found
     }
 
+    /// Leaves that only [`World::leaf`](crate::World::leaf) can tick, by number (see [`Tree::leaf_names`]).
+    #[must_use]
+    pub fn world_leaves(&self) -> Vec<u16> {
+        self.nodes.iter().filter(|node| !node.sheet.is_native()).map(|node| node.leaf).collect()
+    }
+
     /// Tags used that a simulator with this library could not load.
     #[must_use]
     pub fn foreign_to(&self, library: Library) -> Vec<&'static str> {
@@ -231,12 +313,25 @@ impl Tree {
             .nodes
             .iter()
             .map(|node| node.sheet)
-            .filter(|sheet| sheet.library != Library::BuiltIn && !crate::nodes::is_known_to(sheet.tag, library))
+            .filter(|sheet| sheet.role.is_catalogued() && !crate::nodes::is_known_to(sheet.tag, library))
             .map(|sheet| sheet.tag)
             .collect();
         tags.sort_unstable();
         tags.dedup();
         tags
+    }
+
+    /// Sets the first word of a node: the time of a timer, the outcome a `Latch` or `RunOnce` remembers.
+    pub(crate) fn set_word(&self, state: &mut TreeState, node: usize, value: u64) {
+        let place = self.steps.get(node).map(|step| step.word as usize);
+        if let Some(word) = place.and_then(|place| state.words.get_mut(place)) {
+            *word = value;
+        }
+    }
+
+    /// The first word of a node.
+    pub(crate) fn word(&self, state: &TreeState, node: usize) -> u64 {
+        self.steps.get(node).and_then(|step| state.words.get(step.word as usize)).copied().unwrap_or(0)
     }
 
     /// Ports of a node over the blackboard as it is before the first tick.

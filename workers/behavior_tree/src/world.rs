@@ -2,6 +2,7 @@
 
 use socrates_model::{Action, Gesture, HumanId, SimTime};
 
+use crate::leaf::LeafCall;
 use crate::status::Status;
 
 /// One human's view at the start of a tick. What is done in a tick is seen in the next one.
@@ -38,6 +39,17 @@ pub trait World {
     fn act(&mut self, action: &Action, leaf: u16);
     /// Makes a gesture that lasts until the next one; [`Gesture::None`] takes it back.
     fn gesture(&mut self, gesture: Gesture);
+
+    /// Ticks a leaf of the catalogue in this world's own meaning; `None` leaves it to the native one. It is asked
+    /// for every condition and action, timers included, but not for control flow, decorators and the leaves of
+    /// BehaviorTree.CPP itself. A leaf without a native meaning (see
+    /// [`Options::meaning`](crate::Options::meaning)) that gets `None` fails, and
+    /// [`TreeState::unanswered`](crate::TreeState::unanswered) names it.
+    fn leaf(&mut self, _call: &mut LeafCall<'_>) -> Option<Status> {
+        None
+    }
+    /// A leaf of the catalogue that was running is stopped.
+    fn leaf_halted(&mut self, _call: &mut LeafCall<'_>) {}
 
     /// Ticks a leaf that is not in the catalogue (see [`Options::foreign`](crate::Options)).
     fn foreign(&mut self, _leaf: u16) -> Status {

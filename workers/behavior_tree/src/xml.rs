@@ -47,6 +47,19 @@ impl Element {
         self.attrs.iter().find(|(key, _)| key == name).map(|(_, value)| value.as_str())
     }
 
+    /// The short form of an element and all below it: `<Action ID="RegularNav" …/>` says the same as
+    /// `<RegularNav …/>`.
+    pub(crate) fn short(mut self) -> Self {
+        if matches!(self.tag.as_str(), "Action" | "Condition" | "Control" | "Decorator")
+            && let Some(place) = self.attrs.iter().position(|(name, _)| name == "ID")
+        {
+            let (_, id) = self.attrs.remove(place);
+            self.tag = id;
+        }
+        self.children = self.children.into_iter().map(Self::short).collect();
+        self
+    }
+
     /// Place and tag, as faults give it.
     pub(crate) fn at(&self) -> String {
         match self.attr("name") {
@@ -165,7 +178,8 @@ fn element(start: &BytesStart<'_>, site: Site) -> Result<Element, Fault> {
             .map_err(|error| broken(&site, format!("attribute `{}`: {error}", attr.key.0)))?;
         attrs.push((attr.key.0.to_owned(), value.into_owned()));
     }
-    Ok(Element { tag: start.name().0.to_owned(), attrs, children: Vec::new(), site })
+    let tag = start.name().0.to_owned();
+    Ok(Element { tag, attrs, children: Vec::new(), site })
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
             }),
             Role::Timer => ports.real(0).map(|secs| Atom::Timer(index, secs)),
             Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce") => Some(Atom::Memory(index)),
-            Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet | Role::Foreign => None,
+            Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet | Role::World | Role::Foreign => None,
         };
         if let Some(atom) = atom
             && !atoms.contains(&atom)

@@ -9,10 +9,11 @@ use socrates_model::{Action, Fault, FaultCode, Gesture};
 use crate::check::atoms::{Atom, atoms, truths};
 use crate::check::case_world::CaseWorld;
 use crate::check::{CheckContext, below, has_foreign, place};
+use crate::nodes::{memory, remembered};
 use crate::rules::is_endless;
 use crate::sheet::Role;
 use crate::status::Status;
-use crate::tree::{Cell, Tree};
+use crate::tree::Tree;
 
 /// Ticks of a case where nodes keep a place between ticks.
 const MEMORY_TICKS: usize = 6;
@@ -84,10 +85,8 @@ impl<'a> Cases<'a> {
         let mut state = tree.start();
         for (atom, holds) in self.atoms.iter().zip(&truth) {
             match atom {
-                Atom::Timer(node, _) if *holds => {
-                    set(&mut state.cells, *node, |cell| cell.nanos = u64::MAX / 2);
-                }
-                Atom::Memory(node) if *holds => set(&mut state.cells, *node, |cell| cell.outcome = Status::Success),
+                Atom::Timer(node, _) if *holds => tree.set_word(&mut state, *node, u64::MAX / 2),
+                Atom::Memory(node) if *holds => tree.set_word(&mut state, *node, memory(Status::Success)),
                 Atom::Timer(..) | Atom::Memory(_) | Atom::World(_) | Atom::GoalHere => {}
             }
         }
@@ -118,7 +117,7 @@ impl<'a> Cases<'a> {
             }
         }
         let was = |node: &usize| case.visited.get(*node).copied().unwrap_or(false);
-        let is_set = |node: &usize| state.cells.get(*node).is_some_and(|cell| cell.outcome == Status::Success);
+        let is_set = |node: &usize| remembered(tree.word(&state, *node)) == Some(Status::Success);
         case.reached = self
             .atoms
             .iter()
@@ -242,17 +241,11 @@ impl<'a> Cases<'a> {
         for leaf in leaves {
             match leaf.sheet.role {
                 Role::Moves(means) if means(&self.tree.ports(leaf)) == Some(Action::Navigate) => walks = true,
-                Role::Moves(_) | Role::Foreign => return false,
+                Role::Moves(_) | Role::World | Role::Foreign => return false,
                 Role::Flow | Role::Asks(_) | Role::Timer | Role::Says | Role::Quiet => {}
             }
         }
         walks
-    }
-}
-
-fn set(cells: &mut [Cell], node: usize, change: impl Fn(&mut Cell)) {
-    if let Some(cell) = cells.get_mut(node) {
-        change(cell);
     }
 }
 
@@ -267,6 +260,6 @@ fn keeps_places(tree: &Tree) -> bool {
                 | "KeepRunningUntilFailure"
                 | "RunOnce"
                 | "Parallel"
-        ) || matches!(node.sheet.role, Role::Foreign)
+        ) || node.sheet.role.is_opaque()
     })
 }

@@ -12,7 +12,7 @@ use crate::xml::Element;
 /// that nothing sets.
 pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    for node in &tree.nodes {
+    for node in tree.nodes.iter() {
         if matches!(node.sheet.tag, "Sequence" | "SequenceWithMemory" | "ReactiveSequence") {
             order(tree, ctx, &node.children, &mut faults);
         }
@@ -51,7 +51,7 @@ fn parts(tree: &Tree, child: usize) -> Parts {
                 parts.says = true;
                 parts.only_asks = false;
             }
-            Role::Quiet | Role::Foreign => parts.only_asks = false,
+            Role::Quiet | Role::World | Role::Foreign => parts.only_asks = false,
         }
     }
     parts

@@ -10,7 +10,7 @@ use crate::tree::{Node, Tree};
 /// entries that nothing sets.
 pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    for node in &tree.nodes {
+    for node in tree.nodes.iter() {
         let ports = tree.ports(node);
         match node.sheet.role {
             Role::Asks(means) => match means(&ports) {
@@ -41,7 +41,7 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
                     target(id, node, ctx, &mut faults);
                 }
             }
-            Role::Flow | Role::Timer | Role::Says | Role::Quiet | Role::Foreign => {}
+            Role::Flow | Role::Timer | Role::Says | Role::Quiet | Role::World | Role::Foreign => {}
         }
     }
     faults.sort();

@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use socrates_model::{Fault, FaultCode, Gesture, HumanId, Rule};
 
 use crate::rules;
-use crate::sheet::Role;
 use crate::tree::{Node, Tree};
 
 /// What a tree is held against.
@@ -66,5 +65,5 @@ fn below(tree: &Tree, node: usize) -> Vec<usize> {
 
 /// Whether a tree has leaves nothing is known about.
 fn has_foreign(tree: &Tree) -> bool {
-    tree.nodes.iter().any(|node| matches!(node.sheet.role, Role::Foreign))
+    tree.nodes.iter().any(|node| node.sheet.role.is_opaque())
 }

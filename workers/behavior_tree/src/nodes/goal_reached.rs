@@ -13,7 +13,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     tag: "IsGoalReached",
     v3_tag: None,
     kind: Kind::Condition,
-    library: Library::HunavSim1,
+    library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN],
     about: "holds while this human is at the present goal of its path; used inside RegularNavTree",
@@ -23,10 +23,10 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 /// No trigger of a rule: rules speak of the end of the path.
-fn means(_ports: &Ports<'_>) -> Option<Trigger> {
+pub(super) fn means(_ports: &Ports<'_>) -> Option<Trigger> {
     None
 }
 
-fn tick(t: &mut Ticker<'_>, _node: usize) -> Status {
+pub(super) fn tick(t: &mut Ticker<'_>, _node: usize) -> Status {
     Status::of(t.world.goal_reached())
 }

@@ -1,6 +1,6 @@
 //! `Latch`: once true, true for ever. A rule that goes on when its trigger has passed needs it.
 
-use crate::nodes::halt_children;
+use crate::nodes::{halt_children, memory, remembered};
 use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -19,15 +19,15 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt: halt_children,
 };
 
-/// The memory is in `outcome`, since `done` belongs to a parent that may be a `Parallel`.
+/// Word 0 is the memory: see [`remembered`].
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    if t.cell(node).outcome == Status::Success {
+    if remembered(t.word(node, 0)) == Some(Status::Success) {
         return Status::Success;
     }
     t.set(node, Status::Running);
     let outcome = t.tick_child(node, 0);
     if outcome.is_finished() {
-        t.cell(node).outcome = outcome;
+        t.set_word(node, 0, memory(outcome));
         t.reset_child(node, 0);
     }
     outcome

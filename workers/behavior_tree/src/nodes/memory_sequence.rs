@@ -19,26 +19,28 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt,
 };
 
+/// Word 0 counts the children left out since the node was last idle.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    if t.status(node) == Status::Idle {
-        t.cell(node).tally = 0;
+    let v4 = t.is_v4();
+    if v4 && t.status(node) == Status::Idle {
+        t.set_word(node, 0, 0);
     }
     t.set(node, Status::Running);
     let n = t.children(node);
-    while t.cell(node).index < n {
-        let place = t.cell(node).index;
+    while t.place(node) < n {
+        let place = t.place(node);
         let before = t.child_status(node, place);
         match t.tick_child(node, place) {
             Status::Success => {
-                t.cell(node).index += 1;
+                t.set_place(node, place + 1);
                 // Version 4 lets go of the tick here, so that others may interrupt a long list.
-                if t.is_v4() && before == Status::Idle && place + 1 < n {
+                if v4 && before == Status::Idle && place + 1 < n {
                     return Status::Running;
                 }
             }
             Status::Skipped => {
-                t.cell(node).index += 1;
-                t.cell(node).tally += 1;
+                t.set_place(node, place + 1);
+                t.set_word(node, 0, t.word(node, 0) + 1);
             }
             Status::Failure => {
                 t.reset_children_from(node, place, None);
@@ -47,18 +49,19 @@ fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
             Status::Running | Status::Idle => return Status::Running,
         }
     }
-    let all_skipped = t.cell(node).tally == n;
+    let all_skipped = v4 && t.word(node, 0) == n as u64;
     t.reset_children(node);
-    let cell = t.cell(node);
-    cell.index = 0;
-    cell.tally = 0;
+    t.set_place(node, 0);
+    if v4 {
+        t.set_word(node, 0, 0);
+    }
     if all_skipped { Status::Skipped } else { Status::Success }
 }
 
 /// Version 3 forgets its place when it is halted, version 4 does not.
 fn halt(t: &mut Ticker<'_>, node: usize) {
     if !t.is_v4() {
-        t.cell(node).index = 0;
+        t.set_place(node, 0);
     }
     halt_children(t, node);
 }

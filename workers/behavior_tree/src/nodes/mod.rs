@@ -1,15 +1,19 @@
 //! The catalogue: one file per kind of node. A new kind is a new file and a line in [`CATALOG`].
 
+mod again;
 mod always;
 mod at_encounter;
-mod fallback;
 mod follow_human;
 mod force;
 mod foreign;
 mod goal_reached;
 mod has_time_passed;
 mod human_says;
+mod hunav_1;
+mod hunav_2;
+mod hunav_2_stateful;
 mod if_then_else;
+mod in_order;
 mod inverter;
 mod keep_running;
 mod latch;
@@ -18,11 +22,7 @@ mod memory_sequence;
 mod motion;
 mod parallel;
 mod path_done;
-mod reaction_nav;
-mod reactive_fallback;
-mod reactive_sequence;
-mod repeat;
-mod retry;
+mod reactive;
 mod robot_blocking;
 mod robot_moved;
 mod robot_nearby;
@@ -31,13 +31,14 @@ mod robot_stopped;
 mod robot_visible;
 mod run_once;
 mod script;
-mod sequence;
 mod set_blackboard;
 mod subtree;
 mod switch;
+mod time_delay;
 mod time_expired;
 mod update_goal;
 mod while_do_else;
+mod world_only;
 
 pub(crate) use foreign::{FOREIGN_ACTION, FOREIGN_CONDITION};
 
@@ -47,11 +48,11 @@ use crate::tick::Ticker;
 
 /// Every kind of node, control flow first, in the order of prompts and docs.
 pub const CATALOG: &[&NodeSheet] = &[
-    &sequence::SHEET,
-    &fallback::SHEET,
+    &in_order::SEQUENCE,
+    &in_order::FALLBACK,
     &inverter::SHEET,
-    &reactive_sequence::SHEET,
-    &reactive_fallback::SHEET,
+    &reactive::SEQUENCE,
+    &reactive::FALLBACK,
     &memory_sequence::SHEET,
     &parallel::SHEET,
     &if_then_else::SHEET,
@@ -63,8 +64,8 @@ pub const CATALOG: &[&NodeSheet] = &[
     &switch::SWITCH_6,
     &force::SUCCESS,
     &force::FAILURE,
-    &repeat::SHEET,
-    &retry::SHEET,
+    &again::REPEAT,
+    &again::RETRY,
     &keep_running::SHEET,
     &run_once::SHEET,
     &latch::SHEET,
@@ -97,39 +98,60 @@ pub const CATALOG: &[&NodeSheet] = &[
     &motion::BLOCK,
     &motion::APPROACH,
     &motion::STAND_STILL,
-    &reaction_nav::SURPRISED,
-    &reaction_nav::CURIOUS,
-    &reaction_nav::SCARED,
-    &reaction_nav::THREATENING,
 ];
 
-/// The sheet of a tag, whatever its library.
+/// The sheets as other libraries declare them, where they differ from [`CATALOG`]: other ports, defaults and
+/// ranges, or nodes that we do not have. No library here knows more of [`CATALOG`] than its built-in part.
+pub const DIALECTS: &[(Library, &[&NodeSheet])] = &[
+    (Library::HunavSim1_0, hunav_1::CATALOG_1_0),
+    (Library::HunavSim1_1, hunav_1::CATALOG_1_1),
+    (Library::HunavSim2, hunav_2::CATALOG),
+];
+
+/// The sheet of a tag as a library declares it.
 #[must_use]
-pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
-    CATALOG.iter().copied().find(|sheet| sheet.is_called(tag))
+pub fn sheet_in(tag: &str, library: Library) -> Option<&'static NodeSheet> {
+    sheets_of(library).find(|sheet| sheet.is_called(tag))
 }
 
-/// Whether a simulator with this library knows the tag. The fork dropped the four reactions of
-/// HuNavSim 1.x and kept the rest; we know all of the fork.
+/// The sheet of a tag: ours, else that of the newest library that has one.
+#[must_use]
+pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
+    CATALOG
+        .iter()
+        .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets.iter()))
+        .copied()
+        .find(|sheet| sheet.is_called(tag))
+}
+
+/// Whether a simulator with this library knows the tag. We know all of the fork, which dropped the four
+/// reactions of HuNavSim 1.x.
 #[must_use]
 pub fn is_known_to(tag: &str, library: Library) -> bool {
-    let Some(sheet) = sheet_of(tag) else { return false };
-    let dropped = matches!(sheet.tag, "SurprisedNav" | "CuriousNav" | "ScaredNav" | "ThreateningNav");
-    match sheet.library {
-        Library::BuiltIn => true,
-        Library::HunavSim1 => library == Library::HunavSim1 || (library != Library::BuiltIn && !dropped),
-        Library::SocratesFork => matches!(library, Library::SocratesFork | Library::Native),
-        Library::Native => library == Library::Native,
-    }
+    sheet_in(tag, library).is_some()
+}
+
+/// The sheets a library has, in catalogue order.
+fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
+    let ours = CATALOG.iter().copied().filter(move |sheet| match library {
+        Library::Native => true,
+        Library::SocratesFork => sheet.library != Library::Native,
+        Library::BuiltIn | Library::HunavSim1_0 | Library::HunavSim1_1 | Library::HunavSim2 => {
+            sheet.library == Library::BuiltIn
+        }
+    });
+    let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
+    ours.chain(theirs)
 }
 
 /// Sheets a library knows, in catalogue order: what a prompt may offer.
 #[must_use]
 pub fn known_to(library: Library) -> Vec<&'static NodeSheet> {
-    CATALOG.iter().copied().filter(|sheet| is_known_to(sheet.tag, library)).collect()
+    sheets_of(library).collect()
 }
 
-/// Halting a leaf of ours changes nothing: none is ever left running.
+/// Halting a leaf of ours changes nothing: none is ever left running by its own meaning, and the world was
+/// told of those that run by its meaning.
 fn halt_leaf(_ticker: &mut Ticker<'_>, _node: usize) {}
 
 /// Halting most nodes: children are put back, then the node.
@@ -138,13 +160,42 @@ fn halt_children(ticker: &mut Ticker<'_>, node: usize) {
     ticker.set(node, Status::Idle);
 }
 
-/// Halting a node with a place or counter: that too starts anew.
-fn halt_counting(ticker: &mut Ticker<'_>, node: usize) {
-    let cell = ticker.cell(node);
-    cell.index = 0;
-    cell.count = 0;
-    cell.tally = 0;
+/// Halting a node with a place: that too starts anew.
+fn halt_placed(ticker: &mut Ticker<'_>, node: usize) {
+    ticker.set_place(node, 0);
     halt_children(ticker, node);
+}
+
+/// Halting a sequence or fallback: its place, and in version 4 the count of children left out, start anew.
+fn halt_counting_skips(ticker: &mut Ticker<'_>, node: usize) {
+    if ticker.is_v4() {
+        ticker.set_word(node, 0, 0);
+    }
+    halt_placed(ticker, node);
+}
+
+/// Halting a node that counts in word 0.
+fn halt_counting(ticker: &mut Ticker<'_>, node: usize) {
+    ticker.set_word(node, 0, 0);
+    halt_children(ticker, node);
+}
+
+/// A remembered outcome as a word.
+pub(crate) const fn memory(outcome: Status) -> u64 {
+    match outcome {
+        Status::Success => 1,
+        Status::Failure => 2,
+        Status::Idle | Status::Running | Status::Skipped => 0,
+    }
+}
+
+/// The outcome that a word remembers.
+pub(crate) const fn remembered(word: u64) -> Option<Status> {
+    match word {
+        1 => Some(Status::Success),
+        2 => Some(Status::Failure),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -152,19 +203,41 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_tag_is_listed_once_and_says_what_it_does() {
-        for (place, sheet) in CATALOG.iter().enumerate() {
-            assert!(sheet.about.len() > 10, "{}", sheet.tag);
-            assert!(CATALOG[..place].iter().all(|other| !other.is_called(sheet.tag)), "{}", sheet.tag);
-            assert!(sheet.line().contains(sheet.tag));
+    fn every_tag_is_listed_once_in_a_library_and_says_what_it_does() {
+        for library in Library::ALL {
+            let sheets = known_to(library);
+            for (place, sheet) in sheets.iter().enumerate() {
+                assert!(sheet.about.len() > 10, "{}", sheet.tag);
+                assert!(sheets[..place].iter().all(|other| !other.is_called(sheet.tag)), "{library:?} {}", sheet.tag);
+                assert!(sheet.line().contains(sheet.tag));
+                for (at, port) in sheet.ports.iter().enumerate() {
+                    assert!(
+                        sheet.ports[..at].iter().all(|other| other.name != port.name),
+                        "{} {}",
+                        sheet.tag,
+                        port.name
+                    );
+                }
+            }
         }
     }
 
     #[test]
     fn the_fork_lost_the_old_reactions() {
         assert!(!is_known_to("SurprisedNav", Library::SocratesFork));
-        assert!(is_known_to("SurprisedNav", Library::HunavSim1));
+        assert!(is_known_to("SurprisedNav", Library::HunavSim1_0));
+        assert!(is_known_to("SurprisedNav", Library::HunavSim2));
         assert!(is_known_to("RegularNav", Library::SocratesFork));
         assert!(!is_known_to("Latch", Library::SocratesFork));
+    }
+
+    #[test]
+    fn ports_differ_by_library() {
+        let ports = |library| sheet_in("CuriousNav", library).map(|sheet| sheet.ports.len());
+        assert_eq!(ports(Library::HunavSim1_0), Some(2));
+        assert_eq!(ports(Library::HunavSim1_1), Some(4));
+        assert_eq!(ports(Library::HunavSim2), Some(6));
+        assert_eq!(sheet_in("SetGoal", Library::HunavSim2).map(NodeSheet::is_native), Some(false));
+        assert_eq!(sheet_in("IsRobotClose", Library::HunavSim2).map(NodeSheet::is_native), Some(true));
     }
 }

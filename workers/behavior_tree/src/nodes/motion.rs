@@ -12,7 +12,7 @@ pub(super) const REGULAR_NAV: NodeSheet = NodeSheet {
     tag: "RegularNav",
     v3_tag: None,
     kind: Kind::Action,
-    library: Library::HunavSim1,
+    library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN, PortSheet::STEP],
     about: "walks along its path",

@@ -1,6 +1,6 @@
 //! `Parallel`: all children in every tick, until enough have finished.
 
-use crate::nodes::halt_counting;
+use crate::nodes::halt_children;
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -31,39 +31,35 @@ fn threshold(given: i64, n: usize) -> usize {
     usize::try_from(wanted).unwrap_or(0)
 }
 
+/// Word 0 counts successes, word 1 failures.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    let n = t.children(node);
+    let kids = t.kids(node);
+    let n = kids.len();
     let given = t.ports(node).whole(0).unwrap_or(-1);
     let need = threshold(given, n);
     let most_failures = threshold(t.ports(node).whole(1).unwrap_or(1), n);
     let v4 = t.is_v4();
     t.set(node, Status::Running);
-    if !v4 {
-        // Version 3 counts anew in every tick, finished children included, as it passes them.
-        let cell = t.cell(node);
-        cell.count = 0;
-        cell.tally = 0;
-    }
+    // Version 3 counts anew in every tick, finished children included, as it passes them.
+    let (mut successes, mut failures) = if v4 { (t.word(node, 0) as usize, t.word(node, 1) as usize) } else { (0, 0) };
     let mut skipped = 0;
-    for place in 0..n {
-        let Some(child) = t.child(node, place) else { continue };
-        let finished_before = t.cell(child).done;
+    for child in kids.iter().map(|child| *child as usize) {
+        let finished_before = t.is_done(child);
         let outcome = if finished_before { t.status(child) } else { t.tick(child) };
         if !finished_before || !v4 {
             match outcome {
                 Status::Success => {
-                    t.cell(child).done = true;
-                    t.cell(node).count += 1;
+                    t.set_done(child, true);
+                    successes += 1;
                 }
                 Status::Failure => {
-                    t.cell(child).done = true;
-                    t.cell(node).tally += 1;
+                    t.set_done(child, true);
+                    failures += 1;
                 }
                 Status::Skipped => skipped += 1,
                 Status::Running | Status::Idle => {}
             }
         }
-        let (successes, failures) = (t.cell(node).count, t.cell(node).tally);
         if successes >= need || (given < 0 && successes + skipped >= need) {
             finish(t, node);
             return Status::Success;
@@ -73,6 +69,8 @@ fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
             return Status::Failure;
         }
     }
+    t.set_word(node, 0, successes as u64);
+    t.set_word(node, 1, failures as u64);
     if skipped == n { Status::Skipped } else { Status::Running }
 }
 
@@ -83,17 +81,14 @@ fn finish(t: &mut Ticker<'_>, node: usize) {
 }
 
 fn forget(t: &mut Ticker<'_>, node: usize) {
-    for place in 0..t.children(node) {
-        if let Some(child) = t.child(node, place) {
-            t.cell(child).done = false;
-        }
+    for child in t.kids(node) {
+        t.set_done(*child as usize, false);
     }
-    let cell = t.cell(node);
-    cell.count = 0;
-    cell.tally = 0;
+    t.set_word(node, 0, 0);
+    t.set_word(node, 1, 0);
 }
 
 fn halt(t: &mut Ticker<'_>, node: usize) {
     forget(t, node);
-    halt_counting(t, node);
+    halt_children(t, node);
 }

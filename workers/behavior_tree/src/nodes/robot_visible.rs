@@ -13,7 +13,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     tag: "IsRobotVisible",
     v3_tag: None,
     kind: Kind::Condition,
-    library: Library::HunavSim1,
+    library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN, PortSheet::DISTANCE],
     about: "holds while the robot is in the field of view, in line of sight and within the distance",
@@ -22,10 +22,10 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt: halt_leaf,
 };
 
-fn means(ports: &Ports<'_>) -> Option<Trigger> {
+pub(super) fn means(ports: &Ports<'_>) -> Option<Trigger> {
     ports.real(1).map(Trigger::RobotVisible)
 }
 
-fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
+pub(super) fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     Status::of(t.ports(node).real(1).is_some_and(|within_m| t.world.robot_visible(within_m)))
 }

@@ -1,6 +1,6 @@
 //! `RunOnce`: one run, ever.
 
-use crate::nodes::halt_children;
+use crate::nodes::{halt_children, memory, remembered};
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -26,15 +26,14 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 
 /// Being halted does not clear the memory of the run.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    let first = t.cell(node).outcome;
-    if first.is_finished() {
+    if let Some(first) = remembered(t.word(node, 0)) {
         let skips = t.ports(node).flag(0).unwrap_or(true);
         return if skips { Status::Skipped } else { first };
     }
     t.set(node, Status::Running);
     let outcome = t.tick_child(node, 0);
     if outcome.is_finished() {
-        t.cell(node).outcome = outcome;
+        t.set_word(node, 0, memory(outcome));
         t.reset_child(node, 0);
     }
     outcome

@@ -1,6 +1,6 @@
 //! `SetBlackboard`: writes an entry.
 
-use crate::blackboard::{Input, Value};
+use crate::blackboard::Input;
 use crate::nodes::halt_leaf;
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
@@ -26,11 +26,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 /// A copy of an entry that is not set leaves the other one as it is.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     let ports = t.ports(node);
-    let value: Option<Value> = match ports.inputs.get(1) {
-        Some(Input::Fixed(text)) => Some(Value::Text(text.clone())),
-        Some(Input::Slot(from)) => ports.board.get(*from).cloned().flatten(),
-        None => None,
-    };
+    let value = ports.value(1);
     let to = match ports.inputs.first() {
         Some(Input::Slot(slot)) => Some(*slot),
         Some(Input::Fixed(_)) | None => None,

@@ -1,6 +1,7 @@
 //! `Switch2` to `Switch6`: a branch per value of a blackboard entry, and one for the rest.
 
-use crate::nodes::halt_counting;
+use crate::blackboard::Value;
+use crate::nodes::halt_placed;
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -20,7 +21,7 @@ pub(super) const SWITCH_2: NodeSheet = NodeSheet {
     about: "picks one of 2 branches by the value of an entry, else the last branch",
     role: Role::Flow,
     tick,
-    halt: halt_counting,
+    halt: halt_placed,
 };
 /// `Switch3`.
 pub(super) const SWITCH_3: NodeSheet = NodeSheet {
@@ -38,7 +39,7 @@ pub(super) const SWITCH_3: NodeSheet = NodeSheet {
     about: "picks one of 3 branches by the value of an entry, else the last branch",
     role: Role::Flow,
     tick,
-    halt: halt_counting,
+    halt: halt_placed,
 };
 /// `Switch4`.
 pub(super) const SWITCH_4: NodeSheet = NodeSheet {
@@ -57,7 +58,7 @@ pub(super) const SWITCH_4: NodeSheet = NodeSheet {
     about: "picks one of 4 branches by the value of an entry, else the last branch",
     role: Role::Flow,
     tick,
-    halt: halt_counting,
+    halt: halt_placed,
 };
 /// `Switch5`.
 pub(super) const SWITCH_5: NodeSheet = NodeSheet {
@@ -77,7 +78,7 @@ pub(super) const SWITCH_5: NodeSheet = NodeSheet {
     about: "picks one of 5 branches by the value of an entry, else the last branch",
     role: Role::Flow,
     tick,
-    halt: halt_counting,
+    halt: halt_placed,
 };
 /// `Switch6`.
 pub(super) const SWITCH_6: NodeSheet = NodeSheet {
@@ -98,49 +99,49 @@ pub(super) const SWITCH_6: NodeSheet = NodeSheet {
     about: "picks one of 6 branches by the value of an entry, else the last branch",
     role: Role::Flow,
     tick,
-    halt: halt_counting,
+    halt: halt_placed,
 };
 
-/// The branch that runs is kept in `index`, counted from 1.
+/// The branch that runs is kept as the place, counted from 1.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     let n_cases = t.children(node).saturating_sub(1);
     let v4 = t.is_v4();
     let ports = t.ports(node);
-    let chosen = match ports.text(0) {
+    let chosen = match ports.value(0) {
         Some(value) => (0..n_cases)
-            .find(|case| ports.text(case + 1).is_some_and(|wanted| equal(&value, &wanted, v4)))
+            .find(|case| ports.value(case + 1).is_some_and(|wanted| equal(&value, &wanted, v4)))
             .unwrap_or(n_cases),
         None => n_cases,
     };
-    let running = t.cell(node).index;
+    let running = t.place(node);
     if running > 0 && running != chosen + 1 {
         t.reset_child(node, running - 1);
     }
     let outcome = t.tick_child(node, chosen);
     match outcome {
-        Status::Running => t.cell(node).index = chosen + 1,
-        Status::Skipped => t.cell(node).index = 0,
+        Status::Running => t.set_place(node, chosen + 1),
+        Status::Skipped => t.set_place(node, 0),
         Status::Success | Status::Failure | Status::Idle => {
             t.reset_children(node);
-            t.cell(node).index = 0;
+            t.set_place(node, 0);
         }
     }
     outcome
 }
 
 /// Version 3 compares texts; version 4 then whole numbers, then reals to single precision.
-fn equal(value: &str, wanted: &str, v4: bool) -> bool {
-    if value == wanted {
+fn equal(value: &Value, wanted: &Value, v4: bool) -> bool {
+    if value.same_text(wanted) {
         return true;
     }
-    if !v4 {
+    if !v4 || value.is_padded() || wanted.is_padded() {
         return false;
     }
-    if let (Ok(a), Ok(b)) = (value.parse::<i64>(), wanted.parse::<i64>()) {
+    if let (Some(a), Some(b)) = (value.whole(), wanted.whole()) {
         return a == b;
     }
-    match (value.parse::<f64>(), wanted.parse::<f64>()) {
-        (Ok(a), Ok(b)) => (a - b).abs() <= f64::from(f32::EPSILON),
-        (Ok(_) | Err(_), _) => false,
+    match (value.number(), wanted.number()) {
+        (Some(a), Some(b)) => (a - b).abs() <= f64::from(f32::EPSILON),
+        (Some(_) | None, _) => false,
     }
 }

@@ -10,7 +10,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     tag: "TimeExpiredCondition",
     v3_tag: None,
     kind: Kind::Condition,
-    library: Library::HunavSim1,
+    library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[
         PortSheet::must("seconds", PortKind::Seconds, "length of the timer"),
@@ -24,23 +24,23 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 /// Counted in whole nanoseconds, so that five seconds are five hundred steps of 0.01 s and not one more.
-fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
+pub(super) fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     let ports = t.ports(node);
     let (Some(seconds), only_once) = (ports.real(0), ports.flag(2).unwrap_or(false)) else {
         return Status::Failure;
     };
     let step_s = ports.real(1).unwrap_or_else(|| t.world.step_s());
     let limit = nanos(seconds);
-    let cell = t.cell(node);
-    cell.nanos = cell.nanos.saturating_add(nanos(step_s));
-    if cell.nanos < limit {
+    let counted = t.word(node, 0).saturating_add(nanos(step_s));
+    if counted < limit {
+        t.set_word(node, 0, counted);
         return Status::Failure;
     }
-    cell.nanos = if only_once { limit } else { 0 };
+    t.set_word(node, 0, if only_once { limit } else { 0 });
     Status::Success
 }
 
 /// Whole nanoseconds; negative and unreadable spans are 0.
-fn nanos(seconds: f64) -> u64 {
+pub(super) fn nanos(seconds: f64) -> u64 {
     (seconds * 1e9 + 0.5) as u64
 }

@@ -10,7 +10,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     tag: "UpdateGoal",
     v3_tag: None,
     kind: Kind::Action,
-    library: Library::HunavSim1,
+    library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN],
     about: "takes the next goal of the path; used inside RegularNavTree",
@@ -19,7 +19,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt: halt_leaf,
 };
 
-fn tick(t: &mut Ticker<'_>, _node: usize) -> Status {
+pub(super) fn tick(t: &mut Ticker<'_>, _node: usize) -> Status {
     t.world.next_goal();
     Status::Success
 }

@@ -6,9 +6,10 @@ use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
 use crate::group;
+use crate::math::{Math, Portable};
 use crate::params::Params;
 use crate::person::Person;
-use crate::vector::{angle, known, left, norm, unit, wrap};
+use crate::vector::{known, left, norm, unit, wrap};
 
 /// The forces on one person, m/s² (unit mass).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -42,6 +43,11 @@ impl Forces {
 /// A component that is not a number (two people on one spot, no goal direction) is 0.
 #[must_use]
 pub fn forces(people: &[Person], obstacles: &[Vec<Point2<f64>>], params: &Params) -> Vec<Forces> {
+    forces_by::<Portable>(people, obstacles, params)
+}
+
+/// [`forces`] with a chosen source of transcendental functions.
+pub(crate) fn forces_by<M: Math>(people: &[Person], obstacles: &[Vec<Point2<f64>>], params: &Params) -> Vec<Forces> {
     let groups = groups(people);
     people
         .iter()
@@ -49,7 +55,7 @@ pub fn forces(people: &[Person], obstacles: &[Vec<Point2<f64>>], params: &Params
         .map(|(index, me)| {
             let points = obstacles.get(index).map_or(&[][..], Vec::as_slice);
             let members = me.group.and_then(|group| groups.get(&group)).map_or(&[][..], Vec::as_slice);
-            on(me, index, people, members, points, params)
+            on::<M>(me, index, people, members, points, params)
         })
         .collect()
 }
@@ -64,11 +70,11 @@ pub fn forces_on(index: usize, people: &[Person], obstacles_of_it: &[Point2<f64>
         }
         None => Vec::new(),
     };
-    on(me, index, people, &members, obstacles_of_it, params)
+    on::<Portable>(me, index, people, &members, obstacles_of_it, params)
 }
 
 /// Places of the members of every group, in list order.
-fn groups(people: &[Person]) -> BTreeMap<u32, Vec<usize>> {
+pub(crate) fn groups(people: &[Person]) -> BTreeMap<u32, Vec<usize>> {
     let mut groups: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for (place, person) in people.iter().enumerate() {
         if let Some(group) = person.group {
@@ -78,7 +84,7 @@ fn groups(people: &[Person]) -> BTreeMap<u32, Vec<usize>> {
     groups
 }
 
-fn on(
+fn on<M: Math>(
     me: &Person,
     index: usize,
     people: &[Person],
@@ -87,11 +93,11 @@ fn on(
     params: &Params,
 ) -> Forces {
     let (desired, wish) = desired(me, params);
-    let group = group::on(me, index, members, people, &wish, params);
+    let group = group::on::<M>(me, index, members, people, &wish, params);
     Forces {
         desired: known(desired),
-        obstacle: known(obstacle(me, obstacles, params)),
-        social: social(me, index, people, params),
+        obstacle: known(obstacle::<M>(me, obstacles, params)),
+        social: social::<M>(me, index, people, params),
         gaze: group.gaze,
         coherence: group.coherence,
         repulsion: group.repulsion,
@@ -101,7 +107,7 @@ fn on(
 /// Desired force and the direction of the goal (zero without one, or inside its radius).
 ///
 /// Coming to rest has no factor: so does the reference.
-fn desired(me: &Person, params: &Params) -> (Vector2<f64>, Vector2<f64>) {
+pub(crate) fn desired(me: &Person, params: &Params) -> (Vector2<f64>, Vector2<f64>) {
     if let Some(goal) = me.goal {
         let way = goal.at - me.position;
         if norm(&way) > goal.radius_m {
@@ -114,42 +120,42 @@ fn desired(me: &Person, params: &Params) -> (Vector2<f64>, Vector2<f64>) {
 }
 
 /// Sum over obstacle points, not their mean.
-fn obstacle(me: &Person, obstacles: &[Point2<f64>], params: &Params) -> Vector2<f64> {
+fn obstacle<M: Math>(me: &Person, obstacles: &[Point2<f64>], params: &Params) -> Vector2<f64> {
     obstacles.iter().fold(Vector2::zeros(), |sum, point| {
         let away = me.position - point;
         let distance = norm(&away) - me.radius_m;
-        let strength = params.obstacle * libm::exp(-distance / params.obstacle_sigma_m);
+        let strength = params.obstacle * M::exp(-distance / params.obstacle_sigma_m);
         sum + unit(&away) * strength
     })
 }
 
 /// Sum over everybody else, without a cut-off or a field of view; radii are not used.
-fn social(me: &Person, index: usize, people: &[Person], params: &Params) -> Vector2<f64> {
+fn social<M: Math>(me: &Person, index: usize, people: &[Person], params: &Params) -> Vector2<f64> {
     let mut sum = Vector2::zeros();
     for (place, other) in people.iter().enumerate() {
         if place != index {
-            sum += known(pair(me, other, params));
+            sum += known(pair::<M>(me, other, params));
         }
     }
     sum
 }
 
 /// The social force of one other person.
-fn pair(me: &Person, other: &Person, params: &Params) -> Vector2<f64> {
+pub(crate) fn pair<M: Math>(me: &Person, other: &Person, params: &Params) -> Vector2<f64> {
     let way = other.position - me.position;
     let direction = unit(&way);
     let interaction = (me.velocity - other.velocity) * params.lambda + direction;
     let strength = norm(&interaction);
     let along = Vector2::new(interaction.x / strength, interaction.y / strength);
     let range = params.gamma_m * strength;
-    let mut theta = wrap(angle(&direction) - angle(&along));
+    let mut theta = wrap(M::angle(&direction) - M::angle(&along));
     if params.epsilon > 0.0 {
         theta = wrap(theta + params.epsilon * range);
     }
     let distance = norm(&way);
     let slow_width = params.n_prime * range * theta;
     let turn_width = params.n * range * theta;
-    let slow = -libm::exp(-distance / range - slow_width * slow_width);
+    let slow = -M::exp(-distance / range - slow_width * slow_width);
     let side = if theta > 0.0 {
         1.0
     } else if theta < 0.0 {
@@ -157,7 +163,7 @@ fn pair(me: &Person, other: &Person, params: &Params) -> Vector2<f64> {
     } else {
         0.0
     };
-    let turn = -side * libm::exp(-distance / range - turn_width * turn_width);
+    let turn = -side * M::exp(-distance / range - turn_width * turn_width);
     (along * slow + left(&along) * turn) * params.social
 }
 

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point2, Vector2};
 
+use crate::math::Math;
 use crate::params::{CenterOrder, Params};
 use crate::person::Person;
 use crate::vector::{dot, known, norm};
@@ -17,7 +18,7 @@ pub(crate) struct GroupForces {
 /// Group forces on `me`, who is at `index` in the crowd; `wish` is the direction of its goal.
 ///
 /// `members` are the places of everybody in the group (with `index`), in list order.
-pub(crate) fn on(
+pub(crate) fn on<M: Math>(
     me: &Person,
     index: usize,
     members: &[usize],
@@ -45,26 +46,26 @@ pub(crate) fn on(
         }
     };
     GroupForces {
-        gaze: known(gaze(me, &center, n, wish) * params.gaze),
-        coherence: known(coherence(me, &center, n) * params.coherence),
+        gaze: known(gaze::<M>(me, &center, n, wish) * params.gaze),
+        coherence: known(coherence::<M>(me, &center, n) * params.coherence),
         repulsion: known(repulsion(me, others()) * params.repulsion),
     }
 }
 
 /// Turns the walk so that the others stay within a right angle of the way ahead.
-fn gaze(me: &Person, center: &Point2<f64>, n: f64, wish: &Vector2<f64>) -> Vector2<f64> {
+fn gaze<M: Math>(me: &Person, center: &Point2<f64>, n: f64, wish: &Vector2<f64>) -> Vector2<f64> {
     let center_of_others = (center.coords * n - me.position.coords) * (1.0 / (n - 1.0));
     let to_others = center_of_others - me.position.coords;
     let ahead = dot(wish, &to_others);
-    let turn = libm::acos(ahead / (norm(wish) * norm(&to_others)));
+    let turn = M::acos(ahead / (norm(wish) * norm(&to_others)));
     // Not a number when there is no goal direction: then nobody needs to turn.
     if turn > std::f64::consts::FRAC_PI_2 { wish * (ahead / dot(wish, wish)) } else { Vector2::zeros() }
 }
 
 /// Pulls towards the center, softly inside half a meter per other member.
-fn coherence(me: &Person, center: &Point2<f64>, n: f64) -> Vector2<f64> {
+fn coherence<M: Math>(me: &Person, center: &Point2<f64>, n: f64) -> Vector2<f64> {
     let to_center = center - me.position;
-    let softness = libm::tanh(norm(&to_center) - (n - 1.0) / 2.0) + 1.0;
+    let softness = M::tanh(norm(&to_center) - (n - 1.0) / 2.0) + 1.0;
     to_center * (softness / 2.0)
 }
 

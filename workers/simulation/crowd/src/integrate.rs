@@ -2,8 +2,9 @@
 
 use nalgebra::Vector2;
 
+use crate::math::{Math as _, Portable};
 use crate::person::Person;
-use crate::vector::{angle, norm};
+use crate::vector::norm;
 
 /// Moves a person by `dt` seconds under `force` (semi-implicit Euler): velocity first, cut to the
 /// desired speed, then heading along the velocity, then position.
@@ -17,7 +18,7 @@ pub fn integrate(person: &mut Person, force: &Vector2<f64>, dt: f64) {
         person.velocity = unit * person.speed_mps;
     }
     if person.velocity.x != 0.0 || person.velocity.y != 0.0 {
-        person.yaw = angle(&person.velocity);
+        person.yaw = Portable::angle(&person.velocity);
     }
     person.position += person.velocity * dt;
 }

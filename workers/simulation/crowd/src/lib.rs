@@ -13,16 +13,22 @@
 //!
 //! *Never here:* a wall map, a robot, a scenario word, rigid-body contacts, a clock, a random number.
 
+pub mod cross;
 pub mod forces;
 mod group;
 pub mod integrate;
+mod math;
 pub mod obstacle;
 pub mod params;
 pub mod person;
+pub mod strict;
+pub mod trace;
 mod vector;
+pub mod walker;
 
 pub use forces::{Forces, forces, forces_on};
 pub use integrate::integrate;
 pub use obstacle::{Segment, points_in_range};
 pub use params::{BadParams, CenterOrder, Params};
 pub use person::{Goal, Person};
+pub use walker::{Drive, Route, Walker};

@@ -25,14 +25,12 @@ pub(crate) fn left(v: &Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-/// Angle from the x axis, rad.
-pub(crate) fn angle(v: &Vector2<f64>) -> f64 {
-    libm::atan2(v.y, v.x)
-}
+/// Beyond this many radians an angle is first brought near by the remainder, so that wrapping ends.
+const FAR_RAD: f64 = 1e3;
 
 /// A sum or difference of two angles brought back into (-pi, pi].
 pub(crate) fn wrap(angle: f64) -> f64 {
-    let mut turned = angle;
+    let mut turned = if angle.abs() > FAR_RAD { angle % TAU } else { angle };
     while turned > PI && turned.is_finite() {
         turned -= TAU;
     }

@@ -2,9 +2,11 @@
 
 use std::sync::Arc;
 
-use socrates_maps::{DistanceField, Sight, shortest_path, sight_clear};
+use socrates_maps::{DistanceField, Sight, shortest_path};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::{Grid, Point, Polyline, Vector};
+
+use crate::cells::Cells;
 
 /// Reach of the wall points that people feel, m (8 sectors).
 const WALL_REACH_M: f64 = 3.0;
@@ -17,6 +19,7 @@ pub struct Floor {
     grid: Grid,
     field: Arc<DistanceField>,
     sight: Sight,
+    cells: Cells,
     closed: Vec<(Point, Point)>,
 }
 
@@ -28,6 +31,7 @@ impl Floor {
             grid: grid.clone(),
             field: Arc::new(DistanceField::new(grid)),
             sight: Sight::new(grid),
+            cells: Cells::new(grid),
             closed: Vec::new(),
         }
     }
@@ -93,7 +97,7 @@ impl Floor {
     /// Whether two points see each other now.
     #[must_use]
     pub fn sees(&self, a: &Point, b: &Point) -> bool {
-        sight_clear(&self.sight, a, b, &self.closed)
+        self.closed.iter().all(|(from, to)| !segments_cross(a, b, from, to)) && self.cells.clear(a, b)
     }
 
     /// Whether a disc can go straight from `a` to `b`, doors taken as open.
@@ -129,6 +133,15 @@ impl Floor {
             return Some(Polyline::new(&[*from, *to]));
         }
         shortest_path(&self.grid, &self.field, from, to, radius_m).map(|points| Polyline::new(&points))
+    }
+
+    /// Shortens every range to the distance of the first wall along its unit heading, m, closed doors not
+    /// counted; 0 in a wall.
+    pub fn wall_ranges(&self, from: &Point, ranges: &mut [f64], heading: impl Fn(usize) -> Vector) {
+        let at = self.cells.position(from);
+        for (beam, range) in ranges.iter_mut().enumerate() {
+            *range = self.cells.ray(at, self.cells.direction(&heading(beam)), *range);
+        }
     }
 
     /// Distance to the first wall or closed door in a direction, m, at most `max_m`.

@@ -5,25 +5,30 @@
 //!     doors ─► trees (World) ─► planner ─► rendezvous ─► motion ─► forces ─► contacts ─► recorder
 //! ```
 //!
-//! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], doors, [`lidar`]), the agents
-//! (human, view, robot, script), how they move (motion, walk, contacts), how they meet (rendezvous),
-//! where they start (placing, start), what is written down (recorder, ending), and the loop ([`run`]).
+//! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
+//! (human, view, robot, script), how they move (near, motion, walk, advance, [`contacts`]), how they meet
+//! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
+//! ([`run`], drive).
 //!
 //! *Never here:* a file, a socket, the wall clock, a thread, a random number outside the seed, another
 //! library's math types in the interface.
 
+pub mod contacts;
+pub mod doors;
 pub mod floor;
 pub mod lidar;
+pub mod recorder;
 pub mod run;
 pub mod setup;
 
-mod contacts;
-mod doors;
+mod advance;
+mod cells;
+mod drive;
 mod ending;
 mod human;
 mod motion;
+mod near;
 mod placing;
-mod recorder;
 mod rendezvous;
 mod robot;
 mod script;
@@ -32,10 +37,16 @@ mod view;
 mod walk;
 
 #[cfg(test)]
+mod door_runs;
+#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 mod tests;
 
+pub use contacts::{Body, Touch, resolve};
+pub use doors::event_names;
 pub use floor::Floor;
+pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
+pub use recorder::Recorder;
 pub use run::{Engine, NO_ROBOT};
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use socrates_model::{Action, GroupId, HumanId, Location, NodeId, Point, Polyline, SceneGraph, Vector};
+use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, SceneGraph, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
+use crate::near::Other;
 use crate::robot::Robot;
 
 /// Length of the way that a walker looks ahead, m.
@@ -55,22 +56,13 @@ impl Want {
     }
 }
 
-/// Somebody else as a walker sees it.
-#[derive(Debug, Clone)]
-pub(crate) struct Other {
-    pub(crate) id: Option<HumanId>,
-    pub(crate) at: Point,
-    pub(crate) velocity: Vector,
-    pub(crate) radius_m: f64,
-    pub(crate) group: Option<GroupId>,
-}
-
 /// What motions look at.
 pub(crate) struct Scene<'a> {
     pub(crate) location: &'a Location,
     pub(crate) floor: &'a Floor,
     pub(crate) now_s: f64,
     pub(crate) robot: Option<&'a Robot>,
+    /// Everybody else who is near the human in question.
     pub(crate) others: &'a [Other],
     pub(crate) trails: &'a BTreeMap<HumanId, (Point, Vector, Polyline)>,
 }

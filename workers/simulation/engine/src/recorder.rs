@@ -28,38 +28,48 @@ struct Meeting {
     told: bool,
 }
 
-/// The recorder.
+/// Keeps a recording while a run goes: states per tick, and events each told once.
+///
+/// Per tick: [`Recorder::at`], then any of the events, then [`Recorder::frame`]; at the end [`Recorder::finish`].
 #[derive(Debug)]
-pub(crate) struct Recorder {
+pub struct Recorder {
     recording: Recording,
     now: SimTime,
     fresh: Vec<Event>,
+    /// Where the events of the tick that ended last begin.
+    last: usize,
     touches: BTreeMap<(AgentId, Option<AgentId>), f64>,
     sights: BTreeMap<HumanId, f64>,
     meetings: BTreeMap<HumanId, Meeting>,
 }
 
 impl Recorder {
-    pub(crate) fn new(header: RecordingHeader) -> Self {
+    /// An empty recording with this header.
+    #[must_use]
+    pub const fn new(header: RecordingHeader) -> Self {
         Self {
             recording: Recording { header, frames: Vec::new(), events: Vec::new() },
             now: SimTime::ZERO,
             fresh: Vec::new(),
+            last: 0,
             touches: BTreeMap::new(),
             sights: BTreeMap::new(),
             meetings: BTreeMap::new(),
         }
     }
 
-    pub(crate) const fn at(&mut self, now: SimTime) {
+    /// Begins a tick: everything told from now on has this time.
+    pub const fn at(&mut self, now: SimTime) {
         self.now = now;
     }
 
-    pub(crate) fn tell(&mut self, kind: EventKind) {
+    /// Tells an event of this tick.
+    pub fn tell(&mut self, kind: EventKind) {
         self.fresh.push(Event { time: self.now, kind });
     }
 
-    pub(crate) fn touch(&mut self, touch: Touch) {
+    /// Tells a contact, unless the same two touched within the last second or hardly (less than 1 mm).
+    pub fn touch(&mut self, touch: Touch) {
         let (key, depth) = match touch {
             Touch::Agents(a, b, depth) => ((a, Some(b)), depth),
             Touch::Wall(a, depth) => ((a, None), depth),
@@ -75,7 +85,8 @@ impl Recorder {
         });
     }
 
-    pub(crate) fn sight(&mut self, human: HumanId, distance_m: f64) {
+    /// Tells that a human sees the robot, unless it did within the last 2 s.
+    pub fn sight(&mut self, human: HumanId, distance_m: f64) {
         let now = self.now.secs();
         let known = self.sights.insert(human, now);
         if known.is_none_or(|last| now - last >= SIGHT_AGAIN_S) {
@@ -84,7 +95,7 @@ impl Recorder {
     }
 
     /// One tick of an encounter; true from the tick on at which it has happened. Who stands there is never late.
-    pub(crate) fn meet(
+    pub fn meet(
         &mut self,
         human: HumanId,
         (node, spot): (&NodeId, &Point),
@@ -125,14 +136,23 @@ impl Recorder {
         true
     }
 
-    /// Ends a tick: keeps its frame, hands frame and fresh events on.
-    pub(crate) fn frame(&mut self, states: &[AgentState], sink: &mut dyn FnMut(&[AgentState], &[Event])) {
+    /// Ends a tick: keeps its frame, hands frame and fresh events on. `states` are in the header's order.
+    pub fn frame(&mut self, states: &[AgentState], sink: &mut dyn FnMut(&[AgentState], &[Event])) {
         sink(states, &self.fresh);
         self.recording.frames.extend_from_slice(states);
+        self.last = self.recording.events.len();
         self.recording.events.append(&mut self.fresh);
     }
 
-    pub(crate) fn finish(self) -> Recording {
+    /// Events of the tick that ended last.
+    #[must_use]
+    pub fn last_tick(&self) -> &[Event] {
+        self.recording.events.get(self.last..).unwrap_or(&[])
+    }
+
+    /// The recording as it stands.
+    #[must_use]
+    pub fn finish(self) -> Recording {
         self.recording
     }
 }

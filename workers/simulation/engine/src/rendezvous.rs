@@ -7,7 +7,7 @@
 
 use socrates_model::{Point, Relation};
 
-use crate::human::Human;
+use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
 
 /// Slowest walk the controller asks for, m/s.
@@ -146,4 +146,36 @@ fn beside(human: &Human, robot: &Robot) -> f64 {
     let (s, _) = human.route.project_within(&robot.at(), human.s - 4.0, human.s + 4.0);
     let ahead = s - human.s;
     (robot.v.max(0.0) + 0.9 * ahead).clamp(0.0, FASTEST_MPS)
+}
+
+/// The controller's memory at the start: who leaves a place that the robot enters, and in which order.
+pub(crate) fn timings(humans: &[Human], robot: Option<&Robot>, robot_doors: &[DoorOnWay]) -> Vec<Timing> {
+    let enters = |human: &Human| {
+        let Some(robot) = robot else { return false };
+        let start = human.route.point(0.0);
+        match human.doors.first() {
+            Some(door) => robot_doors.iter().any(|on_way| on_way.door == door.door),
+            None => robot.route.end().is_some_and(|end| (end - start).norm() < 3.0),
+        }
+    };
+    let mut out: Vec<(f64, usize)> = Vec::new();
+    for (place, human) in humans.iter().enumerate() {
+        if human.relation == Relation::Leaving {
+            let way = human.doors.first().map_or_else(|| human.route.length_m(), |door| door.s);
+            out.push(((human.route.point(way) - human.at).norm(), place));
+        }
+    }
+    out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    humans
+        .iter()
+        .enumerate()
+        .map(|(place, human)| {
+            let order = out
+                .iter()
+                .position(|(_, other)| *other == place)
+                .and_then(|order| u32::try_from(order).ok())
+                .unwrap_or(0);
+            Timing { leaving_order: order, robot_enters: enters(human), ..Timing::default() }
+        })
+        .collect()
 }

@@ -36,6 +36,11 @@ impl Script {
         Self { lines: rules.iter().filter_map(say).collect() }
     }
 
+    /// Whether anything is ever said.
+    pub(crate) const fn has_lines(&self) -> bool {
+        !self.lines.is_empty()
+    }
+
     /// The gesture that begins now, if any. Each line speaks once; a `blocked` line again each time it is blocked anew.
     pub(crate) fn step(&mut self, cue: &Cue<'_>) -> Option<Gesture> {
         let mut spoken = None;

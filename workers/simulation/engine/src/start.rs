@@ -227,6 +227,7 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         aside_m: 0.0,
         jammed_s: 0.0,
         yields_until_s: 0.0,
+        robot_in_sight: None,
         started: false,
         trail: Polyline::default(),
     }

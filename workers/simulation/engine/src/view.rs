@@ -1,7 +1,6 @@
 //! What one human's tree sees and does: the tick's start in, wishes out.
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 
 use socrates_bt::World;
 use socrates_model::time::STEP_SECS;
@@ -32,7 +31,8 @@ pub(crate) struct View<'a> {
     pub(crate) floor: &'a Floor,
     pub(crate) now: SimTime,
     pub(crate) robot: Option<RobotSeen>,
-    pub(crate) gestures: &'a BTreeMap<HumanId, Gesture>,
+    /// Gestures of all humans, in the order of ids.
+    pub(crate) gestures: &'a [(HumanId, Gesture)],
     at: Point,
     heading: Vector,
     travel: Vector,
@@ -50,7 +50,7 @@ impl<'a> View<'a> {
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
-        gestures: &'a BTreeMap<HumanId, Gesture>,
+        gestures: &'a [(HumanId, Gesture)],
     ) -> Self {
         let at_encounter =
             human.meeting.as_ref().is_some_and(|meeting| (human.at - meeting.at).norm() <= AT_ENCOUNTER_M);
@@ -70,6 +70,12 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Whether a way lies in the field of view.
+    fn faces(&self, way: &Vector) -> bool {
+        // Ahead is always in it; only what is abeam or behind needs the angle.
+        self.heading.dot(way) > 0.0 || angle_between(&self.heading, way) <= HALF_FIELD_OF_VIEW_RAD
+    }
+
     fn in_sight(&self, robot: &RobotSeen) -> bool {
         if let Some(known) = self.sight.get() {
             return known;
@@ -79,14 +85,17 @@ impl<'a> View<'a> {
         seen
     }
 
+    /// Whether robot and human are in line of sight, where that was asked.
+    pub(crate) const fn looked(&self) -> Option<bool> {
+        self.sight.get()
+    }
+
     /// Whether the robot is in the field of view and in line of sight at any distance up to `within_m`.
     pub(crate) fn sees_robot(&self, within_m: f64) -> Option<f64> {
         let robot = self.robot?;
         let way = robot.at - self.at;
         let distance = way.norm();
-        let seen = distance <= within_m
-            && angle_between(&self.heading, &way) <= HALF_FIELD_OF_VIEW_RAD
-            && self.in_sight(&robot);
+        let seen = distance <= within_m && self.faces(&way) && self.in_sight(&robot);
         seen.then_some(distance)
     }
 }
@@ -121,7 +130,8 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Gesture {
-        self.gestures.get(&id).copied().unwrap_or_default()
+        let place = self.gestures.binary_search_by_key(&id, |(human, _)| *human);
+        place.ok().and_then(|place| self.gestures.get(place)).map(|(_, gesture)| *gesture).unwrap_or_default()
     }
 
     fn goal_reached(&self) -> bool {

@@ -7,7 +7,8 @@ use socrates_model::{GroupId, Point, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
-use crate::motion::{Other, Want};
+use crate::motion::Want;
+use crate::near::Other;
 
 /// Largest acceleration of a person, m/s².
 const A_MAX: f64 = 3.0;
@@ -22,21 +23,63 @@ const FEEL_M: f64 = 5.0;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
 const KEEP: (f64, f64) = (12.0, 7.0);
 
-/// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
-pub(crate) fn steer(human: &mut Human, want: &Want, floor: &Floor, others: &[Other], params: &Params) {
-    let wished = match want.target {
-        Some(target) if want.speed_mps > 0.0 => {
-            human.anchor = None;
-            human.velocity + pull(human, want, &target, floor, others, params) * STEP_SECS
-        }
-        Some(_) | None => stand(human),
-    };
-    let mut velocity = wished;
-    let most = want.speed_mps.max(human.velocity.norm() - A_MAX * STEP_SECS).min(V_MAX);
-    if want.target.is_some() && velocity.norm() > most {
-        velocity *= most / velocity.norm();
+/// Steers people, one after the other; keeps the list of whom each of them feels.
+pub(crate) struct Walker<'a> {
+    params: &'a Params,
+    felt: Vec<Person>,
+}
+
+impl<'a> Walker<'a> {
+    pub(crate) const fn new(params: &'a Params) -> Self {
+        Self { params, felt: Vec::new() }
     }
-    // A person stops before touching; forces alone would let shoulders meet.
+
+    /// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
+    pub(crate) fn steer(&mut self, human: &mut Human, want: &Want, floor: &Floor, others: &[Other]) {
+        let wished = match want.target {
+            Some(target) if want.speed_mps > 0.0 => {
+                human.anchor = None;
+                human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
+            }
+            Some(_) | None => stand(human),
+        };
+        let mut velocity = wished;
+        let most = want.speed_mps.max(human.velocity.norm() - A_MAX * STEP_SECS).min(V_MAX);
+        if want.target.is_some() && velocity.norm() > most {
+            velocity *= most / velocity.norm();
+        }
+        stop_before_touching(human, want, others, &mut velocity);
+        human.velocity = velocity;
+    }
+
+    fn pull(&mut self, human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
+        self.felt.clear();
+        self.felt.push(Person {
+            speed_mps: want.speed_mps,
+            goal: Some(Goal { at: *target, radius_m: 0.02 }),
+            ..person(0, human.at, human.velocity, human.radius_m)
+        });
+        for (number, other) in (1_u32..).zip(others) {
+            let near = (other.at - human.at).norm() < FEEL_M;
+            let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
+            let drawn = want.drawn && other.id.is_none();
+            if near && !mate && !drawn && floor.sees(&human.at, &other.at) {
+                self.felt.push(person(number, other.at, other.velocity, other.radius_m));
+            }
+        }
+        // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
+        let meant = want.face.is_some()
+            && (target - human.at).norm() < 1.3
+            && floor.straight(&human.at, target, human.radius_m);
+        let walls = if meant { Vec::new() } else { floor.felt(&human.at) };
+        let force = forces_on(0, &self.felt, &walls, self.params).total();
+        let size = force.norm();
+        if size > A_MAX { force * (A_MAX / size) } else { force }
+    }
+}
+
+/// A person stops before touching; forces alone would let shoulders meet.
+fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: &mut Vector) {
     for other in others {
         let way = other.at - human.at;
         let distance = way.norm();
@@ -49,10 +92,9 @@ pub(crate) fn steer(human: &mut Human, want: &Want, floor: &Floor, others: &[Oth
         let least = if other.id.is_none() && !want.drawn { 0.18 } else { 0.06 };
         let excess = velocity.dot(&toward) - (2.5 * (gap - least)).max(0.0);
         if excess > 0.0 {
-            velocity -= toward * excess;
+            *velocity -= toward * excess;
         }
     }
-    human.velocity = velocity;
 }
 
 fn stand(human: &mut Human) -> Vector {
@@ -69,29 +111,6 @@ fn stand(human: &mut Human) -> Vector {
     let pull = if size > A_MAX { pull * (A_MAX / size) } else { pull };
     let velocity = human.velocity + pull * STEP_SECS;
     if velocity.norm() < 2e-3 && (anchor - human.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
-}
-
-fn pull(human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other], params: &Params) -> Vector {
-    let mut people = vec![person(0, human.at, human.velocity, human.radius_m)];
-    if let Some(me) = people.first_mut() {
-        me.speed_mps = want.speed_mps;
-        me.goal = Some(Goal { at: *target, radius_m: 0.02 });
-    }
-    for (number, other) in (1_u32..).zip(others) {
-        let near = (other.at - human.at).norm() < FEEL_M;
-        let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
-        let drawn = want.drawn && other.id.is_none();
-        if near && !mate && !drawn && floor.sees(&human.at, &other.at) {
-            people.push(person(number, other.at, other.velocity, other.radius_m));
-        }
-    }
-    // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
-    let meant =
-        want.face.is_some() && (target - human.at).norm() < 1.3 && floor.straight(&human.at, target, human.radius_m);
-    let walls = if meant { Vec::new() } else { floor.felt(&human.at) };
-    let force = forces_on(0, &people, &walls, params).total();
-    let size = force.norm();
-    if size > A_MAX { force * (A_MAX / size) } else { force }
 }
 
 fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {

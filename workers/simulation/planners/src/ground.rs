@@ -17,6 +17,8 @@ pub(crate) struct Ground {
     grid: Grid,
     field: Arc<DistanceField>,
     pub(crate) radius_m: f64,
+    /// Lines of the doors that were shut at the last look.
+    shut: Vec<(Point, Point)>,
 }
 
 /// A person as an obstacle: a stretch of floor with a radius, and whether going there is forbidden or only dear.
@@ -30,12 +32,24 @@ pub(crate) struct Obstacle {
 
 impl Ground {
     pub(crate) fn new(mission: &Mission) -> Self {
-        Self { grid: mission.grid.clone(), field: Arc::clone(&mission.field), radius_m: mission.robot.radius_m }
+        Self {
+            grid: mission.grid.clone(),
+            field: Arc::clone(&mission.field),
+            radius_m: mission.robot.radius_m,
+            shut: Vec::new(),
+        }
     }
 
-    /// Distance to the nearest wall, m.
+    /// Takes over which doors are shut.
+    pub(crate) fn look(&mut self, seen: &Observation<'_>) {
+        self.shut.clear();
+        self.shut.extend(seen.doors.iter().filter(|door| !door.open).map(|door| (door.from, door.to)));
+    }
+
+    /// Distance to the nearest wall or shut door, m.
     pub(crate) fn clearance_m(&self, point: &Point) -> f64 {
-        self.field.clearance(point)
+        let wall = self.field.clearance(point);
+        self.shut.iter().fold(wall, |least, (from, to)| least.min(nearest_on_segment(point, from, to).0))
     }
 
     /// Whether the robot's disc with a margin can go straight.
@@ -46,7 +60,7 @@ impl Ground {
         let mut gone = 0.0;
         loop {
             let here = if length > 0.0 { from + way * (gone / length) } else { *from };
-            let free = self.field.clearance(&here);
+            let free = self.clearance_m(&here);
             if free < reach {
                 return false;
             }

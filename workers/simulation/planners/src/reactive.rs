@@ -112,6 +112,7 @@ impl RobotDriver for Reactive {
 
     fn drive(&mut self, seen: &Observation<'_>) -> Command {
         let at = seen.pose.point();
+        self.ground.look(seen);
         let (s, aside) = self.route.project_within(&at, self.s, self.s + 2.5);
         if aside < 3.0 {
             self.s = s.max(self.s);

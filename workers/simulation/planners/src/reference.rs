@@ -221,6 +221,7 @@ impl RobotDriver for Reference {
 
     fn drive(&mut self, seen: &Observation<'_>) -> Command {
         let at = seen.pose.point();
+        self.ground.look(seen);
         let (s, aside) = self.route.project_within(&at, self.s, self.s + 2.5);
         if aside < 2.5 {
             self.s = s.max(self.s);

@@ -1,0 +1,178 @@
+//! Whole runs, bit for bit, against recorded runs of the reference library.
+
+#![cfg(test)]
+#![expect(clippy::print_stdout, reason = "a skipped test says why")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use socrates_crowd::cross::{DT_S, WALL_RANGE_M, cross};
+use socrates_crowd::strict::{Crowd, Model};
+use socrates_crowd::trace::{Scene, forces_table, trajectory};
+
+fn folder() -> Option<PathBuf> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../../shared/data/sfm_reference"));
+    if path.is_dir() {
+        Some(path.to_path_buf())
+    } else {
+        println!("skipped: no reference data at {}", path.display());
+        None
+    }
+}
+
+/// Every file of the folder whose name ends so, in the order of names.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.to_str().is_some_and(|name| name.ends_with(ending)));
+    files.sort();
+    files
+}
+
+/// The first cell in which two tables differ in meaning, or in which their numbers differ in bits.
+fn first_difference(found: &str, wanted: &str) -> Option<String> {
+    let (mut found_lines, mut wanted_lines) = (found.lines(), wanted.lines());
+    for line in 1.. {
+        let (found, wanted) = match (found_lines.next(), wanted_lines.next()) {
+            (None, None) => return None,
+            (found, wanted) => (found.unwrap_or("nothing"), wanted.unwrap_or("nothing")),
+        };
+        if found != wanted {
+            return Some(format!("line {line}\n found  {found}\n wanted {wanted}"));
+        }
+    }
+    None
+}
+
+#[test]
+fn every_recorded_scene_is_replayed_in_every_bit() {
+    let Some(folder) = folder() else { return };
+    let mut checked = 0;
+    for file in files(&folder, ".json") {
+        let scene = Scene::read(&fs::read_to_string(&file).unwrap()).unwrap();
+        for (ending, found) in [("traj.csv", trajectory(&scene)), ("forces.csv", forces_table(&scene))] {
+            let table = file.with_extension(ending);
+            let Ok(wanted) = fs::read_to_string(&table) else {
+                println!("skipped: no {}", table.display());
+                continue;
+            };
+            assert_eq!(first_difference(&found, &wanted), None, "{}", table.display());
+            assert_eq!(found.len(), wanted.len(), "{}", table.display());
+            checked += 1;
+        }
+    }
+    println!("{checked} tables checked");
+    assert!(checked > 0);
+}
+
+/// One row of a recording of the crossing crowd.
+fn crossing_row(line: &str) -> Vec<f64> {
+    line.split(',').map(|cell| cell.parse().unwrap()).collect()
+}
+
+#[test]
+fn the_recorded_crossing_crowds_are_replayed_in_every_bit() {
+    let Some(folder) = folder() else { return };
+    let mut checked = 0;
+    for file in files(&folder, ".hunav.csv") {
+        let name = file.file_name().unwrap().to_str().unwrap();
+        let Some(size) = name.strip_prefix("cross_").and_then(|rest| rest.strip_suffix(".hunav.csv")) else { continue };
+        let n: u32 = size.parse().unwrap();
+        let cross = cross(n);
+        let mut crowd = Crowd::new(&cross.walkers, &cross.walls, WALL_RANGE_M, &Model::Hunav.params());
+        let (mut step, text) = (0, fs::read_to_string(&file).unwrap());
+        let rows: Vec<Vec<f64>> = text.lines().skip(1).map(crossing_row).collect();
+        for recorded in rows.chunks(n as usize) {
+            while f64::from(step) < recorded[0][0] {
+                crowd.step(DT_S);
+                step += 1;
+            }
+            let forces = crowd.forces(&crowd.wall_points());
+            for ((walker, person), (force, row)) in
+                cross.walkers.iter().zip(crowd.people()).zip(forces.iter().zip(recorded))
+            {
+                let (route, total) = (&walker.route, force.total());
+                // The first goal of a fresh crowd, and the start: in this order in every row.
+                let (first, start) = (route.goal().unwrap().at, walker.person.position);
+                let found = [
+                    f64::from(step),
+                    f64::from(person.id),
+                    person.position.x,
+                    person.position.y,
+                    person.velocity.x,
+                    person.velocity.y,
+                    person.yaw,
+                    person.speed_mps,
+                    first.x,
+                    first.y,
+                    start.x,
+                    start.y,
+                    total.x,
+                    total.y,
+                ];
+                for (place, (found, wanted)) in found.iter().zip(row).enumerate() {
+                    let what = format!("{name} step {step} person {} column {place}", person.id);
+                    assert_eq!(found.to_bits(), wanted.to_bits(), "{what}: {found} {wanted}");
+                }
+                checked += 1;
+            }
+        }
+    }
+    println!("{checked} rows checked");
+    assert!(checked > 0);
+}
+
+#[test]
+fn the_crossing_crowds_have_the_published_check_sums() {
+    let published: [(u32, &[(u32, f64, f64)]); 4] = [
+        (
+            10,
+            &[
+                (0, 35.982_207_360_123, 26.260_295_408_917),
+                (1, 35.991_681_996_862, 26.299_072_320_710),
+                (10, 36.078_223_496_121, 26.650_699_896_321),
+                (200, 37.785_812_264_379, 34.140_502_531_707),
+            ],
+        ),
+        (
+            50,
+            &[
+                (0, 344.318_618_347_097, 277.491_789_940_408),
+                (10, 344.483_525_755_943, 278.527_052_614_564),
+                (200, 347.421_476_534_249, 297.999_067_915_043),
+            ],
+        ),
+        (
+            100,
+            &[
+                (0, 997.937_022_033_501, 998.378_695_017_868),
+                (10, 999.011_864_132_872, 998.745_993_895_757),
+                (200, 1_018.282_780_855_782, 1_005.223_214_870_722),
+            ],
+        ),
+        (
+            1000,
+            &[
+                (0, 31_430.613_192_952_911, 30_892.170_140_530_845),
+                (10, 31_431.269_804_549_578, 30_893.589_291_110_213),
+            ],
+        ),
+    ];
+    for (n, sums) in published {
+        let cross = cross(n);
+        let mut crowd = Crowd::new(&cross.walkers, &cross.walls, WALL_RANGE_M, &Model::Hunav.params());
+        let mut step = 0;
+        for (at, x, y) in sums {
+            while step < *at {
+                crowd.step(DT_S);
+                step += 1;
+            }
+            let sum = crowd
+                .people()
+                .iter()
+                .fold((0.0, 0.0), |sum, person| (sum.0 + person.position.x, sum.1 + person.position.y));
+            // The sums are published with twelve decimals.
+            let close = 1e-12 * f64::from(n).max(100.0);
+            assert!((sum.0 - x).abs() < close && (sum.1 - y).abs() < close, "CROSS-{n} step {step}: {sum:?}");
+        }
+    }
+}

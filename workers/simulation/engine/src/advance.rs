@@ -1,0 +1,128 @@
+//! One tick of motion: paces, wishes, forces, contacts.
+
+use socrates_model::time::STEP_SECS;
+use socrates_model::{Action, AgentId, HumanId, Relation};
+
+use crate::contacts::{self, Body};
+use crate::motion::{self, Scene, Want};
+use crate::near::Other;
+use crate::recorder::Recorder;
+use crate::rendezvous::{self, Moment};
+use crate::run::Engine;
+use crate::walk::{self, Walker};
+
+impl Engine {
+    /// Moves everybody by one tick.
+    pub(crate) fn advance(&mut self, now_s: f64, recorder: &mut Recorder) {
+        let Self { humans, robot, near, .. } = &mut *self;
+        let people = humans.iter().map(Other::from);
+        near.fill(people.chain(robot.iter().map(Other::from)));
+        let led: Vec<HumanId> = self
+            .humans
+            .iter()
+            .filter_map(|human| if let Action::FollowHuman(id) = human.action { Some(id) } else { None })
+            .collect();
+        let trails = self
+            .humans
+            .iter()
+            .filter(|human| led.contains(&human.id))
+            .map(|human| (human.id, (human.at, human.velocity, human.trail.clone())))
+            .collect();
+        let paces = self.doors_and_paces(now_s);
+        let mut wants: Vec<Want> = Vec::with_capacity(self.humans.len());
+        let mut bodies: Vec<Body> = Vec::with_capacity(self.humans.len() + 1);
+        let mut around: Vec<Other> = Vec::new();
+        let mut walker = Walker::new(&self.params);
+        for (place, (human, pace)) in self.humans.iter_mut().zip(&paces).enumerate() {
+            self.near.around(place, &human.at, &mut around);
+            let scene = Scene {
+                location: &self.setup.location,
+                floor: &self.floor,
+                now_s,
+                robot: self.robot.as_ref(),
+                others: &around,
+                trails: &trails,
+            };
+            let want = motion::want(human, &scene, *pace);
+            walker.steer(human, &want, &self.floor, &around);
+            human.started |= human.action == Action::Navigate && want.target.is_some();
+            let yields = if want.target.is_some() { 1.0 } else { 0.02 };
+            let at = human.at + human.velocity * STEP_SECS;
+            bodies.push(Body { agent: human.agent(), at, velocity: human.velocity, radius_m: human.radius_m, yields });
+            wants.push(want);
+        }
+        if let Some(robot) = &mut self.robot {
+            robot.step();
+            let yields = if robot.velocity.norm() > 0.02 { 0.5 } else { 0.02 };
+            bodies.push(Body {
+                agent: AgentId::Robot,
+                at: robot.at(),
+                velocity: robot.velocity,
+                radius_m: robot.model.radius_m,
+                yields,
+            });
+        }
+        for touch in contacts::resolve(&mut bodies, &self.floor) {
+            recorder.touch(touch);
+        }
+        for ((human, want), body) in self.humans.iter_mut().zip(&wants).zip(&bodies) {
+            walk::settle(human, want, body.at, body.velocity);
+            if human.action == Action::Navigate {
+                walk::progress(human);
+            }
+        }
+        if let (Some(robot), Some(body)) = (&mut self.robot, bodies.last()) {
+            robot.settle(body.at, body.velocity);
+        }
+    }
+
+    /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.
+    fn doors_and_paces(&mut self, now_s: f64) -> Vec<f64> {
+        let mut paces = Vec::with_capacity(self.humans.len());
+        for (human, timing) in self.humans.iter().zip(&mut self.timings) {
+            let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
+            let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
+            // Sight matters to the controller only while a meeting lies ahead.
+            let asked = human.meeting.is_some() || human.relation == Relation::Leaving;
+            let sight = asked
+                && human.robot_in_sight.unwrap_or_else(|| {
+                    self.robot.as_ref().is_some_and(|robot| self.floor.sees(&human.at, &robot.at()))
+                });
+            let moment = Moment { now_s, dt: STEP_SECS, sight, door };
+            // Other actions have their own speed; the rendezvous waits meanwhile.
+            let mut pace = if human.action == Action::Navigate {
+                rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps
+            } else {
+                human.speed_mps
+            };
+            if door.is_some_and(|(left, open)| !open && left < 0.75 && human.started) {
+                pace = 0.0;
+            }
+            paces.push(pace);
+        }
+        self.keep_groups_together(&mut paces);
+        paces
+    }
+
+    /// Members of a walking group take the pace of its first member, a little faster behind and slower in front.
+    fn keep_groups_together(&self, paces: &mut [f64]) {
+        for group in self.setup.proposal.groups.iter().filter(|group| !group.standing) {
+            let places: Vec<usize> =
+                group.members.iter().filter_map(|id| self.humans.iter().position(|human| human.id == *id)).collect();
+            let Some(lead) = places.first().and_then(|place| paces.get(*place)).copied() else { continue };
+            let left: Vec<f64> = places
+                .iter()
+                .filter_map(|place| self.humans.get(*place))
+                .map(|human| human.route.length_m() - human.s)
+                .collect();
+            #[expect(clippy::cast_precision_loss, reason = "a few people")]
+            let mean = left.iter().sum::<f64>() / left.len().max(1) as f64;
+            for (place, left) in places.iter().zip(left) {
+                if let Some(pace) = paces.get_mut(*place) {
+                    *pace =
+                        if lead > 0.0 { (lead * (1.0 + 0.6 * (left - mean).clamp(-0.8, 0.8))).min(1.8) } else { 0.0 };
+                }
+            }
+        }
+    }
+}
