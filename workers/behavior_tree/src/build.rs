@@ -160,7 +160,7 @@ impl Builder<'_> {
         // A subtree is called by its tree; version 4 lets a name go before that.
         let named = match (is_subtree, self.document.format) {
             (true, Format::V3) => it.attr("ID"),
-            (true, Format::V4) => it.attr("name").or(it.attr("ID")),
+            (true, Format::V4) => it.attr("name").or_else(|| it.attr("ID")),
             (false, _) => it.attr("name"),
         };
         let name = named.map_or_else(|| it.tag.clone(), str::to_owned);
@@ -184,6 +184,7 @@ impl Builder<'_> {
         let index = self.nodes.len();
         self.nodes.push(Node {
             sheet,
+            tag: it.tag.clone(),
             name,
             inputs,
             children: Vec::new(),
@@ -191,6 +192,7 @@ impl Builder<'_> {
             leaf,
             guards,
             script,
+            attrs: it.attrs.iter().filter(|(name, _)| name != "name").cloned().collect(),
             site: it.site.clone(),
         });
         let children = if is_subtree {

@@ -439,7 +439,7 @@ fn wrong(kind: PortKind, value: &str) -> Option<(FaultCode, &'static str)> {
             }
         }
         (PortKind::Angle, Some(angle)) => {
-            if (0.0..=6.2832).contains(&angle) {
+            if (0.0..=std::f64::consts::TAU).contains(&angle) {
                 None
             } else {
                 range("is out of range")

@@ -146,7 +146,7 @@ impl PortKind {
             Self::Distance => "a distance of at least 0 m".to_owned(),
             Self::Span => "seconds, at least 0".to_owned(),
             Self::Speed => "a speed of at least 0 m/s".to_owned(),
-            Self::Angle => "an angle from 0 to 6.2832 rad".to_owned(),
+            Self::Angle => "an angle from 0 to 6.283 rad".to_owned(),
             Self::Share => "a probability from 0 to 1".to_owned(),
             Self::Output => "the entry a result is written to, as {entry}".to_owned(),
         }
@@ -182,6 +182,11 @@ impl PortSheet {
     /// The same port under another name in v4.
     pub(crate) const fn in_v4(self, name: &'static str) -> Self {
         Self { v4_name: Some(name), ..self }
+    }
+
+    /// Whether a document of either version may write this name for it.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.v4_name == Some(name)
     }
 
     /// `agent_id`, as nearly every leaf has it.

@@ -52,6 +52,8 @@ pub(crate) struct Guards {
 #[derive(Debug, Clone)]
 pub(crate) struct Node {
     pub(crate) sheet: &'static NodeSheet,
+    /// Tag as the document spells it.
+    pub(crate) tag: String,
     pub(crate) name: String,
     pub(crate) inputs: Vec<Input>,
     pub(crate) children: Vec<usize>,
@@ -60,7 +62,16 @@ pub(crate) struct Node {
     pub(crate) guards: Option<Box<Guards>>,
     /// For a `Script` node its code, for `SetBlackboard` nothing.
     pub(crate) script: Option<Script>,
+    /// Attributes as written, the name left out; for drawings.
+    pub(crate) attrs: Vec<(String, String)>,
     pub(crate) site: Site,
+}
+
+impl Node {
+    /// The tag, of a foreign leaf as the document spells it.
+    pub(crate) fn document_tag(&self) -> &str {
+        if self.sheet.role.is_catalogued() { self.sheet.tag } else { &self.tag }
+    }
 }
 
 /// What a tick needs of a node; a row of the flat array that all agents share.

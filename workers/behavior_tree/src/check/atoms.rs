@@ -7,7 +7,7 @@ use crate::sheet::{Kind, Role};
 use crate::tree::Tree;
 
 /// Most conditions for which every case is ticked.
-const MAX_EXACT: usize = 12;
+pub(super) const MAX_EXACT: usize = 12;
 /// Cases of the sample beyond that.
 const SAMPLE: u64 = 4096;
 /// One thing that can be so or not.
@@ -21,6 +21,8 @@ pub(super) enum Atom {
     Timer(usize, f64),
     /// A latch holds, a `RunOnce` has run: place of its node.
     Memory(usize),
+    /// A leaf that only its world can tick succeeds: number of the leaf.
+    Answer(u16),
 }
 
 impl Atom {
@@ -37,6 +39,10 @@ impl Atom {
             (Self::World(trigger), false) => format!("not {}", trigger.phrase()),
             (Self::Timer(_, secs), true) => format!("after the timer of {secs} s"),
             (Self::Timer(_, secs), false) => format!("before the timer of {secs} s has run out"),
+            (Self::Answer(leaf), _) => {
+                let name = tree.leaf_names().get(usize::from(*leaf).wrapping_sub(1)).copied().unwrap_or("");
+                format!("when `{name}` {}", if holds { "succeeds" } else { "fails" })
+            }
             (Self::Memory(node), _) => {
                 let name = tree.nodes.get(*node).map_or("", |node| node.name.as_str());
                 format!("{} `{name}` is set", if holds { "once" } else { "before" })
@@ -57,7 +63,8 @@ pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
             }),
             Role::Timer => ports.real(0).map(|secs| Atom::Timer(index, secs)),
             Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce") => Some(Atom::Memory(index)),
-            Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet | Role::World | Role::Foreign => None,
+            Role::World | Role::Foreign => Some(Atom::Answer(node.leaf)),
+            Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet => None,
         };
         if let Some(atom) = atom
             && !atoms.contains(&atom)
@@ -94,7 +101,7 @@ fn is_possible(atoms: &[Atom], truth: &[bool]) -> bool {
     let world = || {
         atoms.iter().zip(truth).filter_map(|(atom, holds)| match atom {
             Atom::World(trigger) => Some((trigger, *holds)),
-            Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere => None,
+            Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere | Atom::Answer(_) => None,
         })
     };
     world()

@@ -3,6 +3,8 @@
 use socrates_model::{Action, Gesture, HumanId, SimTime, Trigger};
 
 use crate::check::atoms::Atom;
+use crate::leaf::LeafCall;
+use crate::status::Status;
 use crate::world::World;
 
 /// The world of one case.
@@ -29,10 +31,16 @@ impl CaseWorld<'_> {
             .unwrap_or_default()
     }
 
+    /// What a leaf answers that nothing is known about.
+    fn answer(&self, leaf: u16) -> Status {
+        let succeeds = self.atoms.iter().zip(self.truth).any(|(atom, holds)| *holds && *atom == Atom::Answer(leaf));
+        Status::of(succeeds)
+    }
+
     fn true_numbers(&self, of: impl Fn(&Trigger) -> Option<f64>) -> impl Iterator<Item = f64> {
         self.atoms.iter().zip(self.truth).filter_map(move |(atom, holds)| match atom {
             Atom::World(trigger) if *holds => of(trigger),
-            Atom::World(_) | Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere => None,
+            Atom::World(_) | Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere | Atom::Answer(_) => None,
         })
     }
 }
@@ -84,5 +92,11 @@ impl World for CaseWorld<'_> {
     }
     fn gesture(&mut self, gesture: Gesture) {
         self.gestures.push(gesture);
+    }
+    fn leaf(&mut self, call: &mut LeafCall<'_>) -> Option<Status> {
+        (!call.sheet().is_native()).then(|| self.answer(call.leaf()))
+    }
+    fn foreign(&mut self, leaf: u16) -> Status {
+        self.answer(leaf)
     }
 }

@@ -13,7 +13,7 @@ use crate::nodes::{memory, remembered};
 use crate::rules::is_endless;
 use crate::sheet::Role;
 use crate::status::Status;
-use crate::tree::Tree;
+use crate::tree::{Node, Tree};
 
 /// Ticks of a case where nodes keep a place between ticks.
 const MEMORY_TICKS: usize = 6;
@@ -43,14 +43,19 @@ pub(super) struct Cases<'a> {
     visited: Vec<bool>,
 }
 
+impl Case {
+    /// Nodes that were come to.
+    pub(super) fn visited(&self) -> &[bool] {
+        &self.visited
+    }
+}
+
 impl<'a> Cases<'a> {
     /// Ticks every case.
     pub(super) fn of(tree: &'a Tree) -> Self {
         let atoms = atoms(tree);
         let mut cases = Self { tree, atoms, all: Vec::new(), visited: vec![false; tree.nodes.len()] };
-        for truth in truths(tree, &cases.atoms) {
-            cases.run(truth);
-        }
+        cases.all = truths(tree, &cases.atoms).into_iter().map(|truth| cases.ticked(truth)).collect();
         cases.keep_reachable();
         for case in &cases.all {
             for (seen, now) in cases.visited.iter_mut().zip(&case.visited) {
@@ -80,14 +85,15 @@ impl<'a> Cases<'a> {
         self.all.retain(|case| is_allowed(case, &allowed));
     }
 
-    fn run(&mut self, truth: Vec<bool>) {
+    /// Ticks one case.
+    pub(super) fn ticked(&self, truth: Vec<bool>) -> Case {
         let tree = self.tree;
         let mut state = tree.start();
         for (atom, holds) in self.atoms.iter().zip(&truth) {
             match atom {
                 Atom::Timer(node, _) if *holds => tree.set_word(&mut state, *node, u64::MAX / 2),
                 Atom::Memory(node) if *holds => tree.set_word(&mut state, *node, memory(Status::Success)),
-                Atom::Timer(..) | Atom::Memory(_) | Atom::World(_) | Atom::GoalHere => {}
+                Atom::Timer(..) | Atom::Memory(_) | Atom::World(_) | Atom::GoalHere | Atom::Answer(_) => {}
             }
         }
         let ticks = if keeps_places(tree) { MEMORY_TICKS } else { 1 };
@@ -124,10 +130,41 @@ impl<'a> Cases<'a> {
             .map(|atom| match atom {
                 Atom::Timer(node, _) => was(node),
                 Atom::Memory(node) => is_set(node),
-                Atom::World(_) | Atom::GoalHere => false,
+                Atom::World(_) | Atom::GoalHere | Atom::Answer(_) => false,
             })
             .collect();
-        self.all.push(case);
+        case
+    }
+
+    /// A case and what follows from it while the world stays as it is: timers that count run out, latches that are
+    /// set hold.
+    pub(super) fn future(&self, case: &Case) -> Vec<Case> {
+        let mut future = vec![case.clone()];
+        let mut truth = case.truth.clone();
+        loop {
+            let Some(last) = future.last() else { break };
+            let next: Vec<bool> = truth.iter().zip(&last.reached).map(|(holds, reached)| *holds || *reached).collect();
+            if next == truth {
+                break;
+            }
+            truth.clone_from(&next);
+            future.push(self.ticked(next));
+        }
+        future
+    }
+
+    /// What a case remembers before it is ticked: one truth for each atom, false for those of the world.
+    pub(super) fn memory_at_start(&self, case: &Case) -> Vec<bool> {
+        let is_memory = |atom: &Atom| matches!(atom, Atom::Memory(_));
+        self.atoms.iter().zip(&case.truth).map(|(atom, holds)| is_memory(atom) && *holds).collect()
+    }
+
+    /// What a case remembers after it was ticked.
+    pub(super) fn memory_at_end(&self, case: &Case) -> Vec<bool> {
+        let is_memory = |atom: &Atom| matches!(atom, Atom::Memory(_));
+        let now = self.memory_at_start(case);
+        let atoms = self.atoms.iter().zip(&case.reached).zip(now);
+        atoms.map(|((atom, reached), now)| now || (is_memory(atom) && *reached)).collect()
     }
 
     /// The truths of a case in words, those that hold; `otherwise` where none does.
@@ -154,7 +191,7 @@ impl<'a> Cases<'a> {
     pub(super) fn check(&self, ctx: &CheckContext<'_>) -> Vec<Fault> {
         let mut faults = Vec::new();
         let at = ctx.human.to_string();
-        self.dead(ctx, &mut faults);
+        self.dead(ctx.rules.iter().any(is_endless), &|node| place(ctx, node), &mut faults);
         let foreign = has_foreign(self.tree);
         let acts = |case: &Case, tick: usize| case.acts.get(tick).cloned().unwrap_or_default();
         if let Some((case, tick)) = self.simplest(|case, tick| acts(case, tick).len() > 1) {
@@ -199,10 +236,9 @@ impl<'a> Cases<'a> {
     }
 
     /// The topmost nodes that no case ever comes to.
-    fn dead(&self, ctx: &CheckContext<'_>, faults: &mut Vec<Fault>) {
+    pub(super) fn dead(&self, endless: bool, place: &dyn Fn(&Node) -> String, faults: &mut Vec<Fault>) {
         let nodes = &self.tree.nodes;
         let seen = |node: usize| self.visited.get(node).copied().unwrap_or(true);
-        let endless = ctx.rules.iter().any(is_endless);
         for (index, node) in nodes.iter().enumerate() {
             let Some(parent) = node.parent else { continue };
             // A tree that is used twice is dead only where every use is.
@@ -225,7 +261,7 @@ impl<'a> Cases<'a> {
                 ""
             };
             let message = format!("`{}` can never run: {why}{hint}", node.name);
-            faults.push(Fault::new(FaultCode::BDead, place(ctx, node), message));
+            faults.push(Fault::new(FaultCode::BDead, place(node), message));
         }
     }
 

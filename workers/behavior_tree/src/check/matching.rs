@@ -142,7 +142,7 @@ fn holds(cases: &Cases<'_>, trigger: &Trigger, truth: &[bool]) -> Option<bool> {
         (Atom::World(Trigger::RobotMoving), Trigger::RobotMoving | Trigger::RobotStopped) => true,
         (Atom::World(found), wanted) => same(found, wanted),
         (Atom::Timer(_, found), Trigger::AfterSecs(wanted)) => (found - wanted).abs() < SAME,
-        (Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere, _) => false,
+        (Atom::Timer(..) | Atom::Memory(_) | Atom::GoalHere | Atom::Answer(_), _) => false,
     })?;
     let holds = truth.get(at).copied().unwrap_or(false);
     Some(if *trigger == Trigger::RobotStopped { !holds } else { holds })

@@ -1,11 +1,14 @@
 //! Checks of a tree without a simulator: form, every case of its conditions, and what was asked.
 
+mod analysis;
 mod atoms;
 mod case_world;
 mod cases;
 mod form;
 mod listen;
 mod matching;
+
+pub use analysis::{Analysis, CheckReport, Cover, analyze, check_report};
 
 use std::collections::BTreeMap;
 

@@ -124,6 +124,27 @@ pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
         .find(|sheet| sheet.is_called(tag))
 }
 
+/// Motions that are the same by other names: ours or the fork's, then that of HuNavSim.
+const ALIASES: &[(&str, &str)] = &[
+    ("LookAtRobot", "SurprisedNav"),
+    ("ApproachRobot", "CuriousNav"),
+    ("RunAwayFromRobot", "ScaredNav"),
+    ("BlockRobot", "ThreateningNav"),
+];
+
+/// The name a library has for a node that it does not know by this tag.
+pub(crate) fn alias(tag: &str, library: Library) -> Option<&'static str> {
+    if is_known_to(tag, library) {
+        return None;
+    }
+    let other = |(ours, theirs): &(&'static str, &'static str)| match tag {
+        _ if tag == *ours => Some(*theirs),
+        _ if tag == *theirs => Some(*ours),
+        _ => None,
+    };
+    ALIASES.iter().filter_map(other).find(|other| is_known_to(other, library))
+}
+
 /// Whether a simulator with this library knows the tag. We know all of the fork, which dropped the four
 /// reactions of HuNavSim 1.x.
 #[must_use]

@@ -134,17 +134,17 @@ fn social<M: Math>(me: &Person, index: usize, people: &[Person], params: &Params
     let mut sum = Vector2::zeros();
     for (place, other) in people.iter().enumerate() {
         if place != index {
-            sum += known(pair::<M>(me, other, params));
+            let way = other.position - me.position;
+            sum += known(pair::<M>(&way, &(me.velocity - other.velocity), params));
         }
     }
     sum
 }
 
-/// The social force of one other person.
-pub(crate) fn pair<M: Math>(me: &Person, other: &Person, params: &Params) -> Vector2<f64> {
-    let way = other.position - me.position;
-    let direction = unit(&way);
-    let interaction = (me.velocity - other.velocity) * params.lambda + direction;
+/// The social force of one other person who is `way` away and comes nearer at `closing`.
+pub(crate) fn pair<M: Math>(way: &Vector2<f64>, closing: &Vector2<f64>, params: &Params) -> Vector2<f64> {
+    let direction = unit(way);
+    let interaction = closing * params.lambda + direction;
     let strength = norm(&interaction);
     let along = Vector2::new(interaction.x / strength, interaction.y / strength);
     let range = params.gamma_m * strength;
@@ -152,7 +152,7 @@ pub(crate) fn pair<M: Math>(me: &Person, other: &Person, params: &Params) -> Vec
     if params.epsilon > 0.0 {
         theta = wrap(theta + params.epsilon * range);
     }
-    let distance = norm(&way);
+    let distance = norm(way);
     let slow_width = params.n_prime * range * theta;
     let turn_width = params.n * range * theta;
     let slow = -M::exp(-distance / range - slow_width * slow_width);

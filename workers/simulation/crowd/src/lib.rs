@@ -14,6 +14,7 @@
 //! *Never here:* a wall map, a robot, a scenario word, rigid-body contacts, a clock, a random number.
 
 pub mod cross;
+pub mod fast;
 pub mod forces;
 mod group;
 pub mod integrate;

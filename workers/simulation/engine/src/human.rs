@@ -63,6 +63,8 @@ pub(crate) struct Human {
     pub(crate) action: Action,
     pub(crate) gesture: Gesture,
     pub(crate) errand: Errand,
+    /// Where it was at tick 0.
+    pub(crate) home: Point,
     /// Where it stands while it stands.
     pub(crate) anchor: Option<Point>,
     /// Sidestep that is being made on the way, m to the left.

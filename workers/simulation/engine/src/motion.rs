@@ -31,6 +31,11 @@ const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
 const ASIDE_M: f64 = 1.0;
 
+/// Face to face with a robot that stands, somebody on its way lets it through after so long, s.
+const PATIENCE_S: f64 = 3.0;
+/// The same for somebody whose place it is: the robot has asked twice by then, and rules had their chance.
+const STAYING_PATIENCE_S: f64 = 12.0;
+
 /// What a human wants this tick.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Want {
@@ -73,7 +78,7 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
         Action::Navigate => navigate(human, scene, pace),
         Action::StandStill => match scene.robot {
             // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
-            Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s) => {
+            Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s, PATIENCE_S) => {
                 give_way(human, scene)
             }
             Some(_) | None => Want::STAND,
@@ -93,11 +98,10 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
 
 fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     if human.stays() {
-        // Members of a standing group look at its middle.
-        return Want::STAND;
+        return stay(human, scene);
     }
     if let Some(robot) = scene.robot
-        && jammed(human, robot, scene.now_s)
+        && jammed(human, robot, scene.now_s, PATIENCE_S)
     {
         return give_way(human, scene);
     }
@@ -121,9 +125,23 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     Want::go(round(human, scene, &back).unwrap_or(base), speed)
 }
 
+/// Stands at its place; lets a robot through that cannot get past it, and comes back.
+fn stay(human: &mut Human, scene: &Scene<'_>) -> Want {
+    // Members of a standing group look at its middle, and the robot goes round them.
+    let Some(robot) = scene.robot.filter(|_| !human.standing) else { return Want::STAND };
+    if jammed(human, robot, scene.now_s, STAYING_PATIENCE_S) {
+        return give_way(human, scene);
+    }
+    let back = (human.home - human.at).norm();
+    if back > if human.anchor.is_some() { 0.3 } else { 0.1 } {
+        return Want::go(human.home, (2.0 * back + 0.1).min(human.speed_mps));
+    }
+    Want::STAND
+}
+
 /// Whether it and the robot stand face to face, or it has ended up in the line of a robot that stands because of
-/// it: after 3 s of that it lets the robot through for 8 s, as people do.
-fn jammed(human: &mut Human, robot: &Robot, now_s: f64) -> bool {
+/// it: after so long of that it lets the robot through for 8 s, as people do.
+fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool {
     if now_s < human.yields_until_s {
         return true;
     }
@@ -133,7 +151,7 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64) -> bool {
     let facing = stands && (in_line || way.dot(&human.travel()) > 0.5 * way.norm());
     human.jammed_s =
         if facing && human.velocity.norm() < 0.15 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
-    if human.jammed_s > 3.0 {
+    if human.jammed_s > patience_s {
         human.jammed_s = 0.0;
         human.yields_until_s = now_s + 8.0;
         human.errand.spot = None;

@@ -61,6 +61,7 @@ pub(crate) fn place(
     for human in humans {
         human.s = human.route.project_within(&human.at, 0.0, 2.0).0;
         human.trail = Polyline::new(&[human.at]);
+        human.home = human.at;
     }
 }
 

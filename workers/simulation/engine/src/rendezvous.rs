@@ -1,9 +1,9 @@
 //! The rendezvous controller: humans and robot come to their encounter at about the same time.
 //!
 //! Each tick it predicts when the robot will be at the encounter node, and chooses the human's start
-//! and speed so that both arrive together. A human who has not started and cannot be seen may wait as
-//! long as needed; one who walks is only made slower or faster within 0.6 to 1.8 m/s, and is held (at
-//! most 10 s in all) only where the robot cannot see it: nobody freezes in the robot's view.
+//! and speed so that both arrive together. A human who has not started may wait as long as needed while the
+//! robot is far or cannot see it; one who walks is only made slower or faster within 0.6 to 1.8 m/s, and is
+//! held (at most 10 s in all) only where the robot cannot see it: nobody freezes in the robot's view.
 
 use socrates_model::{Point, Relation};
 
@@ -18,6 +18,8 @@ const FASTEST_MPS: f64 = 1.8;
 const HOLD_MAX_S: f64 = 10.0;
 /// Nearer than this a human in line of sight is in the robot's view, m.
 const VIEW_M: f64 = 9.0;
+/// Whoever has not started sets off when the robot sees it from nearer than this, m: it would stand in its way.
+const SET_OFF_M: f64 = 2.5;
 /// Nobody starts before this, s: the first moments show where everybody is.
 const FIRST_START_S: f64 = 0.5;
 /// Pause between an opened door and the first leaver, s.
@@ -89,11 +91,12 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let fastest = if human.relation == Relation::Ahead { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     let due_s = due_s(human.relation, robot.eta_s(meeting.robot_s));
     let needed = left / due_s.max(0.05);
-    let in_view = moment.sight && (human.at - robot.at()).norm() < VIEW_M;
+    let apart = (human.at - robot.at()).norm();
+    let in_view = moment.sight && apart < VIEW_M;
     if !human.started {
-        // Early: wait where the robot cannot see it, else stroll. Late or just right: go.
+        // Early: somebody who stands there, and sets off in time. Late or just right: go.
         let early = needed < 0.97 * human.speed_mps;
-        if early && !in_view {
+        if early && !(moment.sight && apart < SET_OFF_M) {
             return hold;
         }
     } else if needed < 0.9 * slowest && !in_view && timing.held_s < HOLD_MAX_S {

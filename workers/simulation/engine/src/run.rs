@@ -262,7 +262,7 @@ impl Engine {
         if let Some(robot) = &mut self.robot {
             let end = robot.route.end().unwrap_or_else(|| robot.at());
             let left = (end - robot.at()).norm();
-            let full = self.humans.iter().any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.1);
+            let full = self.humans.iter().any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
             robot.at_full_goal_s =
                 if full && left < 1.4 && robot.velocity.norm() < 0.05 { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
             let near = left < 0.35 && robot.s > robot.route.length_m() - 1.0;

@@ -209,6 +209,7 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         tree,
         state,
         at: route.point(0.0),
+        home: route.point(0.0),
         route,
         nodes: marks,
         next_node: 0,

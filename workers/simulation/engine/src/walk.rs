@@ -18,6 +18,8 @@ const V_MAX: f64 = 1.95;
 const TURN_STANDING: f64 = std::f64::consts::PI;
 /// Turning rate of the heading of somebody who walks, rad/s.
 const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
+/// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
+const DOORWAY_M: f64 = 0.22;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
@@ -72,7 +74,14 @@ impl<'a> Walker<'a> {
             && (target - human.at).norm() < 1.3
             && floor.straight(&human.at, target, human.radius_m);
         let walls = if meant { Vec::new() } else { floor.felt(&human.at) };
-        let force = forces_on(0, &self.felt, &walls, self.params).total();
+        let mut forces = forces_on(0, &self.felt, &walls, self.params);
+        // Walls beside a free way push aside, not back: their sum over both jambs would bar a narrow doorway.
+        let way = target - human.at;
+        let back = forces.obstacle.dot(&way) / way.norm_squared().max(1e-9);
+        if back < 0.0 && floor.straight(&human.at, target, DOORWAY_M) {
+            forces.obstacle -= way * back;
+        }
+        let force = forces.total();
         let size = force.norm();
         if size > A_MAX { force * (A_MAX / size) } else { force }
     }

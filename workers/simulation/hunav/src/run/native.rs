@@ -1,0 +1,395 @@
+//! Motion as we do it: ways round walls, rates per second, nobody through anybody.
+
+use std::f64::consts::{PI, TAU};
+
+use socrates_crowd::{Goal, Person, forces_on};
+use socrates_engine::{Body, Touch, resolve};
+use socrates_model::geometry::wrap_angle;
+use socrates_model::{AgentId, Point, Polyline, Vector};
+
+use super::agent::Agent;
+use super::scene::{Deed, Scene, Target};
+
+/// Largest acceleration of a person, m/s².
+const A_MAX: f64 = 3.0;
+/// Nobody is faster, m/s.
+const V_MAX: f64 = 1.95;
+/// Turning rate of somebody who stands, rad/s.
+const TURN_STANDING: f64 = PI;
+/// Turning rate of somebody who walks, rad/s.
+const TURN_WALKING: f64 = TAU;
+/// Others farther away are not felt, m.
+const FEEL_M: f64 = 5.0;
+/// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
+const KEEP: (f64, f64) = (12.0, 7.0);
+/// Length of a planned way that a walker looks ahead, m.
+const LOOK_AHEAD_M: f64 = 0.7;
+/// Gap that nobody goes below on purpose: to people, to the robot, m.
+const GAPS_M: (f64, f64) = (0.06, 0.18);
+/// Distance from the robot's line that lets it through, m.
+const ASIDE_M: f64 = 1.0;
+/// How far somebody scared looks for a better place, m.
+const FLEE_M: f64 = 2.5;
+/// A spot once chosen is kept for so long, s.
+const CHOSEN_S: f64 = 1.0;
+
+/// What somebody wants this tick.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Want {
+    /// Where to; `None` stands.
+    pub(crate) target: Option<Point>,
+    pub(crate) speed_mps: f64,
+    /// What it looks at while it stands.
+    face: Option<Point>,
+    /// Whether it is near the robot on purpose, so that the robot does not push it away.
+    drawn: bool,
+}
+
+impl Want {
+    const STAND: Self = Self { target: None, speed_mps: 0.0, face: None, drawn: false };
+
+    fn looking(at: Point) -> Self {
+        Self { face: Some(at), ..Self::STAND }
+    }
+
+    const fn going(to: Point, speed_mps: f64) -> Self {
+        Self { target: Some(to), speed_mps, face: None, drawn: false }
+    }
+}
+
+/// Moves everybody and the robot by one step; the deeds are those of this tick, in list order.
+pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
+    let wants: Vec<Want> = deeds.iter().enumerate().map(|(me, deed)| want(scene, me, *deed)).collect();
+    let velocities: Vec<Vector> = wants.iter().enumerate().map(|(me, want)| steered(scene, me, want)).collect();
+    let people: Vec<(Point, f64)> =
+        scene.agents.iter().filter(|agent| agent.present).map(|agent| (agent.at, agent.radius_m)).collect();
+    let (now_s, dt) = (scene.now_s, scene.dt);
+    let mut bodies = Vec::with_capacity(scene.agents.len() + 1);
+    if let Some(robot) = &mut scene.robot {
+        if robot.step(now_s, dt, &people) {
+            scene.events.push(socrates_model::EventKind::RobotArrived);
+        }
+        bodies.push(Body {
+            agent: AgentId::Robot,
+            at: robot.at(),
+            velocity: robot.velocity,
+            radius_m: robot.spec.radius_m,
+            // A robot is not pushed about by people; it waits for them.
+            yields: 0.02,
+        });
+    }
+    for ((agent, velocity), want) in scene.agents.iter().zip(&velocities).zip(&wants) {
+        if agent.present {
+            bodies.push(Body {
+                agent: agent.agent(),
+                at: agent.at + velocity * dt,
+                velocity: *velocity,
+                radius_m: agent.radius_m,
+                yields: if want.target.is_some() { 1.0 } else { 0.3 },
+            });
+        }
+    }
+    let touches = resolve(&mut bodies, &scene.floor);
+    let mut resolved = bodies.into_iter();
+    if let Some(robot) = &mut scene.robot
+        && let Some(body) = resolved.next()
+    {
+        (robot.pose.x, robot.pose.y) = (body.at.x, body.at.y);
+        robot.velocity = body.velocity;
+    }
+    for (agent, want) in scene.agents.iter_mut().zip(&wants) {
+        if agent.present
+            && let Some(body) = resolved.next()
+        {
+            settle(agent, want, &body, dt);
+        }
+    }
+    touches
+}
+
+/// What a deed means here.
+fn want(scene: &mut Scene, me: usize, deed: Deed) -> Want {
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let (at, speed_mps) = (agent.at, agent.speed_mps());
+    let keep_off =
+        |scene: &Scene, target| scene.radius_m(target) + scene.agents.get(me).map_or(0.0, |a| a.radius_m) + 0.2;
+    match deed {
+        Deed::Walk => walk(scene, me),
+        Deed::Stand => Want::STAND,
+        Deed::Look(target) => scene.place(target).map_or(Want::STAND, Want::looking),
+        Deed::GoTo(to) => go(scene, me, &to, speed_mps),
+        Deed::Approach { target, stop_m, speed_mps } => {
+            let Some(to) = scene.place(target) else { return Want::STAND };
+            let left = (to - at).norm() - stop_m.max(keep_off(scene, target));
+            if left <= 0.05 {
+                return Want::looking(to);
+            }
+            let speed = (1.5 * left + 0.1).min(speed_mps);
+            Want { face: Some(to), drawn: target == Target::Robot, ..go(scene, me, &to, speed) }
+        }
+        Deed::Follow { target, gap_m, speed_mps } => {
+            let Some(to) = scene.place(target) else { return Want::STAND };
+            let left = (to - at).norm() - gap_m.max(keep_off(scene, target));
+            let speed = (scene.velocity(target).norm() + 0.8 * left).min(speed_mps);
+            if left <= 0.0 || speed < 0.08 {
+                return Want::looking(to);
+            }
+            Want { face: Some(to), drawn: target == Target::Robot, ..go(scene, me, &to, speed) }
+        }
+        Deed::Flee { speed_mps, .. } => flee(scene, me, speed_mps),
+        Deed::GiveWay => give_way(scene, me),
+        Deed::Block { target, ahead_m } => block(scene, me, target, ahead_m),
+    }
+}
+
+fn walk(scene: &mut Scene, me: usize) -> Want {
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let Some(goal) = agent.goals.front().map(|goal| goal.at) else { return Want::STAND };
+    let left = (goal - agent.at).norm();
+    let last = agent.goals.len() == 1;
+    if last && agent.at_goal() {
+        return Want::STAND;
+    }
+    let full = agent.speed_mps();
+    let speed = if last && !agent.cyclic { full.min(0.25 + libm::sqrt(2.0 * left)) } else { full };
+    go(scene, me, &goal, speed)
+}
+
+/// To a place, round walls where the straight line meets them.
+fn go(scene: &mut Scene, me: usize, to: &Point, speed_mps: f64) -> Want {
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let (at, radius_m) = (agent.at, agent.radius_m);
+    if scene.floor.straight(&at, to, radius_m.min(0.2)) {
+        if let Some(agent) = scene.agents.get_mut(me) {
+            agent.errand.way = None;
+        }
+        return Want::going(*to, speed_mps);
+    }
+    let fits = agent.errand.way.as_ref().is_some_and(|(way, gone)| {
+        way.end().is_some_and(|end| (end - to).norm() < 0.8) && way.project_within(&at, *gone, *gone + 1.5).1 < 1.0
+    });
+    let due = agent.errand.way.is_none() || scene.now_s - agent.errand.planned_s > 0.5;
+    if !fits && due {
+        // The berth shrinks where the body itself would not fit: the map is coarser than people are careful.
+        let way = [radius_m + 0.05, radius_m, 0.7 * radius_m]
+            .into_iter()
+            .find_map(|radius_m| scene.floor.way(&at, to, radius_m))
+            .map(|way: Polyline| (way, 0.0));
+        let now_s = scene.now_s;
+        if let Some(agent) = scene.agents.get_mut(me) {
+            agent.errand.way = way;
+            agent.errand.planned_s = now_s;
+        }
+    }
+    let next = scene.agents.get_mut(me).and_then(|agent| {
+        let (way, gone) = agent.errand.way.as_mut()?;
+        *gone = way.project_within(&at, *gone, *gone + 1.5).0;
+        Some(way.point(*gone + LOOK_AHEAD_M))
+    });
+    // Without any way it stands: a goal behind a wall is not walked through.
+    next.map_or(Want::STAND, |next| Want::going(next, speed_mps))
+}
+
+/// Spots around an agent where it fits and that it can reach straight, nearest first.
+fn spots(scene: &Scene, agent: &Agent, reach_m: f64) -> Vec<Point> {
+    let mut found = Vec::new();
+    let rings = 8_u32;
+    for ring in 1..=rings {
+        for turn in 0..16_u32 {
+            let (sin, cos) = libm::sincos(f64::from(turn) / 16.0 * TAU);
+            let spot = agent.at + Vector::new(cos, sin) * (reach_m * f64::from(ring) / f64::from(rings));
+            let crowded = scene.agents.iter().any(|other| {
+                other.present
+                    && other.human != agent.human
+                    && (other.at - spot).norm() < other.radius_m + agent.radius_m + 0.05
+            });
+            if !crowded
+                && scene.floor.clearance_m(&spot) > agent.radius_m + 0.02
+                && scene.floor.straight(&agent.at, &spot, 0.8 * agent.radius_m)
+            {
+                found.push(spot);
+            }
+        }
+    }
+    found
+}
+
+/// Keeps a chosen spot for a while, then asks `choose` again.
+fn chosen(scene: &mut Scene, me: usize, choose: impl Fn(&Scene, &Agent) -> Point) -> Point {
+    let Some(agent) = scene.agents.get(me) else { return Point::origin() };
+    if let Some(spot) = agent.errand.spot
+        && scene.now_s - agent.errand.chosen_s < CHOSEN_S
+    {
+        return spot;
+    }
+    let (spot, now_s) = (choose(scene, agent), scene.now_s);
+    if let Some(agent) = scene.agents.get_mut(me) {
+        agent.errand.spot = Some(spot);
+        agent.errand.chosen_s = now_s;
+    }
+    spot
+}
+
+fn flee(scene: &mut Scene, me: usize, speed_mps: f64) -> Want {
+    let Some(robot) = scene.place(Target::Robot) else { return Want::STAND };
+    let spot = chosen(scene, me, |scene, agent| {
+        let farthest = |best: Point, spot: Point| {
+            if (spot - robot).norm() > (best - robot).norm() + 0.05 { spot } else { best }
+        };
+        spots(scene, agent, FLEE_M).into_iter().fold(agent.at, farthest)
+    });
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    if (spot - agent.at).norm() < 0.1 { Want::looking(robot) } else { Want::going(spot, speed_mps) }
+}
+
+/// Distance of a point from the line that the robot drives along.
+fn off_line(scene: &Scene, point: &Point) -> f64 {
+    let Some(robot) = &scene.robot else { return f64::INFINITY };
+    let from = robot.at();
+    let ahead = robot.goal().map_or_else(|| robot.heading(), |goal| goal - from);
+    let ahead = if ahead.norm() > 0.1 { ahead / ahead.norm() } else { robot.heading() };
+    let way = point - from;
+    // Behind the robot is beside its line.
+    if way.dot(&ahead) < -0.3 { way.norm() } else { way.perp(&ahead).abs() }
+}
+
+fn give_way(scene: &mut Scene, me: usize) -> Want {
+    let Some(robot) = scene.place(Target::Robot) else { return Want::STAND };
+    let spot = chosen(scene, me, |scene, agent| {
+        if off_line(scene, &agent.at) >= ASIDE_M {
+            return agent.at;
+        }
+        let all = spots(scene, agent, 3.0);
+        // The nearest that is far enough off the line, else the farthest off.
+        all.iter().copied().find(|spot| off_line(scene, spot) >= ASIDE_M + 0.05).unwrap_or_else(|| {
+            all.into_iter().fold(agent.at, |best, spot| {
+                if off_line(scene, &spot) > off_line(scene, &best) + 0.05 { spot } else { best }
+            })
+        })
+    });
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let left = (spot - agent.at).norm();
+    if left < 0.08 {
+        return Want::looking(robot);
+    }
+    Want { face: Some(robot), ..Want::going(spot, (2.0 * left + 0.1).min(agent.max_vel_mps.max(0.9))) }
+}
+
+fn block(scene: &mut Scene, me: usize, target: Target, ahead_m: f64) -> Want {
+    let Some(to) = scene.place(target) else { return Want::STAND };
+    let (sin, cos) = libm::sincos(scene.yaw(target));
+    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let least = scene.radius_m(target) + agent.radius_m + 0.2;
+    let spot = to + Vector::new(cos, sin) * ahead_m.max(least);
+    let left = (spot - agent.at).norm();
+    if left < 0.12 || scene.floor.clearance_m(&spot) < agent.radius_m {
+        return Want::looking(to);
+    }
+    let speed = (2.0 * left + 0.1).min(agent.max_vel_mps.clamp(0.5, scene.rules.threat.speed_mps));
+    Want { face: Some(to), drawn: target == Target::Robot, ..go(scene, me, &spot, speed) }
+}
+
+/// Velocity of this tick before contacts.
+fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
+    let dt = scene.dt;
+    let wished = match want.target {
+        Some(target) if want.speed_mps > 0.0 => {
+            let force = pull(scene, me, want, &target);
+            let Some(agent) = scene.agents.get_mut(me) else { return Vector::zeros() };
+            agent.errand.anchor = None;
+            agent.velocity + force * dt
+        }
+        Some(_) | None => match scene.agents.get_mut(me) {
+            Some(agent) => stand(agent, dt),
+            None => return Vector::zeros(),
+        },
+    };
+    let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
+    let mut velocity = wished;
+    let most = want.speed_mps.max(agent.velocity.norm() - A_MAX * dt).min(V_MAX);
+    if want.target.is_some() && velocity.norm() > most {
+        velocity *= most / velocity.norm();
+    }
+    let others = scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present);
+    let others = others.map(|(_, other)| (other.at, other.radius_m, GAPS_M.0));
+    let robot =
+        scene.robot.iter().map(|robot| (robot.at(), robot.spec.radius_m, if want.drawn { GAPS_M.0 } else { GAPS_M.1 }));
+    for (at, radius_m, gap_m) in others.chain(robot) {
+        let way = at - agent.at;
+        let distance = way.norm();
+        let gap = distance - agent.radius_m - radius_m;
+        if distance > 1e-6 && gap < 0.8 {
+            let toward = way / distance;
+            // A person stops before touching; forces alone would let shoulders meet.
+            let excess = velocity.dot(&toward) - (2.5 * (gap - gap_m)).max(0.0);
+            if excess > 0.0 {
+                velocity -= toward * excess;
+            }
+        }
+    }
+    velocity
+}
+
+fn stand(agent: &mut Agent, dt: f64) -> Vector {
+    let Some(anchor) = agent.errand.anchor else {
+        let speed = agent.velocity.norm();
+        if speed < 0.03 {
+            agent.errand.anchor = Some(agent.at);
+            return Vector::zeros();
+        }
+        return agent.velocity * ((speed - A_MAX * dt).max(0.0) / speed);
+    };
+    if (anchor - agent.at).norm() > 0.4 {
+        // Pushed that far, it has a new place.
+        agent.errand.anchor = Some(agent.at);
+        return Vector::zeros();
+    }
+    let pull = limited(&((anchor - agent.at) * KEEP.0 - agent.velocity * KEEP.1));
+    let velocity = agent.velocity + pull * dt;
+    if velocity.norm() < 2e-3 && (anchor - agent.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
+}
+
+fn limited(force: &Vector) -> Vector {
+    let size = force.norm();
+    if size > A_MAX { force * (A_MAX / size) } else { *force }
+}
+
+fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+    let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
+    let goal = Some(Goal { at: *target, radius_m: 0.02 });
+    let mut people = vec![Person { goal, speed_mps: want.speed_mps, ..agent.person() }];
+    for (_, other) in scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present) {
+        if (other.at - agent.at).norm() < FEEL_M && scene.floor.sees(&agent.at, &other.at) {
+            people.push(other.person());
+        }
+    }
+    if let Some(robot) = scene.robot.as_ref().filter(|_| !want.drawn)
+        && (robot.at() - agent.at).norm() < FEEL_M
+        && scene.floor.sees(&agent.at, &robot.at())
+    {
+        people.push(Person {
+            velocity: robot.velocity,
+            radius_m: robot.spec.radius_m,
+            ..Person::standing(0, robot.at())
+        });
+    }
+    limited(&forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces).total())
+}
+
+/// Takes over where contacts left it, and turns.
+fn settle(agent: &mut Agent, want: &Want, body: &Body, dt: f64) {
+    agent.at = body.at;
+    agent.velocity = body.velocity;
+    let walks = body.velocity.norm() > 0.15 && want.target.is_some();
+    let (goal, rate) = if walks {
+        (Some(libm::atan2(body.velocity.y, body.velocity.x)), TURN_WALKING)
+    } else {
+        (want.face.map(|face| libm::atan2(face.y - agent.at.y, face.x - agent.at.x)), TURN_STANDING)
+    };
+    let before = agent.yaw;
+    if let Some(goal) = goal {
+        let turn = wrap_angle(goal - agent.yaw).clamp(-rate * dt, rate * dt);
+        agent.yaw = wrap_angle(agent.yaw + turn);
+    }
+    agent.omega = wrap_angle(agent.yaw - before) / dt;
+}
