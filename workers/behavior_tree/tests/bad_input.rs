@@ -1,6 +1,5 @@
 //! Bad documents, one kind after the other: each is refused with line, column, node, value and what is allowed.
 #![cfg(test)]
-#![expect(clippy::panic, reason = "test code: a wrong answer should stop the test")]
 
 use socrates_bt::{Options, Tree, decode};
 use socrates_model::{Fault, FaultCode};

@@ -1,11 +1,6 @@
 //! Every tree that the other simulators ship: it loads and runs in its library, or is refused for the known reason.
 #![cfg(test)]
-#![expect(
-    clippy::unwrap_used,
-    clippy::panic,
-    clippy::print_stdout,
-    reason = "test code: a wrong file should stop the test, and a skipped test says why"
-)]
+#![expect(clippy::print_stdout, reason = "a skipped test says why")]
 
 mod common;
 
