@@ -10,12 +10,14 @@ use crate::parse::{Document, GUARDS, key_in_braces};
 use crate::script::Script;
 use crate::sheet::{Kind, Library, PortKind, Role};
 use crate::tree::{Format, Guards, Node, Step, Tree};
-use crate::xml::Element;
+use crate::xml::{Element, short_text};
 
 /// Most nodes of an unfolded tree.
 pub(crate) const MAX_NODES: usize = 4096;
 /// Deepest nesting of subtrees.
 const MAX_SUBTREES: usize = 16;
+/// Deepest node of an unfolded tree.
+const MAX_UNFOLDED_DEPTH: usize = 256;
 
 /// How a subtree sees names that are not handed over one by one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +38,7 @@ struct Scope {
 struct Builder<'a> {
     document: &'a Document,
     nodes: Vec<Node>,
+    depths: Vec<usize>,
     board: Vec<Option<Value>>,
     scopes: Vec<Scope>,
     leaves: u16,
@@ -47,6 +50,7 @@ pub(crate) fn build(document: Document) -> Result<Tree, Vec<Fault>> {
     let mut builder = Builder {
         document: &document,
         nodes: Vec::new(),
+        depths: Vec::new(),
         board: Vec::new(),
         scopes: vec![Scope { known: BTreeMap::new(), above: None, sight: Sight::Own }],
         leaves: 0,
@@ -155,6 +159,14 @@ impl Builder<'_> {
             }
             return None;
         }
+        let depth = parent.and_then(|parent| self.depths.get(parent)).map_or(0, |above| above + 1);
+        if depth > MAX_UNFOLDED_DEPTH {
+            if self.faults.is_empty() {
+                let message = format!("the subtrees unfold deeper than {MAX_UNFOLDED_DEPTH} nodes");
+                self.faults.push(Fault::new(FaultCode::BMain, it.at(), message));
+            }
+            return None;
+        }
         let sheet = self.document.sheet(it)?;
         let is_subtree = matches!(it.tag.as_str(), "SubTree" | "SubTreePlus");
         // A subtree is called by its tree; version 4 lets a name go before that.
@@ -182,6 +194,7 @@ impl Builder<'_> {
             0
         };
         let index = self.nodes.len();
+        self.depths.push(depth);
         self.nodes.push(Node {
             sheet,
             tag: it.tag.clone(),
@@ -210,7 +223,11 @@ impl Builder<'_> {
     fn subtree(&mut self, it: &Element, scope: usize, index: usize, open: &mut Vec<String>) -> Option<usize> {
         let id = it.attr("ID")?.to_owned();
         if open.contains(&id) || open.len() >= MAX_SUBTREES {
-            let message = format!("the tree `{id}` contains itself, by way of `{}`", open.join("` → `"));
+            let message = format!(
+                "the tree `{}` contains itself, by way of {}",
+                short_text(&id),
+                open.iter().map(|id| format!("`{}`", short_text(id))).collect::<Vec<_>>().join(" → ")
+            );
             self.faults.push(Fault::new(FaultCode::BMain, it.at(), message));
             return None;
         }

@@ -1,13 +1,15 @@
 //! From XML to a checked document: main tree, tags, ports, ranges, numbers of children. Every fault at once.
 
-use socrates_model::{Fault, FaultCode, Gesture};
+use std::collections::BTreeSet;
 
-use crate::blackboard::read_flag;
+use socrates_model::{Fault, FaultCode};
+
 use crate::nodes::{self, FOREIGN_ACTION, FOREIGN_CONDITION};
 use crate::script::Script;
-use crate::sheet::{Kind, Library, NodeSheet, PortKind, PortSheet};
+use crate::sheet::{Kind, Library, NodeSheet, PortSheet};
 use crate::tree::Format;
-use crate::xml::{self, Element};
+use crate::values::wrong;
+use crate::xml::{self, Element, short_text};
 
 /// Path of the include that is always there.
 pub const REGULAR_NAV_PATH: &str = "BTRegularNav.xml";
@@ -31,6 +33,57 @@ pub const REGULAR_NAV: &str = r#"<root main_tree_to_execute="RegularNavTree">
 /// Attributes of version 4 that any node may have.
 pub(crate) const GUARDS: [&str; 8] =
     ["_failureIf", "_successIf", "_skipIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post"];
+
+/// Most faults that are told of a document.
+const MAX_FAULTS: usize = 200;
+/// Most names that a message lists.
+const MAX_LISTED: usize = 24;
+/// Longest name that is compared with others, bytes.
+const MAX_COMPARED: usize = 64;
+
+/// Names in a message, not too many of them.
+fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.into_iter().collect();
+    let mut text = names.iter().take(MAX_LISTED).map(|name| short_text(name)).collect::<Vec<_>>().join(", ");
+    if text.is_empty() {
+        text.push_str("none");
+    }
+    if names.len() > MAX_LISTED {
+        text.push_str(&format!(" and {} more", names.len() - MAX_LISTED));
+    }
+    text
+}
+
+/// `; nearest: NAME` where one of the names is like the one that was written.
+fn nearest<'a>(written: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    if written.len() > MAX_COMPARED {
+        return String::new();
+    }
+    let wanted = written.to_lowercase();
+    let allowed = (written.chars().count() / 2).clamp(1, 6);
+    let distance = |name: &str| strsim::levenshtein(&name.to_lowercase(), &wanted);
+    let found = names.into_iter().take(1000).map(|name| (distance(name), name)).min();
+    found
+        .filter(|(distance, _)| *distance <= allowed)
+        .map_or_else(String::new, |(_, name)| format!("; nearest: {name}"))
+}
+
+/// Path of an included file seen from the document itself: paths are relative to the file that names them.
+fn resolved(file: &str, path: &str) -> String {
+    let folder = file.rfind('/').and_then(|end| file.get(..=end)).unwrap_or("");
+    if folder.is_empty() || path.starts_with('/') {
+        return path.to_owned();
+    }
+    let mut parts: Vec<&str> = Vec::new();
+    for part in folder.split('/').chain(path.split('/')).filter(|part| !part.is_empty() && *part != ".") {
+        match (part, parts.last()) {
+            ("..", Some(last)) if *last != ".." => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    let root = if folder.starts_with('/') { "/" } else { "" };
+    format!("{root}{}", parts.join("/"))
+}
 
 /// Most included files of a document.
 const MAX_INCLUDES: usize = 16;
@@ -124,13 +177,13 @@ impl Document {
             library: options.library,
             foreign,
         };
-        let mut reading = Reading { document, options, faults: Vec::new(), seen: Vec::new() };
+        let mut reading =
+            Reading { document, options, faults: Vec::new(), seen: Vec::new(), open: Vec::new(), ids: BTreeSet::new() };
         reading.file(&root);
         reading.main(&root);
         let trees = std::mem::take(&mut reading.document.trees);
-        let ids: Vec<&str> = trees.iter().map(|tree| tree.id.as_str()).collect();
         for tree in &trees {
-            reading.element(&tree.root, &ids);
+            reading.element(&tree.root);
         }
         let Reading { mut document, faults, .. } = reading;
         document.trees = trees;
@@ -142,18 +195,34 @@ struct Reading<'a> {
     document: Document,
     options: &'a Options<'a>,
     faults: Vec<Fault>,
+    /// Files that were included.
     seen: Vec<String>,
+    /// Files that are being read, the outermost first.
+    open: Vec<String>,
+    /// Ids of the trees found so far.
+    ids: BTreeSet<String>,
 }
 
 impl Reading<'_> {
     fn fault(&mut self, code: FaultCode, it: &Element, message: impl Into<String>) {
+        if self.faults.len() == MAX_FAULTS {
+            let message = format!("there are more faults; only the first {MAX_FAULTS} are told");
+            self.faults.push(Fault::new(code, it.at(), message));
+        }
+        if self.faults.len() > MAX_FAULTS {
+            return;
+        }
         self.faults.push(Fault::new(code, it.at(), message));
     }
 
     /// Includes and trees of one file.
     fn file(&mut self, root: &Element) {
         if root.tag != "root" {
-            self.fault(FaultCode::BXml, root, format!("the outermost element is `{}`; allowed: root", root.tag));
+            self.fault(
+                FaultCode::BXml,
+                root,
+                format!("the outermost element is `{}`; allowed: root", short_text(&root.tag)),
+            );
         }
         for it in &root.children {
             match it.tag.as_str() {
@@ -161,6 +230,7 @@ impl Reading<'_> {
                 "BehaviorTree" => self.tree(it),
                 "TreeNodesModel" => self.declarations(it),
                 tag => {
+                    let tag = short_text(tag);
                     let message =
                         format!("`{tag}` stands outside a tree; allowed: include, BehaviorTree, TreeNodesModel");
                     self.fault(FaultCode::BXml, it, message);
@@ -192,21 +262,46 @@ impl Reading<'_> {
         if it.site.file.is_empty() {
             self.document.includes.push(path.to_owned());
         }
-        if self.seen.iter().any(|seen| seen == path) {
+        let path = resolved(&it.site.file, path);
+        if self.open.contains(&path) {
+            let way = listed(self.open.iter().map(String::as_str));
+            let message = format!("the file `{}` includes itself, by way of {way}", short_text(&path));
+            return self.fault(FaultCode::BXml, it, message);
+        }
+        if self.seen.contains(&path) {
             return;
         }
         if self.seen.len() >= MAX_INCLUDES {
             return self.fault(FaultCode::BXml, it, format!("more than {MAX_INCLUDES} included files"));
         }
-        self.seen.push(path.to_owned());
-        let given = self.options.includes.and_then(|find| find(path));
+        self.seen.push(path.clone());
+        let given = self.options.includes.and_then(|find| find(&path));
         let built_in = || path.ends_with(REGULAR_NAV_PATH).then(|| REGULAR_NAV.to_owned());
         let Some(text) = given.or_else(built_in) else {
-            let message = format!("the included file `{path}` is not there; allowed: {REGULAR_NAV_PATH}");
+            let known = if self.options.includes.is_some() {
+                format!("a path from the folder of the file that names it, or {REGULAR_NAV_PATH}")
+            } else {
+                REGULAR_NAV_PATH.to_owned()
+            };
+            let message = format!("the included file `{}` is not there; allowed: {known}", short_text(&path));
             return self.fault(FaultCode::BXml, it, message);
         };
-        match xml::read(path, &text) {
-            Ok(root) => self.file(&root),
+        match xml::read(&path, &text) {
+            Ok(root) => {
+                let version = root.attr("BTCPP_format").map(str::trim);
+                if version.is_some_and(|version| version.starts_with('4')) != (self.document.format == Format::V4)
+                    && version.is_some()
+                {
+                    let message = format!(
+                        "the included file is of another version than the document, which is {}",
+                        self.document.format.name()
+                    );
+                    self.fault(FaultCode::BXml, &root, message);
+                }
+                self.open.push(path);
+                self.file(&root);
+                self.open.pop();
+            }
             Err(fault) => self.faults.push(fault),
         }
     }
@@ -216,38 +311,47 @@ impl Reading<'_> {
             Some(id) if !id.is_empty() => id.to_owned(),
             Some(_) | None => format!("tree_{}", self.document.trees.len() + 1),
         };
-        if self.document.trees.iter().any(|tree| tree.id == id) {
-            return self.fault(FaultCode::BMain, it, format!("a second tree has the ID `{id}`; allowed: each ID once"));
+        if !self.ids.insert(id.clone()) {
+            let message = format!("a second tree has the ID `{}`; allowed: each ID once", short_text(&id));
+            return self.fault(FaultCode::BMain, it, message);
         }
         match it.children.as_slice() {
             [root] => self.document.trees.push(TreeDef { id, root: root.clone().short() }),
             children => {
-                let message = format!("the tree `{id}` has `{}` children; allowed: exactly 1", children.len());
+                let message =
+                    format!("the tree `{}` has `{}` children; allowed: exactly 1", short_text(&id), children.len());
                 self.fault(FaultCode::BArity, it, message);
             }
         }
     }
 
     fn main(&mut self, root: &Element) {
-        let ids: Vec<String> = self.document.trees.iter().map(|tree| tree.id.clone()).collect();
         let own: Vec<&TreeDef> = self.document.trees.iter().filter(|tree| tree.root.site.file.is_empty()).collect();
-        let listed = if ids.is_empty() { "none".to_owned() } else { ids.join(", ") };
-        self.document.main = match (root.attr("main_tree_to_execute"), own.as_slice()) {
-            (Some(main), _) if ids.iter().any(|id| id == main) => main.to_owned(),
-            (Some(main), _) => {
-                let message = format!("main_tree_to_execute names `{main}`; trees here: {listed}");
-                return self.fault(FaultCode::BMain, root, message);
-            }
+        let main = match (root.attr("main_tree_to_execute"), own.as_slice()) {
+            (Some(main), _) if self.ids.contains(main) => main.to_owned(),
             (None, [only]) => only.id.clone(),
-            (None, _) => {
-                let message = format!("main_tree_to_execute is missing; trees here: {listed}");
+            (named, _) => {
+                let ids = || self.ids.iter().map(String::as_str);
+                let message = match named {
+                    Some(main) => format!(
+                        "main_tree_to_execute names `{}`{}; trees here: {}",
+                        short_text(main),
+                        nearest(main, ids()),
+                        listed(ids())
+                    ),
+                    None => format!("main_tree_to_execute is missing; trees here: {}", listed(ids())),
+                };
                 return self.fault(FaultCode::BMain, root, message);
             }
         };
+        self.document.main = main;
     }
 
     /// One element of a tree and everything below it.
-    fn element(&mut self, it: &Element, ids: &[&str]) {
+    fn element(&mut self, it: &Element) {
+        if self.faults.len() > MAX_FAULTS {
+            return;
+        }
         match self.document.sheet(it) {
             None => self.unknown(it),
             Some(sheet) if self.options.meaning == Meaning::Native && !sheet.is_native() => {
@@ -281,14 +385,14 @@ impl Reading<'_> {
                     self.fault(FaultCode::BArity, it, message);
                 }
                 if matches!(it.tag.as_str(), "SubTree" | "SubTreePlus") {
-                    self.subtree(it, ids);
+                    self.subtree(it);
                 } else if !matches!(sheet.role, crate::sheet::Role::Foreign) {
                     self.ports(it, sheet);
                 }
             }
         }
         for child in &it.children {
-            self.element(child, ids);
+            self.element(child);
         }
     }
 
@@ -298,12 +402,7 @@ impl Reading<'_> {
     }
 
     fn unknown(&mut self, it: &Element) {
-        let nearest = nodes::known_to(self.options.library)
-            .into_iter()
-            .map(|sheet| (strsim::levenshtein(&sheet.tag.to_lowercase(), &it.tag.to_lowercase()), sheet.tag))
-            .min()
-            .filter(|(distance, _)| *distance <= 6)
-            .map_or_else(String::new, |(_, tag)| format!("; nearest: {tag}"));
+        let nearest = nearest(&it.tag, nodes::known_to(self.options.library).iter().map(|sheet| sheet.tag));
         let others: Vec<&str> = Library::ALL
             .into_iter()
             .filter(|library| nodes::is_known_to(&it.tag, *library))
@@ -313,23 +412,26 @@ impl Reading<'_> {
             if others.is_empty() { String::new() } else { format!("; it is a node of {}", others.join(", ")) };
         let message = format!(
             "there is no node `{}` in {}{elsewhere}{nearest}; allowed: {}",
-            it.tag,
+            short_text(&it.tag),
             self.options.library.name(),
             self.tags()
         );
         self.fault(FaultCode::BNode, it, message);
     }
 
-    fn subtree(&mut self, it: &Element, ids: &[&str]) {
+    fn subtree(&mut self, it: &Element) {
         match it.attr("ID") {
             None => self.fault(FaultCode::BPort, it, "a SubTree needs the attribute ID, the name of a tree"),
-            Some(id) if !ids.contains(&id) => {
+            Some(id) if !self.ids.contains(id) => {
                 let hint = if id == "RegularNavTree" {
                     format!("; add <include path='{REGULAR_NAV_PATH}'/>")
                 } else {
                     String::new()
                 };
-                let message = format!("ID=`{id}` names no tree{hint}; trees here: {}", ids.join(", "));
+                let ids = || self.ids.iter().map(String::as_str);
+                let like = nearest(id, ids());
+                let message =
+                    format!("ID=`{}` names no tree{like}{hint}; trees here: {}", short_text(id), listed(ids()));
                 self.fault(FaultCode::BPort, it, message);
             }
             Some(_) => {}
@@ -338,7 +440,11 @@ impl Reading<'_> {
             if GUARDS.contains(&name.as_str()) {
                 self.guard(it, name, value);
             } else if value.contains("??") {
-                self.fault(FaultCode::BPort, it, format!("{name}=`{value}` was left open; write the value"));
+                self.fault(
+                    FaultCode::BPort,
+                    it,
+                    format!("{}=`{}` was left open; write the value", short_text(name), short_text(value)),
+                );
             }
         }
     }
@@ -349,7 +455,7 @@ impl Reading<'_> {
             return self.fault(FaultCode::BPort, it, message);
         }
         if let Err(error) = Script::read(value, &mut |_| 0) {
-            self.fault(FaultCode::BPort, it, format!("{name}=`{value}`: {error}"));
+            self.fault(FaultCode::BPort, it, format!("{name}=`{}`: {error}", short_text(value)));
         }
     }
 
@@ -365,7 +471,8 @@ impl Reading<'_> {
             if GUARDS.contains(&name.as_str()) {
                 self.guard(it, name, value);
             } else if !matches!(name.as_str(), "name" | "_uid" | "_description") && !expected.contains(&name.as_str()) {
-                let message = format!("`{}` has no attribute `{name}`; allowed: {listed}", it.tag);
+                let like = nearest(name, expected.iter().copied());
+                let message = format!("`{}` has no attribute `{}`{like}; allowed: {listed}", it.tag, short_text(name));
                 self.fault(FaultCode::BPort, it, message);
             }
         }
@@ -379,113 +486,12 @@ impl Reading<'_> {
                 None => {}
                 Some(value) => {
                     if let Some((code, what)) = wrong(port.kind, value) {
-                        let message = format!("{name}=`{value}` {what}; allowed: {}", port.kind.allowed());
+                        let message =
+                            format!("{name}=`{}` {what}; allowed: {}", short_text(value), port.kind.allowed());
                         self.fault(code, it, message);
                     }
                 }
             }
         }
-    }
-}
-
-/// What is wrong with the value of a port.
-fn wrong(kind: PortKind, value: &str) -> Option<(FaultCode, &'static str)> {
-    let port = |what| Some((FaultCode::BPort, what));
-    let range = |what| Some((FaultCode::BRange, what));
-    if value.contains("??") {
-        return port("was left open");
-    }
-    if let Some(key) = key_in_braces(value) {
-        return match (kind == PortKind::Own, kind == PortKind::Code) {
-            (true, _) if key == "id" => None,
-            (true, _) => port("is not this human"),
-            (false, true) => port("is not a script"),
-            (false, false) if key.is_empty() => port("names no entry"),
-            (false, false) => None,
-        };
-    }
-    let number: Option<f64> = value.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    match (kind, number) {
-        (PortKind::Own, _) => port("is not this human"),
-        (PortKind::Text | PortKind::Output, _) => None,
-        (PortKind::Agents, _) => {
-            let all_ids = value.split(',').all(|id| id.trim().parse::<u32>().is_ok());
-            if all_ids { None } else { port("is not a list of ids") }
-        }
-        (PortKind::Key, _) if value.trim().is_empty() || value.contains(['{', '}']) => port("names no entry"),
-        (PortKind::Key, _) => None,
-        (PortKind::Code, _) => match Script::read(value, &mut |_| 0) {
-            Ok(_) => None,
-            Err(_) => port("is not a script"),
-        },
-        (PortKind::Flag, _) => {
-            if read_flag(value).is_some() {
-                None
-            } else {
-                port("is neither true nor false")
-            }
-        }
-        (PortKind::Gesture, None) if value.parse::<Gesture>().is_ok() => {
-            Some((FaultCode::BCode, "is a name where a code must stand"))
-        }
-        (_, None) => port("is not a number"),
-        (PortKind::Number, Some(_)) => None,
-        (PortKind::Agent, Some(_)) => whole(value, |number| number >= 0),
-        (PortKind::Distance | PortKind::Span | PortKind::Speed, Some(number)) => {
-            if number >= 0.0 {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Angle, Some(angle)) => {
-            if (0.0..=std::f64::consts::TAU).contains(&angle) {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Share, Some(share)) => {
-            if (0.0..=1.0).contains(&share) {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Meters, Some(m)) => {
-            if (0.3..=15.0).contains(&m) {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Step, Some(s)) => {
-            if s > 0.0 && s <= 1.0 {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Seconds, Some(s)) => {
-            if s > 0.0 && s <= 3600.0 {
-                None
-            } else {
-                range("is out of range")
-            }
-        }
-        (PortKind::Gesture, Some(_)) => {
-            whole(value, |code| u8::try_from(code).is_ok_and(|code| Gesture::from_code(code).is_some()))
-        }
-        (PortKind::Human, Some(_)) => whole(value, |number| number >= 1),
-        (PortKind::Count(least), Some(_)) => whole(value, |number| number >= least),
-    }
-}
-
-/// What is wrong with a whole number.
-fn whole(value: &str, fits: impl Fn(i64) -> bool) -> Option<(FaultCode, &'static str)> {
-    match value.trim().parse::<i64>() {
-        Ok(number) if fits(number) => None,
-        Ok(_) => Some((FaultCode::BRange, "is out of range")),
-        Err(_) => Some((FaultCode::BPort, "is not a whole number")),
     }
 }

@@ -155,7 +155,7 @@ fn tokens(code: &str) -> Result<Vec<(Token, usize)>, ScriptFault> {
             let hex = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X"));
             let number =
                 hex.map_or_else(|| text.parse().ok(), |hex| i64::from_str_radix(hex, 16).ok().map(|n| n as f64));
-            let number = number.ok_or_else(|| ScriptFault::Token { found: text.to_owned(), at })?;
+            let number = number.ok_or_else(|| ScriptFault::Token { found: crate::xml::short_text(text), at })?;
             token = Token::Value(Value::Number(number));
         } else if first.is_alphabetic() || first == '_' {
             length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
@@ -226,7 +226,7 @@ impl TokenReader<'_> {
                     Token::Value(value) => value.to_string(),
                     Token::Sign(sign) => (*sign).to_owned(),
                 };
-                ScriptFault::Token { found, at: *at }
+                ScriptFault::Token { found: crate::xml::short_text(&found), at: *at }
             }
             None => ScriptFault::End,
         }

@@ -1,5 +1,6 @@
 //! XML elements with their places; the only file that knows the XML reader.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use quick_xml::XmlVersion;
@@ -63,30 +64,71 @@ impl Element {
     /// Place and tag, as faults give it.
     pub(crate) fn at(&self) -> String {
         match self.attr("name") {
-            Some(name) => format!("{} {} `{name}`", self.site, self.tag),
-            None => format!("{} {}", self.site, self.tag),
+            Some(name) => format!("{} {} `{}`", self.site, short_text(&self.tag), short_text(name)),
+            None => format!("{} {}", self.site, short_text(&self.tag)),
         }
     }
 }
 
-/// Starts of lines, to turn byte offsets into places.
+/// Turns byte offsets into places. Offsets mostly grow, so that a document is walked once.
 struct Lines<'a> {
     file: &'a str,
-    starts: Vec<usize>,
+    text: &'a str,
+    offset: usize,
+    line: usize,
+    column: usize,
 }
 
 impl<'a> Lines<'a> {
-    fn new(file: &'a str, text: &str) -> Self {
-        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-        Self { file, starts }
+    const fn new(file: &'a str, text: &'a str) -> Self {
+        Self { file, text, offset: 0, line: 1, column: 1 }
     }
 
-    fn site(&self, offset: u64) -> Site {
-        let offset = usize::try_from(offset).unwrap_or(usize::MAX);
-        let line = self.starts.partition_point(|start| *start <= offset).max(1);
-        let start = self.starts.get(line - 1).copied().unwrap_or(0);
-        Site { file: self.file.to_owned(), line, column: offset - start.min(offset) + 1 }
+    fn site(&mut self, offset: u64) -> Site {
+        let offset = usize::try_from(offset).unwrap_or(usize::MAX).min(self.text.len());
+        if offset < self.offset {
+            *self = Self::new(self.file, self.text);
+        }
+        for letter in self.text.get(self.offset..).unwrap_or("").chars() {
+            if self.offset >= offset {
+                break;
+            }
+            self.offset += letter.len_utf8();
+            if letter == '\n' {
+                self.line += 1;
+                self.column = 1;
+            } else {
+                self.column += 1;
+            }
+        }
+        Site { file: self.file.to_owned(), line: self.line, column: self.column }
     }
+}
+
+/// A text for a message: cut where it is long.
+pub(crate) fn short_text(text: &str) -> String {
+    const MOST: usize = 80;
+    if text.chars().nth(MOST).is_none() {
+        return text.to_owned();
+    }
+    text.chars().take(MOST).chain(std::iter::once('…')).collect()
+}
+
+/// The text of a file: UTF-8, with or without a byte order mark.
+///
+/// # Errors
+/// `B-XML` for another encoding, with the line and column of the first byte that is none.
+pub fn decode(bytes: &[u8]) -> Result<&str, Fault> {
+    let at = |line: usize, column: usize| Site { file: String::new(), line, column };
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(broken(&at(1, 1), "the file is in UTF-16; allowed: UTF-8"));
+    }
+    std::str::from_utf8(bytes).map_err(|why| {
+        let good = bytes.get(..why.valid_up_to()).and_then(|good| std::str::from_utf8(good).ok()).unwrap_or("");
+        let site = Lines::new("", good).site(good.len() as u64);
+        let byte = bytes.get(why.valid_up_to()).copied().unwrap_or(0);
+        broken(&site, format!("the byte `0x{byte:02x}` is not UTF-8; save the file in UTF-8"))
+    })
 }
 
 fn broken(site: &Site, message: impl Into<String>) -> Fault {
@@ -95,12 +137,13 @@ fn broken(site: &Site, message: impl Into<String>) -> Fault {
 
 /// Reads a document to its root element. `file` names an include and is empty for the document itself.
 pub(crate) fn read(file: &str, text: &str) -> Result<Element, Fault> {
-    let lines = Lines::new(file, text);
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = Lines::new(file, text);
     if text.len() > MAX_BYTES {
         let message = format!("the document has `{}` bytes; allowed: at most {MAX_BYTES}", text.len());
         return Err(broken(&lines.site(0), message));
     }
-    let mut reader = Reader::from_str(text.strip_prefix('\u{feff}').unwrap_or(text));
+    let mut reader = Reader::from_str(text);
     reader.config_mut().check_comments = false;
     let mut open: Vec<Element> = Vec::new();
     let mut root: Option<Element> = None;
@@ -139,20 +182,23 @@ pub(crate) fn read(file: &str, text: &str) -> Result<Element, Fault> {
             Event::GeneralRef(name) if !is_plain_reference(&name) => {
                 return Err(broken(
                     &site,
-                    format!("the entity `&{};`; allowed: &lt; &gt; &amp; &quot; &apos;", &*name),
+                    format!("the entity `&{};`; allowed: &lt; &gt; &amp; &quot; &apos;", short_text(&name)),
                 ));
             }
-            Event::Text(_)
-            | Event::CData(_)
-            | Event::Comment(_)
-            | Event::Decl(_)
-            | Event::PI(_)
-            | Event::GeneralRef(_) => {}
+            Event::Decl(declaration) => {
+                if let Some(Ok(encoding)) = declaration.encoding()
+                    && !["utf-8", "utf8", "us-ascii", "ascii"].contains(&encoding.to_lowercase().as_str())
+                {
+                    let message = format!("the encoding `{}` is declared; allowed: UTF-8", short_text(&encoding));
+                    return Err(broken(&site, message));
+                }
+            }
+            Event::Text(_) | Event::CData(_) | Event::Comment(_) | Event::PI(_) | Event::GeneralRef(_) => {}
             Event::Eof => break,
         }
     }
     if let Some(element) = open.last() {
-        return Err(broken(&element.site, format!("`<{}>` is never closed", element.tag)));
+        return Err(broken(&element.site, format!("`<{}>` is never closed", short_text(&element.tag))));
     }
     root.ok_or_else(|| broken(&lines.site(0), "there is no element; allowed: one `root`"))
 }
@@ -171,12 +217,20 @@ fn is_plain_reference(name: &str) -> bool {
 
 fn element(start: &BytesStart<'_>, site: Site) -> Result<Element, Fault> {
     let mut attrs: Vec<(String, String)> = Vec::new();
-    for attr in start.attributes() {
+    let mut names: BTreeSet<String> = BTreeSet::new();
+    // The reader would compare every name with every other one.
+    for attr in start.attributes().with_checks(false) {
         let attr = attr.map_err(|error| broken(&site, format!("not well-formed XML: {error}")))?;
+        let name = attr.key.0.to_owned();
         let value = attr
             .normalized_value(XmlVersion::Implicit1_0)
-            .map_err(|error| broken(&site, format!("attribute `{}`: {error}", attr.key.0)))?;
-        attrs.push((attr.key.0.to_owned(), value.into_owned()));
+            .map_err(|error| broken(&site, format!("attribute `{}`: {error}", short_text(&name))))?;
+        if !names.insert(name.clone()) {
+            let message =
+                format!("`{}` has the attribute `{}` twice; allowed: once", start.name().0, short_text(&name));
+            return Err(broken(&site, message));
+        }
+        attrs.push((name, value.into_owned()));
     }
     let tag = start.name().0.to_owned();
     Ok(Element { tag, attrs, children: Vec::new(), site })
@@ -191,6 +245,27 @@ mod tests {
         let fault = read("", "<root>\n  <a>\n</root>").unwrap_err();
         assert_eq!(fault.code, FaultCode::BXml);
         assert!(fault.at.starts_with("3:"), "{fault}");
+    }
+
+    #[test]
+    fn places_count_letters_and_a_byte_order_mark_is_none() {
+        let fault = read("", "\u{feff}<root>\n<a b='äöü'/><c\n").unwrap_err();
+        assert!(fault.at.starts_with("2:13") || fault.at.starts_with("3:1"), "{fault}");
+        assert_eq!(read("", "\u{feff}<root>\n<!-- äöü --><a/></root>").unwrap().children[0].site.column, 13);
+    }
+
+    #[test]
+    fn other_encodings_are_refused_with_their_place() {
+        assert_eq!(decode(b"<a/>").unwrap(), "<a/>");
+        assert!(decode(b"<a>\n\xe4").unwrap_err().at.starts_with("2:1"));
+        assert!(decode(&[0xff, 0xfe, b'<', 0]).unwrap_err().message.contains("UTF-16"));
+        let latin = "<?xml version='1.0' encoding='ISO-8859-1'?><a/>";
+        assert!(read("", latin).unwrap_err().message.contains("ISO-8859-1"));
+    }
+
+    #[test]
+    fn an_attribute_that_stands_twice_is_named() {
+        assert!(read("", "<a b='1' c='2' b='3'/>").unwrap_err().message.contains("attribute `b` twice"));
     }
 
     #[test]

@@ -1,6 +1,5 @@
 //! Leaves that the world ticks in its own meaning, and the libraries they come from.
 #![cfg(test)]
-#![expect(clippy::unwrap_used, reason = "test code: a wrong tree should stop the test")]
 
 mod common;
 

@@ -1,10 +1,6 @@
 //! Tick by tick against recorded runs of BehaviorTree.CPP 3.8 and 4.10.
 #![cfg(test)]
-#![expect(
-    clippy::unwrap_used,
-    clippy::print_stdout,
-    reason = "test code: a wrong file should stop the test, and a skipped test says why"
-)]
+#![expect(clippy::print_stdout, reason = "a skipped test says why")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,15 @@
 //! Many rule lists and many broken documents: always an answer, never a panic, never without end.
-#![expect(clippy::indexing_slicing, reason = "test code: a wrong tree should stop the test")]
+#![cfg(test)]
 
 mod common;
 
 use std::collections::BTreeMap;
 
 use common::Room;
-use socrates_bt::{CheckContext, Format, Tree, check, compile};
+use socrates_bt::{
+    CheckContext, Format, Library, Meaning, NodeSheet, Options, PortKind, Tree, check, compile, convert, draw_svg,
+    draw_text, nodes,
+};
 use socrates_model::{Action, FaultCode, Gesture, HumanId, Rule, Trigger};
 
 /// SplitMix64.
@@ -167,4 +170,164 @@ fn nested_repetitions_come_back() {
     for _ in 0..3 {
         assert!(!room.tick(&tree, &mut state).is_empty());
     }
+}
+
+/// A random tree of every kind of node of a library, with ports that are allowed.
+fn generated(dice: &mut Dice, library: Library, format: Format) -> String {
+    let sheets = nodes::known_to(library);
+    let fits = |sheet: &&NodeSheet| sheet.only_in().is_none_or(|only| only == format);
+    let all: Vec<&NodeSheet> = sheets.into_iter().filter(fits).collect();
+    let leaves: Vec<&NodeSheet> = all.iter().copied().filter(|sheet| sheet.arity.most == 0).collect();
+    let attribute = if format == Format::V4 { "BTCPP_format='4' " } else { "" };
+    let body = branch(dice, &all, &leaves, format, 4);
+    let inner = branch(dice, &all, &leaves, format, 1).replace("ID=\"S\"", "ID=\"RegularNavTree\"");
+    format!(
+        "<root {attribute}main_tree_to_execute='T'><include path='BTRegularNav.xml'/>\
+         <BehaviorTree ID='T'>{body}</BehaviorTree><BehaviorTree ID='S'>{inner}</BehaviorTree></root>"
+    )
+}
+
+fn branch(dice: &mut Dice, all: &[&NodeSheet], leaves: &[&NodeSheet], format: Format, depth: usize) -> String {
+    let sheet = if depth == 0 { dice.pick(leaves) } else { dice.pick(all) };
+    let arity = sheet.arity_in(format);
+    let most = arity.most.min(arity.least + 2);
+    let n = arity.least + dice.below(most - arity.least + 1);
+    let below: String = (0..n).map(|_| branch(dice, all, leaves, format, depth.saturating_sub(1))).collect();
+    let mut text = format!("<{}", if format == Format::V3 { sheet.v3_tag.unwrap_or(sheet.tag) } else { sheet.tag });
+    for port in sheet.ports {
+        if port.default.is_some() && dice.below(2) == 0 {
+            continue;
+        }
+        let value = match port.kind {
+            PortKind::Own => "{id}",
+            PortKind::Step => dice.pick(&["{dt}", "0.01"]),
+            PortKind::Meters | PortKind::Distance | PortKind::Span | PortKind::Seconds | PortKind::Speed => {
+                dice.pick(&["1.5", "3", "{x}"])
+            }
+            PortKind::Number => dice.pick(&["-2.5", "3", "{x}"]),
+            PortKind::Gesture => dice.pick(&["0", "1", "4"]),
+            PortKind::Human | PortKind::Agent => dice.pick(&["1", "2"]),
+            PortKind::Agents => "2,3",
+            PortKind::Flag => dice.pick(&["true", "False", "1"]),
+            PortKind::Count(least) => {
+                if least < 0 {
+                    dice.pick(&["-1", "2"])
+                } else {
+                    "2"
+                }
+            }
+            PortKind::Text if port.name == "ID" => "S",
+            PortKind::Text => dice.pick(&["a &lt;b&gt; &amp; &quot;c&quot;", "1", "{x}", "", "two&#10;lines\u{e4}"]),
+            PortKind::Key => "x",
+            PortKind::Output => "{x}",
+            PortKind::Code => dice.pick(&["x := 1", "x := 'a'; y := x .. 'b'", "x := 2; x += 3 &lt; 4 ? 1 : 2"]),
+            PortKind::Angle | PortKind::Share => "0.5",
+        };
+        let name = if format == Format::V4 { port.v4_name.unwrap_or(port.name) } else { port.name };
+        text.push_str(&format!(" {name}=\"{value}\""));
+    }
+    if format == Format::V4 && dice.below(6) == 0 {
+        text.push_str(dice.pick(&[" _skipIf='x == 1'", " _while='x != 2'", " _onSuccess='x := 1'", " _post='y := 3'"]));
+    }
+    if below.is_empty() {
+        return text + "/>";
+    }
+    let tag = if format == Format::V3 { sheet.v3_tag.unwrap_or(sheet.tag) } else { sheet.tag };
+    format!("{text}>{below}</{tag}>")
+}
+
+/// What holds for every tree that was read: it ticks, is drawn, and is written so that it reads back the same.
+fn holds_for(tree: &Tree, options: &Options<'_>) {
+    let mut state = tree.start_with(&BTreeMap::from([("id".to_owned(), "1".to_owned())]));
+    let mut room = Room { distance_m: Some(2.0), visible: true, moving: true, ..Room::default() };
+    let bytes = state.bytes();
+    for _ in 0..3 {
+        room.tick(tree, &mut state);
+    }
+    assert_eq!(state.bytes(), bytes);
+    let xml = tree.to_xml(tree.format());
+    let copy = Tree::parse_with(&xml, options).unwrap_or_else(|faults| panic!("{faults:#?} in {xml}"));
+    assert_eq!(copy.to_xml(copy.format()), xml);
+    assert_eq!(draw_text(&copy), draw_text(tree));
+    assert!(draw_svg(tree).ends_with("</svg>\n"));
+    for format in [Format::V3, Format::V4] {
+        let (xml, _) = convert(tree, format, options.library);
+        assert!(!xml.is_empty());
+    }
+}
+
+const LIBRARIES: [Library; 5] =
+    [Library::Native, Library::SocratesFork, Library::HunavSim1_0, Library::HunavSim1_1, Library::HunavSim2];
+
+#[test]
+fn generated_trees_of_every_library_read_tick_draw_and_write() {
+    let mut dice = Dice(23);
+    for round in 0..400 {
+        for library in LIBRARIES {
+            for format in [Format::V3, Format::V4] {
+                let xml = generated(&mut dice, library, format);
+                let options = Options { library, meaning: Meaning::World, ..Options::default() };
+                match Tree::parse_with(&xml, &options) {
+                    Ok(tree) => holds_for(&tree, &options),
+                    Err(faults) => panic!("round {round} {library:?} {format:?}: {faults:#?} in {xml}"),
+                }
+            }
+        }
+    }
+}
+
+/// Swaps tags, doubles or drops elements, and breaks bytes.
+fn mutated(xml: &str, dice: &mut Dice) -> String {
+    const TAGS: [&str; 6] = ["Sequence", "Fallback", "Inverter", "Parallel", "SubTree", "Nothing"];
+    match dice.below(4) {
+        0 => {
+            let (from, to) = (dice.pick(&TAGS), dice.pick(&TAGS));
+            xml.replacen(from, to, 1 + dice.below(3))
+        }
+        1 => {
+            let parts: Vec<&str> = xml.split_inclusive('>').collect();
+            if parts.is_empty() {
+                return String::new();
+            }
+            let at = dice.below(parts.len());
+            let copies = dice.below(3);
+            let part = |(place, part): (usize, &&str)| part.repeat(if place == at { copies } else { 1 });
+            parts.iter().enumerate().map(part).collect()
+        }
+        _ => broken(xml, dice),
+    }
+}
+
+#[test]
+fn mutated_trees_are_refused_with_places_or_hold() {
+    let mut dice = Dice(29);
+    let (mut taken, mut refused) = (0, 0);
+    for _ in 0..250 {
+        for library in LIBRARIES {
+            let format = dice.pick(&[Format::V3, Format::V4]);
+            let mut xml = generated(&mut dice, library, format);
+            let options = Options { library, meaning: Meaning::World, ..Options::default() };
+            for _ in 0..4 {
+                xml = mutated(&xml, &mut dice);
+                match Tree::parse_with(&xml, &options) {
+                    Ok(tree) => {
+                        taken += 1;
+                        holds_for(&tree, &options);
+                    }
+                    Err(faults) => {
+                        refused += 1;
+                        assert!(!faults.is_empty());
+                        for fault in faults {
+                            let place = fault.at.split_whitespace().find(|word| word.contains(':'));
+                            let is_place =
+                                |place: &str| place.split(':').all(|n| n.parse::<u32>().is_ok_and(|n| n > 0));
+                            assert!(place.is_some_and(is_place), "no place in `{fault}`");
+                            assert!(!fault.message.is_empty());
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(taken > 300 && refused > 300, "{taken} taken, {refused} refused");
 }

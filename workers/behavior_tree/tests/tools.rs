@@ -1,6 +1,5 @@
 //! Drawing, converting and the tick analysis.
 #![cfg(test)]
-#![expect(clippy::unwrap_used, clippy::panic, reason = "test code: a wrong tree should stop the test")]
 
 mod common;
 

@@ -1,6 +1,5 @@
 //! Features of the trace format and of both versions that follow from the rules, written down by hand.
 #![cfg(test)]
-#![expect(clippy::unwrap_used, clippy::panic, reason = "test code: a wrong tree should stop the test")]
 
 use socrates_bt::trace;
 use socrates_model::FaultCode;

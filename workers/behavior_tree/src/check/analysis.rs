@@ -148,9 +148,12 @@ fn simplest<'a>(known: &mut &'a Case, case: &'a Case) {
     }
 }
 
+/// A case, and the motions of one of its ticks with their leaves.
+type Doing<'a> = (&'a Case, &'a [(Action, u16)]);
+
 /// Each set of motions that some case does in one tick.
 fn double_motion(cases: &Cases<'_>) -> Vec<Fault> {
-    let mut found: BTreeMap<Vec<u16>, (&Case, &[(Action, u16)])> = BTreeMap::new();
+    let mut found: BTreeMap<Vec<u16>, Doing<'_>> = BTreeMap::new();
     for case in &cases.all {
         for acts in case.acts.iter().filter(|acts| acts.len() > 1) {
             let leaves = acts.iter().map(|(_, leaf)| *leaf).collect();

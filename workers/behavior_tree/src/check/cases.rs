@@ -140,14 +140,12 @@ impl<'a> Cases<'a> {
     /// set hold.
     pub(super) fn future(&self, case: &Case) -> Vec<Case> {
         let mut future = vec![case.clone()];
-        let mut truth = case.truth.clone();
-        loop {
-            let Some(last) = future.last() else { break };
-            let next: Vec<bool> = truth.iter().zip(&last.reached).map(|(holds, reached)| *holds || *reached).collect();
-            if next == truth {
+        while let Some(last) = future.last() {
+            let next: Vec<bool> =
+                last.truth.iter().zip(&last.reached).map(|(holds, reached)| *holds || *reached).collect();
+            if next == last.truth {
                 break;
             }
-            truth.clone_from(&next);
             future.push(self.ticked(next));
         }
         future
