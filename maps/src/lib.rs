@@ -36,6 +36,6 @@ pub use check::check;
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use generate::generate;
 pub use geodesic::Geodesic;
-pub use read::{load, parse};
+pub use read::{load, load_map, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

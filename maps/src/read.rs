@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-use socrates_model::{Fault, FaultCode, Grid, Location};
+use socrates_model::{Fault, FaultCode, Grid, Location, SceneGraph};
 
 use crate::field::DistanceField;
 use crate::{check, doors_file, graph_file, image, map_file, route};
@@ -64,6 +64,41 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
     let named = |fault: &Fault| fault.code == FaultCode::MRead && [MAP, GRAPH].contains(&fault.at.as_str());
     faults.extend(parsed.err().unwrap_or_default().into_iter().filter(|fault| !named(fault)));
     Err(faults)
+}
+
+/// Reads a map alone, without a scene graph: a map_server YAML file of any name, and the image it names beside it.
+///
+/// The location has no nodes; its name is the file's stem.
+///
+/// # Errors
+/// Every problem found in the two files.
+pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
+    let unreadable = |path: &Path, why: std::io::Error| {
+        vec![Fault::new(FaultCode::MRead, path.display(), format!("cannot be read: {why}"))]
+    };
+    let bytes = std::fs::read(file).map_err(|why| unreadable(file, why))?;
+    let folder = file.parent().unwrap_or_else(|| Path::new("."));
+    let mut files = BTreeMap::new();
+    if let Some(name) = map_file::image_name(&bytes).filter(|name| stays_inside(name))
+        && let Ok(image) = std::fs::read(folder.join(&name))
+    {
+        files.insert(name, image);
+    }
+    files.insert(MAP.to_owned(), bytes);
+    let (mut faults, mut warnings) = (Vec::new(), Vec::new());
+    let grid = read_grid(&files, &mut faults, &mut warnings);
+    let (soft, hard): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(Fault::is_soft);
+    let Some(grid) = grid.filter(|_| hard.is_empty()) else { return Err(hard) };
+    let name = file.file_stem().map_or_else(|| "map".to_owned(), |stem| stem.to_string_lossy().into_owned());
+    Ok(Location {
+        format: socrates_model::FORMAT,
+        description: name.replace(['_', '-'], " "),
+        name,
+        grid,
+        graph: SceneGraph::default(),
+        doors: Vec::new(),
+        warnings: warnings.into_iter().chain(soft.iter().map(ToString::to_string)).collect(),
+    })
 }
 
 /// Whether a file name stays in its folder.

@@ -108,7 +108,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("rapier2d", &["workers/simulation/engine"]),
     ("petgraph", &["bus/model", "orchestrator"]),
     ("resvg", &["maps/draw"]),
-    ("png", &["maps"]),
+    ("png", &["maps", "maps/draw"]),
     ("rusqlite", &["orchestrator/store"]),
     ("clap", &["orchestrator/cli"]),
     ("anyhow", &["orchestrator/cli"]),

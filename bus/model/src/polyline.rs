@@ -90,9 +90,14 @@ impl Polyline {
     #[must_use]
     pub fn project_within(&self, point: &Point, from: f64, to: f64) -> (f64, f64) {
         let mut best = (from.clamp(0.0, self.length_m()), f64::INFINITY);
-        for (ends, marks) in self.points.windows(2).zip(self.along.windows(2)) {
+        // Marks only grow: what ends before `from` is left out at once, and nothing comes after `to`.
+        let first = self.along.partition_point(|mark| *mark < from).saturating_sub(1);
+        for (ends, marks) in self.points.windows(2).zip(self.along.windows(2)).skip(first) {
             let ([a, b], [s0, s1]) = (ends, marks) else { continue };
-            if *s1 < from || *s0 > to {
+            if *s0 > to {
+                break;
+            }
+            if *s1 < from {
                 continue;
             }
             let (_, nearest) = nearest_on_segment(point, a, b);

@@ -57,7 +57,29 @@ pub fn png_from_svg(svg: &str, scale: f32) -> Result<Vec<u8>, PngError> {
     }
     let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|why| PngError::Encode(why.to_string()))
+    encode(&pixels)
+}
+
+/// A picture as PNG: opaque, lightly compressed, for pictures are made on the way of every run.
+fn encode(pixels: &tiny_skia::Pixmap) -> Result<Vec<u8>, PngError> {
+    // Colors are stored multiplied with their opacity: over white, what is missing to opaque is added.
+    let colors: Vec<u8> = pixels
+        .pixels()
+        .iter()
+        .flat_map(|pixel| {
+            [pixel.red(), pixel.green(), pixel.blue()].map(|color| color.saturating_add(255 - pixel.alpha()))
+        })
+        .collect();
+    let wrong = |why: png::EncodingError| PngError::Encode(why.to_string());
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header().map_err(wrong)?;
+    writer.write_image_data(&colors).map_err(wrong)?;
+    writer.finish().map_err(wrong)?;
+    Ok(bytes)
 }
 
 #[cfg(test)]

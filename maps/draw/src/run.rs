@@ -80,9 +80,10 @@ pub fn run_picture(
     svg.end_clip();
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
+    let more = if paths.is_some() { " · diamond: encounter · dots: intended way" } else { "" };
     svg.text(
-        (frame.at.0 + w, frame.at.1 + h + 22.0),
-        &format!("ring: start · disc: end · arrow: every {MARK_SECS:.0} s · diamond: encounter · dots: intended way"),
+        (width - 20.0, frame.at.1 + h + 22.0),
+        &format!("ring: start · disc: end · arrow: every {MARK_SECS:.0} s{more}"),
         &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
     for (index, info) in recording.header.agents.iter().enumerate() {

@@ -69,20 +69,8 @@ pub(crate) enum Verb {
         /// Bundle folder.
         bundle: PathBuf,
     },
-    /// Simulate a bundle again and compare the recording hashes.
-    Simulate {
-        /// Bundle folder.
-        bundle: PathBuf,
-        /// Only this planner.
-        #[arg(long)]
-        planner: Option<String>,
-        /// Another seed than the bundle's own.
-        #[arg(long)]
-        seed: Option<u64>,
-        /// Folder for the recordings; default: nothing is written.
-        #[arg(long)]
-        out: Option<PathBuf>,
-    },
+    /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
+    Simulate(SimulateOptions),
     /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).
     Score {
         /// Bundle folder, CSV or MCAP file.
@@ -115,6 +103,12 @@ pub(crate) enum Verb {
     Config {
         /// Only this part, such as `author`.
         part: Option<String>,
+    },
+    /// Check, draw and convert behavior trees (BehaviorTree.CPP XML).
+    Bt {
+        /// What to do.
+        #[command(subcommand)]
+        verb: BtVerb,
     },
     /// Check, draw and generate locations.
     Map {
@@ -176,6 +170,85 @@ pub(crate) struct RunOptions {
     /// a probability per ask.
     #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
     pub(crate) inject: String,
+}
+
+/// Options of `simulate`.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct SimulateOptions {
+    /// Bundle folder, or an agents file (`*.yaml`).
+    pub(crate) what: PathBuf,
+    /// Seed: another than the bundle's own; for an agents file the draws of behaviors, default 1.
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Folder for what is recorded; default: nothing is written for a bundle, `runs/<name>` for an agents file.
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Bundle: only this planner.
+    #[arg(long)]
+    pub(crate) planner: Option<String>,
+    /// Agents file: map (map_server YAML), location folder, or shipped location; without one the floor is open.
+    #[arg(long)]
+    pub(crate) map: Option<String>,
+    /// Agents file: `native`, `socrates-fork`, `hunav-1.0`, `hunav-1.1`, `hunav-2.0`. Default: native.
+    #[arg(long)]
+    pub(crate) profile: Option<String>,
+    /// Agents file: length of the run, s.
+    #[arg(long, default_value_t = 60.0)]
+    pub(crate) duration: f64,
+    /// Agents file: a robot that stands at x,y,yaw or drives on through more points: `0,0,0;5,0;5,3`.
+    #[arg(long, value_name = "X,Y,YAW[;X,Y…]", allow_hyphen_values = true)]
+    pub(crate) robot: Option<String>,
+    /// Agents file: who moves an agent: `2=orca`, `social-forces`, or `track`; may be repeated.
+    #[arg(long, value_name = "ID=MODEL")]
+    pub(crate) model: Vec<String>,
+    /// Agents file: recorded tracks (CSV with `t,id,x,y`) of people who are replayed.
+    #[arg(long)]
+    pub(crate) tracks: Option<PathBuf>,
+    /// Agents file: folder of the behavior trees it names; default: beside it.
+    #[arg(long)]
+    pub(crate) trees: Option<PathBuf>,
+}
+
+/// Verbs of `bt`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum BtVerb {
+    /// Read trees, tick every case of their conditions, and say what is wrong, with line and column.
+    Check {
+        /// XML files.
+        #[arg(required = true)]
+        trees: Vec<PathBuf>,
+        /// Whose nodes: `native`, `socrates-fork`, `hunav-1.0`, `hunav-1.1`, `hunav-2.0`.
+        #[arg(long, default_value = "native")]
+        library: String,
+    },
+    /// Draw a tree as text, or as SVG or PNG.
+    Show {
+        /// XML file.
+        tree: PathBuf,
+        /// SVG or PNG file to write.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+        /// Whose nodes; default: the first library that knows them all.
+        #[arg(long)]
+        library: Option<String>,
+    },
+    /// Write a tree in the other XML version or for another simulator, with a note for what changes meaning.
+    Convert {
+        /// XML file.
+        tree: PathBuf,
+        /// `v3` or `v4`.
+        #[arg(long, value_parser = ["v3", "v4"])]
+        to: String,
+        /// Whose nodes it is read with; default: the first library that knows them all.
+        #[arg(long)]
+        library: Option<String>,
+        /// Simulator it is written for; default: as it is read.
+        #[arg(long = "for")]
+        target: Option<String>,
+        /// File to write; default: standard output.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Verbs of `map`.
@@ -250,6 +323,30 @@ pub(crate) enum DevVerb {
         /// Folder to write.
         #[arg(long, short)]
         out: PathBuf,
+    },
+    /// Run a crowd scene by the reference social forces, for comparison with the original library.
+    SfmTrace {
+        /// Scene (JSON).
+        scene: PathBuf,
+        /// Trajectory to write: `step,id,x,y,vx,vy,yaw,goals_reached`.
+        #[arg(long, short)]
+        out: PathBuf,
+        /// Forces to write, where wanted.
+        #[arg(long)]
+        forces: Option<PathBuf>,
+    },
+    /// Tick a behavior tree with scripted leaves, for comparison with BehaviorTree.CPP.
+    BtTrace {
+        /// XML file.
+        tree: PathBuf,
+        /// Script: `{"ticks":[{"leaf":"SUCCESS"}]}`.
+        script: PathBuf,
+        /// Status of every node after every tick.
+        #[arg(long, short)]
+        out: PathBuf,
+        /// Leaf ticks, halts and what the root gave.
+        #[arg(long)]
+        events: PathBuf,
     },
     /// Measure the main job on this machine.
     Bench {

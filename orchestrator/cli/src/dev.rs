@@ -9,6 +9,7 @@ use crate::args::DevVerb;
 use crate::bundle;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
+use crate::traces;
 
 /// Does a `dev` verb.
 pub(crate) fn dev(talk: &Talk, verb: &DevVerb) -> Result<(), Complaint> {
@@ -16,6 +17,8 @@ pub(crate) fn dev(talk: &Talk, verb: &DevVerb) -> Result<(), Complaint> {
         DevVerb::Schema { artifact } => schema(talk, artifact),
         DevVerb::Import { file } => import(talk, file),
         DevVerb::Export { bundle, out } => export(talk, bundle, out),
+        DevVerb::SfmTrace { scene, out, forces } => traces::crowd(talk, scene, out, forces.as_deref()),
+        DevVerb::BtTrace { tree, script, out, events } => traces::tree(talk, tree, script, out, events),
         DevVerb::Bench { runs } => bench(talk, *runs),
     }
 }

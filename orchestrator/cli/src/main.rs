@@ -8,13 +8,16 @@
 //! printing and exit codes.
 
 mod again;
+mod agents;
 mod args;
+mod bt;
 mod bundle;
 mod cluster;
 mod config;
 mod dev;
 mod exit;
 mod explain;
+mod files;
 mod history;
 mod library;
 mod map;
@@ -25,13 +28,14 @@ mod run;
 mod session;
 mod supervise;
 mod talk;
+mod traces;
 mod watch;
 
 use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use crate::args::{Cli, ClusterVerb, Verb};
+use crate::args::{Cli, ClusterVerb, SimulateOptions, Verb};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
@@ -84,9 +88,12 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
             Ok(Code::Ok)
         }
         Verb::Open { bundle } => done(explain::open(talk, bundle)),
-        Verb::Simulate { bundle, planner, seed, out } => {
-            done(again::simulate(talk, bundle, planner.as_deref(), *seed, out.as_ref()))
+        Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
+        Verb::Simulate(options) => {
+            let SimulateOptions { what, planner, seed, out, .. } = options;
+            done(again::simulate(talk, what, planner.as_deref(), *seed, out.as_ref()))
         }
+        Verb::Bt { verb } => done(bt::bt(talk, verb)),
         Verb::Score { what, location } => done(again::score(talk, what, location.as_deref())),
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
         Verb::Status { what } => done(watch::status(talk, what).await),

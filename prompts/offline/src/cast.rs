@@ -2,7 +2,7 @@
 
 use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule};
 
-use crate::lexicon::lexicon;
+use crate::lexicon::{Act, lexicon};
 use crate::mention::{Mention, Who};
 
 /// A rule with where it comes from.
@@ -33,6 +33,8 @@ pub(crate) struct Person {
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
     pub(crate) bound: bool,
+    /// What was ruled out for it, with the words.
+    pub(crate) never: Vec<(Act, String)>,
 }
 
 /// People who were introduced together.
@@ -114,6 +116,17 @@ impl Cast {
                 }
             }
             Who::Same => self.last.clone(),
+            Who::AllBut(n) => {
+                let set = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
+                let kept = set.len().saturating_sub(usize::try_from(*n).unwrap_or(usize::MAX));
+                set.into_iter().take(kept).collect()
+            }
+            Who::OrdinalOf { number, count } => {
+                let of = Mention { who: Who::New { count: Some(*count), article: false }, ..mention.clone() };
+                let set = self.resolve(&of, declares, quote);
+                let place = if *number == 0 { set.len() } else { usize::try_from(*number).unwrap_or(usize::MAX) };
+                place.checked_sub(1).and_then(|place| set.get(place)).map(|i| vec![*i]).unwrap_or_default()
+            }
         };
         if let Some(role) = &mention.role {
             for i in &found {

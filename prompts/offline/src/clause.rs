@@ -27,6 +27,8 @@ pub(crate) struct Found {
     pub(crate) deeds: Vec<Deed>,
     pub(crate) cue: Option<(Cue, usize)>,
     pub(crate) gesture: Option<Gesture>,
+    /// First word of the verb that says so.
+    pub(crate) gesture_at: usize,
     pub(crate) places: Vec<(PlaceClass, usize)>,
     /// Places that no map can hold.
     pub(crate) nowhere: Vec<usize>,
@@ -164,6 +166,12 @@ fn gesture(stretch: &mut Stretch, found: &mut Found) {
     let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
     let Some(verb) = verbs.filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true)).min() else { return };
     let (first, last) = (verb.first().copied().unwrap_or(0), verb.last().copied().unwrap_or(0));
+    found.gesture_at = first;
+    if stretch.words.get(first).is_some_and(|word| word.stem == "acknowledge") {
+        found.gesture = Some(Gesture::Acknowledged);
+        mark_each(stretch, &verb);
+        return;
+    }
     let noun = stretch.words.get(last).is_some_and(|word| word.stem == "gesture" || word.stem == "signal");
     for (from, to) in [(last + 1, last + 9), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
         for phrase in &lexicon().gestures {

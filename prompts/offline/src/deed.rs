@@ -1,6 +1,6 @@
 //! From a deed to what the model knows: rules, relations, groups.
 
-use socrates_model::{Action, Gesture, HumanId, PlaceClass, Relation, Rule, Trigger};
+use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Relation, Rule, Trigger};
 
 use crate::cast::{Cast, Person, ReadRule};
 use crate::lexicon::Act;
@@ -148,7 +148,20 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     if act == Act::Gesture {
         return gesture(person, around);
     }
+    if matches!(act, Act::Walk | Act::Pass)
+        && let Some(trigger @ (Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped)) =
+            &around.trigger
+    {
+        let trigger = trigger.clone();
+        walk_on(cast, who, trigger, &around.quote);
+        return None;
+    }
     let (action, usual, lasts, latched) = manner(act)?;
+    if let Some((_, never)) = person.never.iter().find(|(other, _)| *other == act) {
+        let never = never.clone();
+        cast.problems.push(contradiction(who, &never, &around.quote));
+        return None;
+    }
     if let (Some(gesture), Some(last)) = (around.gesture, person.rules.last_mut())
         && around.goes_on
         && last.rule.act == action
@@ -182,6 +195,36 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         return Some(once(person, read));
     }
     Some(once(person, read))
+}
+
+/// From a trigger on it walks on, whatever it did before.
+pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
+    let Some(person) = cast.people.get_mut(who) else { return };
+    let rule = Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    let read = ReadRule { rule, quote: quote.to_owned(), stated: true, exact: true, then: false };
+    // Earlier rules win: what ends the others stands before them.
+    if !person.rules.contains(&read) {
+        person.rules.insert(0, read);
+    }
+}
+
+/// `never follows it`: remembered, and held against what was said before.
+pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
+    let Some(person) = cast.people.get_mut(who) else { return };
+    person.never.push((act, quote.to_owned()));
+    let Some((action, ..)) = manner(act) else { return };
+    if let Some(read) = person.rules.iter().find(|read| read.rule.act == action) {
+        let said = read.quote.clone();
+        cast.problems.push(contradiction(who, &said, quote));
+    }
+}
+
+fn contradiction(who: usize, first: &str, second: &str) -> Fault {
+    Fault::new(
+        FaultCode::PContra,
+        format!("human_{}", who + 1),
+        format!("`{first}` and `{second}` cannot both hold for the same human; correct one of the two"),
+    )
 }
 
 /// Adds a rule, unless the text only says again what another rule holds already: `is surprised, stops and looks`.

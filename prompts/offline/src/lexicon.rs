@@ -94,6 +94,8 @@ pub(crate) struct Lexicon {
     pub(crate) pace: BTreeMap<String, f64>,
     /// Every known word, also those of plain English.
     pub(crate) known: BTreeSet<String>,
+    /// Words that carry a wish, in the forms in which people write them: what a slip of the pen may have meant.
+    pub(crate) telling: BTreeSet<String>,
     forms: BTreeMap<String, String>,
 }
 
@@ -205,6 +207,8 @@ impl Lexicon {
                 lex.pace.insert(word.clone(), row.mps);
             }
         }
+        lex.telling =
+            file.place.iter().flat_map(|row| &row.words).flat_map(|text| text.split(' ')).map(str::to_owned).collect();
         lex.learn(&file.english, &file.action, &file.trigger, &file.gesture);
         // Places are matched as written, all else in base forms.
         lex.places = sorted(
@@ -236,6 +240,13 @@ impl Lexicon {
         known.extend(self.numbers.keys().chain(self.ordinals.keys()).cloned());
         known.extend(self.forms.values().cloned());
         self.known = known;
+        let mut telling: BTreeSet<String> = self.roles.keys().cloned().collect();
+        for text in actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)) {
+            for word in text.split_whitespace().filter(|word| *word != "..") {
+                telling.extend(["", "s", "es", "ed", "ing"].map(|end| format!("{word}{end}")));
+            }
+        }
+        self.telling.extend(telling);
     }
 
     /// The base form of a word in lower case.

@@ -1,6 +1,6 @@
 //! Mentions: the stretches of a clause that speak of people.
 
-use crate::lexicon::{Lexicon, lexicon};
+use crate::lexicon::{Item, Lexicon, lexicon};
 use crate::words::Word;
 
 /// Whom a mention means.
@@ -32,6 +32,15 @@ pub(crate) enum Who {
     },
     /// `they`, `both`, `everyone`.
     All,
+    /// `all but one`: so many are left out.
+    AllBut(u32),
+    /// `the second of two visitors`.
+    OrdinalOf {
+        /// Which, from 1; 0 for the last.
+        number: u32,
+        /// Of how many.
+        count: u32,
+    },
     /// `he`, `she`, `who`.
     Same,
     /// `human 2`.
@@ -122,13 +131,39 @@ fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
     Some(end)
 }
 
+/// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
+fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
+    let word = words.get(at).filter(|_| introduced)?;
+    let unknown = word.text.len() >= 4
+        && word.text.chars().all(char::is_alphabetic)
+        && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives]
+            .iter()
+            .any(|table| table.contains(&word.stem) || table.contains(&word.text))
+        && !thing(words, at)
+        && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())));
+    let acts = words.get(at + 1).is_some_and(|next| DOES.contains(&next.stem.as_str()));
+    if unknown && acts { Some(at) } else { None }
+}
+
+/// What only people (and the robot) do, as the first word after who does it.
+const DOES: &[&str] = &[
+    "walk", "come", "stand", "wait", "follow", "look", "stop", "step", "leave", "run", "cross", "talk", "chat",
+    "approach", "block", "stay", "flee", "overtake", "hurry", "gesture", "wave", "who", "give", "go", "ignore",
+    "enter", "exit", "watch",
+];
+
 fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let stem = |k: usize| words.get(k).map_or("", |word| word.stem.as_str());
     let role = |k: usize| {
-        let name =
-            (0..=2).filter_map(|back| k.checked_sub(back)).map(&stem).find(|name| lex.roles.contains_key(*name))?;
-        lex.roles.get(name).filter(|word| !word.generic).map(|_| name.to_owned())
+        let named =
+            (0..=2).filter_map(|back| k.checked_sub(back)).map(&stem).find(|name| lex.roles.contains_key(*name));
+        match named {
+            Some(name) => lex.roles.get(name).filter(|word| !word.generic).map(|_| name.to_owned()),
+            None => {
+                Some(stem(k).to_owned()).filter(|name| !name.is_empty() && !lex.known.contains(name) && name != "robot")
+            }
+        }
     };
     let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
     let of_them = |k: usize| {
@@ -153,6 +188,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let end = of_them(at + 1)
                 .map_or_else(|| noun(words, at + 1, lex).filter(|_| text(at) == "both").unwrap_or(at), |(end, _)| end);
             return made(Who::All, None, end);
+        }
+        "all" if text(at + 1) == "but" && words.get(at + 2).is_some_and(|word| word.count().is_some()) => {
+            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, at + 2);
         }
         "all" | "each" => {
             if let Some((end, _)) = of_them(at + 1) {
@@ -192,6 +230,8 @@ fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Opti
     let the = usize::from(matches!(text(at), "the" | "each"));
     let count = |k: usize| words.get(k).and_then(Word::count);
     match text(at + the) {
+        // `one after another` is a manner, nobody new.
+        "another" if at > 0 && matches!(text(at - 1), "after" | "to" | "from") => None,
         "another" => {
             let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
             let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
@@ -223,6 +263,12 @@ fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Opti
         word if the == 1 || lex.ordinals.contains_key(word) => {
             let number = lex.ordinals.get(word).copied().or_else(|| if word == "last" { Some(0) } else { None })?;
             let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
+            if text(start) == "of"
+                && let Some(of) = count(start + 1).filter(|of| *of >= number.max(1))
+                && let Some(end) = noun(words, start + 2, lex)
+            {
+                return made(Who::OrdinalOf { number, count: of }, role(end), end);
+            }
             let end = noun(words, start, lex).unwrap_or(start - 1);
             let bare = end == at + the && (the == 0 || thing(words, start));
             if bare { None } else { made(Who::Ordinal(number), role(end), end) }
@@ -275,7 +321,7 @@ fn counted(
         let who = if listed { Who::New { count, article: true } } else { Who::PartOf(count.unwrap_or(1)) };
         return made(who, role, false, end);
     }
-    if let Some(end) = noun(words, next, lex) {
+    if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
         let many = words.get(end).is_some_and(plural);
         let who = match (the, count, more) {
             (_, Some(n), true) => Who::More(n),

@@ -136,10 +136,7 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     let mut acts: Vec<(Act, usize, usize, bool)> =
         found.deeds.iter().map(|deed| (deed.act, deed.at, deed.to, deed.negated)).collect();
     if found.gesture.is_some() {
-        let at = stretch.words.iter().position(|word| {
-            matches!(word.stem.as_str(), "gesture" | "signal" | "wave" | "tell" | "ask" | "say" | "show")
-        });
-        acts.push((Act::Gesture, at.unwrap_or(usize::MAX), at.unwrap_or(0), false));
+        acts.push((Act::Gesture, found.gesture_at, found.gesture_at, false));
         acts.sort_by_key(|(_, at, _, _)| *at);
     }
     for (act, at, to, negated) in acts {
@@ -148,8 +145,17 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         let subject = subject_of(act, at, passive, &found, &meant, &previous, &joined, &story.cast);
         let quote = quote.as_str();
         match &subject {
-            Subject::Robot => robot_deed(story, act, &found, &meant, at, quote),
+            Subject::Robot => {
+                robot_deed(story, act, &found, &meant, at, quote);
+                // `The robot asks to be let through and the first one gives way`: what comes next answers it.
+                if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture && thread.waiting.is_none()) {
+                    (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
+                }
+            }
             Subject::People(people) if negated => {
+                for who in people {
+                    deed::rule_out(&mut story.cast, *who, act, quote);
+                }
                 let people: Vec<String> = people.iter().map(|i| format!("human_{}", i + 1)).collect();
                 story
                     .cast
@@ -219,6 +225,15 @@ fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Fou
     if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
         story.robot_says.push((gesture, quote.to_owned()));
     }
+    // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
+    if stretch.joint == Joint::Until && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Says) {
+        let when = trigger(cue, found);
+        let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
+        for who in people {
+            deed::walk_on(&mut story.cast, who, when.clone(), quote);
+        }
+        return;
+    }
     if stretch.joint == Joint::Until {
         for (who, rule) in &thread.made {
             if let Some(read) = story.cast.people.get_mut(*who).and_then(|p| p.rules.get_mut(*rule)) {
@@ -228,7 +243,7 @@ fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Fou
         story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
         return;
     }
-    let back = matches!(stretch.joint, Joint::When | Joint::While) && !thread.made.is_empty();
+    let back = matches!(stretch.joint, Joint::When | Joint::While) && !thread.made.is_empty() && !stretch.after_and;
     // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
     for mention in found.mentions.iter().filter(|mention| !(back && matches!(mention.who, Who::All | Who::Same))) {
         let people = story.cast.resolve(mention, false, quote);

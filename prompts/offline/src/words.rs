@@ -66,6 +66,8 @@ pub(crate) enum Joint {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Stretch {
     pub(crate) joint: Joint,
+    /// Whether `and` stood before the joint: `…, and when it stops, …` looks ahead, not back.
+    pub(crate) after_and: bool,
     pub(crate) words: Vec<Word>,
 }
 
@@ -164,12 +166,36 @@ fn apostrophe(
         out.push(Piece::Word(word(verb.to_owned(), from, to)));
         out.push(Piece::Word(word("not".to_owned(), from, to)));
     } else {
-        out.push(Piece::Word(word(lower.to_owned(), from, to)));
+        match JOINED.iter().find(|(joined, _)| *joined == lower) {
+            Some((_, apart)) => out.extend(apart.iter().map(|part| Piece::Word(word((*part).to_owned(), from, to)))),
+            None => out.push(Piece::Word(word(lower.to_owned(), from, to))),
+        }
     }
     taken
 }
 
+/// Words that people write together.
+const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother", &["each", "other"])];
+
+/// The word that was meant by a slip of the pen: the only one of the tables that is one letter away.
+///
+/// Short words and words that start otherwise are left alone: a slip is guessed, never a meaning.
+fn mended(text: &str) -> Option<&'static str> {
+    let lex = lexicon();
+    let long = text.chars().count() >= 6;
+    if !long || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
+        return None;
+    }
+    let near = |word: &&String| {
+        word.chars().count() >= 6 && word.chars().next() == text.chars().next() && strsim::osa_distance(word, text) == 1
+    };
+    let mut found = lex.telling.iter().filter(near);
+    let only = found.next()?;
+    if found.next().is_some() { None } else { Some(only) }
+}
+
 fn word(text: String, from: usize, to: usize) -> Word {
+    let text = mended(&text).map_or(text, str::to_owned);
     let stem = match text.as_str() {
         "robot" | "robots" | "robot's" | "it" | "its" | "amr" | "agv" | "cobot" => "robot".to_owned(),
         other => lexicon().stem(other),
@@ -180,7 +206,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
 /// Cuts a sentence (`None` is a comma) at its joints.
 fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
     let mut found: Vec<Stretch> = Vec::new();
-    let mut open = Stretch { joint: Joint::Opens, words: Vec::new() };
+    let mut open = Stretch { joint: Joint::Opens, after_and: false, words: Vec::new() };
     let mut i = 0;
     while let Some(item) = words.get(i) {
         let (joint, took) = match item {
@@ -188,8 +214,9 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
             Some(_) => joint_at(&words, i),
         };
         if let Some(joint) = joint {
-            let done = std::mem::replace(&mut open, Stretch { joint, words: Vec::new() });
+            let done = std::mem::replace(&mut open, Stretch { joint, after_and: false, words: Vec::new() });
             if done.words.is_empty() {
+                open.after_and = done.after_and || done.joint == Joint::And && joint != Joint::And;
                 // `, and when`: the stronger joint stays; a sentence that opens with `when` is known by its index.
                 if matches!(joint, Joint::Comma | Joint::And)
                     && !matches!(done.joint, Joint::Opens | Joint::Comma | Joint::And)
@@ -219,6 +246,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     let digit = words.get(i + 1).and_then(Option::as_ref).is_some_and(|word| word.number().is_some());
     match text(i) {
         "and" => (Some(Joint::And), 1),
+        "but" if before == "all" => (None, 1),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "except" => (Some(Joint::Comma), 1),
         "then" | "afterwards" => (Some(Joint::Then), 1),
         "while" | "whereas" if before != "a" => (Some(Joint::While), 1),

@@ -85,8 +85,7 @@ fn values_that_cannot_be_meant_are_named_with_what_can() {
     told(&two(), ("behavior: 4", "behavior: 17"), &["agent1.behavior", "17", "1 regular", "LLMBT_9"]);
     told(&two(), ("behavior: 4", "behavior: 0"), &["agent1.behavior", "`0`"]);
     told(&two(), ("skin: 0", "skin: 12"), &["agent1.skin", "-1 to 9"]);
-    told(&two(), ("cyclic_goals: true", "cyclic_goals: maybe"), &["cyclic_goals", "maybe", "true, false"],
-    );
+    told(&two(), ("cyclic_goals: true", "cyclic_goals: maybe"), &["cyclic_goals", "maybe", "true, false"]);
     told(&two(), ("id: 1", "id: 99999999999999999999"), &["agent1.id", "99999999999999999999"]);
 }
 

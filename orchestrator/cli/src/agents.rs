@@ -1,0 +1,160 @@
+//! `simulate AGENTS.yaml`: a HuNavSim agents file, run by our semantics or by those of its simulator.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use socrates_hunav::{AgentsFile, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
+use socrates_model::{EventKind, Location, Point, Pose, SimTime};
+
+use crate::args::SimulateOptions;
+use crate::exit::Complaint;
+use crate::files;
+use crate::prepare::{load_location, plural, slug};
+use crate::talk::Talk;
+
+/// Largest agents file that is read, bytes.
+const MAX_BYTES: u64 = 16 * 1024 * 1024;
+
+/// Whether `simulate` is given an agents file, not a bundle.
+pub(crate) fn is_agents_file(what: &Path) -> bool {
+    what.extension().is_some_and(|ext| ext == "yaml" || ext == "yml") && !what.is_dir()
+}
+
+/// Runs an agents file and writes what happened.
+pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Complaint> {
+    let file = options.what.display().to_string();
+    let text = files::text(&options.what, MAX_BYTES, "name a HuNavSim agents file")?;
+    let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
+    let profile: Profile = match &options.profile {
+        Some(name) => name.parse().map_err(|why: socrates_hunav::BadProfile| Complaint::input(why.to_string(), ""))?,
+        None => Profile::Native,
+    };
+    let location = options.map.as_deref().map(map).transpose()?;
+    let folder = options
+        .trees
+        .clone()
+        .or_else(|| options.what.parent().map(Path::to_path_buf))
+        .unwrap_or_else(|| PathBuf::from("."));
+    let trees = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let mut inputs = Inputs::new(&agents, &file);
+    inputs.grid = location.as_ref().map(|location| &location.grid);
+    inputs.profile = profile;
+    inputs.seed = options.seed.unwrap_or(1);
+    inputs.duration_s = options.duration;
+    inputs.robot = options.robot.as_deref().map(robot).transpose()?;
+    inputs.trees = &trees;
+    inputs.models = options.model.iter().map(|text| model(text)).collect::<Result<BTreeMap<_, _>, _>>()?;
+    let problems = socrates_hunav::check(&inputs);
+    let (errors, warnings): (Vec<Problem>, Vec<Problem>) =
+        problems.into_iter().partition(|problem| problem.severity == Severity::Error);
+    if !errors.is_empty() {
+        return Err(listed(&file, &errors));
+    }
+    for warning in &warnings {
+        talk.warn(&warning.to_string());
+    }
+    talk.line(&format!(
+        "agents     {} of {} · profile {} · {}",
+        plural(agents.agents.len(), "agent"),
+        agents.dialect.name(),
+        profile.name(),
+        location.as_ref().map_or("open floor".to_owned(), |location| format!("map {}", location.name)),
+    ));
+    let recording = socrates_hunav::simulate(&inputs).map_err(|problems| listed(&file, &problems))?;
+    let last = recording.frames.last().map_or(0.0, |state| SimTime::at_tick(state.tick).secs());
+    let contacts = recording.events.iter().filter(|event| matches!(event.kind, EventKind::Contact { .. })).count();
+    let name = slug(&options.what.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
+    let dir = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(format!("{name}-{}-{}", profile.name(), inputs.seed)));
+    let bytes = socrates_stream::mcap::write(&recording, location.as_ref())
+        .map_err(|why| Complaint::input(why.to_string(), ""))?;
+    files::write(&dir.join("recording.mcap"), &bytes)?;
+    files::write(&dir.join("agents.csv"), socrates_stream::csv::write_agents(&recording).as_bytes())?;
+    let mut look = dir.join("agents.csv");
+    if let Some(location) = &location {
+        let title = format!("{name} · {} · {}", profile.name(), location.name);
+        let svg = socrates_draw::run_picture(location, &recording, None, None, &title);
+        let png = socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| Complaint::input(why.to_string(), ""))?;
+        files::write(&dir.join("run.svg"), svg.as_bytes())?;
+        look = dir.join("run.png");
+        files::write(&look, &png)?;
+    }
+    talk.line(&format!(
+        "simulated  {last:.1} s, {}, recording {}",
+        plural(contacts, "contact"),
+        recording.hash().short()
+    ));
+    talk.line(&format!("look       {}", look.display()));
+    talk.line(&format!("next       socrates score {}", dir.join("recording.mcap").display()));
+    talk.result(&json!({
+        "out": dir.display().to_string(), "agents": agents.agents.len(), "dialect": agents.dialect.name(),
+        "profile": profile.name(), "seed": inputs.seed, "simulated_s": last, "contacts": contacts,
+        "recording_hash": recording.hash(), "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+    }));
+    Ok(())
+}
+
+fn listed(file: &str, problems: &[Problem]) -> Complaint {
+    let mut complaint = Complaint::input(
+        format!("`{file}` has {}", plural(problems.len(), "problem")),
+        "the README of `workers/simulation/hunav` describes agents files",
+    );
+    complaint.causes = problems.iter().map(ToString::to_string).collect();
+    complaint
+}
+
+/// A map_server file, a location folder, or a shipped location.
+fn map(name: &str) -> Result<Location, Complaint> {
+    if name.ends_with(".yaml") || name.ends_with(".yml") {
+        return socrates_maps::load_map(Path::new(name)).map_err(|faults| {
+            Complaint::faults(
+                format!("the map `{name}` is not usable"),
+                &faults,
+                "`socrates explain CODE` says what to do",
+            )
+        });
+    }
+    load_location(name, Path::new(".")).map(|(location, _)| location)
+}
+
+/// `x,y,yaw` and more points to drive through.
+fn robot(text: &str) -> Result<RobotSpec, Complaint> {
+    let wrong = || {
+        Complaint::input(
+            format!("`--robot {text}` is no robot"),
+            "write x,y,yaw and, where it drives, points: --robot \"0,0,0;5,0;5,3\" (m, rad)",
+        )
+    };
+    let mut parts = text.split(';').map(|part| {
+        part.split(',')
+            .map(|number| number.trim().parse::<f64>().ok().filter(|n| n.is_finite()))
+            .collect::<Option<Vec<_>>>()
+    });
+    let Some(Some(start)) = parts.next() else { return Err(wrong()) };
+    let [x, y, yaw] = start[..] else { return Err(wrong()) };
+    let mut spec = RobotSpec::standing(Pose { x, y, yaw });
+    for part in parts {
+        let Some(point) = part else { return Err(wrong()) };
+        let [x, y] = point[..] else { return Err(wrong()) };
+        spec.goals.push(Point::new(x, y));
+    }
+    Ok(spec)
+}
+
+/// `2=orca`.
+fn model(text: &str) -> Result<(i64, HumanModel), Complaint> {
+    let names: Vec<&str> = HumanModel::ALL.iter().map(|model| model.name()).collect();
+    let wrong = || {
+        Complaint::input(
+            format!("`--model {text}` is no model of an agent"),
+            format!("write ID=MODEL; models: {}", names.join(", ")),
+        )
+    };
+    let (id, name) = text.split_once('=').ok_or_else(wrong)?;
+    let id = id.trim().parse().map_err(|_digits| wrong())?;
+    let model = HumanModel::ALL.into_iter().find(|model| model.name() == name.trim()).ok_or_else(wrong)?;
+    Ok((id, model))
+}

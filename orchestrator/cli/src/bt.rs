@@ -1,0 +1,175 @@
+//! `bt`: behavior trees checked, drawn and converted.
+
+use std::path::Path;
+
+use serde_json::json;
+use socrates_bt::{Format, Library, Meaning, Options, Tree};
+use socrates_model::Fault;
+
+use crate::args::BtVerb;
+use crate::exit::Complaint;
+use crate::files;
+use crate::prepare::plural;
+use crate::talk::Talk;
+
+/// Largest tree that is read, bytes.
+const MAX_BYTES: u64 = 32 * 1024 * 1024;
+
+/// Does a `bt` verb.
+pub(crate) fn bt(talk: &Talk, verb: &BtVerb) -> Result<(), Complaint> {
+    match verb {
+        BtVerb::Check { trees, library } => {
+            let library = named(library)?;
+            let (mut reports, mut wrong, mut broken) = (Vec::new(), Vec::new(), 0);
+            for tree in trees {
+                let before = wrong.len();
+                reports.push(check(talk, tree, library, &mut wrong)?);
+                broken += usize::from(wrong.len() > before);
+            }
+            let result = json!({ "trees": reports });
+            if broken == 0 {
+                talk.result(&result);
+                return Ok(());
+            }
+            let mut complaint = Complaint::input(
+                format!("{broken} of {} cannot be loaded as {}", plural(trees.len(), "tree"), library.name()),
+                "`socrates explain CODE` says what each fault means",
+            );
+            complaint.causes = wrong;
+            complaint.result = Some(Box::new(result));
+            Err(complaint)
+        }
+        BtVerb::Show { tree, out, library } => show(talk, tree, out.as_deref(), library.as_deref()),
+        BtVerb::Convert { tree, to, library, target, out } => {
+            let (read, from) = load(tree, library.as_deref())?;
+            let target = target.as_deref().map(named).transpose()?.unwrap_or(from);
+            let (xml, notes) = socrates_bt::convert(&read, if to == "v3" { Format::V3 } else { Format::V4 }, target);
+            for note in &notes {
+                talk.warn(&format!("{} {note}", if note.changes_meaning { "meaning   " } else { "spelling  " }));
+            }
+            match out {
+                Some(out) => {
+                    files::write(out, xml.as_bytes())?;
+                    talk.line(&format!("wrote      {}", out.display()));
+                }
+                None => talk.line(&xml),
+            }
+            let notes: Vec<_> = notes
+                .iter()
+                .map(|note| json!({ "at": note.at, "message": note.message, "changes_meaning": note.changes_meaning }))
+                .collect();
+            talk.result(&json!({ "xml": xml, "notes": notes }));
+            Ok(())
+        }
+    }
+}
+
+/// A library by its name.
+fn named(name: &str) -> Result<Library, Complaint> {
+    Library::named(name).ok_or_else(|| {
+        let names: Vec<&str> = Library::ALL.iter().map(|library| library.name()).collect();
+        Complaint::input(format!("there is no node library `{name}`"), format!("libraries: {}", names.join(", ")))
+    })
+}
+
+/// An included file, looked for from the folder of the tree on.
+pub(crate) fn including(folder: &Path, path: &str) -> Option<String> {
+    std::fs::read_to_string(folder.join(path)).ok()
+}
+
+/// The faults of a tree's file.
+pub(crate) fn faulty(tree: &Path, faults: &[Fault]) -> Complaint {
+    Complaint::faults(
+        format!("`{}` has {}", tree.display(), plural(faults.len(), "fault")),
+        faults,
+        "`socrates explain CODE` says what each fault means",
+    )
+}
+
+/// Our own meaning where it is ours, else every leaf of the library.
+const fn meaning(library: Library) -> Meaning {
+    match library {
+        Library::Native => Meaning::Native,
+        Library::BuiltIn | Library::HunavSim1_0 | Library::HunavSim1_1 | Library::HunavSim2 | Library::SocratesFork => {
+            Meaning::World
+        }
+    }
+}
+
+fn check(talk: &Talk, file: &Path, library: Library, wrong: &mut Vec<String>) -> Result<serde_json::Value, Complaint> {
+    let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
+    let folder = file.parent().unwrap_or_else(|| Path::new("."));
+    let includes = |path: &str| including(folder, path);
+    let options =
+        |library| Options { includes: Some(&includes), library, meaning: meaning(library), ..Options::default() };
+    let xml = match socrates_bt::decode(&bytes) {
+        Ok(xml) => xml,
+        Err(fault) => {
+            wrong.push(format!("{}: {fault}", file.display()));
+            return Ok(json!({ "tree": file.display().to_string(), "faults": [fault] }));
+        }
+    };
+    let report = socrates_bt::check_report(xml, &options(library));
+    for fault in &report.faults {
+        wrong.push(format!("{}: {fault}", file.display()));
+    }
+    if let Some(analysis) = &report.analysis {
+        let word = if report.is_clean() { "good" } else { "loads" };
+        talk.line(&format!("{word:<10} {} ({})", file.display(), library.name()));
+        for line in analysis.to_string().lines() {
+            talk.line(&format!("           {line}"));
+        }
+    } else if let Some(other) = Library::ALL
+        .into_iter()
+        .filter(|other| *other != library)
+        .find(|other| Tree::parse_with(xml, &options(*other)).is_ok())
+    {
+        wrong.push(format!("{}: it loads with --library {}", file.display(), other.name()));
+    }
+    Ok(json!({ "tree": file.display().to_string(), "faults": report.faults, "analysis": report.analysis }))
+}
+
+/// A tree, by the library that was asked for, or the first that takes it.
+fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint> {
+    let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
+    let folder = file.parent().unwrap_or_else(|| Path::new("."));
+    let includes = |path: &str| including(folder, path);
+    let xml = socrates_bt::decode(&bytes).map_err(|fault| faulty(file, &[fault]))?;
+    let tries = match library {
+        Some(name) => vec![named(name)?],
+        None => {
+            let ours = [Library::Native, Library::SocratesFork];
+            ours.into_iter().chain([Library::HunavSim1_1, Library::HunavSim1_0, Library::HunavSim2]).collect()
+        }
+    };
+    let mut first = None;
+    for library in tries {
+        let options = Options { includes: Some(&includes), library, meaning: meaning(library), ..Options::default() };
+        match Tree::parse_with(xml, &options) {
+            Ok(tree) => return Ok((tree, library)),
+            Err(faults) => first = first.or(Some(faults)),
+        }
+    }
+    Err(faulty(file, &first.unwrap_or_default()))
+}
+
+fn show(talk: &Talk, file: &Path, out: Option<&Path>, library: Option<&str>) -> Result<(), Complaint> {
+    let (tree, library) = load(file, library)?;
+    let text = socrates_bt::draw_text(&tree);
+    let Some(out) = out else {
+        talk.line(text.trim_end());
+        talk.result(&json!({ "text": text, "library": library.name() }));
+        return Ok(());
+    };
+    let svg = socrates_bt::draw_svg(&tree);
+    let bytes = if out.extension().is_some_and(|ext| ext == "png") {
+        socrates_draw::png_from_svg(&svg, 1.5)
+            .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
+    } else {
+        svg.into_bytes()
+    };
+    files::write(out, &bytes)?;
+    talk.line(&format!("look       {}", out.display()));
+    talk.result(&json!({ "picture": out.display().to_string(), "library": library.name() }));
+    Ok(())
+}
