@@ -105,6 +105,8 @@ pub enum Meaning {
 /// How a document is read.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
+    /// Name of the document in faults, such as its path; empty for none.
+    pub file: &'a str,
     /// Finds included files by the path as written; `BTRegularNav.xml` is found without it.
     pub includes: Option<Includes<'a>>,
     /// Whose nodes are taken, with their ports, defaults and ranges. Default: [`Library::Native`], the SocRATES fork
@@ -120,7 +122,14 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { includes: None, library: Library::Native, meaning: Meaning::Native, foreign: &[], declared: false }
+        Self {
+            file: "",
+            includes: None,
+            library: Library::Native,
+            meaning: Meaning::Native,
+            foreign: &[],
+            declared: false,
+        }
     }
 }
 

@@ -201,8 +201,7 @@ impl Tree {
     /// # Errors
     /// As [`Tree::parse`].
     pub fn parse_with(xml: &str, options: &Options<'_>) -> Result<Self, Vec<Fault>> {
-        let document = Document::read(xml, options)?;
-        crate::build::build(document)
+        Document::read(xml, options).and_then(crate::build::build).map_err(|faults| in_file(options.file, faults))
     }
 
     /// The state of an agent before its first tick.
@@ -349,6 +348,18 @@ impl Tree {
     pub(crate) fn ports<'a>(&'a self, node: &'a Node) -> Ports<'a> {
         Ports { inputs: &node.inputs, board: &self.board }
     }
+}
+
+/// Puts the name of the document before places that have no name of an included file.
+fn in_file(file: &str, mut faults: Vec<Fault>) -> Vec<Fault> {
+    if !file.is_empty() {
+        for fault in &mut faults {
+            if fault.at.starts_with(|first: char| first.is_ascii_digit()) {
+                fault.at = format!("{file} {}", fault.at);
+            }
+        }
+    }
+    faults
 }
 
 fn awaited(trigger: &Trigger) -> Option<(AgentId, Gesture)> {

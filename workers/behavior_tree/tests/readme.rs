@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use socrates_bt::{CATALOG, DIALECTS, NodeSheet};
+use socrates_bt::{CATALOG, DIALECTS, NodeSheet, RARE};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
 const FROM: &str = "<!-- catalogue: written by `cargo test -p socrates-bt --test readme -- --ignored` -->\n";
@@ -45,6 +45,8 @@ fn rows(sheets: &[&NodeSheet], text: &mut String) {
 fn catalogue() -> String {
     let mut text = String::from("\n### Ours: BehaviorTree.CPP, the SocRATES fork, and our own nodes\n\n");
     rows(CATALOG, &mut text);
+    text.push_str("\n### Rare nodes of BehaviorTree.CPP, read and ticked but offered to nobody\n\n");
+    rows(RARE, &mut text);
     for (library, sheets) in DIALECTS {
         text.push_str(&format!("\n### `{}`, beside the nodes of BehaviorTree.CPP\n\n", library.name()));
         rows(sheets, &mut text);
