@@ -2,9 +2,11 @@
 //! small view of the world, made from rule lists, and checked without a simulator.
 //!
 //! ```text
-//! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures
-//!          faults          ▲       │
-//! rules ──► compile ───────┘       └──► check: every case of the conditions, ticked once
+//! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures,
+//!          faults       ▲     │     │                  or every leaf in its own meaning
+//! rules ──► compile ────┘     │     ├──► check, analyze: every case of the conditions, ticked
+//!                             │     └──► trace: scripted leaves in, statuses and events out
+//!                             └──► draw: text, SVG · convert: the other version, another library
 //! ```
 //!
 //! *Never here:* a simulator, a planner, a map, a file, a clock, a random number, another agent's tree.

@@ -160,7 +160,7 @@ impl TreeState {
         self.cells.iter().map(|cell| cell.status).collect()
     }
 
-    /// The first leaf that failed because neither [`World::leaf`](crate::World::leaf) nor this crate could tick
+    /// The first leaf that failed because neither [`World::leaf`] nor this crate could tick
     /// it. Only in trees read with [`Meaning::World`](crate::Meaning::World).
     #[must_use]
     pub const fn unanswered(&self) -> Option<u16> {
@@ -310,7 +310,7 @@ impl Tree {
         found
     }
 
-    /// Leaves that only [`World::leaf`](crate::World::leaf) can tick, by number (see [`Tree::leaf_names`]).
+    /// Leaves that only [`World::leaf`] can tick, by number (see [`Tree::leaf_names`]).
     #[must_use]
     pub fn world_leaves(&self) -> Vec<u16> {
         self.nodes.iter().filter(|node| !node.sheet.is_native()).map(|node| node.leaf).collect()
