@@ -116,9 +116,10 @@ fn flat(nodes: &[Node], format: Format) -> Flat {
 fn words(node: &Node, format: Format) -> usize {
     match node.sheet.tag {
         "Sequence" | "Fallback" | "SequenceWithMemory" => usize::from(format == Format::V4),
+        "AsyncSequence" | "AsyncFallback" | "Precondition" => 1,
         "Repeat" | "RetryUntilSuccessful" | "RunOnce" | "Latch" | "TimeExpiredCondition" => 1,
         "StopAndWaitTimerAction" => 1,
-        "Parallel" | "TimeDelay" => 2,
+        "Parallel" | "TimeDelay" | "Delay" | "Timeout" | "Sleep" => 2,
         _ => 0,
     }
 }
@@ -181,10 +182,8 @@ impl Builder<'_> {
         } else {
             sheet.ports.iter().map(|port| self.input(it, port, scope)).collect()
         };
-        let script = match it.attr("code") {
-            Some(code) if it.tag == "Script" => self.script(code, scope),
-            Some(_) | None => None,
-        };
+        let code = sheet.ports.iter().find(|port| port.kind == PortKind::Code).and_then(|port| it.attr(port.name));
+        let script = code.and_then(|code| self.script(code, scope));
         let guards = self.guards(it, scope);
         let is_leaf = matches!(sheet.kind, Kind::Condition | Kind::Action);
         let leaf = if is_leaf {

@@ -2,9 +2,11 @@
 //! small view of the world, made from rule lists, and checked without a simulator.
 //!
 //! ```text
-//! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures
-//!          faults          ▲       │
-//! rules ──► compile ───────┘       └──► check: every case of the conditions, ticked once
+//! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures,
+//!          faults       ▲     │     │                  or every leaf in its own meaning
+//! rules ──► compile ────┘     │     ├──► check, analyze: every case of the conditions, ticked
+//!                             │     └──► trace: scripted leaves in, statuses and events out
+//!                             └──► draw: text, SVG · convert: the other version, another library
 //! ```
 //!
 //! *Never here:* a simulator, a planner, a map, a file, a clock, a random number, another agent's tree.
@@ -35,7 +37,7 @@ pub use compile::{compile, describe};
 pub use convert::{Note, convert};
 pub use draw::{draw_svg, draw_text};
 pub use leaf::{LeafCall, LeafValue};
-pub use nodes::{CATALOG, DIALECTS};
+pub use nodes::{CATALOG, DIALECTS, RARE};
 pub use parse::{Includes, Meaning, Options, REGULAR_NAV, REGULAR_NAV_PATH};
 pub use sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet};
 pub use status::Status;

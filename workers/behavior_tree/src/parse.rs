@@ -105,6 +105,8 @@ pub enum Meaning {
 /// How a document is read.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
+    /// Name of the document in faults, such as its path; empty for none.
+    pub file: &'a str,
     /// Finds included files by the path as written; `BTRegularNav.xml` is found without it.
     pub includes: Option<Includes<'a>>,
     /// Whose nodes are taken, with their ports, defaults and ranges. Default: [`Library::Native`], the SocRATES fork
@@ -120,7 +122,14 @@ pub struct Options<'a> {
 
 impl Default for Options<'_> {
     fn default() -> Self {
-        Self { includes: None, library: Library::Native, meaning: Meaning::Native, foreign: &[], declared: false }
+        Self {
+            file: "",
+            includes: None,
+            library: Library::Native,
+            meaning: Meaning::Native,
+            foreign: &[],
+            declared: false,
+        }
     }
 }
 
@@ -164,8 +173,8 @@ impl Document {
     /// Reads and checks a document with its includes.
     pub(crate) fn read(text: &str, options: &Options<'_>) -> Result<Self, Vec<Fault>> {
         let root = xml::read("", text).map_err(|fault| vec![fault])?;
-        let format = match root.attr("BTCPP_format") {
-            Some(version) if version.trim().starts_with('4') => Format::V4,
+        let format = match root.attr("BTCPP_format").map(str::trim) {
+            Some(version) if version.starts_with('4') => Format::V4,
             Some(_) | None => Format::V3,
         };
         let foreign = options.foreign.iter().map(|(tag, kind)| ((*tag).to_owned(), *kind)).collect();
@@ -179,6 +188,7 @@ impl Document {
         };
         let mut reading =
             Reading { document, options, faults: Vec::new(), seen: Vec::new(), open: Vec::new(), ids: BTreeSet::new() };
+        reading.root(&root);
         reading.file(&root);
         reading.main(&root);
         let trees = std::mem::take(&mut reading.document.trees);
@@ -213,6 +223,25 @@ impl Reading<'_> {
             return;
         }
         self.faults.push(Fault::new(code, it.at(), message));
+    }
+
+    /// Attributes of the outermost element. Those of editors are passed over, but not a slip in ours.
+    fn root(&mut self, root: &Element) {
+        const OURS: [&str; 2] = ["main_tree_to_execute", "BTCPP_format"];
+        if let Some(version) = root.attr("BTCPP_format")
+            && !["3", "4"].iter().any(|known| version.trim().split('.').next() == Some(known))
+        {
+            let message = format!("BTCPP_format=`{}`; allowed: 3, 4, or no such attribute for 3", short_text(version));
+            self.fault(FaultCode::BXml, root, message);
+        }
+        for (name, _) in root.attrs.iter().filter(|(name, _)| !OURS.contains(&name.as_str())) {
+            let like = nearest(name, OURS);
+            if !like.is_empty() {
+                let message =
+                    format!("`root` has no attribute `{}`{like}; allowed: {}", short_text(name), OURS.join(", "));
+                self.fault(FaultCode::BXml, root, message);
+            }
+        }
     }
 
     /// Includes and trees of one file.

@@ -303,7 +303,8 @@ impl NodeSheet {
     #[must_use]
     pub fn only_in(&self) -> Option<Format> {
         match self.tag {
-            "RunOnce" | "Script" | "TimeDelay" => Some(Format::V4),
+            "RunOnce" | "Script" | "ScriptCondition" | "Precondition" | "UnsetBlackboard" | "Sleep"
+            | "AsyncSequence" | "AsyncFallback" | "TimeDelay" => Some(Format::V4),
             "SubTreePlus" => Some(Format::V3),
             _ => None,
         }

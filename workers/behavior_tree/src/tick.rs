@@ -56,14 +56,16 @@ impl Ticker<'_> {
     /// Ticks a node by the rule of its kind; a leaf by the world's, where it has one.
     #[inline]
     fn bare(&mut self, node: usize, step: &Step) -> Status {
-        let mut running = false;
         if let Some(cell) = self.state.cells.get_mut(node) {
             cell.mark(Cell::SEEN, true);
-            running = cell.status == Status::Running;
         }
-        if !step.asks_world {
-            return (step.tick)(self, node);
-        }
+        if step.asks_world { self.leaf_of_world(node, step) } else { (step.tick)(self, node) }
+    }
+
+    /// Apart from `bare`, so that control nodes do not pay for its frame.
+    #[inline(never)]
+    fn leaf_of_world(&mut self, node: usize, step: &Step) -> Status {
+        let running = self.status(node) == Status::Running;
         let answer = self.world.leaf(&mut leaf_call(self.tree, step, running, &mut self.state.board));
         match answer {
             // A leaf cannot be idle after a tick, nor leave itself out in version 3.
@@ -75,6 +77,7 @@ impl Ticker<'_> {
     }
 
     /// The same between the attributes of version 4.
+    #[inline(never)]
     fn guarded(&mut self, node: usize, step: &Step) -> Status {
         let tree = self.tree;
         let Some(guards) = tree.nodes.get(node).and_then(|it| it.guards.as_deref()) else {

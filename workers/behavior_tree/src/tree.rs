@@ -160,7 +160,7 @@ impl TreeState {
         self.cells.iter().map(|cell| cell.status).collect()
     }
 
-    /// The first leaf that failed because neither [`World::leaf`](crate::World::leaf) nor this crate could tick
+    /// The first leaf that failed because neither [`World::leaf`] nor this crate could tick
     /// it. Only in trees read with [`Meaning::World`](crate::Meaning::World).
     #[must_use]
     pub const fn unanswered(&self) -> Option<u16> {
@@ -201,8 +201,7 @@ impl Tree {
     /// # Errors
     /// As [`Tree::parse`].
     pub fn parse_with(xml: &str, options: &Options<'_>) -> Result<Self, Vec<Fault>> {
-        let document = Document::read(xml, options)?;
-        crate::build::build(document)
+        Document::read(xml, options).and_then(crate::build::build).map_err(|faults| in_file(options.file, faults))
     }
 
     /// The state of an agent before its first tick.
@@ -311,7 +310,7 @@ impl Tree {
         found
     }
 
-    /// Leaves that only [`World::leaf`](crate::World::leaf) can tick, by number (see [`Tree::leaf_names`]).
+    /// Leaves that only [`World::leaf`] can tick, by number (see [`Tree::leaf_names`]).
     #[must_use]
     pub fn world_leaves(&self) -> Vec<u16> {
         self.nodes.iter().filter(|node| !node.sheet.is_native()).map(|node| node.leaf).collect()
@@ -349,6 +348,18 @@ impl Tree {
     pub(crate) fn ports<'a>(&'a self, node: &'a Node) -> Ports<'a> {
         Ports { inputs: &node.inputs, board: &self.board }
     }
+}
+
+/// Puts the name of the document before places that have no name of an included file.
+fn in_file(file: &str, mut faults: Vec<Fault>) -> Vec<Fault> {
+    if !file.is_empty() {
+        for fault in &mut faults {
+            if fault.at.starts_with(|first: char| first.is_ascii_digit()) {
+                fault.at = format!("{file} {}", fault.at);
+            }
+        }
+    }
+    faults
 }
 
 fn awaited(trigger: &Trigger) -> Option<(AgentId, Gesture)> {

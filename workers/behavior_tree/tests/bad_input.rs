@@ -50,6 +50,30 @@ fn a_wrong_main_tree_is_refused_with_the_nearest_name() {
 }
 
 #[test]
+fn slips_in_the_outermost_element_are_refused() {
+    let xml = |attribute: &str| {
+        format!(
+            "<root {attribute} main_tree_to_execute='T'><BehaviorTree ID='T'><AlwaysSuccess/></BehaviorTree></root>"
+        )
+    };
+    says(&xml("BTCPP_format='5'"), FaultCode::BXml, "1:1", &["BTCPP_format=`5`", "allowed: 3, 4"]);
+    says(&xml("BTCPP_fromat='4'"), FaultCode::BXml, "1:1", &["`BTCPP_fromat`", "nearest: BTCPP_format"]);
+    for fine in ["", "BTCPP_format='3'", "BTCPP_format='4.2'", "project_name='Project'", "xmlns:x='y'"] {
+        assert!(Tree::parse(&xml(fine)).is_ok(), "{fine}");
+    }
+}
+
+#[test]
+fn faults_name_their_file() {
+    let find = |_: &str| Some("<root>\n<BehaviorTree ID='Q'><Nothing/></BehaviorTree></root>".to_owned());
+    let options = Options { file: "mine.xml", includes: Some(&find), ..Options::default() };
+    let xml = "<root main_tree_to_execute='T'><include path='other.xml'/>\n<BehaviorTree ID='T'><Something/></BehaviorTree></root>";
+    let faults = Tree::parse_with(xml, &options).map(|_| ()).unwrap_err();
+    let places: Vec<&str> = faults.iter().map(|fault| fault.at.as_str()).collect();
+    assert_eq!(places, ["other.xml 2:22 Nothing", "mine.xml 2:22 Something"]);
+}
+
+#[test]
 fn values_out_of_range_or_not_numbers_are_refused() {
     let seen = |value: &str| document(&format!("<IsRobotVisible agent_id='{{id}}' distance='{value}'/>"));
     for value in ["99", "-1", "0"] {

@@ -246,6 +246,43 @@ fn nested_decorators_pass_outcomes_inside_out() {
 }
 
 #[test]
+fn rare_nodes_of_version_4_are_ticked() {
+    let of = |body: String, ticks: &[&str]| events(&document(V4, &[("T", &body)]), ticks);
+    let list = actions("a b");
+    assert_eq!(of(format!("<AsyncSequence name='q'>{list}</AsyncSequence>"), &["", "b-"]), ["a+ =~", "b- =-"]);
+    assert_eq!(
+        of(format!("<AsyncFallback name='q'>{list}</AsyncFallback>"), &["a~", "a- b+", "a- b-", ""]),
+        ["a~ =~", "a- b+ =+", "a- =~", "b- =-"]
+    );
+    let set = "<Script name='s' code='n := 2'/>";
+    let asked = |code: &str| {
+        of(format!("<Sequence name='q'>{set}<ScriptCondition name='c' code='{code}'/>{list}</Sequence>"), &[""])
+    };
+    assert_eq!(asked("n == 2"), ["a+ b+ =+"]);
+    assert_eq!(asked("n &gt; 2"), ["=-"]);
+    let guarded = |code: &str| {
+        of(
+            format!(
+                "<Sequence name='q'>{set}<Precondition name='p' if='{code}' else='SUCCESS'>{}</Precondition></Sequence>",
+                action("a")
+            ),
+            &["a~", "a-"],
+        )
+    };
+    assert_eq!(guarded("n == 2"), ["a~ =~", "a- =-"]);
+    assert_eq!(guarded("n == 3"), ["=+", "=+"]);
+    assert_eq!(
+        of(format!("<Timeout name='t' msec='20'>{}</Timeout>", action("a")), &["a~", "", "", ""]),
+        ["a~ =~", "a~ =~", "!a =-", "a~ =~"]
+    );
+    assert_eq!(
+        of(format!("<Delay name='d' delay_msec='20'>{}</Delay>", action("a")), &["", "", "", ""]),
+        ["=~", "=~", "a+ =+", "=~"]
+    );
+    assert_eq!(of("<Sleep name='z' msec='20'/>".to_owned(), &["", "", ""]), ["=~", "=~", "=+"]);
+}
+
+#[test]
 fn the_long_form_of_a_node_says_the_same() {
     let body = "<Control ID='Sequence' name='q'><Action ID='ScriptAction' name='a'/><Condition ID='ScriptCond' name='c'/>\
         <Decorator ID='Inverter' name='i'><Action ID='ScriptAction' name='b'/></Decorator></Control>";

@@ -294,6 +294,12 @@ fn keeps_places(tree: &Tree) -> bool {
                 | "KeepRunningUntilFailure"
                 | "RunOnce"
                 | "Parallel"
+                | "AsyncSequence"
+                | "AsyncFallback"
+                | "Precondition"
+                | "Delay"
+                | "Timeout"
+                | "Sleep"
         ) || node.sheet.role.is_opaque()
     })
 }

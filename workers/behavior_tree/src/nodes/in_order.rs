@@ -31,20 +31,42 @@ pub(super) const FALLBACK: NodeSheet = NodeSheet {
     tick: fallback,
     halt: halt_counting_skips,
 };
+/// `AsyncSequence`.
+pub(super) const ASYNC_SEQUENCE: NodeSheet = NodeSheet {
+    tag: "AsyncSequence",
+    about: "a Sequence that lets go of the tick between two children that finish at once",
+    tick: async_sequence,
+    ..SEQUENCE
+};
+/// `AsyncFallback`.
+pub(super) const ASYNC_FALLBACK: NodeSheet = NodeSheet {
+    tag: "AsyncFallback",
+    about: "a Fallback that lets go of the tick between two children that finish at once",
+    tick: async_fallback,
+    ..FALLBACK
+};
 
 fn sequence(t: &mut Ticker<'_>, node: usize) -> Status {
-    in_order(t, node, Status::Failure, Status::Success)
+    in_order::<false>(t, node, Status::Failure, Status::Success)
 }
 
 fn fallback(t: &mut Ticker<'_>, node: usize) -> Status {
-    in_order(t, node, Status::Success, Status::Failure)
+    in_order::<false>(t, node, Status::Success, Status::Failure)
+}
+
+fn async_sequence(t: &mut Ticker<'_>, node: usize) -> Status {
+    in_order::<true>(t, node, Status::Failure, Status::Success)
+}
+
+fn async_fallback(t: &mut Ticker<'_>, node: usize) -> Status {
+    in_order::<true>(t, node, Status::Success, Status::Failure)
 }
 
 /// A child with the ending outcome ends it and everything starts anew; a running child is taken up again.
 ///
 /// Word 0 counts the children left out since the node was last idle; that it is not put back when a child ends
 /// the node is the way of the original.
-fn in_order(t: &mut Ticker<'_>, node: usize, ending: Status, otherwise: Status) -> Status {
+fn in_order<const YIELDS: bool>(t: &mut Ticker<'_>, node: usize, ending: Status, otherwise: Status) -> Status {
     let v4 = t.is_v4();
     if v4 && t.status(node) == Status::Idle {
         t.set_word(node, 0, 0);
@@ -53,6 +75,7 @@ fn in_order(t: &mut Ticker<'_>, node: usize, ending: Status, otherwise: Status) 
     let kids = t.kids(node);
     let mut place = t.place(node);
     while let Some(child) = kids.get(place) {
+        let was_idle = YIELDS && t.status(*child as usize) == Status::Idle;
         let outcome = t.tick(*child as usize);
         if outcome == ending {
             // Children after this one are idle: they were put back when the node last ended or was halted.
@@ -68,6 +91,10 @@ fn in_order(t: &mut Ticker<'_>, node: usize, ending: Status, otherwise: Status) 
                 return Status::Running;
             }
             Status::Skipped => t.set_word(node, 0, t.word(node, 0) + 1),
+            Status::Success | Status::Failure if was_idle && place + 1 < kids.len() => {
+                t.set_place(node, place + 1);
+                return Status::Running;
+            }
             Status::Success | Status::Failure => {}
         }
         place += 1;

@@ -31,11 +31,13 @@ mod robot_stopped;
 mod robot_visible;
 mod run_once;
 mod script;
+mod scripted;
 mod set_blackboard;
 mod subtree;
 mod switch;
 mod time_delay;
 mod time_expired;
+mod timing;
 mod update_goal;
 mod while_do_else;
 mod world_only;
@@ -100,6 +102,18 @@ pub const CATALOG: &[&NodeSheet] = &[
     &motion::STAND_STILL,
 ];
 
+/// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.
+pub const RARE: &[&NodeSheet] = &[
+    &in_order::ASYNC_SEQUENCE,
+    &in_order::ASYNC_FALLBACK,
+    &scripted::PRECONDITION,
+    &timing::DELAY,
+    &timing::TIMEOUT,
+    &timing::SLEEP,
+    &scripted::CONDITION,
+    &scripted::UNSET,
+];
+
 /// The sheets as other libraries declare them, where they differ from [`CATALOG`]: other ports, defaults and
 /// ranges, or nodes that we do not have. No library here knows more of [`CATALOG`] than its built-in part.
 pub const DIALECTS: &[(Library, &[&NodeSheet])] = &[
@@ -162,7 +176,7 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
         }
     });
     let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
-    ours.chain(theirs)
+    ours.chain(RARE.iter().copied()).chain(theirs)
 }
 
 /// Sheets a library knows, in catalogue order: what a prompt may offer.

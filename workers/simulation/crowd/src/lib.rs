@@ -19,11 +19,15 @@ pub mod forces;
 mod group;
 pub mod integrate;
 mod math;
+pub mod mix;
+pub mod model;
 pub mod obstacle;
+pub mod orca;
 pub mod params;
 pub mod person;
 pub mod strict;
 pub mod trace;
+pub mod tracks;
 mod vector;
 pub mod walker;
 

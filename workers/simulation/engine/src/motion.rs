@@ -76,6 +76,7 @@ pub(crate) struct Scene<'a> {
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     match human.action.clone() {
         Action::Navigate => navigate(human, scene, pace),
+        Action::StandStill if human.stays() => stay(human, scene),
         Action::StandStill => match scene.robot {
             // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
             Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s, PATIENCE_S) => {
@@ -142,10 +143,15 @@ fn stay(human: &mut Human, scene: &Scene<'_>) -> Want {
 /// Whether it and the robot stand face to face, or it has ended up in the line of a robot that stands because of
 /// it: after so long of that it lets the robot through for 8 s, as people do.
 fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool {
+    let way = robot.at() - human.at;
     if now_s < human.yields_until_s {
+        // As long as the robot is about to pass, nobody steps back into its way.
+        let ahead = -way.dot(&robot.intent()) > -0.3;
+        if ahead && way.norm() < 2.5 && robot.arrived_s.is_none() {
+            human.yields_until_s = human.yields_until_s.max(now_s + 1.0);
+        }
         return true;
     }
-    let way = robot.at() - human.at;
     let stands = way.norm() < 1.6 && robot.velocity.norm() < 0.1;
     let in_line = human.at_goal() && -way.dot(&robot.intent()) > 0.5 * way.norm();
     let facing = stands && (in_line || way.dot(&human.travel()) > 0.5 * way.norm());
@@ -329,7 +335,11 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
         || human.errand.spot.is_some_and(|spot| off(&spot) < 0.85) && scene.now_s - human.errand.since_s > 1.0
     {
         human.errand.since_s = scene.now_s;
-        let found = if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) };
+        let mut found = if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) };
+        if off(&found) < human.radius_m + robot.model.radius_m + 0.1 {
+            // In a narrow aisle there is no aside: it walks ahead of the robot to where there is one.
+            found = bay(human, scene, &line).unwrap_or(found);
+        }
         // Between two spots that are about as good it would go to and fro before the robot.
         if human.errand.spot.is_none_or(|spot| off(&found) > off(&spot) + 0.25) {
             human.errand.spot = Some(found);
@@ -340,7 +350,24 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
     if left < 0.08 {
         return Want::stand_facing(robot.at());
     }
-    Want { face: Some(robot.at()), ..Want::go(spot, (2.0 * left + 0.1).min(human.speed_mps.max(0.9))) }
+    let target = if left > 1.0 { round(human, scene, &spot).unwrap_or(spot) } else { spot };
+    Want { face: Some(robot.at()), ..Want::go(target, (2.0 * left + 0.1).min(human.speed_mps.max(0.9))) }
+}
+
+/// The first place beside the robot's line, ahead of the human, where the robot can pass it.
+fn bay(human: &Human, scene: &Scene<'_>, line: &Polyline) -> Option<Point> {
+    let (from, _) = line.project(&human.at);
+    (1..=30_u32).find_map(|step| {
+        let s = from + 0.5 * f64::from(step);
+        let along = line.direction(s);
+        let left = Vector::new(-along.y, along.x) * ASIDE_M;
+        [left, -left].into_iter().map(|aside| line.point(s) + aside).find(|spot| {
+            s < line.length_m()
+                && scene.floor.clearance_m(spot) >= human.radius_m + 0.04
+                && line.project(spot).1 > 0.8 * ASIDE_M
+                && scene.floor.straight(&line.point(s), spot, human.radius_m - 0.05)
+        })
+    })
 }
 
 /// The nearest free spot off the robot's line that can be reached straight; the farthest off where none is far enough.
@@ -350,6 +377,8 @@ fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> 
         let way = robot.at() - human.at;
         way / way.norm().max(0.1)
     });
+    // In a doorway the body has less room than it would like; what it has is enough to step out of it.
+    let room = human.radius_m.min(scene.floor.wall_clearance_m(&human.at) - 0.02).max(0.1);
     for ring in 1..=12_u32 {
         for turn in 0..24_u32 {
             let angle = f64::from(turn) / 24.0 * TAU;
@@ -360,7 +389,8 @@ fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> 
                     && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
             });
             if crowded
-                || !scene.floor.straight(&human.at, &spot, human.radius_m)
+                || !scene.floor.straight(&human.at, &spot, room)
+                || scene.floor.shut_between(&human.at, &spot)
                 || scene.floor.clearance_m(&spot) < human.radius_m + 0.04
             {
                 continue;

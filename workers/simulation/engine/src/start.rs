@@ -23,6 +23,13 @@ use crate::setup::{PERSON_RADIUS_M, Setup};
 /// Desired speeds: mean, standard deviation and limits, m/s.
 const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 
+/// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
+const HURRY_MPS: f64 = 1.5;
+/// Later than this at the encounter is not made good on the way, s.
+const LATE_S: f64 = 0.5;
+/// Least way to the encounter, m.
+const STILL_LEFT_M: f64 = 2.5;
+
 /// A node sequence as a way, with the length at each node.
 fn way(setup: &Setup, nodes: &[NodeId]) -> (Polyline, Vec<(NodeId, f64)>) {
     let graph = &setup.location.graph;
@@ -128,10 +135,10 @@ fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
     for ring in 0..=6_u32 {
         for turn in 0..24_u32 {
             let angle = f64::from(turn) / 24.0 * std::f64::consts::TAU;
-            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.0 + 0.2 * f64::from(ring));
+            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.3 + 0.2 * f64::from(ring));
             let aside = robot_way.project(&at).1;
             let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 && floor.straight(&end, &at, 0.2);
-            let cost = (at - goal).norm() + 2.0 * (0.95 - aside).max(0.0);
+            let cost = (at - goal).norm() + 2.0 * (1.1 - aside).max(0.0);
             if free && aside > 0.6 && best.is_none_or(|(least, _)| cost < least - 1e-9) {
                 best = Some((cost, at));
             }
@@ -185,6 +192,7 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         let human_s = marks.iter().find(|(id, _)| id == node).map_or_else(|| route.project(&at).0, |(_, s)| *s);
         Some(Meeting { node: node.clone(), at, human_s, robot_s: robot_way.project(&at).0 })
     });
+    let (route, marks, meeting) = in_time(setup, proposal.relation, route, marks, meeting);
     let doors = doors_on(setup, &route);
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
     let mut facing = 0.0;
@@ -232,6 +240,35 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         started: false,
         trail: Polyline::default(),
     }
+}
+
+type Way = (Polyline, Vec<(NodeId, f64)>, Option<Meeting>);
+
+/// Whoever could not be at its encounter in time even at a fast walk is already under way at tick 0: it starts
+/// later on its path, but never nearer than [`STILL_LEFT_M`] to the encounter.
+fn in_time(
+    setup: &Setup,
+    relation: Relation,
+    route: Polyline,
+    marks: Vec<(NodeId, f64)>,
+    meeting: Option<Meeting>,
+) -> Way {
+    let Some(meet) = meeting.as_ref().filter(|_| matches!(relation, Relation::Crossing | Relation::Frontal)) else {
+        return (route, marks, meeting);
+    };
+    let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1);
+    let late_s = meet.human_s / HURRY_MPS - robot_s;
+    if late_s < LATE_S {
+        return (route, marks, meeting);
+    }
+    let cut = (meet.human_s - HURRY_MPS * robot_s).min(meet.human_s - STILL_LEFT_M).max(0.0);
+    // Inside a door it stays inside: the door is part of the story.
+    if cut <= 0.0 || !doors_on(setup, &route).is_empty() {
+        return (route, marks, meeting);
+    }
+    let marks = marks.into_iter().filter(|(_, s)| *s >= cut).map(|(node, s)| (node, s - cut)).collect();
+    let meeting = meeting.map(|meet| Meeting { human_s: meet.human_s - cut, ..meet });
+    (route.from(cut), marks, meeting)
 }
 
 /// Doors that a way goes through, in order.

@@ -20,6 +20,8 @@ const TURN_STANDING: f64 = std::f64::consts::PI;
 const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
+/// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
+const ROBOT_GAP_M: f64 = 0.3;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
@@ -98,7 +100,7 @@ fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: 
         }
         let toward = way / distance;
         // Nobody brushes past a robot the way people brush past each other.
-        let least = if other.id.is_none() && !want.drawn { 0.18 } else { 0.06 };
+        let least = if other.id.is_none() && !want.drawn { ROBOT_GAP_M } else { 0.06 };
         let excess = velocity.dot(&toward) - (2.5 * (gap - least)).max(0.0);
         if excess > 0.0 {
             *velocity -= toward * excess;

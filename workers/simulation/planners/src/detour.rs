@@ -13,8 +13,8 @@ const CELL_M: f64 = 0.15;
 const HALF: i32 = 32;
 /// Cells of a side.
 const SIDE: usize = 65;
-/// Never nearer to a body's surface than this, m.
-const HARD_GAP_M: f64 = 0.1;
+/// Never nearer to a body's surface than the first of these where there is such a way, else than the second, m.
+const HARD_GAPS_M: [f64; 2] = [0.32, 0.1];
 /// Nearer than this to a body's surface is dear, m.
 const SOFT_GAP_M: f64 = 0.65;
 /// How much dearer a metre is on the left of the way, 1 m off it.
@@ -54,6 +54,7 @@ struct Window<'a> {
     obstacles: &'a [Obstacle],
     route: &'a Polyline,
     weights: Vec<Option<Option<f64>>>,
+    hard_gap_m: f64,
 }
 
 impl Window<'_> {
@@ -93,7 +94,7 @@ impl Window<'_> {
         weight += KEEP_RIGHT * left;
         for obstacle in self.obstacles {
             let gap = obstacle.gap_m(at) - self.ground.radius_m;
-            if obstacle.hard && gap < HARD_GAP_M {
+            if obstacle.hard && gap < self.hard_gap_m {
                 return None;
             }
             weight += 9.0 * ((SOFT_GAP_M - gap) / SOFT_GAP_M).clamp(0.0, 1.0);
@@ -126,9 +127,26 @@ pub(crate) fn round(
     from: &Point,
     to: &Point,
 ) -> Option<Polyline> {
+    // From too near to somebody there is no way with a wide berth, but there is one that leads away.
+    let near = obstacles.iter().filter(|obstacle| obstacle.hard).fold(f64::INFINITY, |least, obstacle| {
+        least.min(obstacle.gap_m(from).min(obstacle.gap_m(to)) - ground.radius_m)
+    });
+    HARD_GAPS_M
+        .iter()
+        .filter(|gap| near > **gap || **gap < 0.2)
+        .find_map(|gap| search(ground, obstacles, route, (from, to), *gap))
+}
+
+fn search(
+    ground: &Ground,
+    obstacles: &[Obstacle],
+    route: &Polyline,
+    (from, to): (&Point, &Point),
+    hard_gap_m: f64,
+) -> Option<Polyline> {
     let center = nalgebra_center(from, to);
     let near = route.from((route.project(from).0 - 1.0).max(0.0));
-    let mut window = Window { center, ground, obstacles, route: &near, weights: vec![None; SIDE * SIDE] };
+    let mut window = Window { center, ground, obstacles, route: &near, weights: vec![None; SIDE * SIDE], hard_gap_m };
     let (start, goal) = (window.cell(from)?, window.cell(to)?);
     window.weight(goal)?;
     let mut best = vec![f64::INFINITY; SIDE * SIDE];

@@ -9,6 +9,8 @@ use crate::ground::STANDING_MPS;
 const LOOK_AHEAD_M: f64 = 0.55;
 /// Gap to a person below which the robot goes slowly, m.
 const PERSONAL_M: f64 = 0.45;
+/// Gap to somebody who walks that is kept even at a crawl, m.
+const CLOSE_M: f64 = 0.36;
 /// How far ahead in time people are looked at, s.
 const HORIZON_S: f64 = 2.6;
 
@@ -35,8 +37,8 @@ pub(crate) fn safe_share(
     standing_gap_m: f64,
 ) -> f64 {
     for share in [1.0, 0.75, 0.5, 0.25] {
-        // Near people it goes slowly: only at half speed and below may somebody come as near as 0.28 m.
-        let moving_gap_m = if share > 0.5 { PERSONAL_M } else { 0.28 };
+        // Near people it goes slowly: only at half speed and below may somebody come nearer than personal space.
+        let moving_gap_m = if share > 0.5 { PERSONAL_M } else { CLOSE_M };
         let gaps = (standing_gap_m, moving_gap_m);
         if clear(seen, way, s, share * robot.v_max_mps, robot, gaps) {
             return share;

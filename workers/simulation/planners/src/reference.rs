@@ -16,6 +16,8 @@ const RATE_HZ: f64 = 20.0;
 const REPLAN_S: f64 = 0.25;
 /// A plan is wanted where somebody is nearer to the way than this (surface to surface), m.
 const WANTED_GAP_M: f64 = 0.45;
+/// A way round people may be so many times as long as the way, and a metre.
+const FARTHEST: f64 = 1.6;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;
 /// After so long behind somebody it asks to be let through, s.
@@ -109,7 +111,11 @@ impl Reference {
         if goals.is_empty() {
             goals.push(farthest);
         }
-        goals.iter().take(4).find_map(|s| detour::round(&self.ground, &people, &self.route, &at, &self.route.point(*s)))
+        goals.iter().take(4).find_map(|s| {
+            let way = detour::round(&self.ground, &people, &self.route, &at, &self.route.point(*s))?;
+            // A far longer way is none: it waits before whoever stands there, and asks.
+            (off || way.length_m() <= (s - self.s) * FARTHEST + 1.0).then_some(way)
+        })
     }
 
     /// Counts the time behind somebody and asks to be let through.

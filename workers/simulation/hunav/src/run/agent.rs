@@ -108,6 +108,8 @@ pub(crate) struct Errand {
     pub(crate) spot: Option<Point>,
     /// When it was chosen, s.
     pub(crate) chosen_s: f64,
+    /// Until when it knows where the robot is without seeing it, s.
+    pub(crate) aware_until_s: f64,
     /// Where it stands while it stands.
     pub(crate) anchor: Option<Point>,
 }

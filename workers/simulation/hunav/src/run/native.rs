@@ -30,6 +30,8 @@ const GAPS_M: (f64, f64) = (0.06, 0.18);
 const ASIDE_M: f64 = 1.0;
 /// How far somebody scared looks for a better place, m.
 const FLEE_M: f64 = 2.5;
+/// Whoever runs away knows for so long where the robot is, s.
+const AWARE_S: f64 = 2.0;
 /// A spot once chosen is kept for so long, s.
 const CHOSEN_S: f64 = 1.0;
 
@@ -238,7 +240,9 @@ fn flee(scene: &mut Scene, me: usize, speed_mps: f64) -> Want {
         };
         spots(scene, agent, FLEE_M).into_iter().fold(agent.at, farthest)
     });
-    let Some(agent) = scene.agents.get(me) else { return Want::STAND };
+    let now_s = scene.now_s;
+    let Some(agent) = scene.agents.get_mut(me) else { return Want::STAND };
+    agent.errand.aware_until_s = now_s + AWARE_S;
     if (spot - agent.at).norm() < 0.1 { Want::looking(robot) } else { Want::going(spot, speed_mps) }
 }
 

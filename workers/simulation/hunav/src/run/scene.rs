@@ -132,7 +132,11 @@ impl Scene {
 
     /// Whether the robot counts as visible.
     pub(crate) fn sees_robot(&self, me: usize, within_m: f64) -> Option<f64> {
-        self.sees(me, Target::Robot, within_m, self.rules.half_view_rad)
+        // Whoever runs from it knows where it is, although it turned its back.
+        let aware =
+            self.rules.native && self.agents.get(me).is_some_and(|agent| agent.errand.aware_until_s > self.now_s);
+        let half_view_rad = if aware { std::f64::consts::PI } else { self.rules.half_view_rad };
+        self.sees(me, Target::Robot, within_m, half_view_rad)
     }
 
     /// Whether the robot moves, as the profile takes it.

@@ -1,0 +1,194 @@
+//! What holds in every native run: nobody goes through a wall, a person or the robot, everything is finite, and the same
+//! seed gives the same bytes.
+#![cfg(test)]
+
+mod common;
+
+use std::collections::BTreeMap;
+
+use common::{Walker, file, read, section, shown};
+use socrates_engine::Floor;
+use socrates_hunav::{Inputs, Profile, RobotSpec, simulate};
+use socrates_maps::shipped;
+use socrates_model::{Grid, Point, Pose, Recording};
+
+/// Largest overlap of two bodies, m.
+const OVERLAP_M: f64 = 0.02;
+/// Largest depth of a body in a wall, m.
+const WALL_M: f64 = 0.02;
+
+/// Whole numbers below n, after Steele et al. 2014.
+struct Draw(u64);
+
+impl Draw {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        usize::try_from((z ^ (z >> 31)) % u64::try_from(n.max(1)).unwrap()).unwrap()
+    }
+
+    fn real(&mut self, least: f64, most: f64) -> f64 {
+        least + (most - least) * (self.below(1_000_000) as f64) / 1e6
+    }
+}
+
+/// A free spot of the map with this clearance, apart from those taken.
+fn spot(draw: &mut Draw, grid: &Grid, floor: &Floor, taken: &[Point]) -> (f64, f64) {
+    loop {
+        let at = grid.world_from_pixel(draw.real(0.0, grid.width as f64), draw.real(0.0, grid.height as f64));
+        let at = Point::new((at.x * 1e3).round() / 1e3, (at.y * 1e3).round() / 1e3);
+        if floor.clearance_m(&at) > 0.45 && taken.iter().all(|other| (other - at).norm() > 0.9) {
+            return (at.x, at.y);
+        }
+    }
+}
+
+/// Random agents, and a robot that drives, on a shipped map.
+fn random(map: &str, seed: u64, people: usize, seconds: f64) -> (Recording, Grid) {
+    let grid = shipped::load(map).unwrap().grid;
+    let floor = Floor::new(&grid);
+    let mut draw = Draw(seed);
+    let mut taken: Vec<Point> = Vec::new();
+    let mut walkers = Vec::new();
+    for id in 1..=people {
+        let (x, y) = spot(&mut draw, &grid, &floor, &taken);
+        taken.push(Point::new(x, y));
+        let goals: Vec<(f64, f64)> = (0..=draw.below(3)).map(|_| spot(&mut draw, &grid, &floor, &[])).collect();
+        let kind = u8::try_from(1 + draw.below(6)).unwrap();
+        let configuration = u8::try_from(draw.below(4)).unwrap();
+        walkers.push(Walker {
+            group: if draw.below(4) == 0 { 1 } else { -1 },
+            speed: draw.real(0.6, 1.8),
+            cyclic: draw.below(2) == 0,
+            ..Walker::new(
+                i64::try_from(id).unwrap(),
+                &section(kind, configuration),
+                (x, y, draw.real(-3.0, 3.0)),
+                &goals,
+            )
+        });
+    }
+    let start = spot(&mut draw, &grid, &floor, &taken);
+    let location = shipped::load(map).unwrap();
+    let nearest = |(x, y): (f64, f64)| {
+        let at = Point::new(x, y);
+        let nodes = location.graph.nodes.iter().map(|node| node.at);
+        nodes.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm())).unwrap()
+    };
+    // A robot without a planner drives straight: its points are the corners of a way.
+    let to = nearest(spot(&mut draw, &grid, &floor, &[]));
+    let way = floor.way(&Point::new(start.0, start.1), &to, 0.4);
+    let goals = way.map_or_else(Vec::new, |way| way.points().to_vec());
+    let robot = RobotSpec { goals, ..RobotSpec::standing(Pose::new(start.0, start.1, 0.0)) };
+    let agents = read(&file(&walkers));
+    let inputs = Inputs {
+        grid: Some(&grid),
+        robot: Some(robot),
+        seed,
+        duration_s: seconds,
+        ..Inputs::new(&agents, "agents.yaml")
+    };
+    let recording = simulate(&inputs).unwrap_or_else(|problems| panic!("{map} {seed}: {}", shown(&problems)));
+    (recording, grid)
+}
+
+/// Deepest overlap of two agents and of an agent with a wall, and the largest step through a wall.
+fn worst(recording: &Recording, grid: &Grid) -> (f64, f64) {
+    let floor = Floor::new(grid);
+    let radii: BTreeMap<u32, f64> =
+        recording.header.agents.iter().map(|info| (info.agent.number(), info.radius_m)).collect();
+    let (mut overlap, mut wall) = (0.0_f64, 0.0_f64);
+    // The first half second is for those who start too close to each other.
+    for tick in 50..recording.ticks() {
+        let states = recording.tick(tick);
+        for (number, state) in states.iter().enumerate() {
+            assert!(state.x.is_finite() && state.y.is_finite() && state.vx.is_finite() && state.vy.is_finite());
+            assert!(state.yaw.is_finite() && state.omega.is_finite());
+            let before = &recording.tick(tick - 1)[number];
+            assert!((state.point() - before.point()).norm() < 0.3, "{} jumps at {tick}", state.agent);
+            // People keep out of walls; the robot drives as it was told.
+            if state.agent > 0 {
+                assert!(floor.sees(&before.point(), &state.point()), "{} went through a wall at {tick}", state.agent);
+                wall = wall.max(radii[&state.agent] - floor.clearance_m(&state.point()));
+            }
+            for other in &states[number + 1..] {
+                let apart = (state.point() - other.point()).norm();
+                overlap = overlap.max(radii[&state.agent] + radii[&other.agent] - apart);
+            }
+        }
+    }
+    (overlap, wall)
+}
+
+#[test]
+fn nobody_goes_through_anybody_or_anything() {
+    for (map, people, runs) in [("office", 8, 6_u64), ("warehouse", 10, 6), ("hospital", 8, 6)] {
+        for seed in 1..=runs {
+            let (recording, grid) = random(map, seed, people, 30.0);
+            let (overlap, wall) = worst(&recording, &grid);
+            assert!(overlap <= OVERLAP_M, "{map} {seed}: two overlap by {overlap:.4} m");
+            assert!(wall <= WALL_M, "{map} {seed}: somebody is {wall:.4} m deep in a wall");
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_and_another_one_others() {
+    let hash = |seed| random("office", seed, 6, 10.0).0.hash();
+    assert_eq!(hash(3), hash(3));
+    assert_ne!(hash(3), hash(4));
+}
+
+#[test]
+fn profiles_are_deterministic_too() {
+    let walkers = [
+        Walker::new(1, &section(5, 2), (0.0, 0.0, 0.0), &[(5.0, 0.0), (0.0, 4.0)]),
+        Walker::new(2, &section(4, 3), (5.0, 1.0, 3.0), &[(-5.0, 0.0)]),
+    ];
+    let agents = read(&file(&walkers));
+    for profile in [Profile::Hunav10, Profile::Hunav11] {
+        let run = |seed| {
+            let robot = RobotSpec::standing(Pose::new(2.0, 2.0, 0.0));
+            let inputs =
+                Inputs { profile, seed, robot: Some(robot), duration_s: 20.0, ..Inputs::new(&agents, "a.yaml") };
+            simulate(&inputs).unwrap().hash()
+        };
+        assert_eq!(run(1), run(1));
+        assert_eq!(run(1) == run(2), profile == Profile::Hunav10, "only 1.1 draws");
+    }
+}
+
+#[test]
+fn people_reach_their_goals_round_corners() {
+    let grid = common::hall_with_wall(0.0, -4.0, 4.0);
+    let walker = Walker { cyclic: false, ..Walker::new(1, " 1", (-2.0, 0.0, 0.0), &[(2.0, 0.0), (-2.0, 1.0)]) };
+    let agents = read(&file(&[walker]));
+    let inputs = Inputs { grid: Some(&grid), ..Inputs::new(&agents, "agents.yaml") };
+    let recording = simulate(&inputs).unwrap();
+    let end = recording.tick(recording.ticks() - 1)[0];
+    assert!((end.point() - Point::new(-2.0, 1.0)).norm() < 0.45, "{}", end.point());
+    assert!(worst(&recording, &grid).1 <= WALL_M);
+}
+
+#[test]
+fn what_cannot_run_is_said_at_once() {
+    let grid = common::hall_with_wall(5.0, -3.0, 3.0);
+    let agents = read(&file(&[
+        Walker::new(1, " 1", (0.0, 0.0, 0.0), &[(5.0, 0.0)]),
+        Walker::new(2, " 9", (3.0, 0.0, 0.0), &[(0.0, 3.0)]),
+    ]));
+    let robot = RobotSpec { id: Some(2), radius_m: -1.0, ..RobotSpec::standing(Pose::new(f64::NAN, 0.0, 0.0)) };
+    let inputs = Inputs {
+        grid: Some(&grid),
+        robot: Some(robot),
+        duration_s: f64::NAN,
+        models: BTreeMap::from([(9, socrates_hunav::HumanModel::Orca)]),
+        ..Inputs::new(&agents, "agents.yaml")
+    };
+    let said = shown(&simulate(&inputs).unwrap_err());
+    for word in ["agent1.g0", "in a wall", "LLMBT_2.xml", "robot's id", "radius", "position", "--duration", "nobody"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+}
