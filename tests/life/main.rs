@@ -4,6 +4,7 @@
 mod bad_input;
 mod bundles;
 mod live;
+mod originals;
 mod repairs;
 mod requests;
 
