@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use socrates_model::{Fault, FaultCode};
 
 use crate::blackboard::read_flag;
+use crate::hints::{listed, nearest, resolved};
 use crate::nodes::{self, FOREIGN_ACTION, FOREIGN_CONDITION};
 use crate::script::Script;
 use crate::sheet::{Kind, Library, NodeSheet, PortSheet};
@@ -37,55 +38,6 @@ pub(crate) const GUARDS: [&str; 8] =
 
 /// Most faults that are told of a document.
 const MAX_FAULTS: usize = 200;
-/// Most names that a message lists.
-const MAX_LISTED: usize = 24;
-/// Longest name that is compared with others, bytes.
-const MAX_COMPARED: usize = 64;
-
-/// Names in a message, not too many of them.
-fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<&str> = names.into_iter().collect();
-    let mut text = names.iter().take(MAX_LISTED).map(|name| short_text(name)).collect::<Vec<_>>().join(", ");
-    if text.is_empty() {
-        text.push_str("none");
-    }
-    if names.len() > MAX_LISTED {
-        text.push_str(&format!(" and {} more", names.len() - MAX_LISTED));
-    }
-    text
-}
-
-/// `; nearest: NAME` where one of the names is like the one that was written.
-fn nearest<'a>(written: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    if written.len() > MAX_COMPARED {
-        return String::new();
-    }
-    let wanted = written.to_lowercase();
-    let allowed = (written.chars().count() / 2).clamp(1, 6);
-    let distance = |name: &str| strsim::levenshtein(&name.to_lowercase(), &wanted);
-    let found = names.into_iter().take(1000).map(|name| (distance(name), name)).min();
-    found
-        .filter(|(distance, _)| *distance <= allowed)
-        .map_or_else(String::new, |(_, name)| format!("; nearest: {name}"))
-}
-
-/// Path of an included file seen from the document itself: paths are relative to the file that names them.
-fn resolved(file: &str, path: &str) -> String {
-    let folder = file.rfind('/').and_then(|end| file.get(..=end)).unwrap_or("");
-    if folder.is_empty() || path.starts_with('/') {
-        return path.to_owned();
-    }
-    let mut parts: Vec<&str> = Vec::new();
-    for part in folder.split('/').chain(path.split('/')).filter(|part| !part.is_empty() && *part != ".") {
-        match (part, parts.last()) {
-            ("..", Some(last)) if *last != ".." => drop(parts.pop()),
-            _ => parts.push(part),
-        }
-    }
-    let root = if folder.starts_with('/') { "/" } else { "" };
-    format!("{root}{}", parts.join("/"))
-}
-
 /// Most included files of a document.
 const MAX_INCLUDES: usize = 16;
 
