@@ -108,10 +108,9 @@ pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
     for (agent, want) in scene.agents.iter_mut().zip(&wants) {
         if agent.present
             && let Some(body) = resolved.next()
+            && agent.model != HumanModel::Track
         {
-            if agent.model != HumanModel::Track {
-                settle(agent, want, &body, dt);
-            }
+            settle(agent, want, &body, dt);
         }
     }
     touches
