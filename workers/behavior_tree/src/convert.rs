@@ -134,8 +134,8 @@ impl Notes {
             "WhileDoElse" if !to_v4 && it.children.len() < 3 => {
                 self.add(it, true, "version 3 demands a third child; add <AlwaysFailure/>");
             }
-            "RunOnce" | "Script" if !to_v4 => {
-                self.add(it, true, format!("version 3 has no `{}` and cannot load the tree", sheet.tag));
+            tag if sheet.only_in() == Some(self.from) && tag != "SubTreePlus" => {
+                self.add(it, true, format!("{} has no `{tag}` and cannot load the tree", self.to.name()));
             }
             "SubTree" | "SubTreePlus" => self.subtree(it),
             _ => {}

@@ -17,6 +17,7 @@ pub mod check;
 pub mod compile;
 pub mod convert;
 pub mod draw;
+mod hints;
 mod leaf;
 pub mod nodes;
 pub mod parse;

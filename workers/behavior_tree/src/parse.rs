@@ -1,9 +1,11 @@
 //! From XML to a checked document: main tree, tags, ports, ranges, numbers of children. Every fault at once.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::{Fault, FaultCode};
 
+use crate::blackboard::read_flag;
+use crate::hints::{listed, nearest, resolved};
 use crate::nodes::{self, FOREIGN_ACTION, FOREIGN_CONDITION};
 use crate::script::Script;
 use crate::sheet::{Kind, Library, NodeSheet, PortSheet};
@@ -36,55 +38,6 @@ pub(crate) const GUARDS: [&str; 8] =
 
 /// Most faults that are told of a document.
 const MAX_FAULTS: usize = 200;
-/// Most names that a message lists.
-const MAX_LISTED: usize = 24;
-/// Longest name that is compared with others, bytes.
-const MAX_COMPARED: usize = 64;
-
-/// Names in a message, not too many of them.
-fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<&str> = names.into_iter().collect();
-    let mut text = names.iter().take(MAX_LISTED).map(|name| short_text(name)).collect::<Vec<_>>().join(", ");
-    if text.is_empty() {
-        text.push_str("none");
-    }
-    if names.len() > MAX_LISTED {
-        text.push_str(&format!(" and {} more", names.len() - MAX_LISTED));
-    }
-    text
-}
-
-/// `; nearest: NAME` where one of the names is like the one that was written.
-fn nearest<'a>(written: &str, names: impl IntoIterator<Item = &'a str>) -> String {
-    if written.len() > MAX_COMPARED {
-        return String::new();
-    }
-    let wanted = written.to_lowercase();
-    let allowed = (written.chars().count() / 2).clamp(1, 6);
-    let distance = |name: &str| strsim::levenshtein(&name.to_lowercase(), &wanted);
-    let found = names.into_iter().take(1000).map(|name| (distance(name), name)).min();
-    found
-        .filter(|(distance, _)| *distance <= allowed)
-        .map_or_else(String::new, |(_, name)| format!("; nearest: {name}"))
-}
-
-/// Path of an included file seen from the document itself: paths are relative to the file that names them.
-fn resolved(file: &str, path: &str) -> String {
-    let folder = file.rfind('/').and_then(|end| file.get(..=end)).unwrap_or("");
-    if folder.is_empty() || path.starts_with('/') {
-        return path.to_owned();
-    }
-    let mut parts: Vec<&str> = Vec::new();
-    for part in folder.split('/').chain(path.split('/')).filter(|part| !part.is_empty() && *part != ".") {
-        match (part, parts.last()) {
-            ("..", Some(last)) if *last != ".." => drop(parts.pop()),
-            _ => parts.push(part),
-        }
-    }
-    let root = if folder.starts_with('/') { "/" } else { "" };
-    format!("{root}{}", parts.join("/"))
-}
-
 /// Most included files of a document.
 const MAX_INCLUDES: usize = 16;
 
@@ -186,12 +139,22 @@ impl Document {
             library: options.library,
             foreign,
         };
-        let mut reading =
-            Reading { document, options, faults: Vec::new(), seen: Vec::new(), open: Vec::new(), ids: BTreeSet::new() };
+        let mut reading = Reading {
+            document,
+            options,
+            faults: Vec::new(),
+            seen: Vec::new(),
+            open: Vec::new(),
+            models: BTreeMap::new(),
+            ids: BTreeSet::new(),
+        };
         reading.root(&root);
         reading.file(&root);
         reading.main(&root);
-        let trees = std::mem::take(&mut reading.document.trees);
+        let mut trees = std::mem::take(&mut reading.document.trees);
+        if format == Format::V4 {
+            trees.iter_mut().for_each(|tree| reading.hand_defaults(&mut tree.root));
+        }
         for tree in &trees {
             reading.element(&tree.root);
         }
@@ -209,6 +172,8 @@ struct Reading<'a> {
     seen: Vec<String>,
     /// Files that are being read, the outermost first.
     open: Vec<String>,
+    /// Ports that a `TreeNodesModel` declares for a tree, with their defaults.
+    models: BTreeMap<String, Vec<(String, Option<String>)>>,
     /// Ids of the trees found so far.
     ids: BTreeSet<String>,
 }
@@ -269,18 +234,47 @@ impl Reading<'_> {
     }
 
     fn declarations(&mut self, it: &Element) {
-        if !self.options.declared {
-            return;
-        }
         for declared in &it.children {
-            let kind = match declared.tag.as_str() {
-                "Condition" => Kind::Condition,
-                "Action" => Kind::Action,
-                _ => continue,
-            };
-            if let Some(id) = declared.attr("ID") {
-                self.document.foreign.push((id.to_owned(), kind));
+            let Some(id) = declared.attr("ID") else { continue };
+            match declared.tag.as_str() {
+                "Condition" if self.options.declared => self.document.foreign.push((id.to_owned(), Kind::Condition)),
+                "Action" if self.options.declared => self.document.foreign.push((id.to_owned(), Kind::Action)),
+                "SubTree" => {
+                    let ports = declared.children.iter().filter(|port| port.tag.ends_with("_port"));
+                    let of = |port: &Element| {
+                        let default = port.attr("default").filter(|default| !default.is_empty());
+                        Some((port.attr("name")?.to_owned(), default.map(str::to_owned)))
+                    };
+                    self.models.insert(id.to_owned(), ports.filter_map(of).collect());
+                }
+                _ => {}
             }
+        }
+    }
+
+    /// Writes the defaults that a model declares for the ports of a subtree into the elements that leave them out, as
+    /// version 4 does; a port without one must be given.
+    fn hand_defaults(&mut self, it: &mut Element) {
+        let ports = if it.tag == "SubTree" { it.attr("ID").and_then(|id| self.models.get(id)).cloned() } else { None };
+        let is_autoremapped = it.attr("_autoremap").and_then(read_flag) == Some(true);
+        for (name, default) in ports.into_iter().flatten() {
+            if is_autoremapped || it.attr(&name).is_some() {
+                continue;
+            }
+            match default {
+                Some(default) => it.attrs.push((name, default)),
+                None => {
+                    let message = format!(
+                        "the model of this subtree declares the port `{}` without a default; allowed: {}=\"{{entry}}\", a constant, or _autoremap=\"true\"",
+                        short_text(&name),
+                        short_text(&name)
+                    );
+                    self.fault(FaultCode::BPort, it, message);
+                }
+            }
+        }
+        for child in &mut it.children {
+            self.hand_defaults(child);
         }
     }
 

@@ -342,6 +342,28 @@ fn evaluate(expr: &Expr, board: &mut [Option<Value>]) -> Result<Value, ScriptFau
 }
 
 fn combine(op: Op, left: &Value, right: &Value) -> Result<Value, ScriptFault> {
+    if left.is_text() && right.is_text() {
+        // Two texts are compared and joined as texts, also where both read as numbers.
+        let order = || left.to_string().cmp(&right.to_string());
+        match op {
+            Op::Less => return Ok(truth(order().is_lt())),
+            Op::LessEqual => return Ok(truth(order().is_le())),
+            Op::Greater => return Ok(truth(order().is_gt())),
+            Op::GreaterEqual => return Ok(truth(order().is_ge())),
+            Op::Add => return Ok(Value::of_text(&format!("{left}{right}"))),
+            Op::Or
+            | Op::And
+            | Op::Equal
+            | Op::Unequal
+            | Op::Subtract
+            | Op::Multiply
+            | Op::Divide
+            | Op::BitOr
+            | Op::BitXor
+            | Op::BitAnd
+            | Op::Join => {}
+        }
+    }
     Ok(match op {
         Op::Or | Op::And => truth(right.flag()),
         Op::Equal => truth(equal(left, right)),
@@ -417,6 +439,7 @@ mod tests {
         assert!(result("0x1F + 1e1 + .5 * 2").is_err());
         assert_eq!(result("0x1F + 1e1 + 0.5 * 2").unwrap(), Value::Number(42.0));
         assert_eq!(result("'a' .. 'b' .. 1 == 'ab1'").unwrap(), Value::Number(1.0));
+        assert_eq!(result("'a' + 'b' == 'ab' && 'abc' < 'abd' && '10' < '9' && '10' > 9").unwrap(), Value::Number(1.0));
     }
 
     #[test]

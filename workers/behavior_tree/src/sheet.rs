@@ -319,7 +319,8 @@ impl NodeSheet {
     /// The sheet as one line of a prompt: `FollowHuman agent_id="{id}" target_id=…: …`.
     #[must_use]
     pub fn line(&self) -> String {
-        let mut text = format!("{} ({})", self.tag, self.kind.name());
+        let only = self.only_in().map_or_else(String::new, |format| format!(", {} only", format.name()));
+        let mut text = format!("{} ({}{only})", self.tag, self.kind.name());
         for port in self.ports {
             text.push_str(&format!(" {}=[{}]", port.name, port.kind.allowed()));
             if let Some(default) = port.default {

@@ -9,14 +9,15 @@ use crate::world::World;
 
 /// Most nodes ticked in one tick of a tree. Nested repetitions could otherwise keep it for ever;
 /// what is left over goes on in the next tick.
-const MAX_STEPS: usize = 16_384;
+pub(crate) const MAX_STEPS: usize = 16_384;
 
 /// One tick of one tree.
 pub(crate) struct Ticker<'a> {
     pub(crate) tree: &'a Tree,
     pub(crate) state: &'a mut TreeState,
     pub(crate) world: &'a mut dyn World,
-    pub(crate) steps: usize,
+    /// Nodes that may still be ticked.
+    pub(crate) left: usize,
 }
 
 impl Ticker<'_> {
@@ -36,10 +37,10 @@ impl Ticker<'_> {
     pub(crate) fn tick(&mut self, node: usize) -> Status {
         let tree = self.tree;
         let Some(step) = tree.steps.get(node) else { return Status::Failure };
-        self.steps += 1;
-        if self.steps > MAX_STEPS {
+        if self.left == 0 {
             return Status::Running;
         }
+        self.left -= 1;
         let outcome = if step.is_guarded { self.guarded(node, step) } else { self.bare(node, step) };
         if outcome != Status::Skipped {
             self.set(node, outcome);

@@ -10,7 +10,7 @@ use crate::parse::{Document, Options};
 use crate::script::Script;
 use crate::sheet::{HaltFn, Library, NodeSheet, Role, TickFn};
 use crate::status::Status;
-use crate::tick::Ticker;
+use crate::tick::{MAX_STEPS, Ticker};
 use crate::world::World;
 use crate::xml::Site;
 
@@ -229,7 +229,12 @@ impl Tree {
 
     /// Ticks once.
     pub fn tick(&self, state: &mut TreeState, world: &mut dyn World) -> Status {
-        Ticker { tree: self, state, world, steps: 0 }.root()
+        self.tick_at_most(state, world, MAX_STEPS)
+    }
+
+    /// The same with another limit of nodes ticked.
+    pub(crate) fn tick_at_most(&self, state: &mut TreeState, world: &mut dyn World, left: usize) -> Status {
+        Ticker { tree: self, state, world, left }.root()
     }
 
     /// Version of the document.

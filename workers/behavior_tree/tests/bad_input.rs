@@ -1,6 +1,8 @@
 //! Bad documents, one kind after the other: each is refused with line, column, node, value and what is allowed.
 #![cfg(test)]
 
+mod common;
+
 use socrates_bt::{Options, Tree, decode};
 use socrates_model::{Fault, FaultCode};
 
@@ -208,6 +210,11 @@ fn subtrees_nested_to_the_limit_do_not_exhaust_the_stack() {
     }
     xml.push_str("<BehaviorTree ID='t15'><AlwaysSuccess/></BehaviorTree></root>");
     says(&xml, FaultCode::BMain, "1:", &["deeper than 256"]);
+    let tree = Tree::parse(&xml.replace("main_tree_to_execute='t0'", "main_tree_to_execute='t11'")).unwrap();
+    assert_eq!(tree.node_names().len(), 4 * 61 + 1);
+    let mut state = tree.start();
+    common::Room::default().tick(&tree, &mut state);
+    assert!(state.visited().iter().all(|visited| *visited));
 }
 
 #[test]

@@ -251,8 +251,12 @@ fn holds_for(tree: &Tree, options: &Options<'_>) {
     assert_eq!(draw_text(&copy), draw_text(tree));
     assert!(draw_svg(tree).ends_with("</svg>\n"));
     for format in [Format::V3, Format::V4] {
-        let (xml, _) = convert(tree, format, options.library);
-        assert!(!xml.is_empty());
+        let (xml, notes) = convert(tree, format, options.library);
+        let cannot = notes.iter().any(|note| note.message.contains("cannot load") || note.message.contains("demands"));
+        match Tree::parse_with(&xml, options) {
+            Ok(other) => assert_eq!(other.format(), format),
+            Err(faults) => assert!(cannot, "{faults:#?} in {xml}, made without a word: {notes:#?}"),
+        }
     }
 }
 

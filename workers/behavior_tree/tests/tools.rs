@@ -229,6 +229,16 @@ fn too_many_conditions_are_sampled_and_that_is_said() {
 }
 
 #[test]
+fn nested_repetitions_do_not_keep_the_analysis() {
+    let asked: String = (1..=12).map(|k| format!("<Inverter><HasTimePassed seconds='{k}'/></Inverter>")).collect();
+    let (open, close) = ("<Repeat num_cycles='-1'>".repeat(8), "</Repeat>".repeat(8));
+    let found = analysis(&format!(
+        "<Sequence name='s'>{open}<Fallback name='f'>{asked}{LOOK}</Fallback>{close}{WALK}</Sequence>"
+    ));
+    assert!(found.dead.iter().any(|fault| fault.message.contains("`walk` can never run")), "{found}");
+}
+
+#[test]
 fn leaves_of_unknown_meaning_are_taken_both_ways_and_named() {
     let body = "<Fallback name='f'><Sequence name='s'><IsRobotFacingAgent agent_id='1'/><SetGoal agent_id='1' goal_id='1'/></Sequence><RegularNav agent_id='1'/></Fallback>";
     let options = Options { library: Library::HunavSim2, meaning: Meaning::World, ..Options::default() };

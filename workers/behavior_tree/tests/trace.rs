@@ -192,6 +192,22 @@ fn blackboards_of_subtrees_are_their_own_unless_something_is_handed_over() {
 }
 
 #[test]
+fn a_model_gives_the_ports_of_a_subtree_their_defaults() {
+    let of = |call: &str| {
+        let inner =
+            format!("<Switch2 name='w' variable='{{y}}' case_1='1' case_2='2'>{}</Switch2>", actions("one two other"));
+        let model = "<TreeNodesModel><SubTree ID='S'><input_port name='y' default='2'/><input_port name='z'/></SubTree></TreeNodesModel>";
+        let xml = document(V4, &[("T", call), ("S", &inner)]).replace("</root>", &format!("{model}</root>"));
+        trace(&xml, None, "{\"ticks\":[{}]}").map(|traced| traced.events_csv.lines().nth(1).unwrap().to_owned())
+    };
+    assert_eq!(of("<SubTree ID='S' name='s' z='0'/>").unwrap(), "0,TICK,two,SUCCESS");
+    assert_eq!(of("<SubTree ID='S' name='s' z='0' y='1'/>").unwrap(), "0,TICK,one,SUCCESS");
+    assert_eq!(of("<SubTree ID='S' name='s' _autoremap='true'/>").unwrap(), "0,TICK,other,SUCCESS");
+    let faults = of("<SubTree ID='S' name='s'/>").unwrap_err();
+    assert!(faults[0].message.contains("`z` without a default"), "{}", faults[0]);
+}
+
+#[test]
 fn what_a_subtree_writes_comes_out_only_by_a_hand_over() {
     let inner = "<SetBlackboard name='s' output_key='y' value='2'/>";
     let of = |format: &str, call: &str| {

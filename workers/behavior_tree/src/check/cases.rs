@@ -18,6 +18,10 @@ use crate::tree::{Node, Tree};
 /// Ticks of a case where nodes keep a place between ticks.
 const MEMORY_TICKS: usize = 6;
 
+/// Nodes that a tick of a case may come to at least. Nested repetitions say nothing new after that, and there are
+/// thousands of cases.
+const LEAST_STEPS: usize = 1024;
+
 /// What was seen in one case.
 #[derive(Debug, Clone)]
 pub(super) struct Case {
@@ -96,6 +100,7 @@ impl<'a> Cases<'a> {
                 Atom::Timer(..) | Atom::Memory(_) | Atom::World(_) | Atom::GoalHere | Atom::Answer(_) => {}
             }
         }
+        let most = LEAST_STEPS.max(4 * tree.nodes.len());
         let ticks = if keeps_places(tree) { MEMORY_TICKS } else { 1 };
         let mut case = Case {
             truth,
@@ -113,7 +118,7 @@ impl<'a> Cases<'a> {
                 gestures: Vec::new(),
                 goal_taken: false,
             };
-            tree.tick(&mut state, &mut world);
+            tree.tick_at_most(&mut state, &mut world, most);
             let CaseWorld { acts, gestures, goal_taken, .. } = world;
             case.acts.push(acts);
             case.gestures.push(gestures);

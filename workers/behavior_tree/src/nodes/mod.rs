@@ -133,6 +133,7 @@ pub fn sheet_in(tag: &str, library: Library) -> Option<&'static NodeSheet> {
 pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
     CATALOG
         .iter()
+        .chain(RARE)
         .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets.iter()))
         .copied()
         .find(|sheet| sheet.is_called(tag))

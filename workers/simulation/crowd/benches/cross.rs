@@ -147,13 +147,14 @@ fn run(n: u32, start: &Instant) {
         ("portable".to_owned(), Mode::Portable(Portable::new(&floor.walkers, &floor.walls)), None),
     ];
     let faster = BOUNDS.map(|bound| (bound, Instructions::Detected)).into_iter();
-    for (error_mps2_bound, instructions) in faster.chain([(1e-3, Instructions::Baseline)]) {
+    for (error_mps2_bound, instructions) in faster.chain([(1e-3, Instructions::Avx2), (1e-3, Instructions::Baseline)]) {
         let settings =
             Settings { params: params.clone(), error_mps2: error_mps2_bound, instructions, ..Settings::default() };
         let Ok(mut crowd) = fast::Crowd::new(&floor.walkers, &floor.walls, &settings) else { continue };
         let error = error_mps2(&mut crowd, &wanted);
         let name = match instructions {
             Instructions::Detected => format!("fast {error_mps2_bound:e}"),
+            Instructions::Avx2 => format!("fast {error_mps2_bound:e} AVX2"),
             Instructions::Baseline => format!("fast {error_mps2_bound:e} baseline"),
         };
         modes.push((name, Mode::Fast(Box::new(crowd)), Some(error)));

@@ -1,17 +1,42 @@
-//! People who walk: the social force model of pedestrians, as pure functions.
+//! People who walk: social forces, mutual avoidance and recorded tracks, as a library of its own.
 //!
 //! ```text
-//! people + obstacle points ──► forces ──► integrate ──► people, one step later
-//!                    (desired, obstacle, social, group)
+//!               people + walls
+//!        ┌────────────┼────────────────┬────────────────┬──────────────┐
+//!     forces       strict            fast             orca          tracks
+//!   portable,   the reference    large crowds,     velocities     as recorded
+//!   one by one  library, bit     an error bound    that avoid
+//!        │       for bit              │             collisions        │
+//!        │          │                 │                │              │
+//!        │        trace               │                └── mix ───────┤
+//!        └──────────┴─────────────────┴──► people, one step later ◄───┘
 //! ```
 //!
-//! Every force is computed from the same (old) state and in a written order of operations, so the
-//! same input gives the same bytes on every machine: transcendental functions come from `libm`,
-//! sums run in list order, nothing is fused. Model: Moussaïd et al. 2009 and 2010 (social and group
-//! forces), Helbing and Molnár 1995 (desired and obstacle forces), with the constants of the
-//! HuNavSim family.
+//! The law of the social forces is that of Moussaïd et al. 2009 and 2010 (social and group forces) and
+//! Helbing and Molnár 1995 (desired and obstacle forces), with the constants of the HuNavSim family. It
+//! is there in three ways:
 //!
-//! *Never here:* a wall map, a robot, a scenario word, rigid-body contacts, a clock, a random number.
+//! - [`forces()`] and [`integrate()`]: plain functions. Transcendental functions come from `libm`, sums
+//!   run in list order, nothing is fused: the same input gives the same bytes on every machine.
+//! - [`strict`]: the reference library bit for bit, with the functions of the platform.
+//! - [`fast`]: large crowds; pairs that provably do not matter are left out, the rest is worked out many
+//!   at a time, and the bytes are the same on every processor.
+//!
+//! Every step is synchronous: everybody moves from the same (old) state.
+//!
+//! ```
+//! use socrates_crowd::cross::{DT_S, cross};
+//! use socrates_crowd::fast::{Crowd, Settings};
+//!
+//! let floor = cross(100);
+//! let mut crowd = Crowd::new(&floor.walkers, &floor.walls, &Settings::default())?;
+//! crowd.step(DT_S)?;
+//! assert_eq!(crowd.people().len(), 100);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! *Never here:* a map, a robot, a scenario word, rigid-body contacts, a clock, a random number that
+//! nobody asked for, a file or socket (readers take text, writers take what they write to).
 
 pub mod cross;
 pub mod fast;
@@ -33,6 +58,8 @@ pub mod walker;
 
 pub use forces::{Forces, forces, forces_on};
 pub use integrate::integrate;
+pub use mix::{Member, Mix};
+pub use model::{CrowdModel, View};
 pub use obstacle::{Segment, points_in_range};
 pub use params::{BadParams, CenterOrder, Params};
 pub use person::{Goal, Person};

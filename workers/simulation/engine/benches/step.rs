@@ -1,6 +1,6 @@
 //! Speed of a whole run and of the scan: process CPU time, one thread, medians, ratios from one run.
 //!
-//! `cargo bench -p socrates-engine --bench step [people]`
+//! `cargo bench -p socrates-engine --bench step -- [people] [scan|step]`
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 #![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a bench is no library")]
 
@@ -147,13 +147,19 @@ fn main() {
     let uptime = std::process::Command::new("date").arg("-u").output();
     let date = uptime.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned()).unwrap_or_default();
     println!("{} · {date} · process CPU time, one thread", told("/proc/cpuinfo", "model name"));
-    for people in [10, 50, 1000] {
-        if only.is_none_or(|only| only == people) {
+    let asked = |part: &str| {
+        let words = || std::env::args().filter(|argument| ["scan", "step"].contains(&argument.as_str()));
+        words().count() == 0 || words().any(|word| word == part)
+    };
+    for people in [10, 50, 1000].into_iter().filter(|people| only.is_none_or(|only| only == *people)) {
+        if asked("scan") {
             scans(people);
+        }
+        if asked("step") {
             steps(people, if people >= 1000 { 5.0 } else { 20.0 });
         }
     }
-    for name in socrates_maps::shipped::names() {
+    for name in socrates_maps::shipped::names().iter().filter(|_| asked("scan")) {
         map_scans(name);
     }
     println!("peak memory {}", told("/proc/self/status", "VmHWM"));

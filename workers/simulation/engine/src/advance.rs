@@ -32,7 +32,7 @@ impl Engine {
         let mut wants: Vec<Want> = Vec::with_capacity(self.humans.len());
         let mut bodies: Vec<Body> = Vec::with_capacity(self.humans.len() + 1);
         let mut around: Vec<Other> = Vec::new();
-        let mut walker = Walker::new(&self.params);
+        let mut walker = Walker::new(&self.params, self.humans.len());
         for (place, (human, pace)) in self.humans.iter_mut().zip(&paces).enumerate() {
             self.near.around(place, &human.at, &mut around);
             let scene = Scene {

@@ -14,7 +14,8 @@ const CORNER_M: f64 = 1e-12;
 pub(crate) struct Cells {
     width: i32,
     height: i32,
-    resolution_m: f64,
+    /// Cells per metre.
+    per_m: f64,
     origin: Point,
     cos: f64,
     sin: f64,
@@ -28,7 +29,7 @@ impl Cells {
         Self {
             width: i32::try_from(grid.width).unwrap_or(0),
             height: i32::try_from(grid.height).unwrap_or(0),
-            resolution_m: grid.resolution_m,
+            per_m: 1.0 / grid.resolution_m,
             origin: grid.origin.point(),
             cos,
             sin,
@@ -41,14 +42,14 @@ impl Cells {
         let away = point - self.origin;
         let along = away.x * self.cos + away.y * self.sin;
         let up = away.y * self.cos - away.x * self.sin;
-        (along / self.resolution_m, f64::from(self.height) - up / self.resolution_m)
+        (along * self.per_m, f64::from(self.height) - up * self.per_m)
     }
 
     /// Cells per metre along a unit direction of the map frame.
     pub(crate) fn direction(&self, heading: &Vector) -> (f64, f64) {
         let along = heading.x * self.cos + heading.y * self.sin;
         let up = heading.y * self.cos - heading.x * self.sin;
-        (along / self.resolution_m, -up / self.resolution_m)
+        (along * self.per_m, -up * self.per_m)
     }
 
     fn gap(&self, column: i32, row: i32) -> u8 {

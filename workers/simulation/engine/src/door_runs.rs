@@ -54,9 +54,8 @@ fn run(made: Setup) -> (Recording, Vec<(f64, bool, f64)>) {
 
 /// Times at which the door opens and closes, s.
 fn changes(recording: &Recording) -> Vec<(f64, bool)> {
-    let door = |event: &socrates_model::Event| match &event.kind {
-        EventKind::Door { open, .. } => Some((event.time.secs(), *open)),
-        _ => None,
+    let door = |event: &socrates_model::Event| {
+        if let EventKind::Door { open, .. } = &event.kind { Some((event.time.secs(), *open)) } else { None }
     };
     recording.events.iter().filter_map(door).collect()
 }
@@ -135,10 +134,11 @@ fn a_node_that_is_reached_and_another_door_open_doors_without_a_spot() {
     let opened: Vec<&str> = recording
         .events
         .iter()
-        .filter_map(|event| match &event.kind {
-            EventKind::Door { door, open: true } => Some(door.as_str()),
-            _ => None,
-        })
+        .filter_map(
+            |event| {
+                if let EventKind::Door { door, open: true } = &event.kind { Some(door.as_str()) } else { None }
+            },
+        )
         .collect();
     assert_eq!(opened, ["gate", "far"]);
 }

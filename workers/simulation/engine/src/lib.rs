@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, walk, advance, [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, walk, lanes, advance, [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!
@@ -26,6 +26,7 @@ mod cells;
 mod drive;
 mod ending;
 mod human;
+mod lanes;
 mod motion;
 mod near;
 mod placing;

@@ -156,7 +156,7 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
     let in_line = human.at_goal() && -way.dot(&robot.intent()) > 0.5 * way.norm();
     let facing = stands && (in_line || way.dot(&human.travel()) > 0.5 * way.norm());
     human.jammed_s =
-        if facing && human.velocity.norm() < 0.15 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
+        if facing && human.velocity.norm() < 0.3 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
     if human.jammed_s > patience_s {
         human.jammed_s = 0.0;
         human.yields_until_s = now_s + 8.0;
@@ -234,7 +234,10 @@ fn round(human: &mut Human, scene: &Scene<'_>, goal: &Point) -> Option<Point> {
     let fits = human.errand.way.as_ref().is_some_and(|(way, _)| way.end().is_some_and(|end| (end - goal).norm() < 1.0));
     let due = scene.now_s - human.errand.since_s > 0.5 || human.errand.way.is_none();
     if !fits && due {
-        human.errand.way = scene.floor.way(&human.at, goal, human.radius_m + 0.04).map(|way| (way, 0.0));
+        // In an aisle as narrow as the body the way is still a way.
+        let way = |room: f64| scene.floor.way(&human.at, goal, room);
+        let way = way(human.radius_m + 0.04).or_else(|| way(human.radius_m - 0.06));
+        human.errand.way = way.map(|way| (way, 0.0));
         human.errand.since_s = scene.now_s;
     }
     let at = human.at;
@@ -338,7 +341,7 @@ fn give_way(human: &mut Human, scene: &Scene<'_>) -> Want {
         let mut found = if here >= ASIDE_M { human.at } else { aside_spot(human, scene, &off) };
         if off(&found) < human.radius_m + robot.model.radius_m + 0.1 {
             // In a narrow aisle there is no aside: it walks ahead of the robot to where there is one.
-            found = bay(human, scene, &line).unwrap_or(found);
+            found = bay(human, scene, &line).or_else(|| refuge(human, scene, robot)).unwrap_or(found);
         }
         // Between two spots that are about as good it would go to and fro before the robot.
         if human.errand.spot.is_none_or(|spot| off(&found) > off(&spot) + 0.25) {

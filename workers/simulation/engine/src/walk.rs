@@ -7,6 +7,7 @@ use socrates_model::{GroupId, Point, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
+use crate::lanes::Lanes;
 use crate::motion::Want;
 use crate::near::Other;
 
@@ -22,6 +23,11 @@ const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
 const DOORWAY_M: f64 = 0.22;
 /// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
 const ROBOT_GAP_M: f64 = 0.3;
+/// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
+const WALLS_M: f64 = 3.2;
+/// Up to so many people forces are those of the crowd library to the last bit; more are reckoned in lanes, within
+/// 1e-9 m/s² of them.
+const FEW: usize = 24;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
@@ -31,11 +37,14 @@ const KEEP: (f64, f64) = (12.0, 7.0);
 pub(crate) struct Walker<'a> {
     params: &'a Params,
     felt: Vec<Person>,
+    /// Instead of [`Self::felt`] where there are many.
+    lanes: Option<Lanes>,
 }
 
 impl<'a> Walker<'a> {
-    pub(crate) const fn new(params: &'a Params) -> Self {
-        Self { params, felt: Vec::new() }
+    /// For a run with so many people.
+    pub(crate) fn new(params: &'a Params, people: usize) -> Self {
+        Self { params, felt: Vec::new(), lanes: (people > FEW).then(Lanes::default) }
     }
 
     /// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
@@ -58,6 +67,9 @@ impl<'a> Walker<'a> {
 
     fn pull(&mut self, human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
         self.felt.clear();
+        if let Some(lanes) = &mut self.lanes {
+            lanes.clear();
+        }
         self.felt.push(Person {
             speed_mps: want.speed_mps,
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
@@ -68,15 +80,21 @@ impl<'a> Walker<'a> {
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
             if near && !mate && !drawn && floor.sees(&human.at, &other.at) {
-                self.felt.push(person(number, other.at, other.velocity, other.radius_m));
+                match &mut self.lanes {
+                    Some(lanes) => lanes.push(&(other.at - human.at), &(human.velocity - other.velocity)),
+                    None => self.felt.push(person(number, other.at, other.velocity, other.radius_m)),
+                }
             }
         }
         // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
         let meant = want.face.is_some()
             && (target - human.at).norm() < 1.3
             && floor.straight(&human.at, target, human.radius_m);
-        let walls = if meant { Vec::new() } else { floor.felt(&human.at) };
+        let walls = if meant || floor.clearance_m(&human.at) > WALLS_M { Vec::new() } else { floor.felt(&human.at) };
         let mut forces = forces_on(0, &self.felt, &walls, self.params);
+        if let Some(lanes) = &mut self.lanes {
+            forces.social = lanes.social(self.params);
+        }
         // Walls beside a free way push aside, not back: their sum over both jambs would bar a narrow doorway.
         let way = target - human.at;
         let back = forces.obstacle.dot(&way) / way.norm_squared().max(1e-9);

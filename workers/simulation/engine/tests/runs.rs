@@ -35,12 +35,14 @@ fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
         }
     }
     println!("{}", lines.join("\n"));
+    let mut berths: BTreeMap<&str, f64> = BTreeMap::new();
     for (relation, all) in &mut per {
         let mut near: Vec<f64> = all.iter().map(|(near, _)| *near).collect();
         let mut gaps: Vec<f64> = all.iter().map(|(_, gap)| *gap).collect();
         near.sort_by(f64::total_cmp);
         gaps.sort_by(f64::total_cmp);
         let at = |list: &[f64], share: f64| list[((list.len() - 1) as f64 * share) as usize];
+        berths.insert(*relation, at(&near, 0.1));
         println!(
             "{relation}: {} runs, closest {:.2} / 5 % {:.2} / 20 % {:.2} / median {:.2} m, gap median {:.2} s",
             near.len(),
@@ -53,7 +55,11 @@ fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
     }
     println!("{bad} of {runs} runs with troubles");
     assert!(runs > 30);
-    assert!(f64::from(bad) <= 0.15 * f64::from(runs), "{bad} of {runs}");
+    assert!(f64::from(bad) <= 0.05 * f64::from(runs), "{bad} of {runs}");
+    // Nine of ten runs keep 0.28 m between robot and person; whoever stands in a doorway is passed nearer.
+    for relation in ["ahead", "behind", "frontal", "crossing"] {
+        assert!(berths[relation] >= 0.28, "{relation}: {berths:?}");
+    }
 }
 
 /// A number from the environment, to look at more or other runs than the test takes by itself.

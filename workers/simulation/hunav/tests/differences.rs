@@ -69,14 +69,15 @@ fn human(number: u32) -> AgentId {
 
 /// Times and names of the leaves of a human.
 fn leaves(recording: &Recording, number: u32) -> Vec<(f64, String)> {
-    recording
-        .events
-        .iter()
-        .filter_map(|event| match &event.kind {
-            EventKind::Leaf { human, leaf } if human.number() == number => Some((event.time.secs(), leaf.clone())),
-            _ => None,
-        })
-        .collect()
+    let mut found = Vec::new();
+    for event in &recording.events {
+        if let EventKind::Leaf { human, leaf } = &event.kind
+            && human.number() == number
+        {
+            found.push((event.time.secs(), leaf.clone()));
+        }
+    }
+    found
 }
 
 fn does(recording: &Recording, number: u32, leaf: &str) -> bool {
@@ -268,14 +269,9 @@ fn gesture_codes_of_people_differ_in_the_fork() {
         .tree(&format!("<Inverter><MakeGesture agent_id='{{id}}' message='3'/></Inverter>{WALK}"))
         .lasting(0.5);
     let gesture = |profile| {
-        case.run(profile)
-            .events
-            .iter()
-            .find_map(|event| match &event.kind {
-                EventKind::Gesture { gesture, .. } => Some(*gesture),
-                _ => None,
-            })
-            .unwrap()
+        let recording = case.run(profile);
+        let first = recording.events.iter().find(|event| matches!(event.kind, EventKind::Gesture { .. })).unwrap();
+        if let EventKind::Gesture { gesture, .. } = &first.kind { *gesture } else { Gesture::None }
     };
     assert_eq!(gesture(Profile::Native), Gesture::Acknowledged);
     assert_eq!(gesture(Profile::SocratesFork), Gesture::ExcuseMe);
@@ -489,7 +485,7 @@ fn curiosity_slows_down_with_distance_upstream() {
 #[test]
 fn who_is_scared_gets_away_natively_and_is_pulled_in_at_contact_upstream() {
     let case = |x: f64| {
-        Case::of(&[Walker::new(1, " 4", (x, 0.0, 3.14), &[(-9.0, 0.0)])]).robot(0.0, 0.0, 0.0, &[]).lasting(2.0)
+        Case::of(&[Walker::new(1, " 4", (x, 0.0, 3.1), &[(-9.0, 0.0)])]).robot(0.0, 0.0, 0.0, &[]).lasting(2.0)
     };
     let native = case(1.5).run(Profile::Native);
     assert!(end(&native, 1).point().coords.norm() > 2.0, "{}", end(&native, 1).point());

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Walker, data, file, read, section, shown};
-use socrates_hunav::{AgentsFile, Dialect, Problem, Reaction, check_on_map};
+use socrates_hunav::{AgentsFile, Dialect, Inputs, Problem, Profile, Reaction, check_on_map, simulate};
 
 fn two() -> String {
     file(&[
@@ -293,6 +293,7 @@ fn mutations_of_a_file_never_panic_and_what_is_read_goes_out_and_in() {
         "9999999999",
         "true",
     ];
+    let grid = common::hall();
     let mut read_again = 0;
     for round in 0..4000 {
         let mut text = bases[round % bases.len()].clone();
@@ -340,6 +341,15 @@ fn mutations_of_a_file_never_panic_and_what_is_read_goes_out_and_in() {
                 let again = again.unwrap_or_else(|problems| panic!("{}\n{}", file.to_yaml(), shown(&problems)));
                 assert_eq!(AgentsFile { warnings: Vec::new(), ..again }, file);
                 read_again += 1;
+                // Whatever can be read can be run, or is refused: it never breaks.
+                let profile = Profile::ALL[read_again % Profile::ALL.len()];
+                if read_again % 25 == 0 {
+                    let inputs = Inputs { grid: Some(&grid), profile, duration_s: 0.3, ..Inputs::new(&file, "a.yaml") };
+                    match simulate(&inputs) {
+                        Ok(recording) => assert_eq!(recording.ticks(), 31),
+                        Err(found) => assert!(found.iter().all(Problem::is_error)),
+                    }
+                }
             }
             Err(found) => assert!(!found.is_empty() && found.iter().all(Problem::is_error)),
         }

@@ -192,3 +192,57 @@ fn what_cannot_run_is_said_at_once() {
         assert!(said.contains(word), "{word}: {said}");
     }
 }
+
+#[test]
+fn models_are_mixed_in_one_run_and_recorded_people_come_and_go() {
+    let agents = read(&file(&[
+        Walker { cyclic: false, ..Walker::new(1, " 1", (-4.0, 0.1, 0.0), &[(4.0, 0.1)]) },
+        Walker { cyclic: false, ..Walker::new(2, " 1", (4.0, 0.0, 3.1), &[(-4.0, 0.0)]) },
+        Walker { cyclic: false, ..Walker::new(3, " 1", (0.0, -4.0, 1.5), &[(0.0, 4.0)]) },
+        Walker::new(4, " 1", (0.0, 8.0, 0.0), &[(1.0, 8.0)]),
+    ]));
+    // Person 4 of the file replays a track; person 9 is in the tracks alone.
+    let tracks = "t,id,x,y\n2.0,9,-3.0,0.6\n12.0,9,3.0,0.6\n0.0,4,0.0,8.0\n5.0,4,5.0,8.0\n";
+    let tracks = socrates_crowd::tracks::Tracks::read(tracks).unwrap();
+    let inputs = Inputs {
+        models: BTreeMap::from([(1, socrates_hunav::HumanModel::Orca), (2, socrates_hunav::HumanModel::Orca)]),
+        tracks: Some(&tracks),
+        duration_s: 20.0,
+        ..Inputs::new(&agents, "agents.yaml")
+    };
+    let recording = simulate(&inputs).unwrap_or_else(|problems| panic!("{}", shown(&problems)));
+    assert_eq!(recording.header.agents.len(), 5);
+    let leaf =
+        |tick: usize, number: usize| recording.header.leaves[usize::from(recording.tick(tick)[number].leaf())].clone();
+    assert_eq!((leaf(100, 4), leaf(500, 4), leaf(1500, 4)), ("absent".into(), "track".into(), "absent".into()));
+    assert_eq!((leaf(0, 3), leaf(600, 3)), ("track".into(), "absent".into()));
+    assert!((recording.tick(700)[4].x - 0.0).abs() < 1e-9 && (recording.tick(250)[3].x - 2.5).abs() < 1e-9);
+    let end = recording.tick(2000);
+    for (number, goal) in [(0, (4.0, 0.1)), (1, (-4.0, 0.0)), (2, (0.0, 4.0))] {
+        let left = (end[number].point() - Point::new(goal.0, goal.1)).norm();
+        assert!(left < 0.45, "agent {number} is {left:.2} m from its goal");
+    }
+    // Nobody there overlaps anybody there.
+    for tick in 50..=2000 {
+        let there: Vec<_> = (0..5).filter(|number| leaf(tick, *number) != "absent").collect();
+        for (place, a) in there.iter().enumerate() {
+            for b in &there[place + 1..] {
+                let (one, other) = (&recording.tick(tick)[*a], &recording.tick(tick)[*b]);
+                let radii = recording.header.agents[*a].radius_m + recording.header.agents[*b].radius_m;
+                let depth = radii - (one.point() - other.point()).norm();
+                assert!(depth <= OVERLAP_M, "{a} and {b} at {tick}: {depth:.4} m");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_model_without_a_track_or_outside_native_is_refused() {
+    let agents = read(&file(&[Walker::new(1, " 1", (0.0, 0.0, 0.0), &[(4.0, 0.1)])]));
+    let refused = |profile, model| {
+        let models = BTreeMap::from([(1, model)]);
+        shown(&simulate(&Inputs { profile, models, ..Inputs::new(&agents, "agents.yaml") }).unwrap_err())
+    };
+    assert!(refused(Profile::Native, socrates_hunav::HumanModel::Track).contains("no recorded track"));
+    assert!(refused(Profile::Hunav10, socrates_hunav::HumanModel::Orca).contains("social forces only"));
+}

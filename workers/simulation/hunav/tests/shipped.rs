@@ -10,7 +10,7 @@ use std::path::Path;
 
 use common::{Walker, data, read, shown};
 use socrates_hunav::{AgentsFile, Dialect, Inputs, Profile, RobotSpec, simulate};
-use socrates_model::{Grid, Point, Pose, Recording};
+use socrates_model::{Cell, Grid, Point, Pose, Recording};
 
 /// All files of a folder by name.
 fn files(folder: &Path, extension: &str) -> BTreeMap<String, String> {
@@ -194,6 +194,46 @@ fn every_tree_of_the_fork_runs_or_is_refused_by_the_node_it_lacks() {
                 let recording = told.unwrap_or_else(|told| panic!("{name}: {told}"));
                 assert_eq!(recording.ticks(), 6001, "{name}");
             }
+        }
+    }
+}
+
+/// The grid of a map of the data: a binary PGM in which 254 is free, with the numbers of its `map.yaml`.
+fn map(folder: &Path, name: &str) -> Grid {
+    let yaml = fs::read_to_string(folder.join(format!("{name}.yaml"))).unwrap();
+    let line = |key: &str| yaml.lines().find_map(|line| line.strip_prefix(key)).unwrap().trim().to_owned();
+    let origin = line("origin:");
+    let origin: Vec<f64> =
+        origin.trim_matches(['[', ']']).split(',').map(|number| number.trim().parse().unwrap()).collect();
+    let bytes = fs::read(folder.join(line("image:"))).unwrap();
+    let mut words: Vec<usize> = Vec::new();
+    let mut at = 2;
+    while words.len() < 3 {
+        let end = at + bytes[at..].iter().position(|byte| *byte == b'\n').unwrap();
+        let text = String::from_utf8_lossy(&bytes[at..end]).into_owned();
+        if !text.trim_start().starts_with('#') {
+            words.extend(text.split_whitespace().map(|word| word.parse::<usize>().unwrap()));
+        }
+        at = end + 1;
+    }
+    let cells = bytes[at..].iter().map(|pixel| if *pixel >= 210 { Cell::Free } else { Cell::Occupied }).collect();
+    let resolution_m = line("resolution:").parse().unwrap();
+    Grid { width: words[0], height: words[1], resolution_m, origin: Pose::new(origin[0], origin[1], 0.0), cells }
+}
+
+#[test]
+fn agents_of_1_1_run_on_their_maps() {
+    let Some(folder) = data("hunav_sim_v1_1") else { return };
+    let trees = files(&folder.join("behavior_trees"), "xml");
+    let find = |name: &str| trees.get(name).cloned();
+    for (agents, name) in [("agents_warehouse", "small_warehouse"), ("agents_house", "small_house")] {
+        let grid = map(&folder.join("maps"), name);
+        let file = read(&fs::read_to_string(folder.join(format!("config/{agents}.yaml"))).unwrap());
+        for profile in [Profile::Hunav11, Profile::Native] {
+            let inputs = Inputs { profile, trees: &find, grid: Some(&grid), ..Inputs::new(&file, agents) };
+            let recording =
+                simulate(&inputs).unwrap_or_else(|problems| panic!("{agents} {profile}: {}", shown(&problems)));
+            ended(&recording);
         }
     }
 }

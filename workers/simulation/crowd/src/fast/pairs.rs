@@ -131,21 +131,23 @@ impl Pairs {
         for block in self.blocks.iter_mut().take(self.len.div_ceil(LANES)) {
             work_out(block, &constants);
         }
+        // Pairs of one person come one after the other: its sum is kept aside while they last.
+        let (mut current, mut sum) = (0, Vector2::zeros());
         let mut left = self.len;
         for block in &self.blocks {
             let lanes = block.first.iter().zip(&block.second).zip(block.fx.iter().zip(&block.fy));
             for (lane, ((first, second), (fx, fy))) in lanes.enumerate().take(left) {
                 let (first, second) = (*first as usize, *second as usize);
+                if first != current {
+                    add(sums, current, sum);
+                    (current, sum) = (first, Vector2::zeros());
+                }
                 if fx.is_nan() {
                     self.edge(block, lane, first, second, sums);
                 } else {
                     let force = Vector2::new(*fx, *fy);
-                    if let Some(sum) = sums.get_mut(first) {
-                        *sum += force;
-                    }
-                    if let Some(sum) = sums.get_mut(second) {
-                        *sum -= force;
-                    }
+                    sum += force;
+                    add(sums, second, -force);
                 }
             }
             left = left.saturating_sub(LANES);
@@ -153,6 +155,7 @@ impl Pairs {
                 break;
             }
         }
+        add(sums, current, sum);
         self.len = 0;
     }
 
@@ -163,12 +166,15 @@ impl Pairs {
         let number = |field: &[f64; LANES]| field.get(lane).copied().unwrap_or(f64::NAN);
         let way = Vector2::new(number(&block.dx), number(&block.dy));
         let closing = Vector2::new(number(&block.dvx), number(&block.dvy));
-        if let Some(sum) = sums.get_mut(first) {
-            *sum += known(pair::<Portable>(&way, &closing, &self.params));
-        }
-        if let Some(sum) = sums.get_mut(second) {
-            *sum += known(pair::<Portable>(&-way, &-closing, &self.params));
-        }
+        add(sums, first, known(pair::<Portable>(&way, &closing, &self.params)));
+        add(sums, second, known(pair::<Portable>(&-way, &-closing, &self.params)));
+    }
+}
+
+#[inline(always)]
+fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
+    if let Some(sum) = sums.get_mut(place) {
+        *sum += force;
     }
 }
 

@@ -38,6 +38,8 @@ pub enum Instructions {
     /// The widest vectors that the processor has, found out at run time.
     #[default]
     Detected,
+    /// Vectors of 256 bits where an x86-64 processor has them (AVX2), else as [`Instructions::Baseline`].
+    Avx2,
     /// Those that every processor of the architecture has.
     Baseline,
 }
@@ -46,9 +48,20 @@ impl Instructions {
     pub(super) fn arch(self) -> pulp::Arch {
         match self {
             Self::Detected => pulp::Arch::new(),
+            Self::Avx2 => avx2(),
             Self::Baseline => pulp::Arch::Scalar,
         }
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn avx2() -> pulp::Arch {
+    pulp::x86::V3::try_new().map_or(pulp::Arch::Scalar, pulp::Arch::V3)
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn avx2() -> pulp::Arch {
+    pulp::Arch::Scalar
 }
 
 /// Settings that cannot be meant.

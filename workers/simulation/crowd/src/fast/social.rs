@@ -28,6 +28,8 @@ pub struct Social {
     order: Vec<u32>,
     sorted: Sorted,
     pairs: Pairs,
+    /// Those who are kept with one person.
+    kept: Vec<u32>,
     sums: Vec<Vector2<f64>>,
     forces: Vec<Vector2<f64>>,
 }
@@ -77,6 +79,7 @@ impl Social {
             order: Vec::new(),
             sorted: Sorted::default(),
             pairs: Pairs::new(params),
+            kept: Vec::new(),
             sums: Vec::new(),
             forces: Vec::new(),
         })
@@ -131,7 +134,7 @@ impl Social {
             test: prune.test(extent.size_m()),
             fastest_mps: fastest,
         };
-        self.arch.dispatch(Pass { sweep, pairs: &mut self.pairs, sums: &mut self.sums });
+        self.arch.dispatch(Pass { sweep, pairs: &mut self.pairs, kept: &mut self.kept, sums: &mut self.sums });
         for (place, sum) in self.order.iter().zip(&self.sums) {
             if let Some(force) = self.forces.get_mut(*place as usize) {
                 *force = *sum;
@@ -154,6 +157,7 @@ struct Sweep<'a> {
 struct Pass<'a> {
     sweep: Sweep<'a>,
     pairs: &'a mut Pairs,
+    kept: &'a mut Vec<u32>,
     sums: &'a mut [Vector2<f64>],
 }
 
@@ -164,7 +168,7 @@ impl pulp::WithSimd for Pass<'_> {
     // the set of instructions that this is compiled for. Everything called here must be inlined.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sweep.run(self.pairs, self.sums);
+        self.sweep.run(self.pairs, self.kept, self.sums);
     }
 }
 
@@ -172,7 +176,7 @@ impl Sweep<'_> {
     /// Everybody with those who come later in the sorted crowd: to the right in the own row, and all in
     /// reach in the rows above.
     #[inline(always)]
-    fn run(&self, pairs: &mut Pairs, sums: &mut [Vector2<f64>]) {
+    fn run(&self, pairs: &mut Pairs, kept: &mut Vec<u32>, sums: &mut [Vector2<f64>]) {
         for (place, me) in self.sorted.bodies.iter().enumerate() {
             let speed = norm(&Vector2::new(me.vx, me.vy));
             let circle = self.prune.circle(speed, self.fastest_mps);
@@ -190,19 +194,29 @@ impl Sweep<'_> {
                 let half = (radius * radius - off * off).sqrt();
                 let (from, to) = self.cells.span(row, x - half, x + half);
                 let from = if row == own_row { from.max(place + 1) } else { from };
-                self.span(place, me, from, to, pairs, sums);
+                self.span(place, from, to, kept);
+            }
+            for other in kept.drain(..) {
+                if let Some(body) = self.sorted.bodies.get(other as usize) {
+                    #[expect(clippy::cast_possible_truncation, reason = "places are u32 in the order as well")]
+                    pairs.push(place as u32, me, other, body, sums);
+                }
             }
         }
         pairs.flush(sums);
     }
 
-    /// Somebody with the people from `from` to `to`.
+    /// Adds to `kept` those from `from` to `to` whose pair with the person at `place` must be kept.
+    ///
+    /// Without branches on the outcome: they would be guessed wrong, and a wrong guess waits for the whole
+    /// test. Every place is written, and only the kept ones are counted.
     #[inline(always)]
-    fn span(&self, place: usize, me: &Body, from: usize, to: usize, pairs: &mut Pairs, sums: &mut [Vector2<f64>]) {
-        const BYTES: usize = 8;
+    fn span(&self, place: usize, from: usize, to: usize, kept: &mut Vec<u32>) {
         let all = (&self.sorted.x, &self.sorted.y, &self.sorted.vx, &self.sorted.vy);
         let at = |row: &[f32]| row.get(place).copied().unwrap_or(f32::NAN);
-        let seen = Me { x: at(all.0), y: at(all.1), vx: at(all.2), vy: at(all.3) };
+        let me = Me { x: at(all.0), y: at(all.1), vx: at(all.2), vy: at(all.3) };
+        let mut count = kept.len();
+        kept.resize(count + to.saturating_sub(from) + WIDTH, 0);
         let mut start = from;
         while start < to {
             let (Some(x), Some(y), Some(vx), Some(vy)) =
@@ -210,26 +224,29 @@ impl Sweep<'_> {
             else {
                 break;
             };
-            let keeps = self.test.keeps(&seen, x, y, vx, vy);
-            let (words, _) = keeps.as_chunks::<BYTES>();
-            for (half, word) in words.iter().enumerate() {
-                let first = start + half * BYTES;
-                let mut word = u64::from_le_bytes(*word);
-                while word != 0 {
-                    let other = first + word.trailing_zeros() as usize / BYTES;
-                    word &= word - 1;
-                    if other >= to {
-                        break;
-                    }
-                    if let Some(body) = self.sorted.bodies.get(other) {
-                        #[expect(clippy::cast_possible_truncation, reason = "places are u32 in the order as well")]
-                        pairs.push(place as u32, me, other as u32, body, sums);
-                    }
-                }
+            let keeps = self.test.keeps(&me, x, y, vx, vy);
+            if let Some(room) = kept.get_mut(count..).and_then(<[u32]>::first_chunk_mut::<WIDTH>) {
+                count += sift(room, start, &keeps, to - start);
             }
             start += WIDTH;
         }
+        kept.truncate(count);
     }
+}
+
+/// Writes the places, counted from `start`, that are kept among the first `len`; gives their number.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "places are u32 in the order as well")]
+fn sift(room: &mut [u32; WIDTH], start: usize, keeps: &[u8; WIDTH], len: usize) -> usize {
+    let mut count = 0;
+    for (lane, keep) in keeps.iter().enumerate() {
+        // The count is never beyond the lane; the remainder tells the compiler that it fits.
+        if let Some(slot) = room.get_mut(count % WIDTH) {
+            *slot = (start + lane) as u32;
+        }
+        count += usize::from(*keep) & usize::from(lane < len);
+    }
+    count
 }
 
 /// The full group of lanes that begins at `start`.

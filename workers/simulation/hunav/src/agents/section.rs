@@ -26,13 +26,16 @@ impl Found {
         self.push(problem);
     }
 
+    /// Keeps a problem; of errors and warnings each the first [`MAX_TOLD`] are told.
     fn push(&mut self, problem: Problem) {
-        match self.problems.len() {
+        let severity = problem.severity;
+        let told = self.problems.iter().filter(|known| known.severity == severity).count();
+        match told {
             n if n < MAX_TOLD => self.problems.push(problem),
             MAX_TOLD => {
-                let mut last = Problem::error(&self.file, "", "there are more problems than are told");
-                last.hint = format!("mend these {MAX_TOLD} first");
-                self.problems.push(last);
+                let last = Problem::error(&self.file, "", "there are more problems of this kind than are told");
+                let hint = format!("mend these {MAX_TOLD} first");
+                self.problems.push(Problem { severity, ..last }.with_hint(hint));
             }
             _ => {}
         }

@@ -19,6 +19,7 @@ mod upstream;
 use std::collections::BTreeMap;
 
 use socrates_bt::{Tree, TreeState};
+use socrates_crowd::tracks::{Track, Tracks};
 use socrates_engine::{Recorder, Touch};
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
@@ -62,6 +63,9 @@ pub struct Inputs<'a> {
     pub trees: TreeFiles<'a>,
     /// Who moves which agent, by its id; everybody else social forces. Native only.
     pub models: BTreeMap<i64, HumanModel>,
+    /// Recorded people: those with the id of an agent take its place, others are added. Everybody feels them, they feel
+    /// nobody, and they are on the floor from their first sample to their last.
+    pub tracks: Option<&'a Tracks>,
     /// Boxes of objects that upstream's one obstacle point is taken from, beside the map.
     pub boxes: Vec<Bounds>,
 }
@@ -80,6 +84,7 @@ impl<'a> Inputs<'a> {
             robot: None,
             trees: &|_| None,
             models: BTreeMap::new(),
+            tracks: None,
             boxes: Vec::new(),
         }
     }
@@ -132,6 +137,8 @@ pub fn check(inputs: &Inputs<'_>) -> Vec<Problem> {
 pub(crate) struct Run {
     scene: Scene,
     minds: Vec<(Tree, TreeState)>,
+    /// Recorded ways, one for each agent that has one.
+    tracks: Vec<Option<Track>>,
     header: RecordingHeader,
     warnings: Vec<Problem>,
     ticks: u64,
@@ -153,6 +160,7 @@ pub(crate) fn tick_of(now_s: f64) -> u64 {
 impl Run {
     fn tick(&mut self, tick: u64, ends: bool, recorder: &mut Recorder, sink: &mut dyn FnMut(&[AgentState], &[Event])) {
         self.scene.now_s = SimTime::at_tick(tick).secs();
+        self.replay();
         let poses = self.poses(tick);
         // The first call of upstream's manager only takes the agents over.
         let upstream = !self.scene.rules.native;
@@ -184,6 +192,33 @@ impl Run {
         } else {
             for touch in native::advance(&mut self.scene, &deeds) {
                 recorder.touch(touch);
+            }
+        }
+    }
+
+    /// Puts everybody who replays a track where it was at this time; whoever is not there keeps its last place, or its
+    /// first before it comes, and is neither felt nor touched.
+    fn replay(&mut self) {
+        for (agent, track) in self.scene.agents.iter_mut().zip(&self.tracks) {
+            let Some(track) = track else { continue };
+            let now = track.at(self.scene.now_s, &agent.person());
+            agent.present = now.is_some();
+            match now {
+                Some(person) => {
+                    (agent.at, agent.velocity) = (person.position, person.velocity);
+                    agent.omega = socrates_model::geometry::wrap_angle(person.yaw - agent.yaw) / STEP_SECS;
+                    agent.yaw = person.yaw;
+                }
+                None => {
+                    let end = if self.scene.now_s < track.first_s() {
+                        track.samples().first()
+                    } else {
+                        track.samples().last()
+                    };
+                    agent.at = end.map_or(agent.at, |sample| sample.position);
+                    agent.velocity = socrates_model::Vector::zeros();
+                    agent.omega = 0.0;
+                }
             }
         }
     }

@@ -2,12 +2,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use socrates_crowd::{Goal, Person, forces_on};
+use socrates_crowd::model::View;
+use socrates_crowd::{Goal, Person, Segment, forces_on};
 use socrates_engine::{Body, Touch, resolve};
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{AgentId, Point, Polyline, Vector};
 
-use super::agent::Agent;
+use super::agent::{Agent, HumanModel};
 use super::scene::{Deed, Scene, Target};
 
 /// Largest acceleration of a person, m/s².
@@ -87,7 +88,12 @@ pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
                 at: agent.at + velocity * dt,
                 velocity: *velocity,
                 radius_m: agent.radius_m,
-                yields: if want.target.is_some() { 1.0 } else { 0.3 },
+                yields: match (agent.model, want.target) {
+                    // A recorded person goes where it went.
+                    (HumanModel::Track, _) => 0.0,
+                    (_, Some(_)) => 1.0,
+                    (_, None) => 0.3,
+                },
             });
         }
     }
@@ -102,6 +108,7 @@ pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
     for (agent, want) in scene.agents.iter_mut().zip(&wants) {
         if agent.present
             && let Some(body) = resolved.next()
+            && agent.model != HumanModel::Track
         {
             settle(agent, want, &body, dt);
         }
@@ -296,7 +303,15 @@ fn block(scene: &mut Scene, me: usize, target: Target, ahead_m: f64) -> Want {
 /// Velocity of this tick before contacts.
 fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
     let dt = scene.dt;
+    let model = scene.agents.get(me).map_or(HumanModel::SocialForces, |agent| agent.model);
     let wished = match want.target {
+        _ if model == HumanModel::Track => return scene.velocity(Target::Agent(me)),
+        Some(target) if want.speed_mps > 0.0 && model == HumanModel::Orca => {
+            if let Some(agent) = scene.agents.get_mut(me) {
+                agent.errand.anchor = None;
+            }
+            return avoiding(scene, me, want, &target);
+        }
         Some(target) if want.speed_mps > 0.0 => {
             let force = pull(scene, me, want, &target);
             let Some(agent) = scene.agents.get_mut(me) else { return Vector::zeros() };
@@ -334,6 +349,18 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
     velocity
 }
 
+/// Velocity of somebody who avoids collisions with others who do so too.
+fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+    let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
+    let people = felt(scene, me, want, target);
+    let walls: Vec<Segment> =
+        scene.floor.felt(&agent.at).into_iter().map(|point| Segment { from: point, to: point }).collect();
+    let Some(person) = people.first() else { return Vector::zeros() };
+    let view = View { me: person, place: Some(0), people: &people, walls: &walls, now_s: scene.now_s, dt_s: scene.dt };
+    let velocity = scene.orca.velocity(&view);
+    if velocity.iter().all(|component| component.is_finite()) { velocity } else { Vector::zeros() }
+}
+
 fn stand(agent: &mut Agent, dt: f64) -> Vector {
     let Some(anchor) = agent.errand.anchor else {
         let speed = agent.velocity.norm();
@@ -360,6 +387,13 @@ fn limited(force: &Vector) -> Vector {
 
 fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
+    let people = felt(scene, me, want, target);
+    limited(&forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces).total())
+}
+
+/// The agent with its wish, then everybody it feels: in line of sight and near.
+fn felt(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vec<Person> {
+    let Some(agent) = scene.agents.get(me) else { return Vec::new() };
     let goal = Some(Goal { at: *target, radius_m: 0.02 });
     let mut people = vec![Person { goal, speed_mps: want.speed_mps, ..agent.person() }];
     for (_, other) in scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present) {
@@ -377,7 +411,7 @@ fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
             ..Person::standing(0, robot.at())
         });
     }
-    limited(&forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces).total())
+    people
 }
 
 /// Takes over where contacts left it, and turns.

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_engine::Floor;
 use socrates_model::ids::BadId;
 use socrates_model::time::STEP_SECS;
@@ -11,12 +12,14 @@ use super::agent::Agent;
 use super::robot::Robot;
 use super::scene::Scene;
 use super::{HumanModel, Inputs, MAX_DURATION_S, Run, header, tick_of};
-use crate::agents::{AgentEntry, AgentsFile, BehaviorEntry, check_on_map};
+use crate::agents::{AgentEntry, AgentsFile, BehaviorEntry, InitPose, check_on_map};
 use crate::configure::configure;
 use crate::problem::Problem;
 use crate::profile::Profile;
 use crate::trees::tree_of;
 
+/// Most states of a recording, agents times ticks: 3 GB of memory.
+const MAX_STATES: f64 = 50e6;
 /// Floor around everybody where there is no map, m.
 const MARGIN_M: f64 = 40.0;
 /// Most cells along a side of an open floor.
@@ -44,7 +47,10 @@ impl Run {
         }
         let mut agents = Vec::new();
         let mut minds = Vec::new();
-        for (number, entry) in (1_u32..).zip(&inputs.agents.agents) {
+        let mut tracks = Vec::new();
+        let recorded = recorded(inputs);
+        for (number, entry) in (1_u32..).zip(inputs.agents.agents.iter().chain(&recorded)) {
+            let track = u32::try_from(entry.id).ok().and_then(|id| inputs.tracks?.get(id)).cloned();
             // HuNavSim 1.0 and the fork have no parameters of behaviors.
             let plain = matches!(inputs.profile, Profile::Hunav10 | Profile::SocratesFork);
             let read = if plain { without_parameters(entry) } else { entry.clone() };
@@ -52,7 +58,11 @@ impl Run {
             match tree_of(inputs.agents, inputs.file, entry, inputs.profile, &parameters, inputs.trees) {
                 Ok(own) => {
                     let mut agent = Agent::new(entry, number, parameters, rules.native, inputs.seed);
-                    agent.model = inputs.models.get(&entry.id).copied().unwrap_or_default();
+                    agent.model = match track {
+                        Some(_) => HumanModel::Track,
+                        None => inputs.models.get(&entry.id).copied().unwrap_or_default(),
+                    };
+                    tracks.push(track);
                     if own.sets_goals {
                         agent.goals = VecDeque::new();
                     }
@@ -64,23 +74,35 @@ impl Run {
             }
         }
         let run = run_id(inputs);
+        let orca = Orca::new(OrcaSettings::default());
+        if let Err(bad) = &orca {
+            problems.push(Problem::error("--model", "orca", bad.to_string()));
+        }
         if let Err(bad) = &run {
             problems.push(Problem::error(inputs.file, "", bad.to_string()));
         }
         let (errors, warnings): (Vec<Problem>, Vec<Problem>) = problems.into_iter().partition(Problem::is_error);
-        let (Ok(run), true) = (run, errors.is_empty()) else { return Err(errors) };
+        let (Ok(run), Ok(orca), true) = (run, orca, errors.is_empty()) else { return Err(errors) };
         let scene = Scene {
             rules,
             agents,
             robot: inputs.robot.as_ref().map(Robot::new),
             floor,
+            orca,
             boxes: inputs.boxes.clone(),
             goals: inputs.agents.global_goals.clone(),
             now_s: 0.0,
             dt: STEP_SECS,
             events: Vec::new(),
         };
-        Ok(Self { header: header(inputs, &scene, run), scene, minds, warnings, ticks: tick_of(inputs.duration_s) })
+        Ok(Self {
+            header: header(inputs, &scene, run),
+            scene,
+            minds,
+            tracks,
+            warnings,
+            ticks: tick_of(inputs.duration_s),
+        })
     }
 }
 
@@ -105,6 +127,13 @@ fn numbers(inputs: &Inputs<'_>) -> Vec<Problem> {
                 .with_hint(format!("allowed: {STEP_SECS} to {MAX_DURATION_S} s")),
         );
     }
+    #[expect(clippy::cast_precision_loss, reason = "at most some ten thousand agents")]
+    let states = inputs.duration_s / STEP_SECS * inputs.agents.agents.len() as f64;
+    if states > MAX_STATES {
+        let message = format!("would make a recording of {states:.0} states");
+        let hint = format!("allowed: at most {MAX_STATES:.0}; run it for a shorter time");
+        problems.push(Problem::error("--duration", "", message).with_value(inputs.duration_s).with_hint(hint));
+    }
     let Some(robot) = &inputs.robot else { return problems };
     let mut wrong = |what: &str, value: f64, allowed: &str| {
         let hint = format!("allowed: {allowed}");
@@ -128,6 +157,11 @@ fn numbers(inputs: &Inputs<'_>) -> Vec<Problem> {
 /// Ids that somebody has twice, the robot included.
 fn clashes(inputs: &Inputs<'_>) -> Vec<Problem> {
     let mut problems = Vec::new();
+    if let Some(id) = inputs.robot.as_ref().and_then(|robot| u32::try_from(robot.id?).ok())
+        && inputs.tracks.is_some_and(|tracks| tracks.get(id).is_some())
+    {
+        problems.push(Problem::error("--tracks", "id", "is the robot's id too").with_value(id));
+    }
     for (number, agent) in inputs.agents.agents.iter().enumerate() {
         let place = format!("{}.id", agent.name);
         if inputs.robot.as_ref().is_some_and(|robot| robot.id == Some(agent.id)) {
@@ -156,7 +190,15 @@ fn models(inputs: &Inputs<'_>) -> Vec<Problem> {
                     .with_hint(format!("ids here: {}", ids.join(", "))),
             );
         }
-        if inputs.profile != Profile::Native && *model != HumanModel::SocialForces {
+        let has_track = u32::try_from(*id).is_ok_and(|id| inputs.tracks.is_some_and(|tracks| tracks.get(id).is_some()));
+        if *model == HumanModel::Track && !has_track {
+            problems.push(
+                Problem::error("--model", "", "has no recorded track")
+                    .with_value(id)
+                    .with_hint("give one with --tracks"),
+            );
+        }
+        if inputs.profile != Profile::Native && *model == HumanModel::Orca {
             let message = format!("{} has social forces only", inputs.profile);
             problems.push(
                 Problem::error("--model", "", message).with_value(model.name()).with_hint("use the profile native"),
@@ -164,6 +206,34 @@ fn models(inputs: &Inputs<'_>) -> Vec<Problem> {
         }
     }
     problems
+}
+
+/// Radius of somebody who is known from a track alone, m.
+const RECORDED_RADIUS_M: f64 = 0.28;
+
+/// Recorded people who are not in the agents file.
+fn recorded(inputs: &Inputs<'_>) -> Vec<AgentEntry> {
+    let Some(tracks) = inputs.tracks else { return Vec::new() };
+    let strangers =
+        tracks.iter().filter(|(id, _)| !inputs.agents.agents.iter().any(|agent| agent.id == i64::from(*id)));
+    strangers
+        .map(|(id, track)| {
+            let start = track.samples().first().map_or_else(Point::origin, |sample| sample.position);
+            AgentEntry {
+                name: format!("track_{id}"),
+                id: i64::from(id),
+                skin: -1,
+                group_id: -1,
+                max_vel_mps: 1.5,
+                radius_m: RECORDED_RADIUS_M,
+                start: InitPose { x: start.x, y: start.y, z: 0.0, h: 0.0 },
+                goal_radius_m: 0.0,
+                cyclic_goals: false,
+                behavior: BehaviorEntry::default(),
+                goals: Vec::new(),
+            }
+        })
+        .collect()
 }
 
 /// Free floor around everybody.
@@ -181,6 +251,9 @@ fn open_floor(inputs: &Inputs<'_>) -> Grid {
         agent.goals.iter().for_each(|goal| cover(&goal.at));
     }
     file.global_goals.iter().for_each(&mut cover);
+    for (_, track) in inputs.tracks.iter().flat_map(|tracks| tracks.iter()) {
+        track.samples().iter().for_each(|sample| cover(&sample.position));
+    }
     if let Some(robot) = &inputs.robot {
         cover(&robot.start.point());
         robot.goals.iter().for_each(&mut cover);

@@ -1,5 +1,6 @@
 //! Everybody on the floor, and what can be asked about them.
 
+use socrates_crowd::orca::Orca;
 use socrates_crowd::{Forces, Goal, Person, forces_on};
 use socrates_engine::Floor;
 use socrates_model::geometry::wrap_angle;
@@ -66,6 +67,7 @@ pub(crate) struct Scene {
     pub(crate) agents: Vec<Agent>,
     pub(crate) robot: Option<Robot>,
     pub(crate) floor: Floor,
+    pub(crate) orca: Orca,
     pub(crate) boxes: Vec<Bounds>,
     /// Global goals: number k is entry k - 1.
     pub(crate) goals: Vec<Point>,
