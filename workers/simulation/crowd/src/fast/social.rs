@@ -22,8 +22,8 @@ const COUNTED_REACHES: [f64; 8] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, f64::IN
 
 /// Works out the social forces of a crowd, each within an error bound of the sum over all others.
 ///
-/// Keeps its memory between calls: after the first call with a crowd, none is allocated. The result
-/// depends on the people alone, not on earlier calls or on the processor.
+/// Keeps its memory between calls and takes more only for a crowd that is larger, wider or denser than
+/// any before. The result depends on the people alone, not on earlier calls or on the processor.
 #[derive(Debug, Clone)]
 pub struct Social {
     params: Params,
