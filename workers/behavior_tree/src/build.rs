@@ -6,7 +6,7 @@ use std::sync::Arc;
 use socrates_model::{Fault, FaultCode};
 
 use crate::blackboard::{Input, Value, read_flag};
-use crate::parse::{Document, GUARDS, key_in_braces};
+use crate::parse::{Document, GUARDS, Meaning, key_in_braces};
 use crate::script::Script;
 use crate::sheet::{Kind, Library, PortKind, Role};
 use crate::tree::{Format, Guards, Node, Step, Tree};
@@ -64,7 +64,7 @@ pub(crate) fn build(document: Document) -> Result<Tree, Vec<Fault>> {
         return Err(faults);
     }
     let keys = scopes.drain(..).next().map(|scope| scope.known).unwrap_or_default();
-    let Flat { steps, kids, inputs, n_words } = flat(&nodes, document.format);
+    let Flat { steps, kids, inputs, n_words } = flat(&nodes, &document);
     Ok(Tree {
         nodes: nodes.into(),
         steps: steps.into(),
@@ -86,7 +86,8 @@ struct Flat {
     n_words: usize,
 }
 
-fn flat(nodes: &[Node], format: Format) -> Flat {
+fn flat(nodes: &[Node], document: &Document) -> Flat {
+    let is_asked = document.meaning == Meaning::World;
     let mut flat = Flat { steps: Vec::with_capacity(nodes.len()), kids: Vec::new(), inputs: Vec::new(), n_words: 0 };
     let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
     for node in nodes {
@@ -100,13 +101,16 @@ fn flat(nodes: &[Node], format: Format) -> Flat {
             n_inputs: small(node.inputs.len()),
             word: small(flat.n_words),
             leaf: node.leaf,
-            asks_world: node.leaf > 0 && node.sheet.library != Library::BuiltIn && node.sheet.role.is_catalogued(),
+            asks_world: is_asked
+                && node.leaf > 0
+                && node.sheet.library != Library::BuiltIn
+                && node.sheet.role.is_catalogued(),
             is_guarded: node.guards.is_some(),
             is_decorator: node.sheet.kind == Kind::Decorator,
         });
         flat.kids.extend(node.children.iter().map(|child| small(*child)));
         flat.inputs.extend(node.inputs.iter().cloned());
-        flat.n_words += words(node, format);
+        flat.n_words += words(node, document.format);
     }
     flat
 }

@@ -47,8 +47,8 @@ pub type Includes<'a> = &'a dyn Fn(&str) -> Option<String>;
 /// Who ticks the leaves of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum Meaning {
-    /// This crate, through the senses and deeds of [`World`](crate::World). A leaf whose meaning is not plain there
-    /// is refused by name.
+    /// This crate, through the senses and deeds of [`World`](crate::World); its `leaf` is never asked. A leaf whose
+    /// meaning is not plain there is refused by name.
     #[default]
     Native,
     /// The world, through [`World::leaf`](crate::World::leaf); every leaf of the library is taken.
@@ -101,6 +101,7 @@ pub(crate) struct Document {
     pub(crate) includes: Vec<String>,
     pub(crate) trees: Vec<TreeDef>,
     library: Library,
+    pub(crate) meaning: Meaning,
     foreign: Vec<(String, Kind)>,
 }
 
@@ -137,6 +138,7 @@ impl Document {
             includes: Vec::new(),
             trees: Vec::new(),
             library: options.library,
+            meaning: options.meaning,
             foreign,
         };
         let mut reading = Reading {

@@ -40,10 +40,10 @@ pub trait World {
     /// Makes a gesture that lasts until the next one; [`Gesture::None`] takes it back.
     fn gesture(&mut self, gesture: Gesture);
 
-    /// Ticks a leaf of the catalogue in this world's own meaning; `None` leaves it to the native one. It is asked
-    /// for every condition and action, timers included, but not for control flow, decorators and the leaves of
-    /// BehaviorTree.CPP itself. A leaf without a native meaning (see
-    /// [`Options::meaning`](crate::Options::meaning)) that gets `None` fails, and
+    /// Ticks a leaf of the catalogue in this world's own meaning; `None` leaves it to the native one. In trees read
+    /// with [`Meaning::World`](crate::Meaning::World) it is asked for every condition and action, timers included,
+    /// but not for control flow, decorators and the leaves of BehaviorTree.CPP itself; in others never. A leaf
+    /// without a native meaning that gets `None` fails, and
     /// [`TreeState::unanswered`](crate::TreeState::unanswered) names it.
     fn leaf(&mut self, _call: &mut LeafCall<'_>) -> Option<Status> {
         None

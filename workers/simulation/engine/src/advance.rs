@@ -1,9 +1,10 @@
 //! One tick of motion: paces, wishes, forces, contacts.
 
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, AgentId, HumanId, Relation};
+use socrates_model::{Action, AgentId, HumanId, Point, Relation};
 
 use crate::contacts::{self, Body};
+use crate::human::Human;
 use crate::motion::{self, Scene, Want};
 use crate::near::Other;
 use crate::recorder::Recorder;
@@ -15,7 +16,7 @@ impl Engine {
     /// Moves everybody by one tick.
     pub(crate) fn advance(&mut self, now_s: f64, recorder: &mut Recorder) {
         let Self { humans, robot, near, .. } = &mut *self;
-        let people = humans.iter().map(Other::from);
+        let people = humans.iter().filter(|human| human.present()).map(Other::from);
         near.fill(people.chain(robot.iter().map(Other::from)));
         let led: Vec<HumanId> = self
             .humans
@@ -33,8 +34,16 @@ impl Engine {
         let mut bodies: Vec<Body> = Vec::with_capacity(self.humans.len() + 1);
         let mut around: Vec<Other> = Vec::new();
         let mut walker = Walker::new(&self.params, self.humans.len());
-        for (place, (human, pace)) in self.humans.iter_mut().zip(&paces).enumerate() {
-            self.near.around(place, &human.at, &mut around);
+        for (human, pace) in self.humans.iter_mut().zip(&paces) {
+            if human.is_recorded() {
+                human.replay(now_s + STEP_SECS);
+                wants.push(Want::STAND);
+                if human.present() {
+                    bodies.push(Body { yields: 0.0, ..body(human, human.at) });
+                }
+                continue;
+            }
+            self.near.around(human.id, &human.at, &mut around);
             let scene = Scene {
                 location: &self.setup.location,
                 floor: &self.floor,
@@ -47,8 +56,7 @@ impl Engine {
             walker.steer(human, &want, &self.floor, &around);
             human.started |= human.action == Action::Navigate && want.target.is_some();
             let yields = if want.target.is_some() { 1.0 } else { 0.02 };
-            let at = human.at + human.velocity * STEP_SECS;
-            bodies.push(Body { agent: human.agent(), at, velocity: human.velocity, radius_m: human.radius_m, yields });
+            bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });
             wants.push(want);
         }
         if let Some(robot) = &mut self.robot {
@@ -65,7 +73,8 @@ impl Engine {
         for touch in contacts::resolve(&mut bodies, &self.floor) {
             recorder.touch(touch);
         }
-        for ((human, want), body) in self.humans.iter_mut().zip(&wants).zip(&bodies) {
+        let there = self.humans.iter_mut().zip(&wants).filter(|(human, _)| human.present());
+        for ((human, want), body) in there.zip(&bodies).filter(|((human, _), _)| !human.is_recorded()) {
             walk::settle(human, want, body.at, body.velocity);
             if human.action == Action::Navigate {
                 walk::progress(human);
@@ -125,4 +134,9 @@ impl Engine {
             }
         }
     }
+}
+
+/// A human as contacts see it, at the place where it would be.
+fn body(human: &Human, at: Point) -> Body {
+    Body { agent: human.agent(), at, velocity: human.velocity, radius_m: human.radius_m, yields: 1.0 }
 }

@@ -25,7 +25,7 @@ impl Engine {
         let seen: Vec<SeenPerson> = self
             .humans
             .iter()
-            .filter(|_| due || self.script.has_lines())
+            .filter(|human| human.present() && (due || self.script.has_lines()))
             .filter(|human| (human.at - at).norm() <= robot.model.lidar_range_m && self.floor.sees(&at, &human.at))
             .map(seen)
             .collect();
@@ -57,7 +57,7 @@ impl Engine {
                 })
                 .collect();
             let disc = |human: &Human| Disc { center: human.at, radius_m: human.radius_m };
-            let discs: Vec<Disc> = self.humans.iter().map(disc).collect();
+            let discs: Vec<Disc> = self.humans.iter().filter(|human| human.present()).map(disc).collect();
             let (floor, pose, range) = (&self.floor, robot.pose, robot.model.lidar_range_m);
             let scan = || lidar::scan(floor, &pose, &discs, range);
             let leavers = self.humans.iter().filter(|human| inside_still(human)).count();

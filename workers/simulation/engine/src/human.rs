@@ -3,6 +3,8 @@
 use socrates_bt::{Tree, TreeState};
 use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
 
+use crate::models::Walks;
+
 /// Where a human meets the robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Meeting {
@@ -79,6 +81,8 @@ pub(crate) struct Human {
     pub(crate) started: bool,
     /// Where it walked, a point every decimetre.
     pub(crate) trail: Polyline,
+    /// The model by which it walks.
+    pub(crate) walks: Walks,
 }
 
 impl Human {

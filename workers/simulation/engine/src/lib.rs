@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, walk, lanes, advance, [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, walk, lanes, [`models`], advance, [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!
@@ -17,6 +17,7 @@ pub mod contacts;
 pub mod doors;
 pub mod floor;
 pub mod lidar;
+pub mod models;
 pub mod recorder;
 pub mod run;
 pub mod setup;
@@ -42,12 +43,15 @@ mod door_runs;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod model_runs;
+#[cfg(test)]
 mod tests;
 
 pub use contacts::{Body, Touch, resolve};
 pub use doors::event_names;
 pub use floor::Floor;
 pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
+pub use models::HumanModel;
 pub use recorder::Recorder;
 pub use run::{Engine, NO_ROBOT};
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

@@ -50,7 +50,7 @@ pub(crate) struct Want {
 }
 
 impl Want {
-    const STAND: Self = Self { target: None, speed_mps: 0.0, face: None, drawn: false };
+    pub(crate) const STAND: Self = Self { target: None, speed_mps: 0.0, face: None, drawn: false };
 
     fn stand_facing(point: Point) -> Self {
         Self { face: Some(point), ..Self::STAND }

@@ -64,13 +64,12 @@ impl Near {
         }
     }
 
-    /// Everybody within [`NEAR_M`] of `at` but the one at the place `me`, in the order of the list.
-    pub(crate) fn around(&self, me: usize, at: &Point, found: &mut Vec<Other>) {
+    /// Everybody within [`NEAR_M`] of `at` but `me`, in the order of the list.
+    pub(crate) fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Other>) {
         found.clear();
-        let near = |place: usize, other: &Other| place != me && (other.at - at).norm_squared() < NEAR_M * NEAR_M;
+        let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < NEAR_M * NEAR_M;
         if self.others.len() <= FEW {
-            let all = self.others.iter().enumerate();
-            found.extend(all.filter(|(place, other)| near(*place, other)).map(|(_, other)| *other));
+            found.extend(self.others.iter().filter(|other| near(other)));
             return;
         }
         let mut places = Vec::with_capacity(64);
@@ -84,7 +83,7 @@ impl Near {
             let run = run.and_then(|(start, end)| self.places.get(start..end)).unwrap_or(&[]);
             for place in run {
                 let index = usize::try_from(*place).unwrap_or(usize::MAX);
-                if self.others.get(index).is_some_and(|other| near(index, other)) {
+                if self.others.get(index).is_some_and(near) {
                     places.push(index);
                 }
             }
@@ -171,7 +170,7 @@ mod tests {
         near.fill(others.iter().copied());
         let mut found = Vec::new();
         for (me, other) in others.iter().enumerate() {
-            near.around(me, &other.at, &mut found);
+            near.around(other.id.unwrap(), &other.at, &mut found);
             let want: Vec<Option<HumanId>> = others
                 .iter()
                 .enumerate()

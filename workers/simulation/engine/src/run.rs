@@ -10,7 +10,7 @@ use socrates_model::{
 use crate::doors::{self, Doors, Passer, Raised};
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
-use crate::human::{DoorOnWay, Human, leaf_name, leaf_number};
+use crate::human::{DoorOnWay, Human, LEAVES, leaf_name, leaf_number};
 use crate::near::Near;
 use crate::recorder::Recorder;
 use crate::rendezvous::{self, Timing};
@@ -37,7 +37,7 @@ pub struct Engine {
     pub(crate) params: Params,
     pub(crate) near: Near,
     ending: Ending,
-    header: RecordingHeader,
+    pub(crate) header: RecordingHeader,
 }
 
 impl Engine {
@@ -158,7 +158,7 @@ impl Engine {
     }
 
     fn passers(&self) -> Vec<Passer> {
-        let humans = self.humans.iter().map(|human| {
+        let humans = self.humans.iter().filter(|human| human.present()).map(|human| {
             // Somebody who waits at a door on its way still means to go through.
             let on_way = human.started && human.action == Action::Navigate && !human.at_goal();
             let velocity = if on_way { human.route.direction(human.s + 0.1) * 0.5 } else { human.velocity };
@@ -176,7 +176,7 @@ impl Engine {
             gesture: robot.gesture,
         });
         let gestures: Vec<(HumanId, Gesture)> = self.humans.iter().map(|human| (human.id, human.gesture)).collect();
-        for human in &mut self.humans {
+        for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
             let mut view = View::of(human, &self.floor, now, robot, &gestures);
             human.tree.tick(&mut human.state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
@@ -218,7 +218,7 @@ impl Engine {
         let humans = self.humans.iter().map(|human| AgentState {
             tick,
             agent: human.id.number(),
-            flags: AgentState::flags(human.agent(), human.gesture, leaf_number(&human.action)),
+            flags: AgentState::flags(human.agent(), human.gesture, leaf(human)),
             x: human.at.x,
             y: human.at.y,
             yaw: human.yaw,
@@ -262,7 +262,8 @@ impl Engine {
         if let Some(robot) = &mut self.robot {
             let end = robot.route.end().unwrap_or_else(|| robot.at());
             let left = (end - robot.at()).norm();
-            let full = self.humans.iter().any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
+            let mut there = self.humans.iter().filter(|human| human.present());
+            let full = there.any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
             robot.at_full_goal_s =
                 if full && left < 1.4 && robot.velocity.norm() < 0.05 { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
             let near = left < 0.35 && robot.s > robot.route.length_m() - 1.0;
@@ -296,5 +297,15 @@ impl Engine {
                 })
                 .collect(),
         }
+    }
+}
+
+/// Number of the leaf that a frame tells: of the action, or what somebody recorded does.
+fn leaf(human: &Human) -> u16 {
+    let after = u16::try_from(LEAVES.len()).unwrap_or(u16::MAX);
+    match (human.is_recorded(), human.present()) {
+        (false, _) => leaf_number(&human.action),
+        (true, true) => after,
+        (true, false) => after.saturating_add(1),
     }
 }

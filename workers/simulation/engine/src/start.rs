@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
-use socrates_bt::Tree;
+use socrates_bt::{Tree, TreeState};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::hash::derive_seed;
 use socrates_model::recording::AgentInfo;
@@ -16,6 +16,7 @@ use socrates_model::{
 
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
+use crate::models::Walks;
 use crate::placing;
 use crate::robot::Robot;
 use crate::setup::{PERSON_RADIUS_M, Setup};
@@ -207,28 +208,51 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         ("id".to_owned(), proposal.id.number().to_string()),
         ("dt".to_owned(), STEP_SECS.to_string()),
     ]));
+    let at = route.point(0.0);
     Human {
-        id: proposal.id,
         role: proposal.role.clone(),
         relation: proposal.relation,
         group: proposal.group,
-        standing: false,
         lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { 0.0 },
-        tree,
-        state,
-        at: route.point(0.0),
-        home: route.point(0.0),
         route,
         nodes: marks,
-        next_node: 0,
-        s: 0.0,
         meeting,
         doors,
-        velocity: Vector::zeros(),
         yaw: facing,
+        speed_mps,
+        ..bare(proposal.id, tree, state, at)
+    }
+}
+
+/// Somebody who stands at a spot, in nobody's story.
+pub(crate) fn bystander(id: HumanId, tree: Tree, at: Point) -> Human {
+    let state = tree.start();
+    bare(id, tree, state, at)
+}
+
+fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
+    Human {
+        id,
+        role: String::new(),
+        relation: Relation::Static,
+        group: None,
+        standing: false,
+        lane_m: 0.0,
+        tree,
+        state,
+        at,
+        home: at,
+        route: Polyline::new(&[at]),
+        nodes: Vec::new(),
+        next_node: 0,
+        s: 0.0,
+        meeting: None,
+        doors: Vec::new(),
+        velocity: Vector::zeros(),
+        yaw: 0.0,
         omega: 0.0,
         radius_m: PERSON_RADIUS_M,
-        speed_mps,
+        speed_mps: SPEED.0,
         action: Action::Navigate,
         gesture: Gesture::None,
         errand: Errand::default(),
@@ -239,6 +263,7 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
         robot_in_sight: None,
         started: false,
         trail: Polyline::default(),
+        walks: Walks::Forces,
     }
 }
 

@@ -8,6 +8,7 @@ use socrates_model::{GroupId, Point, Vector};
 use crate::floor::Floor;
 use crate::human::Human;
 use crate::lanes::Lanes;
+use crate::models::{Walks, avoid};
 use crate::motion::Want;
 use crate::near::Other;
 
@@ -52,7 +53,13 @@ impl<'a> Walker<'a> {
         let wished = match want.target {
             Some(target) if want.speed_mps > 0.0 => {
                 human.anchor = None;
-                human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
+                if let Walks::Orca(orca) = &human.walks {
+                    let wished = avoid(orca, human, (&target, want.speed_mps), floor, others);
+                    let change = wished - human.velocity;
+                    human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
+                } else {
+                    human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
+                }
             }
             Some(_) | None => stand(human),
         };

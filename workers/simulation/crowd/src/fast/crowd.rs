@@ -18,7 +18,7 @@ use crate::vector::{known, norm, unit};
 use crate::walker::{Drive, Route, Walker};
 
 /// A crowd that is stepped fast: same law as [`crate::strict`], social forces within an error bound,
-/// portable functions, no memory taken after the first step.
+/// portable functions, no memory taken by a step unless the crowd gets wider or denser than before.
 #[derive(Debug, Clone)]
 pub struct Crowd {
     people: Vec<Person>,

@@ -27,6 +27,7 @@
 
 mod cells;
 mod crowd;
+mod density;
 mod elementary;
 mod pairs;
 mod prune;

@@ -10,18 +10,24 @@
 //! ```
 //!
 //! because theta² >= 2 (1 - cos theta), and because the bias turns theta by epsilon B at most, while
-//! |theta| <= pi. The force of a dropped pair is then at most sqrt(2) k e^-T, k the social factor, and
-//! the N - 1 others of somebody can be dropped at most once each:
+//! |theta| <= pi. The force of a dropped pair is then at most sqrt(2) k e^-T, k the social factor. It is
+//! also at most sqrt(2) k e^(-d/B_max), B_max the range of two who meet head on as fast as the fastest.
+//! With C_1 <= C_2 <= ... <= C_n = N - 1 the most others that anybody has within d_1 < d_2 < ... < d_n =
+//! infinity, every error is at most
 //!
 //! ```text
-//! error <= (N - 1) sqrt(2) k e^-T     so     T = ln((N - 1) sqrt(2) k / error)
+//! sqrt(2) k e^-T S(T),   S(T) = sum of C_j (w_(j-1) - w_j),   w_0 = 1,  w_j = min(1, e^(T - d_j/B_max))
 //! ```
+//!
+//! S grows with T. So T_0 = ln((N - 1) sqrt(2) k / error) keeps the bound, and so does each next
+//! T = ln(S(T_before) sqrt(2) k / error), which is never larger.
 //!
 //! The test runs in f32 without a division, multiplied through with d³ B / gamma. Coordinates are taken
 //! from the middle of the crowd, so rounding moves the direction of somebody who is at least
 //! [`Prune::near_m`] away by 1e-4 at most; the threshold is raised by [`MARGIN`] to cover that, and
 //! nearer pairs are always kept.
 
+use super::density::Within;
 use crate::params::Params;
 
 /// Added to the threshold of the f32 test: covers its rounding.
@@ -30,6 +36,9 @@ const MARGIN: f64 = 0.1;
 const NEAR_M: f64 = 0.5;
 /// The same as a share of the extent of larger crowds.
 const NEAR_PER_EXTENT: f64 = 1e-3;
+
+/// After so many rounds the threshold hardly falls any more.
+const REFINEMENTS: usize = 3;
 
 /// The threshold for one crowd.
 #[derive(Debug, Clone, Copy)]
@@ -72,23 +81,48 @@ pub(super) struct Me {
     pub(super) vy: f32,
 }
 
+/// T for a sum over others, each of weight 1. No error allowed: infinite. No social force: 0.
+fn threshold(params: &Params, error_mps2: f64, others: f64) -> f64 {
+    libm::log(others * std::f64::consts::SQRT_2 * params.social / error_mps2).max(0.0)
+}
+
 impl Prune {
-    /// The threshold that keeps the error on each of `n_people` below `error_mps2`.
+    /// The threshold that keeps the error on everybody below `error_mps2`, in a crowd of `n_people`.
     pub(super) fn new(params: &Params, n_people: usize, error_mps2: f64) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "a crowd never has 2^53 people")]
         let others = n_people.saturating_sub(1).max(1) as f64;
-        let worst = others * std::f64::consts::SQRT_2 * params.social;
         let m = params.n.min(params.n_prime);
         let gamma3 = params.gamma_m * params.gamma_m * params.gamma_m;
         Self {
-            // No error allowed: infinite. No social force: minus infinity, which becomes 0.
-            threshold: libm::log(worst / error_mps2).max(0.0),
+            threshold: threshold(params, error_mps2, others),
             gamma_m: params.gamma_m,
             lambda: params.lambda,
             m2: m * m,
             angular: 2.0 * m * m * gamma3,
             bias: std::f64::consts::TAU * m * m * params.epsilon * gamma3 * params.gamma_m,
         }
+    }
+
+    /// The same for a crowd of which more is known: how many others anybody has within some distances
+    /// (growing; the last bound must hold for all), and the largest range of a pair.
+    pub(super) fn with_density(self, params: &Params, error_mps2: f64, within: &[Within], most_range_m: f64) -> Self {
+        let mut threshold_now = self.threshold;
+        for _ in 0..REFINEMENTS {
+            let (mut sum, mut weight) = (0.0, 1.0);
+            for (place, bound) in within.iter().enumerate() {
+                let beyond = libm::exp((threshold_now - bound.distance_m / most_range_m).min(0.0));
+                let next = if place + 1 == within.len() { 0.0 } else { beyond };
+                sum += bound.others * (weight - next);
+                weight = next;
+            }
+            threshold_now = threshold(params, error_mps2, sum).min(threshold_now);
+        }
+        Self { threshold: threshold_now, ..self }
+    }
+
+    /// T.
+    pub(super) fn threshold(&self) -> f64 {
+        self.threshold
     }
 
     /// The circle that holds everybody who may be kept by somebody of this speed, in a crowd where nobody
@@ -185,6 +219,25 @@ mod tests {
     use crate::forces::pair;
     use crate::math::Portable;
     use nalgebra::Vector2;
+
+    #[test]
+    fn what_is_known_of_a_crowd_lowers_the_threshold_and_keeps_the_bound() {
+        // People on a line, half a meter apart, so that sums over the others are plain.
+        let (params, error, range) = (Params::lightsfm_hunav(), 1e-3, 2.0);
+        let n = 5000_u32;
+        let bound = |m: f64| Within { distance_m: m, others: (4.0 * m).min(f64::from(n - 1)) };
+        let within = [5.0, 10.0, 20.0, 30.0, 40.0, 1e9].map(bound);
+        let plain = Prune::new(&params, n as usize, error);
+        let known = plain.with_density(&params, error, &within, range);
+        assert!(known.threshold < plain.threshold - 2.0, "{} {}", known.threshold, plain.threshold);
+        let most: f64 = (1..n / 2)
+            .map(|place| f64::from(place) * 0.5)
+            .map(|distance| 2.0 * libm::exp(-known.threshold.max(distance / range)))
+            .sum();
+        assert!(most * std::f64::consts::SQRT_2 * params.social <= error, "{most}");
+        let exact = Prune::new(&params, n as usize, 0.0).with_density(&params, 0.0, &within, range);
+        assert!(exact.threshold.is_infinite());
+    }
 
     #[test]
     fn nobody_beyond_the_circle_is_felt_more_than_promised() {

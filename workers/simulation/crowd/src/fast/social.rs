@@ -3,6 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use super::cells::{Cells, Extent};
+use super::density::Density;
 use super::pairs::{Body, Pairs};
 use super::prune::{Me, Prune, Test, WIDTH};
 use super::settings::{BadSettings, Instructions, check_error};
@@ -14,16 +15,22 @@ use crate::vector::norm;
 const ROWS_PER_REACH: f64 = 8.0;
 const COLUMNS_PER_REACH: f64 = 24.0;
 
+/// From this size on a crowd is counted before its threshold is chosen.
+const LARGE: usize = 500;
+/// Distances for which others are counted, as shares of the reach; the last holds everybody.
+const COUNTED_REACHES: [f64; 8] = [0.3, 0.45, 0.6, 0.75, 0.9, 1.05, 1.3, f64::INFINITY];
+
 /// Works out the social forces of a crowd, each within an error bound of the sum over all others.
 ///
-/// Keeps its memory between calls: after the first call with a crowd, none is allocated. The result
-/// depends on the people alone, not on earlier calls or on the processor.
+/// Keeps its memory between calls and takes more only for a crowd that is larger, wider or denser than
+/// any before. The result depends on the people alone, not on earlier calls or on the processor.
 #[derive(Debug, Clone)]
 pub struct Social {
     params: Params,
     error_mps2: f64,
     arch: pulp::Arch,
     bodies: Vec<Body>,
+    density: Density,
     cells: Cells,
     order: Vec<u32>,
     sorted: Sorted,
@@ -75,6 +82,7 @@ impl Social {
             error_mps2,
             arch: Instructions::Detected.arch(),
             bodies: Vec::new(),
+            density: Density::default(),
             cells: Cells::default(),
             order: Vec::new(),
             sorted: Sorted::default(),
@@ -113,6 +121,19 @@ impl Social {
         }));
     }
 
+    /// The threshold for the people loaded: of a large crowd, from how dense it is.
+    fn prune(&mut self, extent: &Extent, fastest_mps: f64) -> Prune {
+        let prune = Prune::new(&self.params, self.bodies.len(), self.error_mps2);
+        let most_range_m = self.params.gamma_m * (1.0 + 2.0 * self.params.lambda * fastest_mps);
+        let reach_m = prune.threshold() * most_range_m;
+        if self.bodies.len() < LARGE || reach_m >= extent.size_m() {
+            return prune;
+        }
+        self.density.count(self.bodies.iter().filter(|body| body.is_finite()), extent, most_range_m);
+        let within = COUNTED_REACHES.map(|share| self.density.within(share * reach_m));
+        prune.with_density(&self.params, self.error_mps2, &within, most_range_m)
+    }
+
     /// Works out the forces on the people loaded.
     pub(super) fn run(&mut self) -> &[Vector2<f64>] {
         self.forces.clear();
@@ -120,7 +141,7 @@ impl Social {
         let felt = || self.bodies.iter().filter(|body| body.is_finite());
         let Some(extent) = Extent::of(felt()) else { return &self.forces };
         let fastest = felt().fold(0.0_f64, |fastest, body| fastest.max(norm(&Vector2::new(body.vx, body.vy))));
-        let prune = Prune::new(&self.params, self.bodies.len(), self.error_mps2);
+        let prune = self.prune(&extent, fastest);
         let reach_m = prune.circle(fastest, fastest).radius_m;
         let (width_m, height_m) = (reach_m / COLUMNS_PER_REACH, reach_m / ROWS_PER_REACH);
         self.cells.sort(&self.bodies, &extent, width_m, height_m, &mut self.order);

@@ -110,6 +110,12 @@ pub(crate) struct Errand {
     pub(crate) chosen_s: f64,
     /// Until when it knows where the robot is without seeing it, s.
     pub(crate) aware_until_s: f64,
+    /// For how long it has wanted to walk and not got on, s.
+    pub(crate) jammed_s: f64,
+    /// Until when it goes round whoever it is jammed with, s.
+    pub(crate) dodges_until_s: f64,
+    /// How often it has done so.
+    pub(crate) dodges: u32,
     /// Where it stands while it stands.
     pub(crate) anchor: Option<Point>,
 }

@@ -23,8 +23,14 @@ const TURN_WALKING: f64 = TAU;
 const FEEL_M: f64 = 5.0;
 /// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
 const KEEP: (f64, f64) = (12.0, 7.0);
-/// Length of a planned way that a walker looks ahead, m.
-const LOOK_AHEAD_M: f64 = 0.7;
+/// Lengths of a planned way that a walker looks ahead, m, the farthest first.
+const LOOK_AHEAD_M: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
+/// The most that walls push a walker, m/s²: half of what its wish can pull.
+const WALL_MOST_MPS2: f64 = 1.5;
+/// Who gets no farther for so long is jammed, s.
+const JAMMED_S: f64 = 0.8;
+/// How long it goes round, s.
+const DODGE_S: f64 = 1.2;
 /// Gap that nobody goes below on purpose: to people, to the robot, m.
 const GAPS_M: (f64, f64) = (0.06, 0.18);
 /// Distance from the robot's line that lets it through, m.
@@ -168,7 +174,7 @@ fn walk(scene: &mut Scene, me: usize) -> Want {
 fn go(scene: &mut Scene, me: usize, to: &Point, speed_mps: f64) -> Want {
     let Some(agent) = scene.agents.get(me) else { return Want::STAND };
     let (at, radius_m) = (agent.at, agent.radius_m);
-    if scene.floor.straight(&at, to, radius_m.min(0.2)) {
+    if scene.floor.straight(&at, to, 0.95 * radius_m) {
         if let Some(agent) = scene.agents.get_mut(me) {
             agent.errand.way = None;
         }
@@ -190,10 +196,20 @@ fn go(scene: &mut Scene, me: usize, to: &Point, speed_mps: f64) -> Want {
             agent.errand.planned_s = now_s;
         }
     }
+    let floor = &scene.floor;
     let next = scene.agents.get_mut(me).and_then(|agent| {
         let (way, gone) = agent.errand.way.as_mut()?;
-        *gone = way.project_within(&at, *gone, *gone + 1.5).0;
-        Some(way.point(*gone + LOOK_AHEAD_M))
+        *gone = way.project_within(&at, *gone, *gone + 0.5).0;
+        // The farthest point ahead that it can go to straight: a way may lead back on the other side of a wall.
+        let ahead = LOOK_AHEAD_M.into_iter().map(|ahead_m| way.point(*gone + ahead_m));
+        let mut points = ahead.filter(|point| floor.straight(&at, point, 0.5 * radius_m));
+        let next = points.next();
+        if next.is_none() {
+            let back = way.point(*gone);
+            agent.errand.way = None;
+            return Some(back);
+        }
+        next
     });
     // Without any way it stands: a goal behind a wall is not walked through.
     next.map_or(Want::STAND, |next| Want::going(next, speed_mps))
@@ -300,11 +316,44 @@ fn block(scene: &mut Scene, me: usize, target: Target, ahead_m: f64) -> Want {
     Want { face: Some(to), drawn: target == Target::Robot, ..go(scene, me, &spot, speed) }
 }
 
+/// Where to go now: the target, or beside whoever it is jammed with. Two who stand against each other both go round
+/// to the right; where that does not help, the next time to the left.
+fn unjammed(scene: &mut Scene, me: usize, want: &Want) -> Option<Point> {
+    let target = want.target?;
+    let (now_s, dt) = (scene.now_s, scene.dt);
+    let agent = scene.agents.get_mut(me)?;
+    let errand = &mut agent.errand;
+    let slow = want.speed_mps > 0.3 && agent.velocity.norm() < 0.15;
+    errand.jammed_s = if slow { errand.jammed_s + dt } else { 0.0 };
+    if errand.jammed_s > JAMMED_S {
+        errand.jammed_s = 0.0;
+        errand.dodges += 1;
+        // Not all for the same time, else they would stand against each other again.
+        let share = f64::from((agent.human.number() + errand.dodges) % 3);
+        errand.dodges_until_s = now_s + DODGE_S * (1.0 + 0.5 * share);
+    }
+    if now_s >= errand.dodges_until_s {
+        return Some(target);
+    }
+    let (at, radius_m) = (agent.at, agent.radius_m);
+    let side = if errand.dodges % 2 == 1 { -1.0 } else { 1.0 };
+    let way = target - at;
+    let ahead = if way.norm() > 1e-6 { way / way.norm() } else { Vector::new(1.0, 0.0) };
+    let turned = |angle: f64| {
+        let (sin, cos) = libm::sincos(angle);
+        Vector::new(ahead.x * cos - ahead.y * sin, ahead.x * sin + ahead.y * cos)
+    };
+    // Aside, to the other side, or back: the first that has room.
+    let ways = [side * 1.3, side * 2.2, -side * 1.3, -side * 2.2, PI];
+    let free = ways.into_iter().map(turned).find(|way| scene.floor.clearance_m(&(at + way * 0.5)) > radius_m);
+    Some(free.map_or(target, |way| at + way))
+}
+
 /// Velocity of this tick before contacts.
 fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
     let dt = scene.dt;
     let model = scene.agents.get(me).map_or(HumanModel::SocialForces, |agent| agent.model);
-    let wished = match want.target {
+    let wished = match unjammed(scene, me, want) {
         _ if model == HumanModel::Track => return scene.velocity(Target::Agent(me)),
         Some(target) if want.speed_mps > 0.0 && model == HumanModel::Orca => {
             if let Some(agent) = scene.agents.get_mut(me) {
@@ -388,7 +437,13 @@ fn limited(force: &Vector) -> Vector {
 fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
     let people = felt(scene, me, want, target);
-    limited(&forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces).total())
+    let mut forces = forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces);
+    // Contacts keep everybody out of walls; their force keeps nobody out of a doorway, or from a goal beside one.
+    let push = forces.obstacle.norm();
+    if push > WALL_MOST_MPS2 {
+        forces.obstacle *= WALL_MOST_MPS2 / push;
+    }
+    limited(&forces.total())
 }
 
 /// The agent with its wish, then everybody it feels: in line of sight and near.
