@@ -86,22 +86,18 @@ pub(crate) fn faulty(tree: &Path, faults: &[Fault]) -> Complaint {
     )
 }
 
-/// Our own meaning where it is ours, else every leaf of the library.
-const fn meaning(library: Library) -> Meaning {
-    match library {
-        Library::Native => Meaning::Native,
-        Library::BuiltIn | Library::HunavSim1_0 | Library::HunavSim1_1 | Library::HunavSim2 | Library::SocratesFork => {
-            Meaning::World
-        }
-    }
-}
-
 fn check(talk: &Talk, file: &Path, library: Library, wrong: &mut Vec<String>) -> Result<serde_json::Value, Complaint> {
     let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let includes = |path: &str| including(folder, path);
-    let options =
-        |library| Options { includes: Some(&includes), library, meaning: meaning(library), ..Options::default() };
+    let shown = file.display().to_string();
+    let options = |library| Options {
+        file: &shown,
+        includes: Some(&includes),
+        library,
+        meaning: Meaning::World,
+        ..Options::default()
+    };
     let xml = match socrates_bt::decode(&bytes) {
         Ok(xml) => xml,
         Err(fault) => {
@@ -111,7 +107,7 @@ fn check(talk: &Talk, file: &Path, library: Library, wrong: &mut Vec<String>) ->
     };
     let report = socrates_bt::check_report(xml, &options(library));
     for fault in &report.faults {
-        wrong.push(format!("{}: {fault}", file.display()));
+        wrong.push(fault.to_string());
     }
     if let Some(analysis) = &report.analysis {
         let word = if report.is_clean() { "good" } else { "loads" };
@@ -142,9 +138,16 @@ fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint
             ours.into_iter().chain([Library::HunavSim1_1, Library::HunavSim1_0, Library::HunavSim2]).collect()
         }
     };
+    let shown = file.display().to_string();
     let mut first = None;
     for library in tries {
-        let options = Options { includes: Some(&includes), library, meaning: meaning(library), ..Options::default() };
+        let options = Options {
+            file: &shown,
+            includes: Some(&includes),
+            library,
+            meaning: Meaning::World,
+            ..Options::default()
+        };
         match Tree::parse_with(xml, &options) {
             Ok(tree) => return Ok((tree, library)),
             Err(faults) => first = first.or(Some(faults)),
