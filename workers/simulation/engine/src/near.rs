@@ -9,6 +9,8 @@ use crate::robot::Robot;
 pub(crate) const NEAR_M: f64 = 7.0;
 /// Up to so many everybody is looked at; more are sorted into cells first.
 const FEW: usize = 64;
+/// Cells that [`NEAR_M`] spans.
+const CELLS_PER_REACH: usize = 2;
 /// Most cells along a side: a very large floor gets larger cells.
 const MOST_CELLS: f64 = 128.0;
 
@@ -49,9 +51,10 @@ pub(crate) struct Near {
     cell_m: f64,
     columns: usize,
     rows: usize,
-    /// Where the places of each cell begin in `places`; one more than there are cells.
-    starts: Vec<u32>,
-    places: Vec<u32>,
+    /// Everybody by cells, in the order of the list within a cell.
+    sorted: Vec<Other>,
+    /// Where the people of each cell begin in `sorted`; one more than there are cells.
+    starts: Vec<usize>,
 }
 
 impl Near {
@@ -64,7 +67,7 @@ impl Near {
         }
     }
 
-    /// Everybody within [`NEAR_M`] of `at` but `me`, in the order of the list.
+    /// Everybody within [`NEAR_M`] of `at` but `me`: few in the order of the list, many by cells.
     pub(crate) fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Other>) {
         found.clear();
         let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < NEAR_M * NEAR_M;
@@ -72,24 +75,15 @@ impl Near {
             found.extend(self.others.iter().filter(|other| near(other)));
             return;
         }
-        let mut places = Vec::with_capacity(64);
         let (column, row) = self.cell(at);
-        for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
-            let (from, to) = (column.saturating_sub(1), (column + 2).min(self.columns));
-            // The cells of a row lie one after the other, and so do their places.
+        for row in row.saturating_sub(CELLS_PER_REACH)..(row + CELLS_PER_REACH + 1).min(self.rows) {
+            let from = column.saturating_sub(CELLS_PER_REACH);
+            let to = (column + CELLS_PER_REACH + 1).min(self.columns);
+            // The cells of a row lie one after the other, and so do the people in them.
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
-            let run = usize::try_from(start).ok().zip(usize::try_from(end).ok());
-            let run = run.and_then(|(start, end)| self.places.get(start..end)).unwrap_or(&[]);
-            for place in run {
-                let index = usize::try_from(*place).unwrap_or(usize::MAX);
-                if self.others.get(index).is_some_and(near) {
-                    places.push(index);
-                }
-            }
+            found.extend(self.sorted.get(start..end).into_iter().flatten().filter(|other| near(other)));
         }
-        places.sort_unstable();
-        found.extend(places.iter().filter_map(|place| self.others.get(*place)).copied());
     }
 
     fn cell(&self, at: &Point) -> (usize, usize) {
@@ -105,7 +99,7 @@ impl Near {
         (along(at.x, self.low.0, self.columns), along(at.y, self.low.1, self.rows))
     }
 
-    /// Sorts everybody into cells of at least [`NEAR_M`], keeping the order within a cell.
+    /// Sorts everybody into cells, keeping the order within a cell.
     fn sort(&mut self) {
         let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
         for other in &self.others {
@@ -114,7 +108,9 @@ impl Near {
         }
         let side = (high.0 - low.0).max(high.1 - low.1).max(0.0);
         self.low = low;
-        self.cell_m = NEAR_M.max(side / MOST_CELLS);
+        #[expect(clippy::cast_precision_loss, reason = "two")]
+        let reach = CELLS_PER_REACH as f64;
+        self.cell_m = (NEAR_M / reach).max(side / MOST_CELLS);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 129")]
         let cells = |from: f64, to: f64| ((to - from).max(0.0) / self.cell_m) as usize + 1;
         (self.columns, self.rows) = (cells(low.0, high.0), cells(low.1, high.1));
@@ -134,12 +130,11 @@ impl Near {
             *start = sum;
         }
         let mut next = self.starts.clone();
-        self.places.clear();
-        self.places.resize(self.others.len(), 0);
-        for (place, cell) in (0_u32..).zip(&cells) {
+        self.sorted.clone_from(&self.others);
+        for (other, cell) in self.others.iter().zip(&cells) {
             let Some(slot) = next.get_mut(*cell) else { continue };
-            if let Some(target) = usize::try_from(*slot).ok().and_then(|slot| self.places.get_mut(slot)) {
-                *target = place;
+            if let Some(target) = self.sorted.get_mut(*slot) {
+                *target = *other;
             }
             *slot += 1;
         }
@@ -177,7 +172,9 @@ mod tests {
                 .filter(|(place, o)| *place != me && (o.at - other.at).norm() < NEAR_M)
                 .map(|(_, o)| o.id)
                 .collect();
-            assert_eq!(found.iter().map(|o| o.id).collect::<Vec<_>>(), want);
+            let mut found: Vec<Option<HumanId>> = found.iter().map(|o| o.id).collect();
+            found.sort_unstable();
+            assert_eq!(found, want);
         }
     }
 }
