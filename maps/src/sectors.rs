@@ -1,5 +1,7 @@
 //! Wall surfaces as straight segments, and the nearest of them in each direction.
 
+use std::sync::LazyLock;
+
 use socrates_model::{Cell, Grid, Point, Vector};
 
 use crate::layer::{Raster, floor_index};
@@ -84,7 +86,14 @@ impl Faces {
         if n == 0 || !px.is_finite() || !py.is_finite() || reach_m <= 0.0 {
             return Vec::new();
         }
-        let mut wedges = Wedges::new(n, reach_m);
+        let own;
+        let directions = if n == 8 {
+            &*EIGHT
+        } else {
+            own = Directions::of(n);
+            &own
+        };
+        let mut wedges = Wedges::new(directions, reach_m);
         let reach = reach_m / raster.resolution_m + 1.0;
         let span = |at: f64, cells: usize| {
             let last = cells / BUCKET_CELLS;
@@ -114,16 +123,15 @@ fn to_f64(at: usize) -> f64 {
     at as f64
 }
 
-/// The directions round a point, and the nearest surface found in each so far.
-struct Wedges {
-    /// Unit vectors of the middles and of the ends (counter-clockwise side) of the sectors.
+/// Unit vectors of the middles and of the ends (counter-clockwise side) of equal sectors.
+#[derive(Debug, Clone)]
+struct Directions {
     middles: Vec<Vector>,
     ends: Vec<Vector>,
-    nearest: Vec<(f64, Option<Vector>)>,
 }
 
-impl Wedges {
-    fn new(n: usize, reach_m: f64) -> Self {
+impl Directions {
+    fn of(n: usize) -> Self {
         let unit = |angle: f64| {
             let (sin, cos) = libm::sincos(angle);
             Vector::new(cos, sin)
@@ -132,8 +140,22 @@ impl Wedges {
         Self {
             middles: (0..n).map(|k| unit(to_f64(k) * step)).collect(),
             ends: (0..n).map(|k| unit((to_f64(k) + 0.5) * step)).collect(),
-            nearest: vec![(reach_m, None); n],
         }
+    }
+}
+
+/// The sectors that people's forces ask for at every tick.
+static EIGHT: LazyLock<Directions> = LazyLock::new(|| Directions::of(8));
+
+/// The directions round a point, and the nearest surface found in each so far.
+struct Wedges<'a> {
+    directions: &'a Directions,
+    nearest: Vec<(f64, Option<Vector>)>,
+}
+
+impl<'a> Wedges<'a> {
+    fn new(directions: &'a Directions, reach_m: f64) -> Self {
+        Self { directions, nearest: vec![(reach_m, None); directions.middles.len()] }
     }
 
     /// Takes a surface given relative to the point.
@@ -160,12 +182,13 @@ impl Wedges {
             }
         }
         // The part of a surface inside a sector is nearest at its foot or where the sector ends.
-        let n = self.ends.len();
+        let ends = &self.directions.ends;
+        let n = ends.len();
         if n < 2 {
             return;
         }
         for sector in 0..n {
-            let Some(ray) = self.ends.get(sector).copied() else { continue };
+            let Some(ray) = ends.get(sector).copied() else { continue };
             let across = ray.perp(&along);
             if across <= 0.0 {
                 continue;
@@ -181,7 +204,7 @@ impl Wedges {
     /// The sector of a direction: the one whose middle is nearest.
     fn sector(&self, away: &Vector) -> Option<usize> {
         let mut best: Option<(f64, usize)> = None;
-        for (k, middle) in self.middles.iter().enumerate() {
+        for (k, middle) in self.directions.middles.iter().enumerate() {
             let likeness = middle.dot(away);
             if best.is_none_or(|(most, _)| likeness > most) {
                 best = Some((likeness, k));

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use socrates_crowd::tracks::Tracks;
 use socrates_hunav::{AgentsFile, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
 use socrates_model::{EventKind, Location, Point, Pose, SimTime};
 
@@ -15,6 +16,8 @@ use crate::talk::Talk;
 
 /// Largest agents file that is read, bytes.
 const MAX_BYTES: u64 = 16 * 1024 * 1024;
+/// Largest file of tracks that is read, bytes.
+const MAX_TRACKS_BYTES: u64 = 1024 * 1024 * 1024;
 
 /// Whether `simulate` is given an agents file, not a bundle.
 pub(crate) fn is_agents_file(what: &Path) -> bool {
@@ -37,7 +40,9 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
         .or_else(|| options.what.parent().map(Path::to_path_buf))
         .unwrap_or_else(|| PathBuf::from("."));
     let trees = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let tracks = options.tracks.as_deref().map(tracks).transpose()?;
     let mut inputs = Inputs::new(&agents, &file);
+    inputs.tracks = tracks.as_ref();
     inputs.grid = location.as_ref().map(|location| &location.grid);
     inputs.profile = profile;
     inputs.seed = options.seed.unwrap_or(1);
@@ -104,6 +109,17 @@ fn listed(file: &str, problems: &[Problem]) -> Complaint {
     );
     complaint.causes = problems.iter().map(ToString::to_string).collect();
     complaint
+}
+
+/// Recorded people.
+fn tracks(path: &Path) -> Result<Tracks, Complaint> {
+    let hint = "CSV with the columns t,id,x,y and, where known, yaw,vx,vy";
+    let text = files::text(path, MAX_TRACKS_BYTES, hint)?;
+    Tracks::read(&text).map_err(|why| {
+        let mut complaint = Complaint::input(format!("`{}` cannot be replayed", path.display()), hint);
+        complaint.causes = why.to_string().lines().map(|line| line.trim().to_owned()).collect();
+        complaint
+    })
 }
 
 /// A map_server file, a location folder, or a shipped location.

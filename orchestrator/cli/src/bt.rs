@@ -141,13 +141,8 @@ fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint
     let shown = file.display().to_string();
     let mut first = None;
     for library in tries {
-        let options = Options {
-            file: &shown,
-            includes: Some(&includes),
-            library,
-            meaning: Meaning::World,
-            ..Options::default()
-        };
+        let options =
+            Options { file: &shown, includes: Some(&includes), library, meaning: Meaning::World, ..Options::default() };
         match Tree::parse_with(xml, &options) {
             Ok(tree) => return Ok((tree, library)),
             Err(faults) => first = first.or(Some(faults)),

@@ -129,17 +129,18 @@ fn bench(talk: &Talk, runs: u32) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// What each job of a bundle took beyond its work, ms: waiting for its worker, and both ways over the bus. Jobs
-/// that wait for the same worker to finish another one are not hand-overs and are left out.
+/// What each job of a bundle took beyond its work, ms: both ways over the bus, and the decisions between. Left out is
+/// what waited for something else: the first job, for its worker to start, and runs that stood in line behind another.
 fn hand_overs(bundle: &Path) -> Vec<f64> {
     let text = std::fs::read_to_string(bundle.join("details/provenance.json")).unwrap_or_default();
     let provenance: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     let jobs = provenance["jobs"].as_array().cloned().unwrap_or_default();
+    let alone = |job: &&serde_json::Value| {
+        let (stage, item) = (job["job"]["stage"].as_str(), job["job"]["item"].as_str().unwrap_or_default());
+        stage != Some("proposal") && (stage != Some("simulation") || item.starts_with("reference"))
+    };
     jobs.iter()
-        .filter(|job| {
-            job["job"]["stage"] != "simulation"
-                || job["job"]["item"].as_str().is_none_or(|item| item.starts_with("reference"))
-        })
+        .filter(alone)
         .flat_map(|job| job["attempts"].as_array().cloned().unwrap_or_default())
         .filter_map(|attempt| Some(attempt["span_ms"].as_f64()? - attempt["wall_ms"].as_f64()?))
         .collect()

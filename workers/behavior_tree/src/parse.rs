@@ -509,6 +509,11 @@ impl Reading<'_> {
                     self.fault(FaultCode::BPort, it, message);
                 }
                 None => {}
+                // The fork counts people from 0.
+                Some("0")
+                    if port.kind == PortKind::Human
+                        && self.options.library == Library::SocratesFork
+                        && self.options.meaning == Meaning::World => {}
                 Some(value) => {
                     if let Some((code, what)) = wrong(port.kind, value) {
                         let message =

@@ -204,3 +204,12 @@ fn each_library_has_its_own_ports() {
     assert!(Tree::parse_with(&document("", seen), &upstream(Library::HunavSim1_0)).is_ok());
     assert!(Tree::parse(&document("", seen)).is_err());
 }
+
+#[test]
+fn the_fork_counts_people_from_zero_and_we_from_one() {
+    let xml = r#"<root main_tree_to_execute="M"><BehaviorTree ID="M">
+  <FollowHuman agent_id="{id}" target_id="0" time_step="{dt}"/></BehaviorTree></root>"#;
+    assert!(Tree::parse_with(xml, &upstream(Library::SocratesFork)).is_ok());
+    let faults = Tree::parse(xml).unwrap_err();
+    assert!(faults[0].to_string().contains("target_id"), "{}", faults[0]);
+}
