@@ -8,7 +8,7 @@ use crate::blackboard::read_flag;
 use crate::hints::{listed, nearest, resolved};
 use crate::nodes::{self, FOREIGN_ACTION, FOREIGN_CONDITION};
 use crate::script::Script;
-use crate::sheet::{Kind, Library, NodeSheet, PortSheet};
+use crate::sheet::{Kind, Library, NodeSheet, PortKind, PortSheet};
 use crate::tree::Format;
 use crate::values::wrong;
 use crate::xml::{self, Element, short_text};

@@ -153,7 +153,30 @@ pub(crate) const LEAVES: [&str; 10] = [
 ];
 
 /// Number of the leaf of an action in [`LEAVES`].
-pub(crate) fn leaf_number(action: &Action) -> u16 {
-    let name = leaf_name(action);
-    LEAVES.iter().position(|leaf| *leaf == name).and_then(|place| u16::try_from(place).ok()).unwrap_or(0)
+pub(crate) const fn leaf_number(action: &Action) -> u16 {
+    match action {
+        Action::Navigate => 1,
+        Action::FollowRobot => 2,
+        Action::FollowHuman(_) => 3,
+        Action::RunAway => 4,
+        Action::GiveWay => 5,
+        Action::Block => 6,
+        Action::LookAtRobot => 7,
+        Action::Approach => 8,
+        Action::StandStill => 9,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_leaf_has_the_number_of_its_name() {
+        use Action::{Approach, Block, FollowHuman, FollowRobot, GiveWay, LookAtRobot, Navigate, RunAway, StandStill};
+        let follow = FollowHuman(HumanId::new(2));
+        for action in [Navigate, FollowRobot, follow, RunAway, GiveWay, Block, LookAtRobot, Approach, StandStill] {
+            assert_eq!(LEAVES[usize::from(leaf_number(&action))], leaf_name(&action));
+        }
+    }
 }

@@ -15,6 +15,10 @@ const EIGHTH: f64 = 0.414_213_562_373_095_03;
 const LN_2: (f64, f64) = (6.931_471_803_691_238e-1, 1.908_214_929_270_587_7e-10);
 /// Added and taken away again it rounds to a whole number; in between its last bits hold that number.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
+/// Pairs that are worked on at once at most.
+const WIDTH: usize = 8;
+/// At this distance a force is exactly nothing, m.
+const NOWHERE_M: f64 = 1e6;
 /// Below this exponent a force is nothing.
 const LEAST: f64 = -700.0;
 
@@ -46,19 +50,42 @@ impl Lanes {
 
     /// Sum of the social forces of all of them, m/s²; a part that is no number counts as 0.
     pub(crate) fn social(&mut self, params: &Params) -> Vector {
+        // Nobody is left over to be reckoned alone: the lanes are filled up with somebody too far off to be felt.
+        while self.x.len() % WIDTH != 0 {
+            self.push(&Vector::new(NOWHERE_M, 0.0), &Vector::zeros());
+        }
         self.along.clear();
         self.along.resize(self.x.len(), 0.0);
         self.aside.clear();
         self.aside.resize(self.x.len(), 0.0);
         let Self { x, y, vx, vy, along, aside } = self;
-        pulp::Arch::new().dispatch(|| {
-            let ins = x.iter().zip(y.iter()).zip(vx.iter().zip(vy.iter()));
-            for (((x, y), (vx, vy)), (fx, fy)) in ins.zip(along.iter_mut().zip(aside.iter_mut())) {
-                (*fx, *fy) = pair(*x, *y, *vx, *vy, params);
-            }
-        });
+        pulp::Arch::new().dispatch(Pairs { x, y, vx, vy, along, aside, params });
         let sum = self.along.iter().zip(&self.aside).fold((0.0, 0.0), |(x, y), (fx, fy)| (x + fx, y + fy));
         Vector::new(sum.0, sum.1)
+    }
+}
+
+/// All pairs at once. A closure would be compiled for the least of processors: the width is chosen where
+/// [`pulp::WithSimd`] is taken in whole.
+struct Pairs<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    vx: &'a [f64],
+    vy: &'a [f64],
+    along: &'a mut [f64],
+    aside: &'a mut [f64],
+    params: &'a Params,
+}
+
+impl pulp::WithSimd for Pairs<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _width: S) {
+        let ins = self.x.iter().zip(self.y).zip(self.vx.iter().zip(self.vy));
+        for (((x, y), (vx, vy)), (fx, fy)) in ins.zip(self.along.iter_mut().zip(self.aside)) {
+            (*fx, *fy) = pair(*x, *y, *vx, *vy, self.params);
+        }
     }
 }
 

@@ -187,7 +187,7 @@ impl Engine {
             // A tick in which nothing acts is a pause, not a new motion.
             let act = act.unwrap_or(Action::StandStill);
             if act != human.action || first {
-                if leaf_name(&act) != leaf_name(&human.action) || first {
+                if leaf_number(&act) != leaf_number(&human.action) || first {
                     recorder.tell(EventKind::Leaf { human: human.id, leaf: leaf_name(&act).to_owned() });
                 }
                 if act == Action::Navigate && !first {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::{
     Action, AgentId, Door, DoorKind, DoorOpens, EventKind, GroupId, GroupProposal, HumanId, Point, Recording, Relation,
-    Trigger,
+    Trigger, Vector,
 };
 
 use crate::fixture::{Cast, Liner, carve, hall, id, location, rule, setup};
@@ -326,4 +326,33 @@ fn sixty_seconds_with_three_people_are_recorded_tick_by_tick() {
     assert_eq!(ticks, 6001);
     assert_eq!(recording.ticks(), 6001);
     assert_eq!(reason(&recording), "time");
+}
+
+#[test]
+fn whoever_stands_within_open_floor_is_seen() {
+    let mut dice = 3_u64;
+    let mut share = || {
+        dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(dice >> 32).unwrap()) / f64::from(u32::MAX)
+    };
+    for name in socrates_maps::shipped::names() {
+        let location = socrates_maps::shipped::load(name).unwrap();
+        let mut floor = crate::Floor::new(&location.grid);
+        floor.close(location.doors.iter().map(|door| (door.from, door.to)).collect());
+        let (corner, grid) = (location.grid.origin.point(), &location.grid);
+        let size = |cells: usize| f64::from(u32::try_from(cells).unwrap()) * grid.resolution_m;
+        let mut tried = 0;
+        for _ in 0..20_000 {
+            let a = corner + Vector::new(share() * size(grid.width), share() * size(grid.height));
+            let open_m = floor.open_m(&a);
+            if open_m <= 0.0 {
+                continue;
+            }
+            let angle = share() * std::f64::consts::TAU;
+            let b = a + Vector::new(libm::cos(angle), libm::sin(angle)) * (open_m * share());
+            assert!(floor.sees(&a, &b), "{name}: {a} does not see {b} though {open_m} m are open");
+            tried += 1;
+        }
+        assert!(tried > 1000, "{name}: {tried}");
+    }
 }

@@ -82,11 +82,14 @@ impl<'a> Walker<'a> {
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
             ..person(0, human.at, human.velocity, human.radius_m)
         });
+        // Most of those who are felt are within open floor: no line has to be drawn to them.
+        let open_m = floor.open_m(&human.at);
         for (number, other) in (1_u32..).zip(others) {
-            let near = (other.at - human.at).norm() < FEEL_M;
+            let apart_m = (other.at - human.at).norm();
+            let near = apart_m < FEEL_M;
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
-            if near && !mate && !drawn && floor.sees(&human.at, &other.at) {
+            if near && !mate && !drawn && (apart_m < open_m || floor.sees(&human.at, &other.at)) {
                 match &mut self.lanes {
                     Some(lanes) => lanes.push(&(other.at - human.at), &(human.velocity - other.velocity)),
                     None => self.felt.push(person(number, other.at, other.velocity, other.radius_m)),
