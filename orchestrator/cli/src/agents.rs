@@ -64,7 +64,7 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
         plural(agents.agents.len(), "agent"),
         agents.dialect.name(),
         profile.name(),
-        location.as_ref().map_or("open floor".to_owned(), |location| format!("map {}", location.name)),
+        location.as_ref().map_or_else(|| "open floor".to_owned(), |location| format!("map {}", location.name)),
     ));
     let recording = socrates_hunav::simulate(&inputs).map_err(|problems| listed(&file, &problems))?;
     let last = recording.frames.last().map_or(0.0, |state| SimTime::at_tick(state.tick).secs());

@@ -134,14 +134,16 @@ fn bench(talk: &Talk, runs: u32) -> Result<(), Complaint> {
 fn hand_overs(bundle: &Path) -> Vec<f64> {
     let text = std::fs::read_to_string(bundle.join("details/provenance.json")).unwrap_or_default();
     let provenance: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    let jobs = provenance["jobs"].as_array().cloned().unwrap_or_default();
+    let list = |value: &serde_json::Value, name: &str| value.get(name).and_then(|list| list.as_array()).cloned();
+    let jobs = list(&provenance, "jobs").unwrap_or_default();
     let alone = |job: &&serde_json::Value| {
-        let (stage, item) = (job["job"]["stage"].as_str(), job["job"]["item"].as_str().unwrap_or_default());
-        stage != Some("proposal") && (stage != Some("simulation") || item.starts_with("reference"))
+        let part = |path: &str| job.pointer(path).and_then(|text| text.as_str()).unwrap_or_default();
+        let stage = part("/job/stage");
+        stage != "proposal" && (stage != "simulation" || part("/job/item").starts_with("reference"))
     };
     jobs.iter()
         .filter(alone)
-        .flat_map(|job| job["attempts"].as_array().cloned().unwrap_or_default())
-        .filter_map(|attempt| Some(attempt["span_ms"].as_f64()? - attempt["wall_ms"].as_f64()?))
+        .flat_map(|job| list(job, "attempts").unwrap_or_default())
+        .filter_map(|attempt| Some(attempt.get("span_ms")?.as_f64()? - attempt.get("wall_ms")?.as_f64()?))
         .collect()
 }

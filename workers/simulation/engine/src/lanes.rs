@@ -51,7 +51,7 @@ impl Lanes {
     /// Sum of the social forces of all of them, m/s²; a part that is no number counts as 0.
     pub(crate) fn social(&mut self, params: &Params) -> Vector {
         // Nobody is left over to be reckoned alone: the lanes are filled up with somebody too far off to be felt.
-        while self.x.len() % WIDTH != 0 {
+        while !self.x.len().is_multiple_of(WIDTH) {
             self.push(&Vector::new(NOWHERE_M, 0.0), &Vector::zeros());
         }
         self.along.clear();
