@@ -209,6 +209,24 @@ pub(crate) struct SimulateOptions {
     pub(crate) trees: Option<PathBuf>,
 }
 
+impl RunOptions {
+    /// What a run is asked for that is asked for nothing, with this seed.
+    pub(crate) fn plain(seed: u64) -> Self {
+        Self {
+            out: None,
+            seed,
+            seeds: None,
+            planner: Vec::new(),
+            variants: None,
+            author: None,
+            pace: "max".to_owned(),
+            require: "any".to_owned(),
+            workers: None,
+            inject: String::new(),
+        }
+    }
+}
+
 /// Verbs of `bt`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum BtVerb {

@@ -25,18 +25,7 @@ pub(crate) async fn submit(
     seed: u64,
     key_found: bool,
 ) -> Result<(), Complaint> {
-    let options = RunOptions {
-        out: None,
-        seed,
-        seeds: None,
-        planner: Vec::new(),
-        variants: None,
-        author: None,
-        pace: "max".to_owned(),
-        require: "any".to_owned(),
-        workers: None,
-        inject: String::new(),
-    };
+    let options = RunOptions::plain(seed);
     let files = request_files(requests)?;
     let prepared =
         files.iter().map(|file| prepare(file, Some(&options), config, key_found)).collect::<Result<Vec<_>, _>>()?;

@@ -10,6 +10,7 @@
 mod again;
 mod agents;
 mod args;
+mod bench;
 mod bt;
 mod bundle;
 mod cluster;
@@ -108,7 +109,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
                 done(cluster::submit(talk, config, requests, connect, namespace, *seed, key_found).await)
             }
         },
-        Verb::Dev { verb } => done(dev::dev(talk, verb)),
+        Verb::Dev { verb } => done(dev::dev(talk, cli, config, verb).await),
         Verb::Worker(options) => done(process::worker(config, options, key).await),
         Verb::Orchestrator(options) => done(process::orchestrator(config, options).await),
     }

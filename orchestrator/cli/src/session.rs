@@ -68,11 +68,36 @@ pub(crate) async fn make(
     work: &Path,
     wanted: &[Wanted<'_>],
 ) -> Result<Made, Complaint> {
+    produce(talk, cli, config, options, work, wanted, wanted.len()).await
+}
+
+/// The same, each only when the one before it is done: nothing waits for anything else.
+pub(crate) async fn one_by_one(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    work: &Path,
+    wanted: &[Wanted<'_>],
+) -> Result<Made, Complaint> {
+    std::fs::create_dir_all(work).map_err(|why| ours(&why.to_string()))?;
+    produce(talk, cli, config, options, work, wanted, 1).await
+}
+
+async fn produce(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    options: &RunOptions,
+    work: &Path,
+    wanted: &[Wanted<'_>],
+    at_once: usize,
+) -> Result<Made, Complaint> {
     let blobs = LocalBlobs::new(work.join("blobs"), false);
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
     let mut supervisor = Supervisor::start(work, config, workers, &passed_on(cli)).await?;
-    let followed = follow(talk, &mut supervisor, specs).await;
+    let followed = follow_all(talk, &mut supervisor, &specs, at_once).await;
     talk.clear();
     supervisor.stop().await;
     let statuses = followed?;
@@ -82,6 +107,21 @@ pub(crate) async fn make(
         Default::default()
     });
     Ok(Made { statuses, history, blobs })
+}
+
+/// Submits so many at once and waits for them, until all are done.
+async fn follow_all(
+    talk: &Talk,
+    supervisor: &mut Supervisor,
+    specs: &[ScenarioSpec],
+    at_once: usize,
+) -> Result<Vec<ScenarioStatus>, Complaint> {
+    let mut all = Vec::new();
+    for some in specs.chunks(at_once.max(1)) {
+        let before = u32::try_from(all.len()).unwrap_or(u32::MAX);
+        all.extend(follow(talk, supervisor, some.to_vec(), before).await?);
+    }
+    Ok(all)
 }
 
 /// Global flags that the children need too.
@@ -162,11 +202,12 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
     Ok(())
 }
 
-/// Submits and waits until everything is done.
+/// Submits and waits until everything is done, besides the `before` that were done earlier.
 async fn follow(
     talk: &Talk,
     supervisor: &mut Supervisor,
     specs: Vec<ScenarioSpec>,
+    before: u32,
 ) -> Result<Vec<ScenarioStatus>, Complaint> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
@@ -205,7 +246,7 @@ async fn follow(
                 } else if let Some(line) = reply.scenarios.first() {
                     talk.passing(&stage_line(line));
                 }
-                if reply.done >= u32::try_from(ids.len()).unwrap_or(u32::MAX) {
+                if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
                     return all(bus.as_ref(), &ids).await;
                 }
             }
