@@ -193,7 +193,12 @@ impl<'a> Wedges<'a> {
             if across <= 0.0 {
                 continue;
             }
-            let (away, share) = (from.perp(&along) / across, from.perp(&ray) / across);
+            let beyond = from.perp(&ray);
+            // Most surfaces lie in one or two sectors: no division for the others.
+            if beyond < 0.0 || beyond > across * 1.000_001 {
+                continue;
+            }
+            let (away, share) = (from.perp(&along) / across, beyond / across);
             if away >= 0.0 && (0.0..=1.0).contains(&share) {
                 self.take(sector, &(ray * away));
                 self.take((sector + 1) % n, &(ray * away));

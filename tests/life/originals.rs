@@ -127,6 +127,14 @@ fn an_agents_file_is_run_and_its_slips_are_named() {
     let scored = socrates(folder.path(), "score", &["score", "out-first/recording.mcap"]);
     assert_eq!(scored.code, 0, "{}", scored.err);
 
+    for version in ["1.0", "1.1", "2.0"] {
+        let out = format!("as-{version}.yaml");
+        let written = socrates(folder.path(), version, &["dev", "agents", "hall.yaml", "--to", version, "--out", &out]);
+        assert_eq!(written.code, 0, "{version}: {}", written.err);
+        let read = socrates(folder.path(), "again", &["dev", "agents", &out]);
+        assert!(read.code == 0 && read.out.contains(version), "{version}: {}{}", read.out, read.err);
+    }
+
     let wrong = AGENTS
         .replace("radius: 0.4\n      init_pose: {x: 0.0", "radius: -1.0\n      init_pose: {x: 0")
         .replace("id: 2", "id: 1");

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_crowd::tracks::Tracks;
-use socrates_hunav::{AgentsFile, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
+use socrates_hunav::{AgentsFile, Dialect, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
 use socrates_model::{EventKind, Location, Point, Pose, SimTime};
 
 use crate::args::SimulateOptions;
@@ -99,6 +99,42 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
         "profile": profile.name(), "seed": inputs.seed, "simulated_s": last, "contacts": contacts,
         "recording_hash": recording.hash(), "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     }));
+    Ok(())
+}
+
+/// Checks an agents file and writes it in the form of another version, with a note for what is lost.
+pub(crate) fn convert(talk: &Talk, path: &Path, to: Option<&str>, out: Option<&Path>) -> Result<(), Complaint> {
+    let file = path.display().to_string();
+    let text = files::text(path, MAX_BYTES, "name a HuNavSim agents file")?;
+    let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
+    for warning in &agents.warnings {
+        talk.warn(&warning.to_string());
+    }
+    let mut notes = Vec::new();
+    let Some(to) = to else {
+        talk.line(&format!("good       {file}: {} of {}", plural(agents.agents.len(), "agent"), agents.dialect.name()));
+        talk.result(&json!({ "agents": agents.agents.len(), "dialect": agents.dialect.name() }));
+        return Ok(());
+    };
+    let dialect = match to {
+        "1.0" => Dialect::V1_0,
+        "1.1" => Dialect::V1_1,
+        _ => Dialect::V2_0,
+    };
+    let (converted, lost) = agents.converted(dialect);
+    for note in lost {
+        talk.warn(&format!("note       {note}"));
+        notes.push(note);
+    }
+    let yaml = converted.to_yaml();
+    match out {
+        Some(out) => {
+            files::write(out, yaml.as_bytes())?;
+            talk.line(&format!("wrote      {}", out.display()));
+        }
+        None => talk.line(&yaml),
+    }
+    talk.result(&json!({ "yaml": yaml, "dialect": dialect.name(), "notes": notes }));
     Ok(())
 }
 

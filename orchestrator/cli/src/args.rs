@@ -366,6 +366,17 @@ pub(crate) enum DevVerb {
         #[arg(long)]
         events: PathBuf,
     },
+    /// Check a HuNavSim agents file, and write it in the form of another version.
+    Agents {
+        /// Agents file.
+        file: PathBuf,
+        /// Version to write: `1.0` (also the SocRATES fork), `1.1`, `2.0`.
+        #[arg(long, value_parser = ["1.0", "1.1", "2.0"])]
+        to: Option<String>,
+        /// File to write; default: standard output.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
     /// Measure the main job on this machine.
     Bench {
         /// Runs to take the median of.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 
+use crate::agents;
 use crate::args::{Cli, DevVerb};
 use crate::bench;
 use crate::bundle;
@@ -20,6 +21,7 @@ pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb)
         DevVerb::Export { bundle, out } => export(talk, bundle, out),
         DevVerb::SfmTrace { scene, out, forces } => traces::crowd(talk, scene, out, forces.as_deref()),
         DevVerb::BtTrace { tree, script, out, events } => traces::tree(talk, tree, script, out, events),
+        DevVerb::Agents { file, to, out } => agents::convert(talk, file, to.as_deref(), out.as_deref()),
         DevVerb::Bench { runs } => bench::bench(talk, cli, config, *runs).await,
     }
 }

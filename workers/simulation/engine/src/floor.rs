@@ -97,8 +97,13 @@ impl Floor {
     /// Whatever is nearer than this is seen from `point`, m: neither wall nor closed door stands in between.
     #[must_use]
     pub fn open_m(&self, point: &Point) -> f64 {
+        self.open_of(self.clearance_m(point))
+    }
+
+    /// The same, where the distance to the nearest wall or closed door is known.
+    pub(crate) fn open_of(&self, clearance_m: f64) -> f64 {
         // The field blurs by less than a cell, and a cell is solid to its corners.
-        self.clearance_m(point) - 2.0 * self.grid.resolution_m
+        clearance_m - 2.0 * self.grid.resolution_m
     }
 
     /// Whether two points see each other now.

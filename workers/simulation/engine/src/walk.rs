@@ -83,9 +83,15 @@ impl<'a> Walker<'a> {
             ..person(0, human.at, human.velocity, human.radius_m)
         });
         // Most of those who are felt are within open floor: no line has to be drawn to them.
-        let open_m = floor.open_m(&human.at);
+        let clearance_m = floor.clearance_m(&human.at);
+        let open_m = floor.open_of(clearance_m);
         for (number, other) in (1_u32..).zip(others) {
-            let apart_m = (other.at - human.at).norm();
+            let way = other.at - human.at;
+            // Most are too far off; that is seen without a root.
+            if way.norm_squared() > 1.01 * FEEL_M * FEEL_M {
+                continue;
+            }
+            let apart_m = way.norm();
             let near = apart_m < FEEL_M;
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
@@ -100,7 +106,7 @@ impl<'a> Walker<'a> {
         let meant = want.face.is_some()
             && (target - human.at).norm() < 1.3
             && floor.straight(&human.at, target, human.radius_m);
-        let walls = if meant || floor.clearance_m(&human.at) > WALLS_M { Vec::new() } else { floor.felt(&human.at) };
+        let walls = if meant || clearance_m > WALLS_M { Vec::new() } else { floor.felt(&human.at) };
         let mut forces = forces_on(0, &self.felt, &walls, self.params);
         if let Some(lanes) = &mut self.lanes {
             forces.social = lanes.social(self.params);
@@ -121,6 +127,9 @@ impl<'a> Walker<'a> {
 fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: &mut Vector) {
     for other in others {
         let way = other.at - human.at;
+        if way.norm_squared() > 9.0 {
+            continue;
+        }
         let distance = way.norm();
         let gap = distance - human.radius_m - other.radius_m;
         if !(1e-6..1.5).contains(&distance.min(1.5 - 1e-6)) || gap > 0.8 {
