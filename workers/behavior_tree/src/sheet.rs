@@ -191,6 +191,8 @@ impl PortSheet {
 
     /// `agent_id`, as nearly every leaf has it.
     pub(crate) const OWN: Self = Self::must("agent_id", PortKind::Own, "this human");
+    /// `agent_id` in the libraries of HuNavSim: any agent by its number.
+    pub(crate) const AGENT: Self = Self::must("agent_id", PortKind::Agent, "whose leaf it is");
     /// `time_step`, as every motion has it.
     pub(crate) const STEP: Self = Self::must("time_step", PortKind::Step, "length of a tick");
     /// `distance`, as the conditions on the robot have it.

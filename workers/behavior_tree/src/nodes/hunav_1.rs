@@ -6,8 +6,11 @@
 
 use socrates_model::Action;
 
-use crate::nodes::{goal_reached, halt_leaf, motion, robot_visible, time_expired, update_goal};
-use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
+use crate::nodes::{LEAF, goal_reached, motion, robot_visible, time_expired, update_goal};
+use crate::sheet::{Kind, Library, NodeSheet, PortKind, PortSheet, Role};
+
+/// `time_step`, which every motion must be given.
+const STEP: PortSheet = PortSheet::must("time_step", PortKind::Span, "length of a tick");
 
 /// The leaves of HuNavSim 1.0.
 pub(super) const CATALOG_1_0: &[&NodeSheet] = &[
@@ -38,41 +41,32 @@ pub(super) const CATALOG_1_1: &[&NodeSheet] = &[
 /// `IsRobotVisible`.
 const IS_ROBOT_VISIBLE: NodeSheet = NodeSheet {
     tag: "IsRobotVisible",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("distance", PortKind::Distance, "largest distance to the robot"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::must("distance", PortKind::Distance, "largest distance to the robot")],
     about: "holds while the robot is in the field of view and not farther than this",
     role: Role::Asks(robot_visible::means),
     tick: robot_visible::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsGoalReached`.
 const IS_GOAL_REACHED: NodeSheet = NodeSheet {
     tag: "IsGoalReached",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "holds while the agent is at its first goal: within the radius of the goal and 0.1 m",
     role: Role::Asks(goal_reached::means),
     tick: goal_reached::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `TimeExpiredCondition`.
 const TIME_EXPIRED: NodeSheet = NodeSheet {
     tag: "TimeExpiredCondition",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::may("seconds", PortKind::Span, "1.0", "length of the timer"),
         PortSheet::may("ts", PortKind::Span, "0.01", "added at every tick"),
@@ -81,160 +75,123 @@ const TIME_EXPIRED: NodeSheet = NodeSheet {
     about: "fails until it has been ticked for so many seconds, then holds",
     role: Role::Timer,
     tick: time_expired::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `UpdateGoal`.
 const UPDATE_GOAL: NodeSheet = NodeSheet {
     tag: "UpdateGoal",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "takes the first goal off the list; a cyclic list gets it back at its end",
     role: Role::Quiet,
     tick: update_goal::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `RegularNav`.
 const REGULAR_NAV: NodeSheet = NodeSheet {
     tag: "RegularNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "walks to its first goal",
     role: Role::Moves(|_| Some(Action::Navigate)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SurprisedNav`.
 const SURPRISED_NAV: NodeSheet = NodeSheet {
     tag: "SurprisedNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "stops and turns to the robot",
     role: Role::Moves(|_| Some(Action::LookAtRobot)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `CuriousNav`.
 const CURIOUS_NAV_1_0: NodeSheet = NodeSheet {
     tag: "CuriousNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "goes up to the robot and stops before it",
     role: Role::Moves(|_| Some(Action::Approach)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ScaredNav`.
 const SCARED_NAV_1_0: NodeSheet = NodeSheet {
     tag: "ScaredNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "walks on, pushed away from the robot",
     role: Role::Moves(|_| Some(Action::RunAway)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ThreateningNav`.
 const THREATENING_NAV_1_0: NodeSheet = NodeSheet {
     tag: "ThreateningNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_0,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "goes in front of the robot and faces it",
     role: Role::Moves(|_| Some(Action::Block)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `CuriousNav`.
 const CURIOUS_NAV_1_1: NodeSheet = NodeSheet {
     tag: "CuriousNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_1,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("stop_distance", PortKind::Distance, "", "where it stops before the robot"),
         PortSheet::may("agent_vel", PortKind::Speed, "", "largest speed of the approach"),
     ],
     about: "goes up to the robot and stops before it",
     role: Role::Moves(|_| Some(Action::Approach)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ScaredNav`.
 const SCARED_NAV_1_1: NodeSheet = NodeSheet {
     tag: "ScaredNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_1,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("runaway_vel", PortKind::Speed, "", "speed"),
         PortSheet::may("scary_force_factor", PortKind::Number, "", "factor of the force away from the robot"),
     ],
     about: "walks on, pushed away from the robot",
     role: Role::Moves(|_| Some(Action::RunAway)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ThreateningNav`.
 const THREATENING_NAV_1_1: NodeSheet = NodeSheet {
     tag: "ThreateningNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim1_1,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("time_step", PortKind::Span, "length of a tick"),
-        PortSheet::may("goal_dist", PortKind::Distance, "", "distance before the robot"),
-    ],
+    ports: &[PortSheet::AGENT, STEP, PortSheet::may("goal_dist", PortKind::Distance, "", "distance before the robot")],
     about: "goes in front of the robot and faces it",
     role: Role::Moves(|_| Some(Action::Block)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };

@@ -8,10 +8,18 @@ use socrates_model::{Action, Trigger};
 
 use crate::blackboard::Ports;
 use crate::nodes::hunav_2_stateful as stateful;
-use crate::nodes::{goal_reached, halt_leaf, motion, robot_visible, time_delay, time_expired, update_goal, world_only};
-use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
+use crate::nodes::{LEAF, goal_reached, motion, robot_visible, time_delay, time_expired, update_goal, world_only};
+use crate::sheet::{Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
+
+/// `time_step`, as every motion has it.
+pub(super) const STEP: PortSheet = PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick");
+/// `beh_duration` of the four reactions.
+const DURATION: PortSheet =
+    PortSheet::may("beh_duration", PortKind::Span, "5.0", "declared by the library and not read");
+/// `only_once` of the four reactions.
+const ONCE: PortSheet = PortSheet::may("only_once", PortKind::Flag, "true", "declared by the library and not read");
 
 /// The nodes of HuNavSim 2.0 beside those of BehaviorTree.CPP.
 pub(super) const CATALOG: &[&NodeSheet] = &[
@@ -58,41 +66,32 @@ pub(super) const CATALOG: &[&NodeSheet] = &[
 /// `IsRobotVisible`.
 const IS_ROBOT_VISIBLE: NodeSheet = NodeSheet {
     tag: "IsRobotVisible",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("distance", PortKind::Distance, "5.0", "largest distance to the robot"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::may("distance", PortKind::Distance, "5.0", "largest distance to the robot")],
     about: "holds while the robot is in the field of view and not farther than this",
     role: Role::Asks(robot_visible::means),
     tick: robot_visible::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsGoalReached`.
 const IS_GOAL_REACHED: NodeSheet = NodeSheet {
     tag: "IsGoalReached",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "holds while the agent is at its first goal: within the radius of the goal and 0.1 m",
     role: Role::Asks(goal_reached::means),
     tick: goal_reached::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `TimeExpiredCondition`.
 const TIME_EXPIRED: NodeSheet = NodeSheet {
     tag: "TimeExpiredCondition",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::may("seconds", PortKind::Span, "1.0", "length of the timer"),
         PortSheet::may("ts", PortKind::Span, "0.01", "added at every tick"),
@@ -101,78 +100,62 @@ const TIME_EXPIRED: NodeSheet = NodeSheet {
     about: "fails until it has been ticked for so many seconds, then holds",
     role: Role::Timer,
     tick: time_expired::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `UpdateGoal`.
 const UPDATE_GOAL: NodeSheet = NodeSheet {
     tag: "UpdateGoal",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "takes the first goal off the list; a cyclic list gets it back at its end",
     role: Role::Quiet,
     tick: update_goal::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsRobotClose`.
 const IS_ROBOT_CLOSE: NodeSheet = NodeSheet {
     tag: "IsRobotClose",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("threshold", PortKind::Distance, "1.0", "largest distance"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::may("threshold", PortKind::Distance, "1.0", "largest distance")],
     about: "holds while the robot is within this distance",
     role: Role::Asks(robot_close),
     tick: robot_close_tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `RandomChanceCondition`.
 const RANDOM_CHANCE: NodeSheet = NodeSheet {
     tag: "RandomChanceCondition",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("probability", PortKind::Share, "0.3", "chance to hold"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::may("probability", PortKind::Share, "0.3", "chance to hold")],
     about: "holds by chance, drawn anew in every tick",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsRobotFacingAgent`.
 const IS_ROBOT_FACING: NodeSheet = NodeSheet {
     tag: "IsRobotFacingAgent",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "holds while the robot faces the agent to 0.3 rad",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsAgentVisible`.
 const IS_AGENT_VISIBLE: NodeSheet = NodeSheet {
     tag: "IsAgentVisible",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::must("observer_id", PortKind::Agent, "who looks"),
         PortSheet::must("agent_id", PortKind::Agent, "who is seen"),
@@ -182,16 +165,14 @@ const IS_AGENT_VISIBLE: NodeSheet = NodeSheet {
     about: "holds while one agent is in the field of view of another",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsAgentClose`.
 const IS_AGENT_CLOSE: NodeSheet = NodeSheet {
     tag: "IsAgentClose",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::must("observer_id", PortKind::Agent, "who looks"),
         PortSheet::must("target_agent_id", PortKind::Agent, "the other agent"),
@@ -200,18 +181,16 @@ const IS_AGENT_CLOSE: NodeSheet = NodeSheet {
     about: "holds while two agents are within this distance",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsAtPosition`.
 const IS_AT_POSITION: NodeSheet = NodeSheet {
     tag: "IsAtPosition",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::may("goal_id", PortKind::Count(1), "", "number of a global goal"),
         PortSheet::may("tolerance", PortKind::Distance, "0.1", "largest distance"),
         PortSheet::may("target_x", PortKind::Number, "", "place instead of a goal, m"),
@@ -220,201 +199,159 @@ const IS_AT_POSITION: NodeSheet = NodeSheet {
     about: "holds while the agent is at a global goal",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `RegularNav`.
 const REGULAR_NAV: NodeSheet = NodeSheet {
     tag: "RegularNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
-    ],
+    ports: &[PortSheet::AGENT, STEP],
     about: "walks to its first goal",
     role: Role::Moves(|_| Some(Action::Navigate)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SurprisedNav`.
 const SURPRISED_NAV: NodeSheet = NodeSheet {
     tag: "SurprisedNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
-        PortSheet::may("beh_duration", PortKind::Span, "5.0", "declared by the library and not read"),
-        PortSheet::may("only_once", PortKind::Flag, "true", "declared by the library and not read"),
-    ],
+    ports: &[PortSheet::AGENT, STEP, DURATION, ONCE],
     about: "stops and turns to the robot",
     role: Role::Moves(|_| Some(Action::LookAtRobot)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `CuriousNav`.
 const CURIOUS_NAV: NodeSheet = NodeSheet {
     tag: "CuriousNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
-        PortSheet::may("beh_duration", PortKind::Span, "5.0", "declared by the library and not read"),
-        PortSheet::may("only_once", PortKind::Flag, "true", "declared by the library and not read"),
+        PortSheet::AGENT,
+        STEP,
+        DURATION,
+        ONCE,
         PortSheet::may("agent_vel", PortKind::Speed, "1.0", "largest speed of the approach"),
         PortSheet::may("stop_distance", PortKind::Distance, "0.5", "where it stops before the robot"),
     ],
     about: "goes up to the robot and stops before it",
     role: Role::Moves(|_| Some(Action::Approach)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ScaredNav`.
 const SCARED_NAV: NodeSheet = NodeSheet {
     tag: "ScaredNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
-        PortSheet::may("beh_duration", PortKind::Span, "5.0", "declared by the library and not read"),
-        PortSheet::may("only_once", PortKind::Flag, "true", "declared by the library and not read"),
+        PortSheet::AGENT,
+        STEP,
+        DURATION,
+        ONCE,
         PortSheet::may("runaway_vel", PortKind::Speed, "1.5", "speed"),
         PortSheet::may("scary_force_factor", PortKind::Number, "1.0", "factor of the force away from the robot"),
     ],
     about: "walks on, pushed away from the robot",
     role: Role::Moves(|_| Some(Action::RunAway)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ThreateningNav`.
 const THREATENING_NAV: NodeSheet = NodeSheet {
     tag: "ThreateningNav",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
-        PortSheet::may("beh_duration", PortKind::Span, "5.0", "declared by the library and not read"),
-        PortSheet::may("only_once", PortKind::Flag, "true", "declared by the library and not read"),
+        PortSheet::AGENT,
+        STEP,
+        DURATION,
+        ONCE,
         PortSheet::may("goal_dist", PortKind::Distance, "1.0", "distance before the robot"),
     ],
     about: "goes in front of the robot and faces it",
     role: Role::Moves(|_| Some(Action::Block)),
     tick: motion::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `FindNearestAgent`.
 const FIND_NEAREST: NodeSheet = NodeSheet {
     tag: "FindNearestAgent",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("target_agent_id", PortKind::Output, "", "who was found"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::may("target_agent_id", PortKind::Output, "", "who was found")],
     about: "finds the agent nearest to this one",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SaySomething`.
 const SAY_SOMETHING: NodeSheet = NodeSheet {
     tag: "SaySomething",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("message", PortKind::Text, "what is said"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::must("message", PortKind::Text, "what is said")],
     about: "says a text, which nobody can ask about; natively it is passed over",
     role: Role::Quiet,
     tick: say,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SetGroupId`.
 const SET_GROUP: NodeSheet = NodeSheet {
     tag: "SetGroupId",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("group_id", PortKind::Count(-1), "number of the group, -1 for none"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::must("group_id", PortKind::Count(-1), "number of the group, -1 for none")],
     about: "puts the agent into a group",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SetGoal`.
 const SET_GOAL: NodeSheet = NodeSheet {
     tag: "SetGoal",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("goal_id", PortKind::Count(1), "number of a global goal"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::must("goal_id", PortKind::Count(1), "number of a global goal")],
     about: "puts a global goal before all others, so that a list of them is walked backwards",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `StopMovement`.
 const STOP: NodeSheet = NodeSheet {
     tag: "StopMovement",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "sets the desired speed to 0 until ResumeMovement",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ResumeMovement`.
 const RESUME: NodeSheet = NodeSheet {
     tag: "ResumeMovement",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
-    ports: &[PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is")],
+    ports: &[PortSheet::AGENT],
     about: "gives the desired speed back that StopMovement took",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 fn robot_close(ports: &Ports<'_>) -> Option<Trigger> {

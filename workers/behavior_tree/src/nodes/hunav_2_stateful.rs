@@ -3,7 +3,8 @@
 
 use socrates_model::Action;
 
-use crate::nodes::{halt_leaf, world_only};
+use crate::nodes::hunav_2::STEP;
+use crate::nodes::{LEAF, world_only};
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -11,33 +12,29 @@ use crate::tick::Ticker;
 /// `IsSpeaking`.
 pub(super) const IS_SPEAKING: NodeSheet = NodeSheet {
     tag: "IsSpeaking",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("target_id", PortKind::Agent, "who speaks"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("distance_threshold", PortKind::Distance, "5.0", "largest distance"),
         PortSheet::may("duration", PortKind::Span, "10.0", "how long it waits for it"),
     ],
     about: "runs until another agent speaks; fails when the time is over",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsAnyoneSpeaking`.
 pub(super) const IS_ANYONE_SPEAKING: NodeSheet = NodeSheet {
     tag: "IsAnyoneSpeaking",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("distance_threshold", PortKind::Distance, "5.0", "largest distance"),
         PortSheet::may("duration", PortKind::Span, "5.0", "how long it waits for it"),
         PortSheet::may("speaker_id", PortKind::Output, "", "who speaks"),
@@ -45,20 +42,18 @@ pub(super) const IS_ANYONE_SPEAKING: NodeSheet = NodeSheet {
     about: "runs until anybody speaks; fails when the time is over",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsLookingAtMe`.
 pub(super) const IS_LOOKING_AT_ME: NodeSheet = NodeSheet {
     tag: "IsLookingAtMe",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("target_id", PortKind::Agent, "who looks"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::must("distance_threshold", PortKind::Distance, "largest distance"),
         PortSheet::must("angle_threshold", PortKind::Angle, "largest bearing error of the look"),
         PortSheet::must("duration", PortKind::Span, "how long it waits for it"),
@@ -66,19 +61,17 @@ pub(super) const IS_LOOKING_AT_ME: NodeSheet = NodeSheet {
     about: "runs until another agent looks at this one; fails when the time is over",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `IsAnyoneLookingAtMe`.
 pub(super) const IS_ANYONE_LOOKING_AT_ME: NodeSheet = NodeSheet {
     tag: "IsAnyoneLookingAtMe",
-    v3_tag: None,
     kind: Kind::Condition,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("distance_threshold", PortKind::Distance, "5.0", "largest distance"),
         PortSheet::may("angle_threshold", PortKind::Angle, "0.3", "largest bearing error of the look"),
         PortSheet::may("duration", PortKind::Span, "5.0", "how long it waits for it"),
@@ -87,7 +80,7 @@ pub(super) const IS_ANYONE_LOOKING_AT_ME: NodeSheet = NodeSheet {
     about: "runs until anybody looks at this agent, which walks on meanwhile; fails when the time is over",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `StopAndWaitTimerAction`.
@@ -97,10 +90,7 @@ pub(super) const STOP_AND_WAIT: NodeSheet = NodeSheet {
     kind: Kind::Action,
     library: Library::HunavSim2,
     arity: Arity::NONE,
-    ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::must("wait_duration", PortKind::Span, "how long"),
-    ],
+    ports: &[PortSheet::AGENT, PortSheet::must("wait_duration", PortKind::Span, "how long")],
     about: "stands still and runs until the time is over",
     role: Role::Moves(|_| Some(Action::StandStill)),
     tick: wait,
@@ -110,33 +100,29 @@ pub(super) const STOP_AND_WAIT: NodeSheet = NodeSheet {
 /// `GoTo`.
 pub(super) const GO_TO: NodeSheet = NodeSheet {
     tag: "GoTo",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::must("goal_id", PortKind::Count(1), "number of a global goal"),
         PortSheet::may("tolerance", PortKind::Distance, "0.1", "declared by the library and not read"),
     ],
     about: "walks to a global goal and runs until it is there; then the goals of before hold again",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ApproachAgent`.
 pub(super) const APPROACH_AGENT: NodeSheet = NodeSheet {
     tag: "ApproachAgent",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("target_agent_id", PortKind::Agent, "the other agent"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("closest_dist", PortKind::Distance, "0.5", "where it stops"),
         PortSheet::may("max_vel", PortKind::Speed, "1.0", "largest speed"),
         PortSheet::may("duration", PortKind::Span, "5.0", "longest time"),
@@ -144,19 +130,17 @@ pub(super) const APPROACH_AGENT: NodeSheet = NodeSheet {
     about: "goes up to another agent",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ApproachRobot`.
 pub(super) const APPROACH_ROBOT: NodeSheet = NodeSheet {
     tag: "ApproachRobot",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("closest_dist", PortKind::Distance, "1.5", "where it stops"),
         PortSheet::may("max_vel", PortKind::Speed, "1.8", "largest speed"),
         PortSheet::may("duration", PortKind::Span, "5.0", "longest time"),
@@ -164,59 +148,53 @@ pub(super) const APPROACH_ROBOT: NodeSheet = NodeSheet {
     about: "goes up to the robot",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `BlockRobot`.
 pub(super) const BLOCK_ROBOT: NodeSheet = NodeSheet {
     tag: "BlockRobot",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        PortSheet::AGENT,
+        STEP,
         PortSheet::may("front_dist", PortKind::Distance, "1.0", "distance before the robot"),
         PortSheet::may("duration", PortKind::Span, "5.0", "how long"),
     ],
     about: "goes and stays in front of the robot",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `BlockAgent`.
 pub(super) const BLOCK_AGENT: NodeSheet = NodeSheet {
     tag: "BlockAgent",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("target_agent_id", PortKind::Agent, "the other agent"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("front_dist", PortKind::Distance, "1.0", "distance before the other agent"),
         PortSheet::may("duration", PortKind::Span, "5.0", "how long"),
     ],
     about: "goes and stays in front of another agent",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `FollowAgent`.
 pub(super) const FOLLOW_AGENT: NodeSheet = NodeSheet {
     tag: "FollowAgent",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("target_agent_id", PortKind::Agent, "the other agent"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("closest_dist", PortKind::Distance, "1.5", "where it begins to slow down"),
         PortSheet::may("max_vel", PortKind::Speed, "1.5", "largest speed"),
         PortSheet::may("duration", PortKind::Span, "0", "how long; 0 for ever"),
@@ -224,55 +202,49 @@ pub(super) const FOLLOW_AGENT: NodeSheet = NodeSheet {
     about: "follows another agent",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `ConversationFormation`.
 pub(super) const CONVERSATION: NodeSheet = NodeSheet {
     tag: "ConversationFormation",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::must("main_agent_id", PortKind::Agent, "who leads"),
         PortSheet::must("non_main_agent_ids", PortKind::Agents, "the others"),
         PortSheet::must("goal_id", PortKind::Count(1), "number of a global goal"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("conversation_duration", PortKind::Span, "10.0", "how long"),
     ],
     about: "gathers agents in a circle around a global goal",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `SetGroupWalk`.
 pub(super) const GROUP_WALK: NodeSheet = NodeSheet {
     tag: "SetGroupWalk",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::must("main_agent_id", PortKind::Agent, "who leads"),
         PortSheet::must("non_main_agent_ids", PortKind::Agents, "the others"),
-        PortSheet::may("time_step", PortKind::Span, "0.1", "length of a tick"),
+        STEP,
         PortSheet::may("duration", PortKind::Span, "5.0", "how long"),
     ],
     about: "makes agents walk as a group along the goals of the first",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `LookAtAgent`.
 pub(super) const LOOK_AT_AGENT: NodeSheet = NodeSheet {
     tag: "LookAtAgent",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
         PortSheet::must("observer_id", PortKind::Agent, "who looks"),
         PortSheet::must("target_id", PortKind::Agent, "who is looked at"),
@@ -281,42 +253,38 @@ pub(super) const LOOK_AT_AGENT: NodeSheet = NodeSheet {
     about: "turns to another agent and runs until it faces it",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `LookAtRobot`.
 pub(super) const LOOK_AT_ROBOT: NodeSheet = NodeSheet {
     tag: "LookAtRobot",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::may("yaw_tolerance", PortKind::Angle, "0.01", "largest bearing error at the end"),
     ],
     about: "turns to the robot and runs until it faces it",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// `LookAtPoint`.
 pub(super) const LOOK_AT_POINT: NodeSheet = NodeSheet {
     tag: "LookAtPoint",
-    v3_tag: None,
     kind: Kind::Action,
     library: Library::HunavSim2,
-    arity: Arity::NONE,
     ports: &[
-        PortSheet::must("agent_id", PortKind::Agent, "whose leaf it is"),
+        PortSheet::AGENT,
         PortSheet::must("goal_id", PortKind::Count(1), "number of a global goal"),
         PortSheet::may("yaw_tolerance", PortKind::Angle, "0.01", "largest bearing error at the end"),
     ],
     about: "turns to a global goal and runs until it faces it",
     role: Role::World,
     tick: world_only::tick,
-    halt: halt_leaf,
+    ..LEAF
 };
 
 /// Runs from the tick it starts in until its time is over; the tick in which it is over is the first that succeeds.

@@ -44,7 +44,7 @@ mod world_only;
 
 pub(crate) use foreign::{FOREIGN_ACTION, FOREIGN_CONDITION};
 
-use crate::sheet::{Library, NodeSheet};
+use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
 
@@ -185,6 +185,20 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
 pub fn known_to(library: Library) -> Vec<&'static NodeSheet> {
     sheets_of(library).collect()
 }
+
+/// What leaves of other libraries have in common; the rest stands in each sheet.
+const LEAF: NodeSheet = NodeSheet {
+    tag: "",
+    v3_tag: None,
+    kind: Kind::Action,
+    library: Library::Native,
+    arity: Arity::NONE,
+    ports: &[],
+    about: "",
+    role: Role::Quiet,
+    tick: motion::tick,
+    halt: halt_leaf,
+};
 
 /// Halting a leaf of ours changes nothing: none is ever left running by its own meaning, and the world was
 /// told of those that run by its meaning.
