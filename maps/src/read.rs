@@ -73,10 +73,8 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
 /// # Errors
 /// Every problem found in the two files.
 pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
-    let unreadable = |path: &Path, why: std::io::Error| {
-        vec![Fault::new(FaultCode::MRead, path.display(), format!("cannot be read: {why}"))]
-    };
-    let bytes = std::fs::read(file).map_err(|why| unreadable(file, why))?;
+    let bytes = std::fs::read(file)
+        .map_err(|why| vec![Fault::new(FaultCode::MRead, file.display(), format!("cannot be read: {why}"))])?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let mut files = BTreeMap::new();
     if let Some(name) = map_file::image_name(&bytes).filter(|name| stays_inside(name))

@@ -26,9 +26,7 @@ pub(crate) fn is_agents_file(what: &Path) -> bool {
 
 /// Runs an agents file and writes what happened.
 pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Complaint> {
-    let file = options.what.display().to_string();
-    let text = files::text(&options.what, MAX_BYTES, "name a HuNavSim agents file")?;
-    let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
+    let (file, agents) = read(&options.what)?;
     let profile: Profile = match &options.profile {
         Some(name) => name.parse().map_err(|why: socrates_hunav::BadProfile| Complaint::input(why.to_string(), ""))?,
         None => Profile::Native,
@@ -104,13 +102,10 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
 
 /// Checks an agents file and writes it in the form of another version, with a note for what is lost.
 pub(crate) fn convert(talk: &Talk, path: &Path, to: Option<&str>, out: Option<&Path>) -> Result<(), Complaint> {
-    let file = path.display().to_string();
-    let text = files::text(path, MAX_BYTES, "name a HuNavSim agents file")?;
-    let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
+    let (file, agents) = read(path)?;
     for warning in &agents.warnings {
         talk.warn(&warning.to_string());
     }
-    let mut notes = Vec::new();
     let Some(to) = to else {
         talk.line(&format!("good       {file}: {} of {}", plural(agents.agents.len(), "agent"), agents.dialect.name()));
         talk.result(&json!({ "agents": agents.agents.len(), "dialect": agents.dialect.name() }));
@@ -121,21 +116,22 @@ pub(crate) fn convert(talk: &Talk, path: &Path, to: Option<&str>, out: Option<&P
         "1.1" => Dialect::V1_1,
         _ => Dialect::V2_0,
     };
-    let (converted, lost) = agents.converted(dialect);
-    for note in lost {
+    let (converted, notes) = agents.converted(dialect);
+    for note in &notes {
         talk.warn(&format!("note       {note}"));
-        notes.push(note);
     }
     let yaml = converted.to_yaml();
-    match out {
-        Some(out) => {
-            files::write(out, yaml.as_bytes())?;
-            talk.line(&format!("wrote      {}", out.display()));
-        }
-        None => talk.line(&yaml),
-    }
+    files::write_or_say(talk, &yaml, out)?;
     talk.result(&json!({ "yaml": yaml, "dialect": dialect.name(), "notes": notes }));
     Ok(())
+}
+
+/// An agents file with its name in messages.
+fn read(path: &Path) -> Result<(String, AgentsFile), Complaint> {
+    let file = path.display().to_string();
+    let text = files::text(path, MAX_BYTES, "name a HuNavSim agents file")?;
+    let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
+    Ok((file, agents))
 }
 
 fn listed(file: &str, problems: &[Problem]) -> Complaint {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use serde_json::json;
-use socrates_bt::{Format, Library, Meaning, Options, Tree};
+use socrates_bt::{Format, Includes, Library, Meaning, Options, Tree};
 use socrates_model::Fault;
 
 use crate::args::BtVerb;
@@ -47,13 +47,7 @@ pub(crate) fn bt(talk: &Talk, verb: &BtVerb) -> Result<(), Complaint> {
             for note in &notes {
                 talk.warn(&format!("{} {note}", if note.changes_meaning { "meaning   " } else { "spelling  " }));
             }
-            match out {
-                Some(out) => {
-                    files::write(out, xml.as_bytes())?;
-                    talk.line(&format!("wrote      {}", out.display()));
-                }
-                None => talk.line(&xml),
-            }
+            files::write_or_say(talk, &xml, out.as_deref())?;
             let notes: Vec<_> = notes
                 .iter()
                 .map(|note| json!({ "at": note.at, "message": note.message, "changes_meaning": note.changes_meaning }))
@@ -77,6 +71,11 @@ pub(crate) fn including(folder: &Path, path: &str) -> Option<String> {
     std::fs::read_to_string(folder.join(path)).ok()
 }
 
+/// How a tree's file is read: every leaf of the library is taken, whoever would tick it.
+fn options<'a>(shown: &'a str, includes: Includes<'a>, library: Library) -> Options<'a> {
+    Options { file: shown, includes: Some(includes), library, meaning: Meaning::World, ..Options::default() }
+}
+
 /// The faults of a tree's file.
 pub(crate) fn faulty(tree: &Path, faults: &[Fault]) -> Complaint {
     Complaint::faults(
@@ -91,13 +90,7 @@ fn check(talk: &Talk, file: &Path, library: Library, wrong: &mut Vec<String>) ->
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let includes = |path: &str| including(folder, path);
     let shown = file.display().to_string();
-    let options = |library| Options {
-        file: &shown,
-        includes: Some(&includes),
-        library,
-        meaning: Meaning::World,
-        ..Options::default()
-    };
+    let options = |library| options(&shown, &includes, library);
     let xml = match socrates_bt::decode(&bytes) {
         Ok(xml) => xml,
         Err(fault) => {
@@ -141,9 +134,7 @@ fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint
     let shown = file.display().to_string();
     let mut first = None;
     for library in tries {
-        let options =
-            Options { file: &shown, includes: Some(&includes), library, meaning: Meaning::World, ..Options::default() };
-        match Tree::parse_with(xml, &options) {
+        match Tree::parse_with(xml, &options(&shown, &includes, library)) {
             Ok(tree) => return Ok((tree, library)),
             Err(faults) => first = first.or(Some(faults)),
         }

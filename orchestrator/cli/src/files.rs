@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::exit::Complaint;
+use crate::talk::Talk;
 
 /// Bytes of a file of at most `max` bytes.
 pub(crate) fn bytes(path: &Path, max: u64, hint: &str) -> Result<Vec<u8>, Complaint> {
@@ -32,4 +33,16 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Complaint> {
         std::fs::create_dir_all(folder).map_err(cannot)?;
     }
     std::fs::write(path, bytes).map_err(cannot)
+}
+
+/// Writes a text to a file, or says it where none is named.
+pub(crate) fn write_or_say(talk: &Talk, text: &str, out: Option<&Path>) -> Result<(), Complaint> {
+    match out {
+        Some(out) => {
+            write(out, text.as_bytes())?;
+            talk.line(&format!("wrote      {}", out.display()));
+        }
+        None => talk.line(text),
+    }
+    Ok(())
 }

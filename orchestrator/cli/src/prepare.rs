@@ -8,6 +8,7 @@ use socrates_model::{Fault, Location, Reading, Request, ScenarioId};
 use crate::args::RunOptions;
 use crate::config::Config;
 use crate::exit::Complaint;
+use crate::files;
 
 /// A request file larger than this is not read.
 const MAX_REQUEST_BYTES: u64 = 256 * 1024;
@@ -75,7 +76,7 @@ pub(crate) fn prepare(
     config: &Config,
     key_found: bool,
 ) -> Result<Prepared, Complaint> {
-    let text = read_text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
+    let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
     prepare_text(&name, &text, &file.display().to_string(), &folder, options, config, key_found)
@@ -225,7 +226,7 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
 
 /// A pinned artifact in our own form, or out of a file of the published tool.
 fn read_pin(role: &str, path: &Path) -> Result<String, Complaint> {
-    let text = read_text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
+    let text = files::text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
     let own = match role {
         "proposal" => serde_json::from_str::<socrates_model::Proposal>(&text).map(|_| ()),
         "paths" => serde_json::from_str::<socrates_model::Paths>(&text).map(|_| ()),
@@ -270,26 +271,6 @@ fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, Strin
     } else {
         ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
     }
-}
-
-fn read_text(path: &Path, max: u64, hint: &str) -> Result<String, Complaint> {
-    let length = std::fs::metadata(path)
-        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?
-        .len();
-    if length > max {
-        return Err(Complaint::input(
-            format!("`{}` has {length} bytes", path.display()),
-            format!("at most {max} bytes are read"),
-        ));
-    }
-    let bytes = std::fs::read(path)
-        .map_err(|why| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint))?;
-    String::from_utf8(bytes).map_err(|why| {
-        Complaint::input(
-            format!("`{}` is not UTF-8 text (byte {})", path.display(), why.utf8_error().valid_up_to()),
-            "save it as UTF-8",
-        )
-    })
 }
 
 /// A word that is safe as folder and scenario id.

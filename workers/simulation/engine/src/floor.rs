@@ -94,13 +94,8 @@ impl Floor {
             })
     }
 
-    /// Whatever is nearer than this is seen from `point`, m: neither wall nor closed door stands in between.
-    #[must_use]
-    pub fn open_m(&self, point: &Point) -> f64 {
-        self.open_of(self.clearance_m(point))
-    }
-
-    /// The same, where the distance to the nearest wall or closed door is known.
+    /// Whatever is nearer than this is seen from a point with this clearance, m: neither wall nor closed door stands
+    /// in between.
     pub(crate) fn open_of(&self, clearance_m: f64) -> f64 {
         // The field blurs by less than a cell, and a cell is solid to its corners.
         clearance_m - 2.0 * self.grid.resolution_m

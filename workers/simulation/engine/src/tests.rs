@@ -344,7 +344,7 @@ fn whoever_stands_within_open_floor_is_seen() {
         let mut tried = 0;
         for _ in 0..20_000 {
             let a = corner + Vector::new(share() * size(grid.width), share() * size(grid.height));
-            let open_m = floor.open_m(&a);
+            let open_m = floor.open_of(floor.clearance_m(&a));
             if open_m <= 0.0 {
                 continue;
             }
