@@ -36,6 +36,10 @@ pub struct Engine {
     pub(crate) script: Script,
     pub(crate) params: Params,
     pub(crate) near: Near,
+    /// Whether a door has moved in this tick.
+    pub(crate) doors_moved: bool,
+    /// Ticks of motion so far.
+    pub(crate) ticks: u64,
     ending: Ending,
     pub(crate) header: RecordingHeader,
 }
@@ -68,6 +72,8 @@ impl Engine {
             script,
             params: Params::default(),
             near: Near::default(),
+            doors_moved: false,
+            ticks: 0,
             ending,
             header,
         })
@@ -102,6 +108,7 @@ impl Engine {
                 let changed = self.doors.step(now.secs(), STEP_SECS, &self.passers(), &raised);
                 if !changed.is_empty() {
                     self.floor.close(self.doors.closed());
+                    self.doors_moved = true;
                 }
                 for (door, open) in changed {
                     recorder.tell(EventKind::Door { door, open });
@@ -194,6 +201,7 @@ impl Engine {
                     walk::resume(human);
                 }
                 human.errand = crate::human::Errand::default();
+                human.notice.stale = true;
                 human.action = act;
             }
             if let Some(gesture) = say.filter(|gesture| *gesture != human.gesture) {

@@ -17,6 +17,7 @@ use socrates_model::{
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::models::Walks;
+use crate::near::Notice;
 use crate::placing;
 use crate::robot::Robot;
 use crate::setup::{PERSON_RADIUS_M, Setup};
@@ -263,6 +264,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         robot_in_sight: None,
         started: false,
         trail: Polyline::default(),
+        notice: Notice::default(),
         walks: Walks::Forces,
     }
 }

@@ -10,19 +10,15 @@ use crate::human::Human;
 use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
-use crate::near::Other;
+use crate::near::{FEEL_M, Other};
 
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
 /// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
 const ROBOT_GAP_M: f64 = 0.3;
-/// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
-const WALLS_M: f64 = 3.2;
 /// Up to so many people forces are those of the crowd library to the last bit; more are reckoned in lanes, within
 /// 1e-9 m/s² of them.
 const FEW: usize = 24;
-/// Others farther away are not felt, m.
-const FEEL_M: f64 = 5.0;
 
 /// Steers people, one after the other; keeps the list of whom each of them feels.
 pub(crate) struct Walker<'a> {
@@ -44,7 +40,7 @@ impl<'a> Walker<'a> {
             Some(target) if want.speed_mps > 0.0 => {
                 human.anchor = None;
                 if let Walks::Orca(orca) = &human.walks {
-                    let wished = avoid(orca, human, (&target, want.speed_mps), floor, others);
+                    let wished = avoid(orca, human, (&target, want.speed_mps), others);
                     let change = wished - human.velocity;
                     human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
                 } else {
@@ -72,20 +68,11 @@ impl<'a> Walker<'a> {
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
             ..person(0, human.at, human.velocity, human.radius_m)
         });
-        // Most of those who are felt are within open floor: no line has to be drawn to them.
-        let clearance_m = floor.clearance_m(&human.at);
-        let open_m = floor.open_of(clearance_m);
         for (number, other) in (1_u32..).zip(others) {
             let way = other.at - human.at;
-            // Most are too far off; that is seen without a root.
-            if way.norm_squared() > 1.01 * FEEL_M * FEEL_M {
-                continue;
-            }
-            let apart_m = way.norm();
-            let near = apart_m < FEEL_M;
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
-            if near && !mate && !drawn && (apart_m < open_m || floor.sees(&human.at, &other.at)) {
+            if other.seen && way.norm_squared() < FEEL_M * FEEL_M && !mate && !drawn {
                 match &mut self.lanes {
                     Some(lanes) => lanes.push(&(other.at - human.at), &(human.velocity - other.velocity)),
                     None => self.felt.push(person(number, other.at, other.velocity, other.radius_m)),
@@ -96,8 +83,8 @@ impl<'a> Walker<'a> {
         let meant = want.face.is_some()
             && (target - human.at).norm() < 1.3
             && floor.straight(&human.at, target, human.radius_m);
-        let walls = if meant || clearance_m > WALLS_M { Vec::new() } else { floor.felt(&human.at) };
-        let mut forces = forces_on(0, &self.felt, &walls, self.params);
+        let walls: &[Point] = if meant { &[] } else { &human.notice.walls };
+        let mut forces = forces_on(0, &self.felt, walls, self.params);
         if let Some(lanes) = &mut self.lanes {
             forces.social = lanes.social(self.params);
         }
