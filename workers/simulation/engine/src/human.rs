@@ -107,7 +107,8 @@ impl Human {
 
     /// Direction it faces.
     pub(crate) fn heading(&self) -> Vector {
-        Vector::new(libm::cos(self.yaw), libm::sin(self.yaw))
+        let (sin, cos) = libm::sincos(self.yaw);
+        Vector::new(cos, sin)
     }
 
     /// Direction of travel: along the way while there is some left, else where it faces.

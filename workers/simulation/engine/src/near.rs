@@ -14,6 +14,8 @@ pub(crate) const NEAR_M: f64 = 7.0;
 const LOOK_TICKS: u64 = 5;
 /// How much nearer two can come, or somebody a wall, between two looks, m: 0.05 s at twice the speed of a run.
 const BETWEEN_M: f64 = 0.2;
+/// Nobody is touched soon who is farther away, m.
+pub(crate) const CLOSE_M: f64 = 3.0;
 /// Others farther away are not felt, m.
 pub(crate) const FEEL_M: f64 = 5.0;
 /// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
@@ -38,11 +40,30 @@ pub(crate) struct Other {
     pub(crate) seen: bool,
 }
 
+/// Somebody who was noticed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Noticed {
+    /// Place in the list of everybody.
+    place: usize,
+    /// Whether it was in line of sight.
+    seen: bool,
+}
+
+impl Noticed {
+    const fn at(place: usize) -> Self {
+        Self { place, seen: false }
+    }
+}
+
 /// What somebody has noticed at its last look round.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Notice {
-    /// Place in the list of everybody, and whether it was in line of sight.
-    near: Vec<(usize, bool)>,
+    /// Whoever is near: the close ones first.
+    near: Vec<Noticed>,
+    /// How many of them are close.
+    pub(crate) close: usize,
+    /// Social force of those who are not close, m/s², kept until the next look: it hardly changes in that time.
+    pub(crate) far: Option<Vector>,
     /// Wall points that are felt.
     pub(crate) walls: Vec<Point>,
     /// How far it means to go aside for whoever is in its way, m to the left.
@@ -128,13 +149,21 @@ impl Near {
         let clearance_m = floor.clearance_m(&human.at);
         let open_m = floor.open_of(clearance_m);
         let felt_m = if matches!(human.walks, Walks::Orca(_)) { NEAR_M } else { FEEL_M } + BETWEEN_M;
-        for (place, seen) in &mut near {
-            let Some(other) = self.others.get(*place) else { continue };
+        let mut close = 0;
+        for number in 0..near.len() {
+            let Some(noticed) = near.get_mut(number) else { break };
+            let Some(other) = self.others.get(noticed.place) else { continue };
             let apart_2 = (other.at - human.at).norm_squared();
-            *seen = apart_2 < felt_m * felt_m
+            noticed.seen = apart_2 < felt_m * felt_m
                 && (open_m > 0.0 && apart_2 < open_m * open_m || floor.sees(&human.at, &other.at));
+            if apart_2 < (CLOSE_M + BETWEEN_M) * (CLOSE_M + BETWEEN_M) {
+                near.swap(close, number);
+                close += 1;
+            }
         }
+        human.notice.close = close;
         human.notice.near = near;
+        human.notice.far = None;
         human.notice.walls = if clearance_m > WALLS_M + BETWEEN_M { Vec::new() } else { floor.felt(&human.at) };
         human.notice.stale = false;
     }
@@ -142,18 +171,18 @@ impl Near {
     /// Whom somebody has noticed, as they are now.
     pub(crate) fn noticed(&self, notice: &Notice, found: &mut Vec<Other>) {
         found.clear();
-        let now = |(place, seen): &(usize, bool)| Some(Other { seen: *seen, ..*self.others.get(*place)? });
+        let now = |noticed: &Noticed| Some(Other { seen: noticed.seen, ..*self.others.get(noticed.place)? });
         found.extend(notice.near.iter().filter_map(now));
     }
 
-    /// Places of everybody within [`NEAR_M`] of `at` but `me`, in their order.
-    fn around(&self, me: HumanId, at: &Point, found: &mut Vec<(usize, bool)>) {
+    /// Everybody within [`NEAR_M`] of `at` but `me`.
+    fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Noticed>) {
         found.clear();
         let reach = NEAR_M + BETWEEN_M;
         let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < reach * reach;
         if self.others.len() <= FEW {
             found.extend(
-                self.others.iter().enumerate().filter(|(_, other)| near(other)).map(|(place, _)| (place, false)),
+                self.others.iter().enumerate().filter(|(_, other)| near(other)).map(|(place, _)| Noticed::at(place)),
             );
             return;
         }
@@ -165,10 +194,10 @@ impl Near {
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
             let places = self.sorted.get(start..end).into_iter().flatten();
-            found
-                .extend(places.filter(|place| self.others.get(**place).is_some_and(near)).map(|place| (*place, false)));
+            found.extend(
+                places.filter(|place| self.others.get(**place).is_some_and(near)).map(|place| Noticed::at(*place)),
+            );
         }
-        found.sort_unstable();
     }
 
     fn cell(&self, at: &Point) -> (usize, usize) {
@@ -253,12 +282,13 @@ mod tests {
         let mut found = Vec::new();
         for (me, other) in others.iter().enumerate() {
             near.around(other.id.unwrap(), &other.at, &mut found);
-            let want: Vec<(usize, bool)> = others
+            let want: Vec<Noticed> = others
                 .iter()
                 .enumerate()
                 .filter(|(place, o)| *place != me && (o.at - other.at).norm() < NEAR_M + BETWEEN_M)
-                .map(|(place, _)| (place, false))
+                .map(|(place, _)| Noticed::at(place))
                 .collect();
+            found.sort_unstable();
             assert_eq!(found, want);
         }
     }

@@ -10,7 +10,7 @@ use crate::human::Human;
 use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
-use crate::near::{FEEL_M, Other};
+use crate::near::{CLOSE_M, FEEL_M, Other};
 
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
@@ -54,30 +54,41 @@ impl<'a> Walker<'a> {
         if want.target.is_some() && velocity.norm() > most {
             velocity *= most / velocity.norm();
         }
-        stop_before_touching(human, want, others, &mut velocity);
+        let close = others.get(..human.notice.close).unwrap_or(others);
+        stop_before_touching(human, want, close, &mut velocity);
         human.velocity = velocity;
     }
 
-    fn pull(&mut self, human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
+    /// Acceleration by wish, people and walls, m/s².
+    fn pull(&mut self, human: &mut Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
         self.felt.clear();
-        if let Some(lanes) = &mut self.lanes {
-            lanes.clear();
-        }
         self.felt.push(Person {
             speed_mps: want.speed_mps,
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
             ..person(0, human.at, human.velocity, human.radius_m)
         });
-        for (number, other) in (1_u32..).zip(others) {
-            let way = other.at - human.at;
+        let feels = |other: &Other| {
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
-            if other.seen && way.norm_squared() < FEEL_M * FEEL_M && !mate && !drawn {
-                match &mut self.lanes {
-                    Some(lanes) => lanes.push(&(other.at - human.at), &(human.velocity - other.velocity)),
-                    None => self.felt.push(person(number, other.at, other.velocity, other.radius_m)),
+            other.seen && (other.at - human.at).norm_squared() < FEEL_M * FEEL_M && !mate && !drawn
+        };
+        let mut social = None;
+        if let Some(lanes) = &mut self.lanes {
+            let (close, far) = others.split_at(human.notice.close.min(others.len()));
+            let mut of = |others: &[Other]| {
+                lanes.clear();
+                for other in others.iter().filter(|other| feels(other)) {
+                    lanes.push(&(other.at - human.at), &(human.velocity - other.velocity));
                 }
-            }
+                lanes.social(self.params)
+            };
+            let from_afar = human.notice.far.unwrap_or_else(|| of(far));
+            social = Some(of(close) + from_afar);
+            human.notice.far = Some(from_afar);
+        } else {
+            let felt = (1_u32..).zip(others).filter(|(_, other)| feels(other));
+            let felt = felt.map(|(number, other)| person(number, other.at, other.velocity, other.radius_m));
+            self.felt.extend(felt);
         }
         // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
         let meant = want.face.is_some()
@@ -85,9 +96,7 @@ impl<'a> Walker<'a> {
             && floor.straight(&human.at, target, human.radius_m);
         let walls: &[Point] = if meant { &[] } else { &human.notice.walls };
         let mut forces = forces_on(0, &self.felt, walls, self.params);
-        if let Some(lanes) = &mut self.lanes {
-            forces.social = lanes.social(self.params);
-        }
+        forces.social = social.unwrap_or(forces.social);
         // Walls beside a free way push aside, not back: their sum over both jambs would bar a narrow doorway.
         let way = target - human.at;
         let back = forces.obstacle.dot(&way) / way.norm_squared().max(1e-9);
@@ -102,7 +111,7 @@ impl<'a> Walker<'a> {
 fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: &mut Vector) {
     for other in others {
         let way = other.at - human.at;
-        if way.norm_squared() > 9.0 {
+        if way.norm_squared() > CLOSE_M * CLOSE_M {
             continue;
         }
         let distance = way.norm();
