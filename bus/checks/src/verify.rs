@@ -131,10 +131,11 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
     match predicate {
         Predicate::Meets { within_m, .. }
         | Predicate::HiddenUntil { within_m, .. }
+        | Predicate::StartsAt { within_m, .. }
         | Predicate::Reaches { within_m, .. } => {
             vec![("within_m", *within_m)]
         }
-        Predicate::Crosses { gap_s, .. } => vec![("gap_s", *gap_s)],
+        Predicate::Crosses { gap_s, .. } | Predicate::OnTime { gap_s, .. } => vec![("gap_s", *gap_s)],
         Predicate::Ahead { within_m, for_s, .. } => vec![("within_m", *within_m), ("for_s", *for_s)],
         Predicate::Follows { gap_m: [least, most], for_s, .. } => {
             vec![("gap_m", *least), ("gap_m", *most), ("gap_m, largest less smallest", most - least), ("for_s", *for_s)]

@@ -278,6 +278,22 @@ pub enum Predicate {
         /// How near.
         within_m: f64,
     },
+    /// The agent is within `within_m` of the node when the run begins.
+    StartsAt {
+        /// Who.
+        agent: AgentId,
+        /// Where.
+        node: NodeId,
+        /// How near.
+        within_m: f64,
+    },
+    /// The human and the robot get to the human's encounter node (within 1.5 m) at most `gap_s` apart.
+    OnTime {
+        /// Who.
+        human: HumanId,
+        /// Largest difference of arrival times.
+        gap_s: f64,
+    },
     /// Nobody overlaps a wall or another agent by more than 2 cm, nobody is faster than 2 m/s.
     Plausible,
     /// The robot gets to its goal.
@@ -332,9 +348,11 @@ impl Predicate {
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
             | Self::Enters { human, .. }
+            | Self::OnTime { human, .. }
             | Self::HiddenUntil { human, .. } => Some(*human),
             Self::Follows { follower: AgentId::Human(human), .. }
             | Self::Gestures { agent: AgentId::Human(human), .. }
+            | Self::StartsAt { agent: AgentId::Human(human), .. }
             | Self::Reaches { agent: AgentId::Human(human), .. } => Some(*human),
             Self::Follows { leader: AgentId::Human(human), .. } => Some(*human),
             Self::Humans { .. }
@@ -351,6 +369,7 @@ impl Predicate {
             | Self::Order { .. }
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
+            | Self::StartsAt { .. }
             | Self::Plausible
             | Self::RobotArrives
             | Self::RobotKeeps { .. }

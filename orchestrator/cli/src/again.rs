@@ -123,6 +123,7 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         proposal: None,
         paths: None,
         reference: None,
+        twin: None,
     });
     for metric in &report.metrics {
         let value = metric
@@ -143,16 +144,25 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
         let reference = bundle.runs.iter().find(|(_, report)| {
             report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference"
         });
-        let report = socrates_scoring::score(&Evidence {
+        let twin = bundle.runs.iter().find(|(_, report)| report.planner == "none" && report.seed == entry.seed);
+        let twin = twin.filter(|_| entry.planner != "none");
+        let evidence = Evidence {
             location: Some(&bundle.location),
             request: Some(&bundle.request),
             reading: Some(&bundle.reading),
             proposal: Some(&bundle.proposal),
             paths: Some(&bundle.paths),
             reference: reference.map(|(recording, _)| recording),
+            twin: None,
             recording,
-        });
+        };
+        // The bundle's reports know of no twin; what it adds is told beside.
+        let report = socrates_scoring::score(&evidence);
         let same = report == *old;
+        let report = match twin {
+            Some((twin, _)) => socrates_scoring::score(&Evidence { twin: Some(twin), ..evidence }),
+            None => report,
+        };
         differ += usize::from(!same);
         talk.line(&format!(
             "scored     {} seed {}: {} ({})",

@@ -9,6 +9,7 @@
 
 mod again;
 mod agents;
+mod agreement;
 mod args;
 mod bench;
 mod bt;
@@ -22,6 +23,7 @@ mod files;
 mod history;
 mod library;
 mod map;
+mod mutations;
 mod orchestrate;
 mod prepare;
 mod process;

@@ -20,6 +20,8 @@ mod tracks;
 
 pub mod fidelity;
 pub mod metrics;
+pub mod mutants;
+pub mod temporal;
 
 mod narrative;
 mod repair;

@@ -102,6 +102,8 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Order { .. }
         | Predicate::EncounterAt { .. }
         | Predicate::Reaches { .. }
+        | Predicate::StartsAt { .. }
+        | Predicate::OnTime { .. }
         | Predicate::RobotArrives
         | Predicate::RobotKeeps { .. }
         | Predicate::RobotEntersLast

@@ -121,7 +121,7 @@ fn a_frontal_approach_that_happens_is_realised_and_told_with_times() {
     let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
     let report = frontal().judge(&run);
     assert_eq!(report.verdict, Verdict::Realised, "{}", report.verdict_text);
-    assert!(report.verdict_text.starts_with("4 of 4 setup clauses · encounter gap"), "{}", report.verdict_text);
+    assert!(report.verdict_text.starts_with("6 of 6 setup clauses · encounter gap"), "{}", report.verdict_text);
     assert!((report.score - 1.0).abs() < 1e-9);
     assert_eq!(report.repair, None);
     assert!(report.story.iter().any(|line| line.contains("human_1 and the robot are closest, 1.00 m")));
@@ -264,6 +264,7 @@ fn a_follower_behind_holds_and_one_ahead_does_not() {
         Predicate::Follows { follower: AgentId::Human(H1), leader: AgentId::Robot, gap_m: [0.5, 3.0], for_s: 6.0 };
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", follows)];
+    case.plan.humans[0].relation = Relation::Behind;
     assert_eq!(case.verdict(&[robot(), Walk::human(1, -10., -0.5, 0.8, 0.)], 18.0), Verdict::Realised);
     assert_eq!(case.verdict(&[robot(), Walk::human(1, -6., -0.5, 0.8, 0.)], 18.0), Verdict::Contradicted);
     // A gap of 6 m that is never nearer.
@@ -274,6 +275,8 @@ fn a_follower_behind_holds_and_one_ahead_does_not() {
 fn a_blocker_must_be_in_the_way_long_enough() {
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", Predicate::Blocks { human: H1, for_s: 3.0 })];
+    case.plan.humans[0].relation = Relation::Static;
+    case.ways = paths(&["a", "m", "b"], &[(&["m"], "m")]);
     let waits = || Walk::through(AgentId::Robot, &[(0., -8., 0.), (8., -1.5, 0.), (14., -1.5, 0.), (25., 8., 0.)]);
     let blocks = Walk::human_through(1, &[(0., 0., 0.), (13., 0., 0.), (14., 0., 1.0)]);
     assert_eq!(case.verdict(&[waits(), blocks], 25.0), Verdict::Realised);
@@ -398,6 +401,9 @@ fn a_group_in_a_circle_is_a_formation_and_one_back_to_back_is_not() {
     case.plan =
         group_of(proposal(3, vec![must("c1", Predicate::Formation { group: GroupId(1), spread_m: 1.5 })]), &[1, 2, 3]);
     case.ways = paths(&["a", "m", "b"], &[(&["m"], "m"), (&["m"], "m"), (&["m"], "m")]);
+    for human in &mut case.plan.humans {
+        human.relation = Relation::Static;
+    }
     let stand = |turn: f64, far: f64| -> Vec<Walk> {
         let mut walks = vec![Walk::robot(-8., -1.4, 0.8, 0.)];
         for n in 0..3_u32 {
@@ -434,6 +440,7 @@ fn a_gesture_far_away_or_never_made_is_not_realised() {
 fn overtaking_giving_way_and_passing_are_told_apart() {
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", Predicate::Overtakes { human: H1 })];
+    case.plan.humans[0].relation = Relation::Behind;
     let over = || Walk::human(1, -11., 0.5, 1.2, 0.);
     assert_eq!(case.verdict(&[robot(), over()], 19.0), Verdict::Realised);
     assert_ne!(case.verdict(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 19.0), Verdict::Realised);

@@ -251,7 +251,7 @@ pub(super) fn seen(signals: &Signals<'_>, human: HumanId, action: &Action) -> Ve
     let (marks, kept_s) = motion(signals, human, action);
     let shown = stretches(marks, kept_s);
     let spans = signals.leaves_of(human);
-    if spans.is_empty() {
+    if spans.is_empty() && !signals.tells_leaves {
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }

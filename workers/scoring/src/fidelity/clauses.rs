@@ -4,13 +4,21 @@ use std::collections::BTreeMap;
 use std::convert::identity;
 
 use socrates_model::report::Standing;
-use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate};
+use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate, Relation};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
+
+/// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
+const START_M: f64 = 3.0;
+/// Largest difference of arrival times at an encounter where no clause says another, s (`spec/case_studies` I.S5).
+const GAP_SECS: f64 = 4.0;
+/// Largest distance from the middle of a group that stands and of one that walks, m, where no clause says another.
+const STAND_M: f64 = 1.8;
+const WALK_M: f64 = 3.0;
 
 /// Clauses with what was found of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +117,41 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
             }
         }
     }
+    if let (Some(proposal), Some(paths)) = (signals.evidence.proposal, signals.evidence.paths) {
+        for human in &proposal.humans {
+            let id = human.id;
+            let Some(node) = paths.humans.get(&id).and_then(|way| way.first()) else { continue };
+            // Who walks with the robot, or in a group, starts where that puts it.
+            let own = !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
+            if own && human.group.is_none() && signals.node(node).is_some() {
+                let starts = Predicate::StartsAt { agent: id.into(), node: node.clone(), within_m: START_M };
+                more.push(setup(format!("auto-start-{id}"), format!("{id} starts at {node}"), starts));
+            }
+            let timed = matches!(human.relation, Relation::Frontal | Relation::Crossing);
+            // A reaction may keep somebody from the node: then its own clauses tell.
+            if timed && human.rules.is_empty() && signals.encounter(id).is_some() {
+                let given = has(
+                    &|predicate| matches!(predicate, Predicate::OnTime { human: who, .. } | Predicate::Crosses { human: who, .. } if *who == id),
+                );
+                if !given {
+                    let text = format!("{id} and the robot get to their encounter together");
+                    let predicate = Predicate::OnTime { human: id, gap_s: GAP_SECS };
+                    more.push(setup(format!("auto-time-{id}"), text, predicate));
+                }
+            }
+        }
+        for group in &proposal.groups {
+            if has(&|predicate| predicate.group() == Some(group.id)) {
+                continue;
+            }
+            let (text, predicate) = if group.standing {
+                (format!("{} stands together", group.id), Predicate::Formation { group: group.id, spread_m: STAND_M })
+            } else {
+                (format!("{} walks together", group.id), Predicate::WalksTogether { group: group.id, spread_m: WALK_M })
+            };
+            more.push(setup(format!("auto-{}", group.id), text, predicate));
+        }
+    }
     let judged = signals.evidence.proposal.is_some() || signals.evidence.paths.is_some();
     if judged && !has(&|predicate| *predicate == Predicate::Plausible) {
         let text = "nobody overlaps or is faster than 2 m/s".to_owned();
@@ -155,6 +198,8 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Order { first, then } => order(found, first, then),
         Predicate::EncounterAt { place } => setting::encounter_at(signals, *place),
         Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
+        Predicate::StartsAt { agent, node, within_m } => setting::starts_at(signals, *agent, node, *within_m),
+        Predicate::OnTime { human, gap_s } => setting::on_time(signals, *human, *gap_s),
         Predicate::Plausible => plausible(flaws),
         Predicate::RobotArrives => robot::arrives(signals),
         Predicate::RobotKeeps { min_m } => robot::keeps(signals, *min_m),
