@@ -14,6 +14,8 @@ mod args;
 mod bench;
 mod bt;
 mod bundle;
+#[cfg(test)]
+mod case_studies;
 mod cluster;
 mod config;
 mod dev;

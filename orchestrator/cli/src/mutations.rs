@@ -31,11 +31,20 @@ const MOVED: &str = "encounter moved";
 /// Two meetings at one time nearer to each other than this are one, m.
 const SAME_M: f64 = 3.0;
 
-/// One scenario with its artifacts, as the stages would make them.
-struct Made {
-    proposal: Proposal,
-    paths: Paths,
-    behaviors: Behaviors,
+/// One scenario's artifacts, as the stages would make them.
+pub(crate) struct Made {
+    pub(crate) proposal: Proposal,
+    pub(crate) paths: Paths,
+    pub(crate) behaviors: Behaviors,
+}
+
+/// A request with its artifacts, its run with the reference robot, and what the judge says of it.
+pub(crate) struct Scenario {
+    pub(crate) prepared: Prepared,
+    pub(crate) made: Made,
+    pub(crate) run: Recording,
+    pub(crate) report: Report,
+    seed: u64,
 }
 
 /// How one kind of change fared.
@@ -47,7 +56,7 @@ struct Row {
 
 /// Everything that was tried.
 #[derive(Default)]
-struct Tally {
+pub(crate) struct Tally {
     spoiled: BTreeMap<String, Row>,
     harmless: BTreeMap<String, Row>,
     /// Changed artifacts that gave the same meeting all the same: nothing is wrong with those runs.
@@ -57,6 +66,18 @@ struct Tally {
 }
 
 impl Tally {
+    /// How often a kind of change was tried and how often it was refused.
+    #[cfg(test)]
+    pub(crate) fn spoiled_of(&self, kind: &str) -> (usize, usize) {
+        self.spoiled.get(kind).map_or((0, 0), |row| (row.tried, row.right))
+    }
+
+    /// What went wrong, a line each.
+    #[cfg(test)]
+    pub(crate) fn wrong(&self) -> &[String] {
+        &self.wrong
+    }
+
     fn enter(&mut self, wanted: bool, kind: &str, about: &str, base: &str, verdict: &str, why: &str) {
         let kept = verdict == Verdict::Realised.name();
         let row = if wanted { &mut self.harmless } else { &mut self.spoiled }.entry(kind.to_owned()).or_default();
@@ -86,12 +107,14 @@ pub(crate) async fn mutations(
         for seed in 1..=seeds {
             talk.passing(&format!("{} seed {seed}", prepared.name));
             let name = format!("{}-{seed}", prepared.name);
-            match base(prepared, seed).await {
-                Ok((made, run, report)) if report.verdict == Verdict::Realised => {
+            match realised(prepared.clone(), seed).await {
+                Ok(scenario) if scenario.report.verdict == Verdict::Realised => {
                     bases += 1;
-                    try_all(prepared, &made, &run, &name, seed, &mut tally);
+                    try_all(&scenario, &name, &mut tally);
                 }
-                Ok((_, _, report)) => unrealised.push(format!("{name}: {} · {}", report.verdict, report.verdict_text)),
+                Ok(Scenario { report, .. }) => {
+                    unrealised.push(format!("{name}: {} · {}", report.verdict, report.verdict_text));
+                }
                 Err(why) => unrealised.push(format!("{name}: {why}")),
             }
         }
@@ -101,7 +124,7 @@ pub(crate) async fn mutations(
     Ok(())
 }
 
-fn shipped(config: &Config) -> Result<Vec<Prepared>, Complaint> {
+pub(crate) fn shipped(config: &Config) -> Result<Vec<Prepared>, Complaint> {
     let mut found = Vec::new();
     for location in socrates_maps::shipped::names() {
         for (name, text) in socrates_maps::shipped::requests(location) {
@@ -117,11 +140,11 @@ fn named(config: &Config, requests: &[PathBuf]) -> Result<Vec<Prepared>, Complai
 }
 
 /// The scenario of a request with its reference run, asked again where the verdict says so.
-async fn base(prepared: &Prepared, seed: u64) -> Result<(Made, Recording, Report), String> {
+pub(crate) async fn realised(prepared: Prepared, seed: u64) -> Result<Scenario, String> {
     let mut feedback: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
     let mut last = Err("was never asked for".to_owned());
     for round in 0..ROUNDS {
-        let made = author(prepared, seed * 1000 + round, &mut feedback).await;
+        let made = author(&prepared, seed * 1000 + round, &mut feedback).await;
         let made = match made {
             Ok(made) => made,
             Err(why) => {
@@ -129,8 +152,8 @@ async fn base(prepared: &Prepared, seed: u64) -> Result<(Made, Recording, Report
                 continue;
             }
         };
-        let run = simulate(prepared, &made, seed)?;
-        let report = judge(prepared, &made, &run);
+        let run = simulate(&prepared, &made, seed)?;
+        let report = judge(&prepared, &made, &run);
         if let Some(repair) = &report.repair {
             feedback.entry(repair.stage).or_default().clone_from(&repair.faults);
         }
@@ -140,7 +163,7 @@ async fn base(prepared: &Prepared, seed: u64) -> Result<(Made, Recording, Report
             break;
         }
     }
-    last
+    last.map(|(made, run, report)| Scenario { prepared, made, run, report, seed })
 }
 
 /// Asks the offline author for everything, as the authoring stages do.
@@ -215,7 +238,9 @@ fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording
     }
 }
 
-fn try_all(prepared: &Prepared, made: &Made, run: &Recording, name: &str, seed: u64, tally: &mut Tally) {
+/// Every harmless and every spoiling change of a realised scenario.
+pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
+    let Scenario { prepared, made, run, seed, .. } = scenario;
     for mutant in harmless(run) {
         let report = judge(prepared, made, &mutant.recording);
         tally.enter(true, mutant.kind, &mutant.about, name, report.verdict.name(), &report.verdict_text);
@@ -226,7 +251,7 @@ fn try_all(prepared: &Prepared, made: &Made, run: &Recording, name: &str, seed: 
     }
     for (kind, about, other) in other_scenarios(prepared, made) {
         // Played from other artifacts, judged by those that were asked for.
-        match simulate(prepared, &other, seed) {
+        match simulate(prepared, &other, *seed) {
             Ok(recording) if kind == MOVED && same_meeting(run, &recording, &about) => tally.equal += 1,
             Ok(recording) => {
                 let report = judge(prepared, made, &recording);
@@ -441,10 +466,11 @@ mod tests {
             .iter()
             .filter(|prepared| prepared.name.contains("frontal") || prepared.name.contains("group"))
         {
-            let (made, run, report) = base(prepared, 1).await.unwrap();
+            let scenario = realised(prepared.clone(), 1).await.unwrap();
+            let report = &scenario.report;
             assert_eq!(report.verdict, Verdict::Realised, "{}: {}", prepared.name, report.verdict_text);
             bases += 1;
-            try_all(prepared, &made, &run, &prepared.name, 1, &mut tally);
+            try_all(&scenario, &prepared.name, &mut tally);
         }
         assert!(bases >= 2);
         let sum = |rows: &BTreeMap<String, Row>| {

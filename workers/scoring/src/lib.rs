@@ -14,6 +14,7 @@
 //! what the robot made of it.
 
 mod circle;
+mod doubts;
 mod evidence;
 mod series;
 mod tracks;
@@ -35,6 +36,7 @@ mod fixture;
 #[cfg(test)]
 mod scenarios;
 
+pub use doubts::doubts;
 pub use evidence::{Evidence, REFERENCE};
 pub use score::score;
 pub use series::{Series, Span};

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use socrates_model::job::Stage;
 use socrates_model::reading::{Fact, FactKind};
 use socrates_model::report::Standing;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
     Action, AgentId, Clause, ClauseRole, Door, DoorKind, DoorOpens, EventKind, FORMAT, FaultCode, Gesture, GroupId,
     GroupProposal, HumanId, HumanProposal, Location, Paths, PlaceClass, Point, Predicate, Proposal, Reading, Recording,
@@ -351,6 +352,7 @@ pub(crate) fn elevator() -> Case {
     );
     plan.humans[0].relation = Relation::Leaving;
     plan.humans[1].relation = Relation::Staying;
+    plan.robot.script = vec![RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers }];
     Case { place, plan, ways: paths(&["a", "l", "c"], &[(&["c", "l", "a"], "l"), (&["d"], "c")]), reading: None }
 }
 

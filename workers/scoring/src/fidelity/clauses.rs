@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::identity;
 
 use socrates_model::report::Standing;
-use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate, Relation};
+use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate, Relation, rule::RobotDo};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
@@ -118,6 +118,7 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         }
     }
     if let (Some(proposal), Some(paths)) = (signals.evidence.proposal, signals.evidence.paths) {
+        let waits = proposal.robot.script.iter().any(|rule| rule.act == RobotDo::WaitForLeavers);
         for human in &proposal.humans {
             let id = human.id;
             let Some(node) = paths.humans.get(&id).and_then(|way| way.first()) else { continue };
@@ -127,7 +128,12 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 let starts = Predicate::StartsAt { agent: id.into(), node: node.clone(), within_m: START_M };
                 more.push(setup(format!("auto-start-{id}"), format!("{id} starts at {node}"), starts));
             }
-            let timed = matches!(human.relation, Relation::Frontal | Relation::Crossing);
+            let timed = match human.relation {
+                Relation::Frontal | Relation::Crossing => true,
+                // Where the robot waits for those who leave, they need not hurry.
+                Relation::Leaving => !waits,
+                Relation::Behind | Relation::Ahead | Relation::Static | Relation::Staying | Relation::Abreast => false,
+            };
             // A reaction may keep somebody from the node: then its own clauses tell.
             if timed && human.rules.is_empty() && signals.encounter(id).is_some() {
                 let given = has(
