@@ -115,6 +115,12 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         socrates_stream::csv::read_tracks(text).map_err(|why| bad(why.to_string()))?
     };
     let location = location.map(|name| load_location(name, Path::new("."))).transpose()?.map(|(location, _)| location);
+    for doubt in socrates_scoring::doubts(&recording, location.as_ref()) {
+        talk.warn(&doubt);
+    }
+    if let Some((agent, from, length)) = hole(&bytes) {
+        talk.warn(&format!("`{agent}` has no line for {length:.1} s from {from:.1} s on: taken as a straight line"));
+    }
     let report = socrates_scoring::score(&Evidence {
         recording: &recording,
         location: location.as_ref(),
@@ -123,6 +129,7 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         proposal: None,
         paths: None,
         reference: None,
+        twin: None,
     });
     for metric in &report.metrics {
         let value = metric
@@ -135,6 +142,34 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
     Ok(())
 }
 
+/// The longest hole between two lines of one agent in a CSV of tracks, if it is longer than a second: reading brings
+/// tracks to an even step and fills holes with straight lines.
+fn hole(bytes: &[u8]) -> Option<(String, f64, f64)> {
+    let text = std::str::from_utf8(bytes).ok().filter(|_| !bytes.starts_with(b"\x89MCAP"))?;
+    let cells =
+        |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().trim_matches('"').to_owned()).collect() };
+    let mut lines = text.trim_start_matches('\u{feff}').lines().filter(|line| !line.trim().is_empty());
+    let head = cells(&lines.next()?.to_lowercase());
+    let (t, id) = (head.iter().position(|name| name == "t")?, head.iter().position(|name| name == "id")?);
+    let mut times: std::collections::BTreeMap<String, Vec<f64>> = std::collections::BTreeMap::new();
+    for line in lines {
+        let cells = cells(line);
+        if let (Some(Ok(t)), Some(id)) = (cells.get(t).map(|text| text.parse::<f64>()), cells.get(id)) {
+            times.entry(id.clone()).or_default().push(t);
+        }
+    }
+    let mut longest: Option<(String, f64, f64)> = None;
+    for (id, mut times) in times {
+        times.sort_by(f64::total_cmp);
+        for (a, b) in times.iter().zip(times.iter().skip(1)) {
+            if b - a > 1.0 && longest.as_ref().is_none_or(|(.., length)| b - a > *length) {
+                longest = Some((id.clone(), *a, b - a));
+            }
+        }
+    }
+    longest
+}
+
 fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     let bundle = bundle::read(dir)?;
     let mut rows = Vec::new();
@@ -143,16 +178,25 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
         let reference = bundle.runs.iter().find(|(_, report)| {
             report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference"
         });
-        let report = socrates_scoring::score(&Evidence {
+        let twin = bundle.runs.iter().find(|(_, report)| report.planner == "none" && report.seed == entry.seed);
+        let twin = twin.filter(|_| entry.planner != "none");
+        let evidence = Evidence {
             location: Some(&bundle.location),
             request: Some(&bundle.request),
             reading: Some(&bundle.reading),
             proposal: Some(&bundle.proposal),
             paths: Some(&bundle.paths),
             reference: reference.map(|(recording, _)| recording),
+            twin: None,
             recording,
-        });
+        };
+        // The bundle's reports know of no twin; what it adds is told beside.
+        let report = socrates_scoring::score(&evidence);
         let same = report == *old;
+        let report = match twin {
+            Some((twin, _)) => socrates_scoring::score(&Evidence { twin: Some(twin), ..evidence }),
+            None => report,
+        };
         differ += usize::from(!same);
         talk.line(&format!(
             "scored     {} seed {}: {} ({})",
@@ -177,4 +221,17 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
 /// Metric values by id.
 pub(crate) fn values(report: &socrates_model::Report) -> serde_json::Value {
     serde_json::Value::Object(report.metrics.iter().map(|metric| (metric.id.clone(), json!(metric.value))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hole_in_somebodys_tracks_is_found() {
+        let csv = "t,id,x,y\n0,robot,0,0\n0.5,robot,1,0\n1,robot,1,0\n0,human_1,5,0\n4.5,human_1,5,1\n";
+        assert_eq!(hole(csv.as_bytes()), Some(("human_1".to_owned(), 0.0, 4.5)));
+        assert_eq!(hole(b"t,id,x,y\n0,robot,0,0\n0.5,robot,1,0\n"), None);
+        assert_eq!(hole(b"\x89MCAP0\r\n"), None);
+    }
 }

@@ -377,6 +377,25 @@ pub(crate) enum DevVerb {
         #[arg(long, short)]
         out: Option<PathBuf>,
     },
+    /// Calibrate the judge: share of spoiled runs that it refuses and of harmless changes that it lets pass.
+    Mutations {
+        /// Request files or folders of them; default: every request of the shipped locations.
+        requests: Vec<PathBuf>,
+        /// Seeds of each scenario.
+        #[arg(long, default_value_t = 2)]
+        seeds: u64,
+        /// Print every mutant and not only what went wrong.
+        #[arg(long)]
+        all: bool,
+    },
+    /// Compare labels that people gave to runs with the verdicts: Cohen's kappa, Krippendorff's alpha.
+    Agreement {
+        /// Labels (CSV): `run,rater,simulable,appropriate,as_asked`, yes or no.
+        labels: PathBuf,
+        /// Bundles that hold the runs.
+        #[arg(required = true)]
+        bundles: Vec<PathBuf>,
+    },
     /// Measure the main job on this machine.
     Bench {
         /// Runs to take the median of.

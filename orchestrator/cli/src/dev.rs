@@ -5,11 +5,13 @@ use std::path::Path;
 use serde_json::json;
 
 use crate::agents;
+use crate::agreement;
 use crate::args::{Cli, DevVerb};
 use crate::bench;
 use crate::bundle;
 use crate::config::Config;
 use crate::exit::Complaint;
+use crate::mutations;
 use crate::talk::Talk;
 use crate::traces;
 
@@ -22,6 +24,8 @@ pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb)
         DevVerb::SfmTrace { scene, out, forces } => traces::crowd(talk, scene, out, forces.as_deref()),
         DevVerb::BtTrace { tree, script, out, events } => traces::tree(talk, tree, script, out, events),
         DevVerb::Agents { file, to, out } => agents::convert(talk, file, to.as_deref(), out.as_deref()),
+        DevVerb::Mutations { requests, seeds, all } => mutations::mutations(talk, config, requests, *seeds, *all).await,
+        DevVerb::Agreement { labels, bundles } => agreement::agreement(talk, labels, bundles),
         DevVerb::Bench { runs } => bench::bench(talk, cli, config, *runs).await,
     }
 }

@@ -9,10 +9,13 @@
 
 mod again;
 mod agents;
+mod agreement;
 mod args;
 mod bench;
 mod bt;
 mod bundle;
+#[cfg(test)]
+mod case_studies;
 mod cluster;
 mod config;
 mod dev;
@@ -22,6 +25,7 @@ mod files;
 mod history;
 mod library;
 mod map;
+mod mutations;
 mod orchestrate;
 mod prepare;
 mod process;

@@ -19,13 +19,24 @@ pub struct Evidence<'a> {
     pub paths: Option<&'a Paths>,
     /// The same scenario and seed with the reference robot, to tell a scenario's fault from a planner's.
     pub reference: Option<&'a Recording>,
+    /// The same scenario and seed without a robot, to tell what the robot's presence costs people.
+    pub twin: Option<&'a Recording>,
 }
 
 impl<'a> Evidence<'a> {
     /// Evidence of a recording alone.
     #[must_use]
     pub const fn of(recording: &'a Recording) -> Self {
-        Self { recording, location: None, request: None, reading: None, proposal: None, paths: None, reference: None }
+        Self {
+            recording,
+            location: None,
+            request: None,
+            reading: None,
+            proposal: None,
+            paths: None,
+            reference: None,
+            twin: None,
+        }
     }
 }
 

@@ -13,12 +13,16 @@
 //! *Never here:* a wall clock, a random number, a model that decides, a judgement of the setting by
 //! what the robot made of it.
 
+mod circle;
+mod doubts;
 mod evidence;
 mod series;
 mod tracks;
 
 pub mod fidelity;
 pub mod metrics;
+pub mod mutants;
+pub mod temporal;
 
 mod narrative;
 mod repair;
@@ -26,10 +30,13 @@ mod score;
 mod stage;
 
 #[cfg(test)]
+mod crowds;
+#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 mod scenarios;
 
+pub use doubts::doubts;
 pub use evidence::{Evidence, REFERENCE};
 pub use score::score;
 pub use series::{Series, Span};

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use socrates_model::job::Stage;
 use socrates_model::reading::{Fact, FactKind};
 use socrates_model::report::Standing;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
     Action, AgentId, Clause, ClauseRole, Door, DoorKind, DoorOpens, EventKind, FORMAT, FaultCode, Gesture, GroupId,
     GroupProposal, HumanId, HumanProposal, Location, Paths, PlaceClass, Point, Predicate, Proposal, Reading, Recording,
@@ -67,7 +68,7 @@ pub(crate) fn group_of(mut plan: Proposal, members: &[u32]) -> Proposal {
 
 const H1: HumanId = HumanId::new(1);
 
-fn corridor() -> Location {
+pub(crate) fn corridor() -> Location {
     floor(
         &[(-20., 1.5, 20., 2.0), (-20., -2.0, 20., -1.5)],
         &[("a", "CORRIDOR", -8., 0.), ("m", "CORRIDOR", 0., 0.), ("b", "CORRIDOR", 8., 0.)],
@@ -75,15 +76,15 @@ fn corridor() -> Location {
     )
 }
 
-struct Case {
-    place: Location,
-    plan: Proposal,
-    ways: Paths,
-    reading: Option<Reading>,
+pub(crate) struct Case {
+    pub(crate) place: Location,
+    pub(crate) plan: Proposal,
+    pub(crate) ways: Paths,
+    pub(crate) reading: Option<Reading>,
 }
 
 impl Case {
-    fn judge(&self, run: &Recording) -> Report {
+    pub(crate) fn judge(&self, run: &Recording) -> Report {
         let evidence = Evidence {
             location: Some(&self.place),
             proposal: Some(&self.plan),
@@ -98,7 +99,7 @@ impl Case {
         report
     }
 
-    fn verdict(&self, walks: &[Walk], seconds: f64) -> Verdict {
+    pub(crate) fn verdict(&self, walks: &[Walk], seconds: f64) -> Verdict {
         self.judge(&recording(walks, seconds, 0.01)).verdict
     }
 }
@@ -121,7 +122,7 @@ fn a_frontal_approach_that_happens_is_realised_and_told_with_times() {
     let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
     let report = frontal().judge(&run);
     assert_eq!(report.verdict, Verdict::Realised, "{}", report.verdict_text);
-    assert!(report.verdict_text.starts_with("4 of 4 setup clauses · encounter gap"), "{}", report.verdict_text);
+    assert!(report.verdict_text.starts_with("6 of 6 setup clauses · encounter gap"), "{}", report.verdict_text);
     assert!((report.score - 1.0).abs() < 1e-9);
     assert_eq!(report.repair, None);
     assert!(report.story.iter().any(|line| line.contains("human_1 and the robot are closest, 1.00 m")));
@@ -264,6 +265,7 @@ fn a_follower_behind_holds_and_one_ahead_does_not() {
         Predicate::Follows { follower: AgentId::Human(H1), leader: AgentId::Robot, gap_m: [0.5, 3.0], for_s: 6.0 };
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", follows)];
+    case.plan.humans[0].relation = Relation::Behind;
     assert_eq!(case.verdict(&[robot(), Walk::human(1, -10., -0.5, 0.8, 0.)], 18.0), Verdict::Realised);
     assert_eq!(case.verdict(&[robot(), Walk::human(1, -6., -0.5, 0.8, 0.)], 18.0), Verdict::Contradicted);
     // A gap of 6 m that is never nearer.
@@ -274,6 +276,8 @@ fn a_follower_behind_holds_and_one_ahead_does_not() {
 fn a_blocker_must_be_in_the_way_long_enough() {
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", Predicate::Blocks { human: H1, for_s: 3.0 })];
+    case.plan.humans[0].relation = Relation::Static;
+    case.ways = paths(&["a", "m", "b"], &[(&["m"], "m")]);
     let waits = || Walk::through(AgentId::Robot, &[(0., -8., 0.), (8., -1.5, 0.), (14., -1.5, 0.), (25., 8., 0.)]);
     let blocks = Walk::human_through(1, &[(0., 0., 0.), (13., 0., 0.), (14., 0., 1.0)]);
     assert_eq!(case.verdict(&[waits(), blocks], 25.0), Verdict::Realised);
@@ -312,7 +316,7 @@ fn crossing_is_judged_by_angle_and_time() {
     assert_eq!(case.verdict(&[robot(), along], 24.0), Verdict::Contradicted);
 }
 
-fn elevator() -> Case {
+pub(crate) fn elevator() -> Case {
     // A car behind the wall x = 4, door from (4, -1) to (4, 1).
     let mut place = floor(
         &[(4., 1.0, 4.1, 3.0), (4., -3.0, 4.1, -1.0), (4., 3.0, 8., 3.1), (4., -3.1, 8., -3.0), (8., -3., 8.1, 3.)],
@@ -348,6 +352,7 @@ fn elevator() -> Case {
     );
     plan.humans[0].relation = Relation::Leaving;
     plan.humans[1].relation = Relation::Staying;
+    plan.robot.script = vec![RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers }];
     Case { place, plan, ways: paths(&["a", "l", "c"], &[(&["c", "l", "a"], "l"), (&["d"], "c")]), reading: None }
 }
 
@@ -398,6 +403,9 @@ fn a_group_in_a_circle_is_a_formation_and_one_back_to_back_is_not() {
     case.plan =
         group_of(proposal(3, vec![must("c1", Predicate::Formation { group: GroupId(1), spread_m: 1.5 })]), &[1, 2, 3]);
     case.ways = paths(&["a", "m", "b"], &[(&["m"], "m"), (&["m"], "m"), (&["m"], "m")]);
+    for human in &mut case.plan.humans {
+        human.relation = Relation::Static;
+    }
     let stand = |turn: f64, far: f64| -> Vec<Walk> {
         let mut walks = vec![Walk::robot(-8., -1.4, 0.8, 0.)];
         for n in 0..3_u32 {
@@ -434,6 +442,7 @@ fn a_gesture_far_away_or_never_made_is_not_realised() {
 fn overtaking_giving_way_and_passing_are_told_apart() {
     let mut case = frontal();
     case.plan.expected_events = vec![must("c1", Predicate::Overtakes { human: H1 })];
+    case.plan.humans[0].relation = Relation::Behind;
     let over = || Walk::human(1, -11., 0.5, 1.2, 0.);
     assert_eq!(case.verdict(&[robot(), over()], 19.0), Verdict::Realised);
     assert_ne!(case.verdict(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 19.0), Verdict::Realised);

@@ -13,7 +13,7 @@ const REMARK_CHARS: usize = 160;
 /// Scores one recording per job.
 ///
 /// Inputs: `recording` (MCAP); where there are any, `location`, `request`, `reading`, `proposal`, `paths` (JSON) and
-/// `reference` (MCAP, the same scenario and seed with the reference robot). Outputs: `report` (JSON) and `metrics`
+/// `reference` (MCAP, the same scenario and seed with the reference robot) and `twin` (MCAP, the same without a robot). Outputs: `report` (JSON) and `metrics`
 /// (CSV). A verdict that asks for repair is part of a job that was done, never a failure.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ScoringStage;
@@ -27,6 +27,7 @@ struct Inputs {
     proposal: Option<Proposal>,
     paths: Option<Paths>,
     reference: Option<Recording>,
+    twin: Option<Recording>,
 }
 
 impl Inputs {
@@ -40,6 +41,7 @@ impl Inputs {
             proposal: job.json_if_there("proposal")?,
             paths: job.json_if_there("paths")?,
             reference: if wants_reference { Some(decode(job, "reference")?) } else { None },
+            twin: if job.has("twin") { Some(decode(job, "twin")?) } else { None },
         })
     }
 
@@ -52,6 +54,7 @@ impl Inputs {
             proposal: self.proposal.as_ref(),
             paths: self.paths.as_ref(),
             reference: self.reference.as_ref(),
+            twin: self.twin.as_ref(),
         })
     }
 }

@@ -63,7 +63,22 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let marks = signals.of(human).iter().map(look_mark).collect();
+    // Who looks by a rule looks while its leaf runs; one who only happens to face the robot was not startled.
+    let by_rule = signals.tells_leaves
+        && signals
+            .evidence
+            .proposal
+            .and_then(|proposal| proposal.human(human))
+            .is_some_and(|human| human.rules.iter().any(|rule| rule.act == Action::LookAtRobot));
+    let runs = |t: f64| {
+        let spans = signals.leaves_of(human).iter();
+        spans.filter(|span| does(&span.name, &Action::LookAtRobot)).any(|span| t >= span.from_s && t <= span.to_s)
+    };
+    let mark = |moment: &Moment| {
+        let mark = look_mark(moment);
+        if by_rule && !runs(moment.t) { Mark::new(mark.t, mark.margin.min(-0.1)) } else { mark }
+    };
+    let marks = signals.of(human).iter().map(mark).collect();
     lasting(signals, human, marks, for_s, GESTURE_M, &format!("stopped and looking at the robot for {for_s:.1} s"))
 }
 
@@ -251,7 +266,7 @@ pub(super) fn seen(signals: &Signals<'_>, human: HumanId, action: &Action) -> Ve
     let (marks, kept_s) = motion(signals, human, action);
     let shown = stretches(marks, kept_s);
     let spans = signals.leaves_of(human);
-    if spans.is_empty() {
+    if spans.is_empty() && !signals.tells_leaves {
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }

@@ -4,13 +4,21 @@ use std::collections::BTreeMap;
 use std::convert::identity;
 
 use socrates_model::report::Standing;
-use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate};
+use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate, Relation, rule::RobotDo};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
-use crate::fidelity::{acts, company, coverage, doorway, groups, meeting, reactions, robot, setting};
+use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
+
+/// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
+const START_M: f64 = 3.0;
+/// Largest difference of arrival times at an encounter where no clause says another, s (`spec/case_studies` I.S5).
+const GAP_SECS: f64 = 4.0;
+/// Largest distance from the middle of a group that stands and of one that walks, m, where no clause says another.
+const STAND_M: f64 = 1.8;
+const WALK_M: f64 = 3.0;
 
 /// Clauses with what was found of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -109,6 +117,47 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
             }
         }
     }
+    if let (Some(proposal), Some(paths)) = (signals.evidence.proposal, signals.evidence.paths) {
+        let waits = proposal.robot.script.iter().any(|rule| rule.act == RobotDo::WaitForLeavers);
+        for human in &proposal.humans {
+            let id = human.id;
+            let Some(node) = paths.humans.get(&id).and_then(|way| way.first()) else { continue };
+            // Who walks with the robot, or in a group, starts where that puts it.
+            let own = !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
+            if own && human.group.is_none() && signals.node(node).is_some() {
+                let starts = Predicate::StartsAt { agent: id.into(), node: node.clone(), within_m: START_M };
+                more.push(setup(format!("auto-start-{id}"), format!("{id} starts at {node}"), starts));
+            }
+            let timed = match human.relation {
+                Relation::Frontal | Relation::Crossing => true,
+                // Where the robot waits for those who leave, they need not hurry.
+                Relation::Leaving => !waits,
+                Relation::Behind | Relation::Ahead | Relation::Static | Relation::Staying | Relation::Abreast => false,
+            };
+            // A reaction may keep somebody from the node: then its own clauses tell.
+            if timed && human.rules.is_empty() && signals.encounter(id).is_some() {
+                let given = has(
+                    &|predicate| matches!(predicate, Predicate::OnTime { human: who, .. } | Predicate::Crosses { human: who, .. } if *who == id),
+                );
+                if !given {
+                    let text = format!("{id} and the robot get to their encounter together");
+                    let predicate = Predicate::OnTime { human: id, gap_s: GAP_SECS };
+                    more.push(setup(format!("auto-time-{id}"), text, predicate));
+                }
+            }
+        }
+        for group in &proposal.groups {
+            if has(&|predicate| predicate.group() == Some(group.id)) {
+                continue;
+            }
+            let (text, predicate) = if group.standing {
+                (format!("{} stands together", group.id), Predicate::Formation { group: group.id, spread_m: STAND_M })
+            } else {
+                (format!("{} walks together", group.id), Predicate::WalksTogether { group: group.id, spread_m: WALK_M })
+            };
+            more.push(setup(format!("auto-{}", group.id), text, predicate));
+        }
+    }
     let judged = signals.evidence.proposal.is_some() || signals.evidence.paths.is_some();
     if judged && !has(&|predicate| *predicate == Predicate::Plausible) {
         let text = "nobody overlaps or is faster than 2 m/s".to_owned();
@@ -132,6 +181,11 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
             company::follows(signals, *follower, *leader, *gap_m, *for_s)
         }
         Predicate::Abreast { human, for_s } => company::abreast(signals, *human, *for_s),
+        Predicate::Parallel { human, for_s } => company::parallel(signals, *human, *for_s),
+        Predicate::Flow { count, within_m, angle_deg } => crowd::flow(signals, *count, *within_m, *angle_deg),
+        Predicate::Density { per_m2, radius_m, for_s } => crowd::density(signals, *per_m2, *radius_m, *for_s),
+        Predicate::Surrounds { count, within_m, for_s } => crowd::surrounds(signals, *count, *within_m, *for_s),
+        Predicate::Converges { within_m, within_s } => crowd::converges(signals, *within_m, *within_s),
         Predicate::Blocks { human, for_s } => acts::blocks(signals, *human, *for_s),
         Predicate::Looks { human, for_s } => acts::looks(signals, *human, *for_s),
         Predicate::StandsStill { human, for_s } => acts::stands_still(signals, *human, *for_s),
@@ -141,17 +195,24 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),
         Predicate::StaysInside { human, door } => either(doorway::stays_inside(signals, *human, door)),
+        Predicate::Enters { human, door } => either(doorway::enters(signals, *human, door)),
         Predicate::DoorOpens { door, robot_m } => either(doorway::door_opens(signals, door, *robot_m)),
         Predicate::HiddenUntil { human, within_m } => either(doorway::hidden_until(signals, *human, *within_m)),
         Predicate::Formation { group, spread_m } => either(groups::formation(signals, *group, *spread_m)),
         Predicate::WalksTogether { group, spread_m } => either(groups::walks_together(signals, *group, *spread_m)),
+        Predicate::Queues { group, gap_m } => either(groups::queues(signals, *group, *gap_m)),
         Predicate::Order { first, then } => order(found, first, then),
         Predicate::EncounterAt { place } => setting::encounter_at(signals, *place),
         Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
+        Predicate::StartsAt { agent, node, within_m } => setting::starts_at(signals, *agent, node, *within_m),
+        Predicate::OnTime { human, gap_s } => setting::on_time(signals, *human, *gap_s),
         Predicate::Plausible => plausible(flaws),
         Predicate::RobotArrives => robot::arrives(signals),
         Predicate::RobotKeeps { min_m } => robot::keeps(signals, *min_m),
         Predicate::RobotEntersLast => either(doorway::robot_enters_last(signals)),
+        Predicate::RobotLeavesFirst => either(doorway::robot_leaves_first(signals)),
+        Predicate::RobotJoins { group } => either(ring::robot_joins(signals, *group)),
+        Predicate::RobotLeavesGroup { group } => either(ring::robot_leaves(signals, *group)),
         Predicate::RobotObeys { gesture, within_s } => robot::obeys(signals, *gesture, *within_s),
     }
 }

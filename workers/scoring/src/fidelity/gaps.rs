@@ -7,7 +7,7 @@ use socrates_model::EventKind;
 use crate::fidelity::signals::Signals;
 
 /// Arriving at an encounter is coming this near to its node, m.
-const ARRIVED_M: f64 = 1.5;
+pub(super) const ARRIVED_M: f64 = 1.5;
 
 /// Achieved gap of each encounter, s, by human: as the engine tells it, else from the tracks. Positive:
 /// the human came later.

@@ -1,9 +1,12 @@
-//! Monitors of the setting: how many humans, where the encounter is, who reaches a node.
+//! Monitors of the setting: how many humans, where and when the encounter is, who starts at and who reaches a node.
 
-use socrates_model::{AgentId, NodeId, PlaceClass};
+use socrates_model::{AgentId, HumanId, NodeId, PlaceClass};
 
 use crate::fidelity::finding::Finding;
+use crate::fidelity::gaps::ARRIVED_M;
+use crate::fidelity::meeting::{LATE_FACTOR, absent};
 use crate::fidelity::signals::Signals;
+use crate::tracks::Track;
 
 /// Exactly so many humans are there from the first to the last tick.
 pub(super) fn humans(signals: &Signals<'_>, count: u32) -> Finding {
@@ -60,4 +63,46 @@ pub(super) fn reaches(signals: &Signals<'_>, agent: AgentId, node: &NodeId, with
     let first = track.samples.iter().find(|s| (s.at - at).norm() <= within_m).map_or(t, |s| s.t);
     let text = format!("{agent} comes within {distance:.2} m of `{node}` at {t:.1} s (at most {within_m:.1} m asked)");
     Finding::by_margin(within_m - distance, vec![first], text)
+}
+
+/// The agent is near the node when the run begins.
+pub(super) fn starts_at(signals: &Signals<'_>, agent: AgentId, node: &NodeId, within_m: f64) -> Finding {
+    let Some(at) = signals.node(node) else {
+        return Finding::not_applicable(format!("the map has no node `{node}`, or there is no map"));
+    };
+    let Some(start) = signals.track(agent).and_then(|track| track.samples.first()) else {
+        return match agent {
+            AgentId::Robot => Finding::not_applicable("there is no robot in the recording"),
+            AgentId::Human(id) => Finding::fails(-1.0, vec![], format!("{id} is not in the recording")),
+        };
+    };
+    let distance = (start.at - at).norm();
+    let text = format!("{agent} starts {distance:.2} m from `{node}` (at most {within_m:.1} m asked)");
+    Finding::by_margin(within_m - distance, vec![start.t], text)
+}
+
+/// Human and robot get to the encounter at about the same time.
+pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let (Some((id, at)), Some(robot), Some(person)) =
+        (signals.encounter(human), &signals.tracks.robot, signals.tracks.human(human))
+    else {
+        return Finding::not_applicable("there is no encounter, or no map to tell where it is");
+    };
+    let arrival = |track: &Track| track.samples.iter().find(|s| (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
+    let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
+        return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
+    };
+    let gap = (second - first).abs();
+    let text = format!(
+        "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s (at most {gap_s:.1} s asked)"
+    );
+    let times = vec![first.max(second), first, second];
+    match gap {
+        gap if gap <= gap_s => Finding::holds(gap_s - gap, times, text),
+        gap if gap <= LATE_FACTOR * gap_s => Finding::late(gap_s - gap, times, text),
+        gap => Finding::fails(gap_s - gap, times, text),
+    }
 }

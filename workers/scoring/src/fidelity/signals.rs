@@ -71,6 +71,8 @@ pub struct Signals<'a> {
     pub doors: Doors<'a>,
     /// Running leaves by human; empty where the recording tells none.
     pub leaves: BTreeMap<HumanId, Vec<LeafSpan>>,
+    /// Whether the recording tells leaves of anybody: then one who has none does nothing by its tree.
+    pub tells_leaves: bool,
     /// When the robot arrived, s.
     pub arrived_s: Option<f64>,
     /// Distance to walls; `None` without a map.
@@ -108,18 +110,19 @@ impl<'a> Signals<'a> {
             }
         }
         let field = evidence.location.map(|location| DistanceField::new(&location.grid));
-        let leaves = tracks
+        let leaves: BTreeMap<HumanId, Vec<LeafSpan>> = tracks
             .humans
             .iter()
             .filter_map(|track| Some((track.human()?, leaf_spans(evidence.recording, track))))
             .collect();
+        let tells_leaves = leaves.values().any(|spans| !spans.is_empty());
         let arrived_s = evidence
             .recording
             .events
             .iter()
             .find(|event| event.kind == EventKind::RobotArrived)
             .map(|event| event.time.secs());
-        Self { evidence, full, tracks, moments, doors, leaves, arrived_s, field }
+        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, arrived_s, field }
     }
 
     /// Moments of a human; empty when it or the robot is missing.

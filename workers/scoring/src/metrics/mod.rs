@@ -6,12 +6,16 @@
 
 mod blame;
 mod collisions;
+mod comfort;
 mod crowding;
 mod distances;
 mod drac;
 mod forces;
+pub mod francis;
 mod goal;
+mod goals;
 mod groups;
+mod hunav;
 mod intrusion;
 mod near_misses;
 mod passing;
@@ -27,6 +31,7 @@ mod stalls;
 mod success;
 mod table;
 mod ttc;
+mod twin;
 mod yielding;
 mod zones;
 
@@ -53,6 +58,10 @@ pub enum Need {
     Groups,
     /// The event log: gestures.
     Events,
+    /// The same run without a robot.
+    Twin,
+    /// Robots beside the one that is judged: recordings of ours have none.
+    OtherRobots,
 }
 
 /// Whether more is better.
@@ -132,7 +141,46 @@ pub const CATALOG: &[Family] = &[
     yielding::FAMILY,
     passing::FAMILY,
     response::FAMILY,
+    goals::FAMILY,
+    comfort::FAMILY,
+    twin::FAMILY,
+    hunav::FAMILY,
 ];
+
+/// Version of the catalogue: it changes when a formula does, so that figures of different versions are not mixed.
+pub const VERSION: u32 = 2;
+
+/// How distances are meant throughout, for tables that are read by others (`spec/evaluation` §2.7).
+pub const DISTANCE_CONVENTION: &str = "surface_clearance";
+
+/// How values of several runs become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aggregation {
+    /// Share of runs, with a Wilson interval.
+    Share,
+    /// Sum and mean per run.
+    Count,
+    /// Median, with a bootstrap interval.
+    Median,
+}
+
+impl Sheet {
+    /// How values of several runs become one; runs without a value are counted apart, never as 0.
+    #[must_use]
+    pub fn aggregation(&self) -> Aggregation {
+        match self.unit {
+            "0/1" => Aggregation::Share,
+            "count" => Aggregation::Count,
+            _ => Aggregation::Median,
+        }
+    }
+
+    /// Whether the value is another tool's, with its dependence on sampling rate and map.
+    #[must_use]
+    pub fn as_coded_elsewhere(&self) -> bool {
+        self.id.starts_with("hunav.")
+    }
+}
 
 /// Fact sheets of every metric, in report order.
 pub fn sheets() -> impl Iterator<Item = &'static Sheet> {
@@ -148,6 +196,12 @@ pub fn sheet(id: &str) -> Option<&'static Sheet> {
 /// Computes every metric.
 #[must_use]
 pub fn measure(scene: &Scene<'_>) -> Vec<MetricValue> {
+    let mut values = computed(scene);
+    values.extend(francis::named(&values));
+    values
+}
+
+fn computed(scene: &Scene<'_>) -> Vec<MetricValue> {
     CATALOG
         .iter()
         .flat_map(|family| {
@@ -174,7 +228,9 @@ pub fn measure(scene: &Scene<'_>) -> Vec<MetricValue> {
 /// Every metric as not applicable, for one reason.
 #[must_use]
 pub fn none(why: &str) -> Vec<MetricValue> {
-    sheets().map(|sheet| valued(sheet, Err(why.to_owned()))).collect()
+    let mut values: Vec<MetricValue> = sheets().map(|sheet| valued(sheet, Err(why.to_owned()))).collect();
+    values.extend(francis::named(&values));
+    values
 }
 
 fn valued(sheet: &Sheet, value: Measured) -> MetricValue {
@@ -248,13 +304,38 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn every_name_of_the_table_is_a_metric_of_ours() {
+        for (name, ours) in francis::NAMES {
+            assert!(sheet(ours).is_some(), "{name} is {ours}, which is no metric");
+        }
+        assert_eq!(sheets().filter(|sheet| sheet.id.starts_with("hunav.")).count(), 29);
+    }
+
+    #[test]
+    fn a_run_that_begins_later_has_the_same_values() {
+        let walks = [Walk::robot(0., 0., 0.6, 0.), Walk::human(1, 9., 0.6, -1., 0.)];
+        let plain = recording(&walks, 12.0, 0.05);
+        let mut late = plain.clone();
+        for state in &mut late.frames {
+            state.tick += 400;
+        }
+        for sheet in sheets() {
+            match (value(&plain, sheet.id), value(&late, sheet.id)) {
+                (Some(a), Some(b)) => assert!((a - b).abs() < 1e-6, "{}: {a} and {b}", sheet.id),
+                (None, None) => {}
+                other => panic!("{}: {other:?}", sheet.id),
+            }
+        }
+    }
+
+    #[test]
     fn missing_data_is_a_note_and_never_zero() {
         let run = recording(&[Walk::robot(0., 0., 0.5, 0.)], 4.0, 0.1);
         let evidence = Evidence::of(&run);
         let tracks = Tracks::read(&run).unwrap();
         let signals = Signals::new(&evidence, &tracks);
         for value in measure(&Scene::new(&signals)) {
-            let needs = sheet(&value.id).unwrap().needs;
+            let Some(needs) = sheet(&value.id).map(|sheet| sheet.needs) else { continue };
             if needs.contains(&Need::Humans) || needs.contains(&Need::Map) || needs.contains(&Need::Goal) {
                 assert_eq!(value.value, None, "{}", value.id);
                 assert!(value.note.starts_with("not applicable: "), "{}", value.id);
@@ -282,7 +363,7 @@ pub(crate) mod tests {
                 0.05,
             )
         };
-        for sheet in sheets() {
+        for sheet in sheets().filter(|sheet| !sheet.as_coded_elsewhere()) {
             match (value(&plain, sheet.id), value(&moved, sheet.id)) {
                 (Some(a), Some(b)) => assert!((a - b).abs() < 1e-4, "{}: {a} and {b}", sheet.id),
                 (None, None) => {}
@@ -299,7 +380,7 @@ pub(crate) mod tests {
             Walk::human_through(2, &[(0., 4., -3.), (6., 4., 2.), (9., 8., 2.)]),
         ];
         let (coarse, fine) = (recording(&walks, 12.0, 0.1), recording(&walks, 12.0, 0.01));
-        for sheet in sheets() {
+        for sheet in sheets().filter(|sheet| !sheet.as_coded_elsewhere()) {
             if let (Some(a), Some(b)) = (value(&coarse, sheet.id), value(&fine, sheet.id)) {
                 assert!((a - b).abs() <= 0.02 * b.abs() + 0.02, "{}: {a} at 10 Hz, {b} at 100 Hz", sheet.id);
             }

@@ -96,7 +96,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     vec![
         Ok(length),
         or_why(shortest.map(|way| succeeded * way / length.max(way)), no_way),
-        match (shortest, scene.arrived_s) {
+        match (shortest, scene.trip_s()) {
             (Some(_), None) => Ok(0.0),
             (Some(way), Some(time)) if speed > 0.0 => Ok(succeeded * (way / speed) / time.max(way / speed)),
             (Some(_), Some(_)) => Err("the robot's nominal speed is not known".to_owned()),

@@ -71,6 +71,10 @@ impl<'a> Scene<'a> {
                     let groups = self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty());
                     (groups, "no groups are known")
                 }
+                Need::Twin => {
+                    (self.signals.evidence.twin.is_some(), "there is no run without the robot to compare with")
+                }
+                Need::OtherRobots => (false, "recordings hold one robot"),
                 Need::Events => (
                     self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
                     "nobody makes a gesture",
@@ -84,6 +88,13 @@ impl<'a> Scene<'a> {
     #[must_use]
     pub const fn robot(&self) -> Option<&Track> {
         self.tracks.robot.as_ref()
+    }
+
+    /// Time from the first sample to the arrival, s; `None` when the robot never arrives.
+    #[must_use]
+    pub fn trip_s(&self) -> Option<f64> {
+        let begin = self.signals.full.robot.as_ref()?.samples.first()?.t;
+        self.arrived_s.map(|arrived| arrived - begin)
     }
 
     /// Length of the trip, s.

@@ -27,6 +27,38 @@ pub(super) const FAMILY: Family = Family {
             about: "largest acceleration of the smoothed velocity",
         },
         Sheet {
+            id: "acceleration_min",
+            unit: "m/s^2",
+            direction: Direction::Neutral,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (A)",
+            about: "smallest acceleration of the smoothed velocity",
+        },
+        Sheet {
+            id: "jerk_min",
+            unit: "m/s^3",
+            direction: Direction::Neutral,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (J)",
+            about: "smallest jerk of the smoothed velocity",
+        },
+        Sheet {
+            id: "jerk_max",
+            unit: "m/s^3",
+            direction: Direction::Down,
+            needs: NEEDS,
+            source: "Francis et al. 2023, table 1 (J)",
+            about: "largest jerk of the smoothed velocity",
+        },
+        Sheet {
+            id: "sparc",
+            unit: "1",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "Balasubramanian et al. 2015 (SPARC), cut at 2.5 Hz and at 5 % of the greatest amplitude",
+            about: "minus the length of the amplitude spectrum of the smoothed speed, scaled to its range; nearer to 0 is smoother",
+        },
+        Sheet {
             id: "jerk_mean",
             unit: "m/s^3",
             direction: Direction::Down,
@@ -85,11 +117,51 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     vec![
         or_why(mean(&sizes), short),
         or_why(sizes.iter().copied().max_by(f64::total_cmp), short),
+        or_why(sizes.iter().copied().min_by(f64::total_cmp), short),
+        or_why(jerk.iter().copied().min_by(f64::total_cmp), short),
+        or_why(jerk.iter().copied().max_by(f64::total_cmp), short),
+        or_why(sparc(&smooth), "the robot does not move for a second"),
         or_why(mean(&jerk), short),
         or_why(mean(&jerk).map(|_| (squared / EVEN_SECS / count(jerk.len())).sqrt()), short),
         or_why(ldlj, "the robot moves without any jerk"),
         Ok(energy * EVEN_SECS),
     ]
+}
+
+/// Spectral arc length of the speed profile.
+///
+/// Spectrum of the mean-free padding to 20 s or twice the length at steps of 0.05 Hz, up to 2.5 Hz (the half-power
+/// point of the smoothing), cut behind the last amplitude above 5 % of that at 0 Hz.
+fn sparc(smooth: &[Vector]) -> Option<f64> {
+    const STEP_HZ: f64 = 0.05;
+    const TOP_HZ: f64 = 2.5;
+    const FLOOR: f64 = 0.05;
+    if smooth.len() < 10 {
+        return None;
+    }
+    let speeds: Vec<f64> = smooth.iter().map(size).collect();
+    let at_rest: f64 = speeds.iter().sum();
+    if at_rest <= 1e-9 {
+        return None;
+    }
+    let steps = libm::round(TOP_HZ / STEP_HZ) as u32;
+    let amplitude = |k: u32| {
+        // Recurrence of the rotation: one sine and cosine per frequency.
+        let turn = std::f64::consts::TAU * STEP_HZ * f64::from(k) * EVEN_SECS;
+        let (c, s) = (libm::cos(turn), libm::sin(turn));
+        let (mut x, mut y, mut re, mut im) = (1.0, 0.0, 0.0, 0.0);
+        for speed in &speeds {
+            re += speed * x;
+            im += speed * y;
+            (x, y) = (x * c - y * s, x * s + y * c);
+        }
+        libm::sqrt(re * re + im * im) / at_rest
+    };
+    let spectrum: Vec<f64> = (0..=steps).map(amplitude).collect();
+    let kept = spectrum.iter().rposition(|value| *value >= FLOOR)?.max(1);
+    let width = 1.0 / count(kept);
+    let kept = spectrum.get(..=kept)?;
+    Some(-kept.iter().zip(kept.iter().skip(1)).map(|(a, b)| libm::sqrt(width * width + (b - a) * (b - a))).sum::<f64>())
 }
 
 fn size(vector: &Vector) -> f64 {
@@ -102,6 +174,23 @@ mod tests {
 
     use crate::fixture::{Walk, recording};
     use crate::metrics::tests::value;
+
+    #[test]
+    fn one_smooth_stroke_has_a_shorter_spectrum_than_a_stop_and_go() {
+        for step in [0.1, 0.01] {
+            let of = |speed: &dyn Fn(f64) -> f64| {
+                let mut run = recording(&[Walk::through(AgentId::Robot, &[(0., 0., 0.)])], 10.0, step);
+                for state in &mut run.frames {
+                    let t = state.tick as f64 * step;
+                    (state.vx, state.x) = (speed(t), t);
+                }
+                value(&run, "sparc").unwrap()
+            };
+            let smooth = of(&|t| (t * std::f64::consts::PI / 10.0).sin().powi(2));
+            let rough = of(&|t| (t * std::f64::consts::PI * 0.4).sin().powi(2));
+            assert!(smooth < -1.0 && smooth > -2.0 && rough < smooth - 0.3, "{smooth} {rough} at {step}");
+        }
+    }
 
     #[test]
     fn a_sine_in_speed_has_the_jerk_of_its_amplitude() {

@@ -27,6 +27,14 @@ pub(super) const FAMILY: Family = Family {
             about: "largest speed of the robot",
         },
         Sheet {
+            id: "robot_speed_min",
+            unit: "m/s",
+            direction: Direction::Neutral,
+            needs: ROBOT,
+            source: "Francis et al. 2023, table 1 (V)",
+            about: "smallest speed of the robot",
+        },
+        Sheet {
             id: "human_speed_mean",
             unit: "m/s",
             direction: Direction::Neutral,
@@ -49,6 +57,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     vec![
         or_why(robot.mean(), short),
         or_why(robot.greatest().map(|(_, speed)| speed), short),
+        or_why(robot.least().map(|(_, speed)| speed), short),
         or_why((!means.is_empty()).then(|| means.iter().sum::<f64>() / crate::metrics::count(means.len())), short),
     ]
 }

@@ -40,7 +40,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     vec![
         flag(succeeded(scene)),
         flag(scene.arrived_s.is_some()),
-        scene.arrived_s.ok_or_else(|| "the robot never arrives".to_owned()),
+        scene.trip_s().ok_or_else(|| "the robot never arrives".to_owned()),
     ]
 }
 

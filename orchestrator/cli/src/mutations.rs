@@ -1,0 +1,483 @@
+//! `dev mutations`: does the judge refuse what is wrong and let pass what is right? Measured on real runs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+use socrates_author::Written;
+use socrates_author::offline::Offline;
+use socrates_model::job::Stage;
+use socrates_model::{
+    Action, AgentId, Behaviors, Clause, ClauseRole, Encounter, Fault, GroupId, HumanBehavior, HumanId, NodeId, Paths,
+    Predicate, Proposal, Recording, Relation, Report, RunId, Verdict,
+};
+use socrates_scoring::Evidence;
+use socrates_scoring::mutants::{harmless, spoiled};
+
+use crate::config::Config;
+use crate::exit::Complaint;
+use crate::prepare::{Prepared, prepare, prepare_text, request_files};
+use crate::talk::Talk;
+
+/// Rounds of authoring: what the orchestrator would also ask again.
+const ROUNDS: u64 = 4;
+/// Quantile of 95 %.
+const Z: f64 = 1.96;
+/// A moved encounter is at least this far from where it was asked for, m.
+const MOVED_M: f64 = 6.0;
+
+/// The change that puts an encounter elsewhere.
+const MOVED: &str = "encounter moved";
+/// Two meetings at one time nearer to each other than this are one, m.
+const SAME_M: f64 = 3.0;
+
+/// One scenario's artifacts, as the stages would make them.
+pub(crate) struct Made {
+    pub(crate) proposal: Proposal,
+    pub(crate) paths: Paths,
+    pub(crate) behaviors: Behaviors,
+}
+
+/// A request with its artifacts, its run with the reference robot, and what the judge says of it.
+pub(crate) struct Scenario {
+    pub(crate) prepared: Prepared,
+    pub(crate) made: Made,
+    pub(crate) run: Recording,
+    pub(crate) report: Report,
+    seed: u64,
+}
+
+/// How one kind of change fared.
+#[derive(Default)]
+struct Row {
+    tried: usize,
+    right: usize,
+}
+
+/// Everything that was tried.
+#[derive(Default)]
+pub(crate) struct Tally {
+    spoiled: BTreeMap<String, Row>,
+    harmless: BTreeMap<String, Row>,
+    /// Changed artifacts that gave the same meeting all the same: nothing is wrong with those runs.
+    equal: usize,
+    wrong: Vec<String>,
+    lines: Vec<String>,
+}
+
+impl Tally {
+    /// How often a kind of change was tried and how often it was refused.
+    #[cfg(test)]
+    pub(crate) fn spoiled_of(&self, kind: &str) -> (usize, usize) {
+        self.spoiled.get(kind).map_or((0, 0), |row| (row.tried, row.right))
+    }
+
+    /// What went wrong, a line each.
+    #[cfg(test)]
+    pub(crate) fn wrong(&self) -> &[String] {
+        &self.wrong
+    }
+
+    fn enter(&mut self, wanted: bool, kind: &str, about: &str, base: &str, verdict: &str, why: &str) {
+        let kept = verdict == Verdict::Realised.name();
+        let row = if wanted { &mut self.harmless } else { &mut self.spoiled }.entry(kind.to_owned()).or_default();
+        row.tried += 1;
+        row.right += usize::from(kept == wanted);
+        let line = format!("{base}: {kind} ({about}): {verdict} · {why}");
+        if kept != wanted {
+            self.wrong.push(line.clone());
+        }
+        self.lines.push(line);
+    }
+}
+
+/// Does `dev mutations`.
+pub(crate) async fn mutations(
+    talk: &Talk,
+    config: &Config,
+    requests: &[PathBuf],
+    seeds: u64,
+    all: bool,
+) -> Result<(), Complaint> {
+    let scenarios = if requests.is_empty() { shipped(config)? } else { named(config, requests)? };
+    let mut tally = Tally::default();
+    let mut unrealised = Vec::new();
+    let mut bases = 0;
+    for prepared in &scenarios {
+        for seed in 1..=seeds {
+            talk.passing(&format!("{} seed {seed}", prepared.name));
+            let name = format!("{}-{seed}", prepared.name);
+            match realised(prepared.clone(), seed).await {
+                Ok(scenario) if scenario.report.verdict == Verdict::Realised => {
+                    bases += 1;
+                    try_all(&scenario, &name, &mut tally);
+                }
+                Ok(Scenario { report, .. }) => {
+                    unrealised.push(format!("{name}: {} · {}", report.verdict, report.verdict_text));
+                }
+                Err(why) => unrealised.push(format!("{name}: {why}")),
+            }
+        }
+    }
+    talk.clear();
+    print(talk, &tally, bases, &unrealised, all);
+    Ok(())
+}
+
+pub(crate) fn shipped(config: &Config) -> Result<Vec<Prepared>, Complaint> {
+    let mut found = Vec::new();
+    for location in socrates_maps::shipped::names() {
+        for (name, text) in socrates_maps::shipped::requests(location) {
+            let name = format!("{location}-{}", name.trim_end_matches(".toml"));
+            found.push(prepare_text(&name, text, &name, Path::new("."), None, config, false)?);
+        }
+    }
+    Ok(found)
+}
+
+fn named(config: &Config, requests: &[PathBuf]) -> Result<Vec<Prepared>, Complaint> {
+    request_files(requests)?.iter().map(|file| prepare(file, None, config, false)).collect()
+}
+
+/// The scenario of a request with its reference run, asked again where the verdict says so.
+pub(crate) async fn realised(prepared: Prepared, seed: u64) -> Result<Scenario, String> {
+    let mut feedback: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
+    let mut last = Err("was never asked for".to_owned());
+    for round in 0..ROUNDS {
+        let made = author(&prepared, seed * 1000 + round, &mut feedback).await;
+        let made = match made {
+            Ok(made) => made,
+            Err(why) => {
+                last = Err(why);
+                continue;
+            }
+        };
+        let run = simulate(&prepared, &made, seed)?;
+        let report = judge(&prepared, &made, &run);
+        if let Some(repair) = &report.repair {
+            feedback.entry(repair.stage).or_default().clone_from(&repair.faults);
+        }
+        let done = report.verdict == Verdict::Realised;
+        last = Ok((made, run, report));
+        if done {
+            break;
+        }
+    }
+    last.map(|(made, run, report)| Scenario { prepared, made, run, report, seed })
+}
+
+/// Asks the offline author for everything, as the authoring stages do.
+async fn author(prepared: &Prepared, seed: u64, feedback: &mut BTreeMap<Stage, Vec<Fault>>) -> Result<Made, String> {
+    let mut proposal: Option<Proposal> = None;
+    let mut paths: Option<Paths> = None;
+    let mut behaviors: Option<Behaviors> = None;
+    for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
+        let question = socrates_prompts::Question {
+            stage,
+            request: prepared.request.clone(),
+            reading: prepared.reading.clone(),
+            location: prepared.location.clone(),
+            proposal: proposal.clone(),
+            only: Vec::new(),
+            feedback: feedback.get(&stage).cloned().unwrap_or_default(),
+            refused: None,
+            seed,
+        };
+        match socrates_author::attempt(&Offline, &question).await {
+            Ok(answer) => match answer.written {
+                Written::Proposal(found) => proposal = Some(found),
+                Written::Paths(found) => paths = Some(found),
+                Written::Behaviors(found) => behaviors = Some(found),
+            },
+            Err(refused) => {
+                let why = format!("{stage} refused: {}", texts(&refused.faults));
+                feedback.insert(stage, refused.faults);
+                return Err(why);
+            }
+        }
+    }
+    match (proposal, paths, behaviors) {
+        (Some(proposal), Some(paths), Some(behaviors)) => Ok(Made { proposal, paths, behaviors }),
+        _ => Err("a stage has no answer".to_owned()),
+    }
+}
+
+fn texts(faults: &[Fault]) -> String {
+    faults.iter().map(|fault| format!("{} {}", fault.code, fault.message)).collect::<Vec<_>>().join("; ")
+}
+
+fn simulate(prepared: &Prepared, made: &Made, seed: u64) -> Result<Recording, String> {
+    let run = RunId::new(format!("mutations.reference-{seed}")).map_err(|why| why.to_string())?;
+    let setup = socrates_simulation::setup(
+        prepared.location.clone(),
+        made.proposal.clone(),
+        made.paths.clone(),
+        made.behaviors.clone(),
+        Some(&prepared.request),
+        run,
+        seed,
+    )
+    .map_err(|faults| texts(&faults))?;
+    socrates_simulation::simulate(setup, "reference").map_err(|faults| texts(&faults))
+}
+
+fn judge(prepared: &Prepared, made: &Made, recording: &Recording) -> Report {
+    socrates_scoring::score(&evidence(prepared, made, recording))
+}
+
+fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording) -> Evidence<'a> {
+    Evidence {
+        recording,
+        location: Some(&prepared.location),
+        request: Some(&prepared.request),
+        reading: Some(&prepared.reading),
+        proposal: Some(&made.proposal),
+        paths: Some(&made.paths),
+        reference: None,
+        twin: None,
+    }
+}
+
+/// Every harmless and every spoiling change of a realised scenario.
+pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
+    let Scenario { prepared, made, run, seed, .. } = scenario;
+    for mutant in harmless(run) {
+        let report = judge(prepared, made, &mutant.recording);
+        tally.enter(true, mutant.kind, &mutant.about, name, report.verdict.name(), &report.verdict_text);
+    }
+    for mutant in spoiled(&evidence(prepared, made, run)) {
+        let report = judge(prepared, made, &mutant.recording);
+        tally.enter(false, mutant.kind, &mutant.about, name, report.verdict.name(), &report.verdict_text);
+    }
+    for (kind, about, other) in other_scenarios(prepared, made) {
+        // Played from other artifacts, judged by those that were asked for.
+        match simulate(prepared, &other, *seed) {
+            Ok(recording) if kind == MOVED && same_meeting(run, &recording, &about) => tally.equal += 1,
+            Ok(recording) => {
+                let report = judge(prepared, made, &recording);
+                tally.enter(false, kind, &about, name, report.verdict.name(), &report.verdict_text);
+            }
+            Err(why) => tally.enter(false, kind, &about, name, "refused before the run", &why),
+        }
+    }
+}
+
+/// Whether a human is where it was, and the robot too, when they were nearest in the first run. `about` begins with
+/// the human's id.
+fn same_meeting(first: &Recording, second: &Recording, about: &str) -> bool {
+    let human = first
+        .header
+        .agents
+        .iter()
+        .map(|info| info.agent)
+        .find(|agent| about.split_whitespace().next().is_some_and(|word| word == agent.to_string()));
+    let Some(human) = human else { return false };
+    let nearest =
+        first.track(human).zip(first.track(AgentId::Robot)).enumerate().min_by(|(_, (a, b)), (_, (c, d))| {
+            (a.point() - b.point()).norm().total_cmp(&(c.point() - d.point()).norm())
+        });
+    let Some((tick, (person, robot))) = nearest else { return false };
+    let near = |agent: AgentId, at: socrates_model::Point| {
+        second.track(agent).nth(tick).is_some_and(|state| (state.point() - at).norm() <= SAME_M)
+    };
+    near(human, person.point()) && near(AgentId::Robot, robot.point())
+}
+
+fn musts(proposal: &Proposal) -> impl Iterator<Item = &Clause> {
+    proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup)
+}
+
+/// The scenario played otherwise than asked: a reaction muted, an obstruction cut short, an encounter elsewhere,
+/// somebody leaving who should stay.
+fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, String, Made)> {
+    let mut found = Vec::new();
+    for human in made.proposal.humans.iter().filter(|human| !human.rules.is_empty()) {
+        let id = human.id;
+        let reacts = |clause: &Clause| {
+            matches!(&clause.predicate, Predicate::Reacts { human, .. } | Predicate::RunsAway { human, .. }
+                | Predicate::Blocks { human, .. } | Predicate::Looks { human, .. } if *human == id)
+        };
+        if musts(&made.proposal).any(reacts) {
+            found.extend(with_rules(made, id, |_| None).map(|other| ("reaction muted", id.to_string(), other)));
+        }
+        let blocks = |clause: &Clause| matches!(clause.predicate, Predicate::Blocks { human, .. } if human == id);
+        if musts(&made.proposal).any(blocks) {
+            let short = |mut rule: socrates_model::Rule| {
+                if rule.act == Action::Block {
+                    rule.for_s = Some(0.5);
+                }
+                Some(rule)
+            };
+            found.extend(with_rules(made, id, short).map(|other| ("N: obstruction of 0.5 s", id.to_string(), other)));
+        }
+    }
+    let mut groups: Vec<Option<GroupId>> = Vec::new();
+    for encounter in &made.paths.encounters {
+        let Some(human) = made.proposal.human(encounter.human) else { continue };
+        // Who goes with the robot meets it everywhere.
+        if matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast) {
+            continue;
+        }
+        // A group goes as a whole.
+        if human.group.is_some() && groups.contains(&human.group) {
+            continue;
+        }
+        groups.push(human.group);
+        if let Some((node, other)) = moved(prepared, made, encounter, human.group) {
+            found.push((MOVED, format!("{} to {node}", encounter.human), other));
+        }
+    }
+    let leaver = made.proposal.humans.iter().find(|human| human.relation == Relation::Leaving).map(|human| human.id);
+    for human in made.proposal.humans.iter().filter(|human| human.relation == Relation::Staying) {
+        found.extend(
+            leaver
+                .and_then(|leaver| leaving(made, human.id, leaver))
+                .map(|other| ("N: who should stay leaves", human.id.to_string(), other)),
+        );
+    }
+    found
+}
+
+fn copy(made: &Made) -> Made {
+    Made { proposal: made.proposal.clone(), paths: made.paths.clone(), behaviors: made.behaviors.clone() }
+}
+
+/// The scenario with a human's rules changed, in the proposal and in the tree.
+fn with_rules(
+    made: &Made,
+    id: HumanId,
+    change: impl Fn(socrates_model::Rule) -> Option<socrates_model::Rule>,
+) -> Option<Made> {
+    let mut other = copy(made);
+    let human = other.proposal.humans.iter_mut().find(|human| human.id == id)?;
+    human.rules = std::mem::take(&mut human.rules).into_iter().filter_map(change).collect();
+    let tree = socrates_bt::compile(id, &human.rules).ok()?;
+    other.behaviors.humans.insert(id, HumanBehavior { tree, description: String::new() });
+    Some(other)
+}
+
+/// The human meets the robot at another node of the robot's path, far from the one asked for.
+fn moved(prepared: &Prepared, made: &Made, encounter: &Encounter, group: Option<GroupId>) -> Option<(NodeId, Made)> {
+    let graph = &prepared.location.graph;
+    let asked = graph.node(&encounter.node)?.at;
+    let way = made.paths.humans.get(&encounter.human)?;
+    let inner = made.paths.robot.get(1..made.paths.robot.len().saturating_sub(1))?;
+    let node = inner
+        .iter()
+        .filter_map(|id| Some(((graph.node(id)?.at - asked).norm(), id)))
+        .filter(|(distance, id)| *distance >= MOVED_M && prepared.location.door_of(id).is_none())
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, id)| id.clone())?;
+    let mut other = copy(made);
+    let path = if way.len() == 1 {
+        vec![node.clone()]
+    } else {
+        let mut path = graph.shortest(way.first()?, &node)?;
+        path.extend(graph.shortest(&node, way.last()?)?.into_iter().skip(1));
+        path
+    };
+    let with_it = |id: HumanId| {
+        id == encounter.human || group.is_some() && made.proposal.human(id).is_some_and(|human| human.group == group)
+    };
+    for (_, way) in other.paths.humans.iter_mut().filter(|(id, _)| with_it(**id)) {
+        way.clone_from(&path);
+    }
+    for other in other.paths.encounters.iter_mut().filter(|other| with_it(other.human)) {
+        other.node.clone_from(&node);
+    }
+    Some((node, other))
+}
+
+/// Who stays goes out like the one who leaves.
+fn leaving(made: &Made, who: HumanId, leaver: HumanId) -> Option<Made> {
+    let mut other = with_rules(made, who, |_| None)?;
+    let human = other.proposal.humans.iter_mut().find(|human| human.id == who)?;
+    human.relation = Relation::Leaving;
+    let start = other.paths.humans.get(&who)?.first()?.clone();
+    let mut way = other.paths.humans.get(&leaver)?.clone();
+    if way.first() != Some(&start) && way.get(1) != Some(&start) {
+        way.insert(0, start);
+    }
+    other.paths.humans.insert(who, way);
+    let meets = other.paths.encounters.iter().find(|found| found.human == leaver)?.node.clone();
+    for encounter in other.paths.encounters.iter_mut().filter(|found| found.human == who) {
+        encounter.node.clone_from(&meets);
+    }
+    Some(other)
+}
+
+fn share(right: usize, tried: usize) -> String {
+    let interval = socrates_stats::wilson(right, tried, Z).ok();
+    #[expect(clippy::cast_precision_loss, reason = "counts of a table")]
+    let percent = if tried == 0 { 0.0 } else { 100.0 * right as f64 / tried as f64 };
+    interval.map_or_else(
+        || "none tried".to_owned(),
+        |interval| format!("{percent:.1} % ({:.1} to {:.1})", interval.low * 100.0, interval.high * 100.0),
+    )
+}
+
+fn print(talk: &Talk, tally: &Tally, bases: usize, unrealised: &[String], all: bool) {
+    let sum = |rows: &BTreeMap<String, Row>| {
+        rows.values().fold((0, 0), |(right, tried), row| (right + row.right, tried + row.tried))
+    };
+    let table = |title: &str, word: &str, rows: &BTreeMap<String, Row>| {
+        talk.line(&format!("{title:<38} tried  {word}"));
+        for (kind, row) in rows {
+            talk.line(&format!("  {kind:<36} {:>5}  {}", row.tried, share(row.right, row.tried)));
+        }
+        let (right, tried) = sum(rows);
+        talk.line(&format!("  {:<36} {tried:>5}  {}", "all", share(right, tried)));
+    };
+    talk.line(&format!("{bases} realised runs, {} not", unrealised.len()));
+    for line in unrealised {
+        talk.line(&format!("  not realised  {line}"));
+    }
+    table("spoiled", "refused", &tally.spoiled);
+    talk.line(&format!(
+        "  ({} more with an encounter moved in the paths gave the same meeting and are not counted)",
+        tally.equal
+    ));
+    table("harmless", "let pass", &tally.harmless);
+    for line in if all { &tally.lines } else { &tally.wrong } {
+        talk.line(&format!("  {}{line}", if all { "" } else { "WRONG  " }));
+    }
+    let (caught, spoiled) = sum(&tally.spoiled);
+    let (kept, harmless) = sum(&tally.harmless);
+    talk.result(&json!({
+        "runs": bases,
+        "unrealised": unrealised,
+        "spoiled": { "tried": spoiled, "refused": caught },
+        "harmless": { "tried": harmless, "let_pass": kept },
+        "wrong": tally.wrong,
+    }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn of_real_runs_spoiled_ones_are_refused_and_harmless_changes_pass() {
+        let config = Config::load(None, std::iter::empty(), &[]).unwrap();
+        let mut tally = Tally::default();
+        let mut bases = 0;
+        for prepared in shipped(&config)
+            .unwrap()
+            .iter()
+            .filter(|prepared| prepared.name.contains("frontal") || prepared.name.contains("group"))
+        {
+            let scenario = realised(prepared.clone(), 1).await.unwrap();
+            let report = &scenario.report;
+            assert_eq!(report.verdict, Verdict::Realised, "{}: {}", prepared.name, report.verdict_text);
+            bases += 1;
+            try_all(&scenario, &prepared.name, &mut tally);
+        }
+        assert!(bases >= 2);
+        let sum = |rows: &BTreeMap<String, Row>| {
+            rows.values().fold((0, 0), |(right, tried), row| (right + row.right, tried + row.tried))
+        };
+        let ((caught, spoiled), (kept, harmless)) = (sum(&tally.spoiled), sum(&tally.harmless));
+        assert!(spoiled >= 10 && caught * 100 >= spoiled * 95, "{caught} of {spoiled}: {:#?}", tally.wrong);
+        assert!(harmless >= 6 && kept * 100 >= harmless * 95, "{kept} of {harmless}: {:#?}", tally.wrong);
+    }
+}

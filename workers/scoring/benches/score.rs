@@ -1,0 +1,128 @@
+//! Time to score one recording of 60 s at 100 Hz: process CPU time, one thread, medians.
+//!
+//! `cargo bench -p socrates-scoring --bench score`
+#![expect(clippy::print_stdout, reason = "a bench prints its table")]
+#![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a bench is no library")]
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+
+use socrates_model::recording::AgentInfo;
+use socrates_model::{
+    AgentId, AgentState, Encounter, Gesture, HumanId, Location, NodeId, Paths, Point, Recording, RecordingHeader, RunId,
+};
+use socrates_scoring::{Evidence, score};
+
+const SECONDS: f64 = 60.0;
+const STEP_S: f64 = 0.01;
+const ROUNDS: usize = 15;
+
+/// CPU time of this process so far, s; wall time where the system does not tell.
+fn cpu_s() -> f64 {
+    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
+    let told = std::fs::read_to_string("/proc/self/schedstat").ok();
+    let nanos = told.as_ref().and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
+    nanos.map_or_else(|| START.elapsed().as_secs_f64(), |nanos| nanos * 1e-9)
+}
+
+/// The longest of the shortest ways between any two nodes.
+fn longest(location: &Location) -> Vec<NodeId> {
+    let nodes = &location.graph.nodes;
+    let pairs = nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a, b)));
+    let ways = pairs.filter_map(|(a, b)| location.graph.shortest(&a.id, &b.id));
+    ways.max_by(|a, b| location.graph.length_m(a).total_cmp(&location.graph.length_m(b))).unwrap()
+}
+
+/// Where somebody is on a way who goes it in the given time, and the direction of the way there.
+fn along(points: &[Point], share: f64) -> (Point, f64) {
+    let whole: f64 = points.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+    let mut left = whole * share.clamp(0.0, 1.0);
+    for pair in points.windows(2) {
+        let line = pair[1] - pair[0];
+        if left <= line.norm() {
+            return (pair[0] + line * (left / line.norm()), line.y.atan2(line.x));
+        }
+        left -= line.norm();
+    }
+    let line = points[points.len() - 1] - points[points.len() - 2];
+    (points[points.len() - 1], line.y.atan2(line.x))
+}
+
+/// The robot goes the longest way of the map, so many humans come from its other end one after the other.
+fn scene(location: &Location, humans: u32) -> (Recording, Paths) {
+    let way = longest(location);
+    let points = location.graph.polyline(&way);
+    let back: Vec<Point> = points.iter().rev().copied().collect();
+    let ids: Vec<HumanId> = (1..=humans).map(HumanId::new).collect();
+    let agents: Vec<AgentId> =
+        std::iter::once(AgentId::Robot).chain(ids.iter().map(|id| AgentId::Human(*id))).collect();
+    let ticks = (SECONDS / STEP_S) as u64;
+    let mut frames = Vec::new();
+    for tick in 0..=ticks {
+        let share = tick as f64 / ticks as f64;
+        for (k, agent) in agents.iter().enumerate() {
+            let (at, yaw) = if k == 0 { along(&points, share) } else { along(&back, share - 0.03 * k as f64) };
+            let aside = if k == 0 { -0.3 } else { 0.4 };
+            frames.push(AgentState {
+                tick,
+                agent: agent.number(),
+                flags: AgentState::flags(*agent, Gesture::None, 0),
+                x: at.x - aside * yaw.sin(),
+                y: at.y + aside * yaw.cos(),
+                yaw,
+                vx: 0.8 * yaw.cos(),
+                vy: 0.8 * yaw.sin(),
+                omega: 0.0,
+            });
+        }
+    }
+    let header = RecordingHeader {
+        format: 1,
+        run: RunId::new("bench.reference-1").unwrap(),
+        planner: "reference".into(),
+        seed: 1,
+        profile: "native".into(),
+        step_s: STEP_S,
+        agents: agents
+            .iter()
+            .map(|agent| AgentInfo { agent: *agent, radius_m: 0.28, speed_mps: 0.8, role: "person".into() })
+            .collect(),
+        leaves: vec![],
+    };
+    let middle = way[way.len() / 2].clone();
+    let reversed: Vec<NodeId> = way.iter().rev().cloned().collect();
+    let paths = Paths {
+        format: 1,
+        robot: way,
+        humans: ids.iter().map(|id| (*id, reversed.clone())).collect::<BTreeMap<_, _>>(),
+        encounters: ids.iter().map(|id| Encounter { human: *id, node: middle.clone() }).collect(),
+        reasoning: String::new(),
+        author: "bench".into(),
+    };
+    (Recording { header, frames, events: vec![] }, paths)
+}
+
+fn main() {
+    println!("{:<12} {:>7} {:>16} {:>12} {:>12}", "map", "humans", "cells", "tracks only", "with map");
+    for name in socrates_maps::shipped::names() {
+        let location = socrates_maps::shipped::load(name).unwrap();
+        for humans in [2, 4, 12] {
+            let (run, paths) = scene(&location, humans);
+            let alone = Evidence::of(&run);
+            let whole = Evidence { location: Some(&location), paths: Some(&paths), ..alone };
+            let median = |evidence: &Evidence<'_>| {
+                let mut all: Vec<f64> = (0..ROUNDS)
+                    .map(|_| {
+                        let start = cpu_s();
+                        black_box(score(black_box(evidence)));
+                        cpu_s() - start
+                    })
+                    .collect();
+                all.sort_by(f64::total_cmp);
+                all[ROUNDS / 2] * 1e3
+            };
+            let cells = format!("{} x {}", location.grid.width, location.grid.height);
+            println!("{name:<12} {humans:>7} {cells:>16} {:>9.1} ms {:>9.1} ms", median(&alone), median(&whole));
+        }
+    }
+}

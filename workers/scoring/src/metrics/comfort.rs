@@ -1,0 +1,143 @@
+//! Comfort of people as two published models have it, and the end of a run that took too long.
+
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::series::Series;
+use crate::tracks::Sample;
+
+/// Mass of the robot in the energy of a contact, kg: of a delivery robot, where none is stated.
+const MASS_KG: f64 = 50.0;
+
+const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        Sheet {
+            id: "kirby_discomfort",
+            unit: "s",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "Kirby 2010, asymmetric Gaussian: sigma ahead max(2 v, 0.5) m, to the side 2/3, behind 1/2 of it",
+            about: "integral over time of the largest of the people's Gaussians (1 at the person) at the robot's centre",
+        },
+        Sheet {
+            id: "contact_energy_max",
+            unit: "J",
+            direction: Direction::Down,
+            needs: PEOPLE,
+            source: "own: kinetic energy of the relative motion with 50 kg",
+            about: "largest energy (1/2) m v^2 of the relative velocity while touching a human, 0 without contact",
+        },
+        Sheet {
+            id: "collisions",
+            unit: "count",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Humans, Need::Map],
+            source: "Francis et al. 2023, table 1 (C)",
+            about: "contacts with humans and with walls together",
+        },
+        Sheet {
+            id: "agent_collisions",
+            unit: "count",
+            direction: Direction::Down,
+            needs: &[Need::OtherRobots],
+            source: "Francis et al. 2023, table 1 (AC)",
+            about: "contacts with other robots; recordings of ours hold one robot",
+        },
+        Sheet {
+            id: "timeout",
+            unit: "0/1",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Goal],
+            source: "Francis et al. 2023, table 1 (TO)",
+            about: "1 when the run ends without the robot at its goal",
+        },
+        Sheet {
+            id: "aggregated_time",
+            unit: "s",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Humans, Need::Goal],
+            source: "Francis et al. 2023, table 1 (AT): the last of a cooperative set",
+            about: "time until the robot and every human who walks have stopped walking for good; not applicable when the robot never arrives",
+        },
+    ],
+    measure,
+};
+
+/// The person's Gaussian at a point: 1 at the person.
+fn gaussian(person: &Sample, robot: &Sample) -> f64 {
+    let line = robot.at - person.at;
+    let facing = person.course();
+    let (ahead, aside) = (facing.dot(&line), facing.perp(&line));
+    let front = (2.0 * person.speed()).max(0.5);
+    let along = if ahead >= 0.0 { front } else { front / 2.0 };
+    let across = front * 2.0 / 3.0;
+    libm::exp(-(ahead * ahead) / (2.0 * along * along) - (aside * aside) / (2.0 * across * across))
+}
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let Some(robot) = scene.robot() else { return Vec::new() };
+    let humans = &scene.tracks.humans;
+    let discomfort: Series = robot
+        .samples
+        .iter()
+        .enumerate()
+        .map(|(k, r)| {
+            let each = humans.iter().filter_map(|human| human.samples.get(k));
+            (r.t, each.map(|h| gaussian(h, r)).fold(0.0, f64::max))
+        })
+        .collect();
+    let energy = scene
+        .pairs()
+        .flat_map(|(robot, human)| {
+            let touch = robot.radius_m + human.radius_m;
+            robot
+                .samples
+                .iter()
+                .zip(&human.samples)
+                .filter(move |(r, h)| (r.at - h.at).norm() < touch)
+                .map(|(r, h)| MASS_KG * (r.velocity - h.velocity).norm_squared() / 2.0)
+        })
+        .fold(0.0, f64::max);
+    let contacts = super::collisions::human_contacts(scene).len() + super::collisions::wall_contacts(scene).len();
+    let over = scene.arrived_s.map(|arrived| {
+        let last = |samples: &[Sample]| {
+            samples.iter().rev().find(|sample| sample.speed() > crate::tracks::MOVING_MPS).map_or(0.0, |s| s.t)
+        };
+        let begin = robot.samples.first().map_or(0.0, |sample| sample.t);
+        scene.signals.full.humans.iter().map(|human| last(&human.samples)).fold(arrived, f64::max) - begin
+    });
+    vec![
+        Ok(discomfort.integral()),
+        Ok(energy),
+        Ok(count(contacts)),
+        Err("recordings hold one robot".to_owned()),
+        Ok(if scene.arrived_s.is_some() { 0.0 } else { 1.0 }),
+        or_why(over, "the robot never arrives"),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn kirby_of_a_standing_person_has_its_closed_form() {
+        // Beside a person who looks along x, the robot passes at y = 1 along x: across = 1/3, along 1/2 and 1/4.
+        let walks = || vec![Walk::robot(-5., 1., 0.5, 0.), Walk::human(1, 0., 0., 0., 0.)];
+        let across = (-1.0 / (2.0 / 9.0_f64)).exp();
+        let wanted = across * (PI / 2.0).sqrt() * (0.5 + 0.25) / 0.5;
+        at_both_rates(&walks, 20.0, "kirby_discomfort", wanted, 0.02 * wanted);
+    }
+
+    #[test]
+    fn energy_is_that_of_the_relative_motion_and_0_without_contact() {
+        let meet = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 2., 0., -1., 0.)], 1.0, 0.05);
+        assert_eq!(value(&meet, "contact_energy_max"), Some(100.0));
+        let past = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 2., 2., -1., 0.)], 1.0, 0.05);
+        assert_eq!(value(&past, "contact_energy_max"), Some(0.0));
+    }
+}

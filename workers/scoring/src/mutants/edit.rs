@@ -1,0 +1,228 @@
+//! Changes of one agent's part of a recording.
+
+use socrates_model::geometry::wrap_angle;
+use socrates_model::nalgebra::Vector2;
+use socrates_model::time::STEP_SECS;
+use socrates_model::{AgentId, AgentState, Event, EventKind, Gesture, HumanId, Point, Recording, SimTime, Vector};
+
+/// Flags without their gesture or without their leaf.
+const NO_GESTURE: u32 = 0xffff_00ff;
+const NO_LEAF: u32 = 0x0000_ffff;
+
+/// States of an agent in tick order.
+pub(super) fn states(run: &Recording, agent: AgentId) -> Vec<AgentState> {
+    run.track(agent).copied().collect()
+}
+
+/// The agents of the recording that are human.
+pub(super) fn humans(run: &Recording) -> Vec<HumanId> {
+    let human = |agent: AgentId| match agent {
+        AgentId::Human(id) => Some(id),
+        AgentId::Robot => None,
+    };
+    run.header.agents.iter().filter_map(|info| human(info.agent)).collect()
+}
+
+/// Ticks in so many seconds.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a run, not negative")]
+pub(super) fn ticks_of(run: &Recording, seconds: f64) -> usize {
+    let step = if run.header.step_s > 0.0 { run.header.step_s } else { STEP_SECS };
+    // Samples may be several ticks apart.
+    let agents = run.header.agents.len().max(1);
+    let apart = match (run.frames.first(), run.frames.get(agents)) {
+        (Some(a), Some(b)) => b.tick.saturating_sub(a.tick).max(1),
+        _ => 1,
+    };
+    #[expect(clippy::cast_precision_loss, reason = "a few ticks")]
+    let apart = apart as f64;
+    libm::round(seconds.max(0.0) / step / apart) as usize
+}
+
+/// Time of a sample, s.
+pub(super) fn time_of(run: &Recording, state: &AgentState) -> f64 {
+    let step = if run.header.step_s > 0.0 { run.header.step_s } else { STEP_SECS };
+    #[expect(clippy::cast_precision_loss, reason = "2^53 ticks are millions of years")]
+    let tick = state.tick as f64;
+    tick * step
+}
+
+/// The recording with an agent's states replaced; ticks stay. Events about the agent are dropped but for its own
+/// leaves and gestures, which `own` may move or drop.
+pub(super) fn with_states(
+    run: &Recording,
+    agent: AgentId,
+    states: &[AgentState],
+    own: impl Fn(f64) -> Option<f64>,
+) -> Recording {
+    let mut found = run.clone();
+    let agents = found.header.agents.len().max(1);
+    let Some(column) = found.header.agents.iter().position(|info| info.agent == agent) else { return found };
+    for (slot, state) in found.frames.iter_mut().skip(column).step_by(agents).zip(states) {
+        *slot = AgentState { tick: slot.tick, agent: slot.agent, ..*state };
+    }
+    found.events = run.events.iter().filter_map(|event| moved(event, agent, &own)).collect();
+    found.events.sort_by_key(|event| event.time);
+    found
+}
+
+fn moved(event: &Event, agent: AgentId, own: &impl Fn(f64) -> Option<f64>) -> Option<Event> {
+    let (about, keeps) = match &event.kind {
+        EventKind::Gesture { agent: who, .. } => (*who == agent, true),
+        EventKind::Leaf { human, .. } => (AgentId::Human(*human) == agent, true),
+        EventKind::Sees { human, .. } | EventKind::Encounter { human, .. } => (AgentId::Human(*human) == agent, false),
+        EventKind::Contact { a, b, .. } => (*a == agent || *b == agent, false),
+        EventKind::WallContact { agent: who, .. }
+        | EventKind::Node { agent: who, .. }
+        | EventKind::Stuck { agent: who } => (*who == agent, false),
+        EventKind::Door { .. } | EventKind::RobotArrived | EventKind::End { .. } => (false, true),
+    };
+    if !about {
+        return Some(event.clone());
+    }
+    if !keeps {
+        return None;
+    }
+    let t = own(event.time.secs())?.max(0.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a run, not negative")]
+    let time = SimTime::from_nanos(libm::round(t * 1e9) as u64);
+    Some(Event { time, kind: event.kind.clone() })
+}
+
+fn still(state: &AgentState) -> AgentState {
+    AgentState { vx: 0.0, vy: 0.0, omega: 0.0, ..*state }
+}
+
+/// The recording without an agent.
+pub(super) fn dropped(run: &Recording, agent: AgentId) -> Recording {
+    let mut found = run.clone();
+    found.header.agents.retain(|info| info.agent != agent);
+    found.frames.retain(|state| state.agent != agent.number());
+    found.events = run.events.iter().filter_map(|event| moved(event, agent, &|_| None)).collect();
+    found
+}
+
+/// The agent does everything so much later (negative: sooner); it stands where it starts until then.
+pub(super) fn delayed(run: &Recording, agent: AgentId, seconds: f64) -> Recording {
+    let old = states(run, agent);
+    let n = ticks_of(run, seconds.abs());
+    let last = old.len().saturating_sub(1);
+    let new: Vec<AgentState> = (0..old.len())
+        .filter_map(|k| {
+            let (from, held) =
+                if seconds >= 0.0 { (k.saturating_sub(n), k < n) } else { ((k + n).min(last), k + n > last) };
+            old.get(from).map(|state| if held { still(state) } else { *state })
+        })
+        .collect();
+    let end = old.last().map_or(0.0, |state| time_of(run, state));
+    with_states(run, agent, &new, |t| Some(t + seconds).filter(|t| *t <= end))
+}
+
+/// The agent stays where it starts, doing nothing.
+pub(super) fn frozen(run: &Recording, agent: AgentId) -> Recording {
+    let old = states(run, agent);
+    let Some(first) = old.first() else { return run.clone() };
+    let stays = AgentState { flags: first.flags & NO_GESTURE & NO_LEAF, ..still(first) };
+    with_states(run, agent, &vec![stays; old.len()], |_| None)
+}
+
+/// The agent goes its way from its end to its start.
+pub(super) fn reversed(run: &Recording, agent: AgentId) -> Recording {
+    let old = states(run, agent);
+    let new: Vec<AgentState> = old
+        .iter()
+        .rev()
+        .zip(&old)
+        .map(|(state, now)| AgentState {
+            flags: now.flags,
+            yaw: wrap_angle(state.yaw + std::f64::consts::PI),
+            vx: -state.vx,
+            vy: -state.vy,
+            ..*state
+        })
+        .collect();
+    with_states(run, agent, &new, Some)
+}
+
+/// The agent does the same somewhere else.
+pub(super) fn shifted(run: &Recording, agent: AgentId, by: &Vector) -> Recording {
+    let new: Vec<AgentState> =
+        states(run, agent).iter().map(|state| AgentState { x: state.x + by.x, y: state.y + by.y, ..*state }).collect();
+    with_states(run, agent, &new, Some)
+}
+
+/// The agent makes another gesture wherever it made one.
+pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Gesture) -> Recording {
+    let mut found = run.clone();
+    for state in found.frames.iter_mut().filter(|state| state.agent == agent.number() && state.gesture() == from) {
+        state.flags = state.flags & NO_GESTURE | (u32::from(to.code()) << 8);
+    }
+    for event in &mut found.events {
+        if let EventKind::Gesture { agent: who, gesture } = &mut event.kind
+            && *who == agent
+            && *gesture == from
+        {
+            *gesture = to;
+        }
+    }
+    found
+}
+
+/// The agent goes with the robot, so much to its left and so much of time ahead, whatever it did.
+pub(super) fn beside_robot(run: &Recording, agent: AgentId, left_m: f64, ahead_s: f64) -> Recording {
+    let robot = states(run, AgentId::Robot);
+    let old = states(run, agent);
+    let n = ticks_of(run, ahead_s);
+    let new: Vec<AgentState> = old
+        .iter()
+        .enumerate()
+        .filter_map(|(k, now)| {
+            let state = robot.get(k + n).or_else(|| robot.last())?;
+            let left = Vector2::new(-libm::sin(state.yaw), libm::cos(state.yaw)) * left_m;
+            Some(AgentState {
+                flags: now.flags & NO_GESTURE & NO_LEAF,
+                x: state.x + left.x,
+                y: state.y + left.y,
+                ..*state
+            })
+        })
+        .collect();
+    with_states(run, agent, &new, |_| None)
+}
+
+/// From a time on the agent walks straight away from a point at 0.8 m/s.
+pub(super) fn walks_off(run: &Recording, agent: AgentId, from: &Point, since_s: f64) -> Recording {
+    let old = states(run, agent);
+    let start = ticks_of(run, since_s).min(old.len().saturating_sub(1));
+    let Some(stand) = old.get(start).copied() else { return run.clone() };
+    let line = stand.point() - from;
+    let away = if line.norm() > 1e-6 { line / line.norm() } else { Vector2::new(1.0, 0.0) };
+    let speed = 0.8;
+    let new: Vec<AgentState> = old
+        .iter()
+        .enumerate()
+        .map(|(k, state)| {
+            if k <= start {
+                return *state;
+            }
+            let way = speed * (time_of(run, state) - time_of(run, &stand)).min(6.0);
+            let walks = time_of(run, state) - time_of(run, &stand) < 6.0;
+            let pace = if walks { speed } else { 0.0 };
+            AgentState {
+                x: stand.x + away.x * way,
+                y: stand.y + away.y * way,
+                yaw: libm::atan2(away.y, away.x),
+                vx: away.x * pace,
+                vy: away.y * pace,
+                ..*state
+            }
+        })
+        .collect();
+    with_states(run, agent, &new, |t| Some(t).filter(|t| *t <= since_s))
+}
+
+/// The agent stands at a place with a heading, all the time.
+pub(super) fn stands_at(run: &Recording, agent: AgentId, at: &Point, yaw: f64) -> Recording {
+    let new: Vec<AgentState> =
+        states(run, agent).iter().map(|state| AgentState { x: at.x, y: at.y, yaw, ..still(state) }).collect();
+    with_states(run, agent, &new, Some)
+}
