@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 use socrates_model::rule::RobotRule;
 use socrates_model::{
-    Action, ClauseRole, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
+    Action, ClauseRole, DoorKind, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
 };
 
 use crate::draw::Draw;
@@ -20,6 +20,12 @@ pub struct Card {
     pub title: String,
     /// What happens, in a sentence.
     pub about: String,
+    /// Its letter among the 25 canonical scenarios, `a` to `y` (Francis et al. 2023, figure 7).
+    #[serde(default)]
+    pub letter: Option<char>,
+    /// Its number in our list of further scenarios (`prompts/catalog/README.md`).
+    #[serde(default)]
+    pub further: Option<u8>,
     /// Principles of social navigation that it probes, `P1` safety to `P8` context (Francis et al. 2023).
     pub principles: Vec<String>,
     /// Place classes of the encounter, the best first.
@@ -30,9 +36,24 @@ pub struct Card {
     /// Whether the map must have a place inside a room or an elevator.
     #[serde(default)]
     pub inside: bool,
+    /// Free width of the floor across the meeting node, least and most, m.
+    #[serde(default)]
+    pub width_m: Option<[f64; 2]>,
+    /// Ways that meet in the meeting node, at least.
+    #[serde(default)]
+    pub arms: Option<usize>,
+    /// Where the robot starts, if the card says.
+    #[serde(default)]
+    pub start: Option<PlaceClass>,
     /// Where the robot has to go, if the card says.
     #[serde(default)]
     pub goal: Option<PlaceClass>,
+    /// How the robot's way and those who stand go together.
+    #[serde(default)]
+    pub ends: Ends,
+    /// Largest difference of the arrival times of robot and human where their ways cross, s.
+    #[serde(default = "usual_gap")]
+    pub gap_s: f64,
     /// What a good robot would do.
     pub expected: String,
     /// Who is there.
@@ -44,6 +65,19 @@ pub struct Card {
     /// What should be seen, beyond what every human's own part demands.
     #[serde(default, rename = "clause")]
     pub clauses: Vec<CardClause>,
+}
+
+/// Where on the robot's way people stand who stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ends {
+    /// On the way: the robot gets past them.
+    #[default]
+    Past,
+    /// At its end: the robot comes to them.
+    With,
+    /// At its start: the robot leaves them.
+    From,
 }
 
 /// A part to play.
@@ -64,9 +98,15 @@ pub struct Role {
     /// Whether these people form a group.
     #[serde(default)]
     pub group: bool,
+    /// Whether the group stands in a line instead of a circle.
+    #[serde(default)]
+    pub line: bool,
     /// Where they start.
     #[serde(default)]
     pub start: Option<PlaceClass>,
+    /// Where they go.
+    #[serde(default)]
+    pub goal: Option<PlaceClass>,
     /// Reactions.
     #[serde(default, rename = "rule")]
     pub rules: Vec<RoleRule>,
@@ -116,15 +156,24 @@ const fn yes() -> bool {
     true
 }
 
+const fn usual_gap() -> f64 {
+    4.0
+}
+
 macro_rules! cards {
     ($($id:literal)*) => { &[$(include_str!(concat!("../../catalog/", $id, ".toml")),)*] };
 }
 
 /// Every card file. Adding a card is a file and a line here.
 const FILES: &[&str] = cards! {
-    "frontal_approach" "pedestrian_obstruction" "robot_overtaking" "human_overtaking" "intersection_crossing" "intersection_wait"
-    "intersection_proceed" "blind_corner" "narrow_doorway" "room_exit" "entering_elevator" "group_passing" "group_walking" "follower"
-    "corridor_follow_and_block" "curious" "frightened" "leading" "robot_following"
+    "frontal_approach" "pedestrian_obstruction" "human_overtaking" "robot_overtaking" "down_path"
+    "intersection_crossing" "intersection_wait" "intersection_proceed" "blind_corner" "narrow_hallway"
+    "narrow_doorway" "entering_room" "exiting_room" "entering_elevator" "exiting_elevator" "join_group" "leave_group"
+    "robot_following" "leading" "accompanying" "crowd_navigation" "parallel_traffic" "perpendicular_traffic"
+    "circular_crossing" "robot_crowding" "startled" "room_exit" "group_blocking_aisle" "corridor_follow_and_block"
+    "evacuation_guide" "queue" "staff_blocks" "handover" "distracted_walker" "darting_child" "door_opens"
+    "people_waiting" "emergency_team" "cleaning_area" "full_elevator" "group_passing" "group_walking" "follower"
+    "curious" "frightened"
 };
 
 static CATALOG: LazyLock<Vec<Card>> = LazyLock::new(|| {
@@ -149,9 +198,13 @@ impl Card {
     #[must_use]
     pub fn fits(&self, location: &Location) -> bool {
         let there = |class: &PlaceClass| crate::place::has(location, *class);
-        let inside =
-            !self.inside || !crate::place::inside(location, self.roles.iter().find_map(|role| role.start)).is_empty();
+        let indoors = self.roles.iter().find_map(|role| role.start).or(self.start);
+        let inside = !self.inside || !crate::place::inside(location, indoors).is_empty();
+        // Into a room that somebody leaves there must be room for both.
+        let shared = self.goal == Some(PlaceClass::Room) && self.inside;
+        let roomy = !shared || location.doors.iter().any(|door| door.kind == DoorKind::Room && door.inside.len() > 1);
         inside
+            && roomy
             && self.needs.iter().all(there)
             && self.places.iter().any(|class| *class == PlaceClass::Plain || there(class))
     }
@@ -179,7 +232,8 @@ impl CardClause {
         let mut value = serde_json::to_value(&self.predicate).ok()?;
         fill(&mut value, &name, group);
         let predicate = serde_json::from_value(value).ok()?;
-        Some((self.text.replace("{human}", &name), predicate))
+        let group = group.map_or_else(String::new, |id| id.to_string());
+        Some((self.text.replace("{human}", &name).replace("{group}", &group), predicate))
     }
 }
 

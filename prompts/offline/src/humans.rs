@@ -2,6 +2,7 @@
 
 use socrates_model::{HumanProposal, Location, PlaceClass, Relation};
 
+use crate::card::Ends;
 use crate::place;
 use crate::routes::{Net, Route};
 
@@ -30,7 +31,12 @@ pub(crate) struct Taken<'a> {
     pub(crate) starts: Vec<usize>,
     /// There is no room for everybody to start apart: the checks will say so.
     pub(crate) crowded: bool,
+    /// Where on the robot's way those stand who stand.
+    pub(crate) ends: Ends,
 }
+
+/// No node: somebody with whom the robot starts is met nowhere.
+const NOWHERE: usize = usize::MAX;
 
 impl Taken<'_> {
     fn free(&self, node: usize) -> bool {
@@ -223,6 +229,14 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
 
 /// Standing: at the meeting node, or at the free node of the robot's way nearest to it.
 fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    match taken.ends {
+        Ends::Past => {}
+        Ends::With => {
+            let at = *route.nodes.last()?;
+            return Some(Way { nodes: vec![at], meet: at, cost: 0.0 });
+        }
+        Ends::From => return Some(Way { nodes: vec![*route.nodes.first()?], meet: NOWHERE, cost: 0.0 }),
+    }
     let last = route.nodes.len().checked_sub(1)?;
     let mut places: Vec<usize> = (1..last).collect();
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
