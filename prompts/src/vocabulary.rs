@@ -150,6 +150,23 @@ fn predicates() -> Vec<(String, String)> {
             "the follower goes behind the leader for so long (setup)",
         ),
         row(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot (setup)"),
+        row(&Predicate::Parallel { human, for_s: 5.0 }, "the human goes the robot's way near it for so long (setup)"),
+        row(
+            &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
+            "so many different humans walk near the robot, at such angles to its heading (setup)",
+        ),
+        row(
+            &Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 },
+            "so many people per m² are round the robot for so long (setup)",
+        ),
+        row(
+            &Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 },
+            "so many humans are so near to the robot at one time (setup)",
+        ),
+        row(
+            &Predicate::Converges { within_m: 2.5, within_s: 4.0 },
+            "all humans come to the place of encounter at about the same time (setup)",
+        ),
         row(&Predicate::Blocks { human, for_s: 3.0 }, "the human is in the robot's way for so long (setup)"),
         row(&Predicate::Looks { human, for_s: 2.0 }, "the human stands and looks at the robot (setup)"),
         row(&Predicate::StandsStill { human, for_s: 5.0 }, "the human stands still (setup)"),
@@ -165,6 +182,7 @@ fn predicates() -> Vec<(String, String)> {
         ),
         row(&Predicate::Leaves { human, door: String::new() }, "the human comes out through the door (setup)"),
         row(&Predicate::StaysInside { human, door: String::new() }, "the human stays behind the door (setup)"),
+        row(&Predicate::Enters { human, door: String::new() }, "the human goes in through the door (setup)"),
         row(
             &Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] },
             "the door opens while the robot is so near (setup)",
@@ -172,6 +190,7 @@ fn predicates() -> Vec<(String, String)> {
         row(&Predicate::HiddenUntil { human, within_m: 4.0 }, "the two cannot see each other until so near (setup)"),
         row(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together (setup)"),
         row(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together (setup)"),
+        row(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line (setup)"),
         row(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
             "one clause is seen before another (setup)",
@@ -181,6 +200,9 @@ fn predicates() -> Vec<(String, String)> {
         row(&Predicate::RobotArrives, "the robot gets to its goal (outcome)"),
         row(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance from everybody (outcome)"),
         row(&Predicate::RobotEntersLast, "the robot enters after everybody is out (outcome)"),
+        row(&Predicate::RobotLeavesFirst, "the robot is out before anybody goes in (outcome)"),
+        row(&Predicate::RobotJoins { group }, "the robot ends at the rim of the group (outcome)"),
+        row(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group and ends away from it (outcome)"),
         row(
             &Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 },
             "the robot stops on the gesture (outcome)",

@@ -55,8 +55,8 @@ pub(crate) fn clauses(proposal: &Proposal) -> Vec<Fault> {
         if !seen.insert(clause.id.as_str()) {
             bad("is listed twice; number the clauses c1, c2, …".to_owned());
         }
-        if let Predicate::Formation { group, .. } | Predicate::WalksTogether { group, .. } = &clause.predicate
-            && !proposal.groups.iter().any(|found| found.id == *group)
+        if let Some(group) = clause.predicate.group()
+            && !proposal.groups.iter().any(|found| found.id == group)
         {
             bad(format!("speaks of {group}; groups: {}", list(proposal.groups.iter().map(|found| found.id))));
         }
@@ -65,7 +65,12 @@ pub(crate) fn clauses(proposal: &Proposal) -> Vec<Fault> {
                 bad(format!("orders the clause `{id}`; clauses: {}", list(&ids)));
             }
         }
-        if clause.role == ClauseRole::Setup && judges_robot(&clause.predicate) {
+        if let Predicate::Flow { count, .. } | Predicate::Surrounds { count, .. } = clause.predicate
+            && usize::try_from(count).is_ok_and(|count| count > proposal.humans.len())
+        {
+            bad(format!("asks for {count} humans where the proposal has {}", proposal.humans.len()));
+        }
+        if clause.role == ClauseRole::Setup && clause.predicate.judges_robot() {
             bad("judges what the robot does and cannot be part of the setup; use the role `outcome`".to_owned());
         }
         for (name, value) in numbers(&clause.predicate) {
@@ -85,11 +90,9 @@ fn must_setup(proposal: &Proposal) -> impl Iterator<Item = &Clause> {
 fn speaks_of(clause: &Clause, human: HumanId, proposal: &Proposal) -> bool {
     let by_group = |id| proposal.groups.iter().any(|group| group.id == id && group.members.contains(&human));
     let led = matches!(&clause.predicate, Predicate::Follows { leader, .. } if *leader == human.into());
-    let grouped = matches!(
-        &clause.predicate,
-        Predicate::Formation { group, .. } | Predicate::WalksTogether { group, .. } if by_group(*group)
-    );
-    led || grouped || clause.predicate.human() == Some(human)
+    let grouped = clause.predicate.group().is_some_and(by_group);
+    let all = clause.predicate.takes_in_all(u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX));
+    led || grouped || all || clause.predicate.human() == Some(human)
 }
 
 const fn needs_clause(kind: &FactKind) -> bool {
@@ -123,16 +126,6 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
     }
 }
 
-const fn judges_robot(predicate: &Predicate) -> bool {
-    matches!(
-        predicate,
-        Predicate::RobotArrives
-            | Predicate::RobotKeeps { .. }
-            | Predicate::RobotEntersLast
-            | Predicate::RobotObeys { .. }
-    )
-}
-
 /// The numbers of a predicate by name.
 fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
     match predicate {
@@ -147,9 +140,30 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
             vec![("gap_m", *least), ("gap_m", *most), ("gap_m, largest less smallest", most - least), ("for_s", *for_s)]
         }
         Predicate::Abreast { for_s, .. }
+        | Predicate::Parallel { for_s, .. }
         | Predicate::Blocks { for_s, .. }
         | Predicate::Looks { for_s, .. }
         | Predicate::StandsStill { for_s, .. } => vec![("for_s", *for_s)],
+        Predicate::Flow { count, within_m, angle_deg: [least, most] } => vec![
+            ("count, less one", f64::from(*count) - 1.0),
+            ("within_m", *within_m),
+            ("angle_deg", *least),
+            ("angle_deg, largest less smallest", most - least),
+            ("angle_deg, 180 less largest", 180.0 - most),
+        ],
+        Predicate::Density { per_m2: [least, most], radius_m, for_s } => vec![
+            ("per_m2", *least),
+            ("per_m2, largest less smallest", most - least),
+            ("radius_m, less 0.5", radius_m - 0.5),
+            ("for_s", *for_s),
+        ],
+        Predicate::Surrounds { count, within_m, for_s } => {
+            vec![("count, less one", f64::from(*count) - 1.0), ("within_m", *within_m), ("for_s", *for_s)]
+        }
+        Predicate::Converges { within_m, within_s } => vec![("within_m", *within_m), ("within_s", *within_s)],
+        Predicate::Queues { gap_m: [least, most], .. } => {
+            vec![("gap_m", *least), ("gap_m, largest less smallest", most - least)]
+        }
         Predicate::RunsAway { by_m, .. } => vec![("by_m", *by_m)],
         Predicate::Reacts { within_s, .. } | Predicate::RobotObeys { within_s, .. } => vec![("within_s", *within_s)],
         Predicate::DoorOpens { robot_m: [least, most], .. } => {
@@ -167,11 +181,15 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
         | Predicate::Gestures { .. }
         | Predicate::Leaves { .. }
         | Predicate::StaysInside { .. }
+        | Predicate::Enters { .. }
         | Predicate::Order { .. }
         | Predicate::EncounterAt { .. }
         | Predicate::Plausible
         | Predicate::RobotArrives
-        | Predicate::RobotEntersLast => Vec::new(),
+        | Predicate::RobotEntersLast
+        | Predicate::RobotLeavesFirst
+        | Predicate::RobotJoins { .. }
+        | Predicate::RobotLeavesGroup { .. } => Vec::new(),
     }
 }
 
@@ -179,6 +197,21 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
 mod tests {
     use super::*;
     use crate::testing::{codes, crossing_proposal, reading_of};
+
+    #[test]
+    fn a_crowd_clause_asks_for_no_more_people_than_there_are() {
+        let mut proposal = crossing_proposal();
+        proposal.expected_events[0].predicate = Predicate::Flow { count: 3, within_m: 4.0, angle_deg: [90.0, 60.0] };
+        let faults = clauses(&proposal);
+        assert_eq!(faults.len(), 2, "{faults:?}");
+        assert!(faults[0].message.contains("asks for 3 humans where the proposal has 2"), "{faults:?}");
+        assert!(faults[1].message.contains("angle_deg, largest less smallest"), "{faults:?}");
+        // Two of two are everybody: nobody needs a clause of its own then.
+        proposal.expected_events[0].predicate = Predicate::Flow { count: 2, within_m: 4.0, angle_deg: [0.0, 30.0] };
+        proposal.expected_events.truncate(1);
+        assert_eq!(clauses(&proposal), []);
+        assert_eq!(humans(&proposal), []);
+    }
 
     #[test]
     fn a_human_without_a_clause_cannot_be_verified() {

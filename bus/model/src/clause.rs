@@ -103,6 +103,48 @@ pub enum Predicate {
         /// For how long.
         for_s: f64,
     },
+    /// The two go the same way (headings within 30°), within 4 m of each other, for `for_s` without a break.
+    Parallel {
+        /// The human.
+        human: HumanId,
+        /// For how long.
+        for_s: f64,
+    },
+    /// At least so many different humans walk near the robot with the angle between their course and its heading
+    /// in a band.
+    Flow {
+        /// How many at least.
+        count: u32,
+        /// Largest distance at which one counts, m.
+        within_m: f64,
+        /// Smallest and largest angle between course and heading, 0 (same way) to 180 (oncoming).
+        angle_deg: [f64; 2],
+    },
+    /// So many people per square metre are in the disc about the robot, for `for_s` without a break.
+    Density {
+        /// Smallest and largest density, people per m².
+        per_m2: [f64; 2],
+        /// Radius of the disc, m.
+        radius_m: f64,
+        /// For how long.
+        for_s: f64,
+    },
+    /// At least so many humans are within a distance of the robot at one time, for `for_s` without a break.
+    Surrounds {
+        /// How many at least.
+        count: u32,
+        /// Largest distance.
+        within_m: f64,
+        /// For how long.
+        for_s: f64,
+    },
+    /// All humans come from outside to within a distance of their encounter node, at about the same time.
+    Converges {
+        /// Radius about the node.
+        within_m: f64,
+        /// Largest difference between the first and the last arrival.
+        within_s: f64,
+    },
     /// The human is in the robot's way: within 2.5 m, less than 0.6 m from its line, for `for_s`.
     Blocks {
         /// Who.
@@ -170,6 +212,14 @@ pub enum Predicate {
         #[serde(default)]
         door: String,
     },
+    /// The human starts outside the door and crosses its line inward exactly once.
+    Enters {
+        /// Who.
+        human: HumanId,
+        /// The door, or empty for the one nearest to the human's last node.
+        #[serde(default)]
+        door: String,
+    },
     /// The door opens while the robot is between these distances from it. Dropped with a note where the map has no doors.
     DoorOpens {
         /// The door, or empty for the one at the encounter.
@@ -199,6 +249,13 @@ pub enum Predicate {
         group: GroupId,
         /// Largest distance of a member from the centre.
         spread_m: f64,
+    },
+    /// The group stands in a line, each with its neighbour at a gap in a range, until the robot is within 3 m.
+    Queues {
+        /// The group.
+        group: GroupId,
+        /// Smallest and largest gap between neighbours.
+        gap_m: [f64; 2],
     },
     /// One clause is first seen before another.
     Order {
@@ -232,6 +289,18 @@ pub enum Predicate {
     },
     /// The robot enters only after everybody who leaves is out.
     RobotEntersLast,
+    /// The robot is out of the door before anybody who enters goes in.
+    RobotLeavesFirst,
+    /// The robot ends at the rim of the standing group: in its p-space, not in its o-space.
+    RobotJoins {
+        /// The group.
+        group: GroupId,
+    },
+    /// The robot starts in the space about the standing group (its r-space or nearer) and ends outside.
+    RobotLeavesGroup {
+        /// The group.
+        group: GroupId,
+    },
     /// The robot stops within `within_s` of the gesture.
     RobotObeys {
         /// The gesture.
@@ -253,6 +322,7 @@ impl Predicate {
             | Self::Overtakes { human }
             | Self::RobotPasses { human }
             | Self::Abreast { human, .. }
+            | Self::Parallel { human, .. }
             | Self::Blocks { human, .. }
             | Self::Looks { human, .. }
             | Self::StandsStill { human, .. }
@@ -261,17 +331,23 @@ impl Predicate {
             | Self::Reacts { human, .. }
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
+            | Self::Enters { human, .. }
             | Self::HiddenUntil { human, .. } => Some(*human),
             Self::Follows { follower: AgentId::Human(human), .. }
             | Self::Gestures { agent: AgentId::Human(human), .. }
             | Self::Reaches { agent: AgentId::Human(human), .. } => Some(*human),
             Self::Follows { leader: AgentId::Human(human), .. } => Some(*human),
             Self::Humans { .. }
+            | Self::Flow { .. }
+            | Self::Density { .. }
+            | Self::Surrounds { .. }
+            | Self::Converges { .. }
             | Self::Follows { .. }
             | Self::Gestures { .. }
             | Self::DoorOpens { .. }
             | Self::Formation { .. }
             | Self::WalksTogether { .. }
+            | Self::Queues { .. }
             | Self::Order { .. }
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
@@ -279,7 +355,51 @@ impl Predicate {
             | Self::RobotArrives
             | Self::RobotKeeps { .. }
             | Self::RobotEntersLast
+            | Self::RobotLeavesFirst
+            | Self::RobotJoins { .. }
+            | Self::RobotLeavesGroup { .. }
             | Self::RobotObeys { .. } => None,
+        }
+    }
+
+    /// The group the clause is about, if it is about one.
+    #[must_use]
+    pub const fn group(&self) -> Option<GroupId> {
+        if let Self::Formation { group, .. }
+        | Self::WalksTogether { group, .. }
+        | Self::Queues { group, .. }
+        | Self::RobotJoins { group }
+        | Self::RobotLeavesGroup { group } = self
+        {
+            Some(*group)
+        } else {
+            None
+        }
+    }
+
+    /// Whether it judges what the robot makes of the scenario, and so can only be an outcome.
+    #[must_use]
+    pub const fn judges_robot(&self) -> bool {
+        matches!(
+            self,
+            Self::RobotArrives
+                | Self::RobotKeeps { .. }
+                | Self::RobotEntersLast
+                | Self::RobotLeavesFirst
+                | Self::RobotJoins { .. }
+                | Self::RobotLeavesGroup { .. }
+                | Self::RobotObeys { .. }
+        )
+    }
+
+    /// Whether the clause tells of every human when there are `humans` of them: it names nobody, and none of them
+    /// can be missing from what it counts.
+    #[must_use]
+    pub const fn takes_in_all(&self, humans: u32) -> bool {
+        if let Self::Flow { count, .. } | Self::Surrounds { count, .. } = self {
+            *count >= humans
+        } else {
+            matches!(self, Self::Converges { .. })
         }
     }
 }

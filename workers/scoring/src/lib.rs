@@ -13,6 +13,7 @@
 //! *Never here:* a wall clock, a random number, a model that decides, a judgement of the setting by
 //! what the robot made of it.
 
+mod circle;
 mod evidence;
 mod series;
 mod tracks;
@@ -25,6 +26,8 @@ mod repair;
 mod score;
 mod stage;
 
+#[cfg(test)]
+mod crowds;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]

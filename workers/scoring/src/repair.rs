@@ -78,7 +78,9 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Follows { .. }
         | Predicate::Abreast { .. } => (FaultCode::DNoTrig, Stage::Behaviors),
         Predicate::Gestures { .. } => (FaultCode::DNoGest, Stage::Behaviors),
-        Predicate::Formation { .. } | Predicate::WalksTogether { .. } => (FaultCode::DGroup, Stage::Paths),
+        Predicate::Formation { .. } | Predicate::WalksTogether { .. } | Predicate::Queues { .. } => {
+            (FaultCode::DGroup, Stage::Paths)
+        }
         Predicate::Plausible => (FaultCode::DPen, Stage::Paths),
         Predicate::Humans { .. }
         | Predicate::Meets { .. }
@@ -89,6 +91,12 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::RobotPasses { .. }
         | Predicate::Leaves { .. }
         | Predicate::StaysInside { .. }
+        | Predicate::Enters { .. }
+        | Predicate::Parallel { .. }
+        | Predicate::Flow { .. }
+        | Predicate::Density { .. }
+        | Predicate::Surrounds { .. }
+        | Predicate::Converges { .. }
         | Predicate::DoorOpens { .. }
         | Predicate::HiddenUntil { .. }
         | Predicate::Order { .. }
@@ -97,6 +105,9 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::RobotArrives
         | Predicate::RobotKeeps { .. }
         | Predicate::RobotEntersLast
+        | Predicate::RobotLeavesFirst
+        | Predicate::RobotJoins { .. }
+        | Predicate::RobotLeavesGroup { .. }
         | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
     };
     let at = clause.predicate.human().map_or_else(|| clause.id.clone(), |human| human.to_string());

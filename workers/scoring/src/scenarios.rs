@@ -67,7 +67,7 @@ pub(crate) fn group_of(mut plan: Proposal, members: &[u32]) -> Proposal {
 
 const H1: HumanId = HumanId::new(1);
 
-fn corridor() -> Location {
+pub(crate) fn corridor() -> Location {
     floor(
         &[(-20., 1.5, 20., 2.0), (-20., -2.0, 20., -1.5)],
         &[("a", "CORRIDOR", -8., 0.), ("m", "CORRIDOR", 0., 0.), ("b", "CORRIDOR", 8., 0.)],
@@ -75,15 +75,15 @@ fn corridor() -> Location {
     )
 }
 
-struct Case {
-    place: Location,
-    plan: Proposal,
-    ways: Paths,
-    reading: Option<Reading>,
+pub(crate) struct Case {
+    pub(crate) place: Location,
+    pub(crate) plan: Proposal,
+    pub(crate) ways: Paths,
+    pub(crate) reading: Option<Reading>,
 }
 
 impl Case {
-    fn judge(&self, run: &Recording) -> Report {
+    pub(crate) fn judge(&self, run: &Recording) -> Report {
         let evidence = Evidence {
             location: Some(&self.place),
             proposal: Some(&self.plan),
@@ -98,7 +98,7 @@ impl Case {
         report
     }
 
-    fn verdict(&self, walks: &[Walk], seconds: f64) -> Verdict {
+    pub(crate) fn verdict(&self, walks: &[Walk], seconds: f64) -> Verdict {
         self.judge(&recording(walks, seconds, 0.01)).verdict
     }
 }
@@ -312,7 +312,7 @@ fn crossing_is_judged_by_angle_and_time() {
     assert_eq!(case.verdict(&[robot(), along], 24.0), Verdict::Contradicted);
 }
 
-fn elevator() -> Case {
+pub(crate) fn elevator() -> Case {
     // A car behind the wall x = 4, door from (4, -1) to (4, 1).
     let mut place = floor(
         &[(4., 1.0, 4.1, 3.0), (4., -3.0, 4.1, -1.0), (4., 3.0, 8., 3.1), (4., -3.1, 8., -3.0), (8., -3., 8.1, 3.)],

@@ -10,7 +10,7 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
-use crate::fidelity::{acts, company, coverage, doorway, groups, meeting, reactions, robot, setting};
+use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
 
 /// Clauses with what was found of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,6 +132,11 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
             company::follows(signals, *follower, *leader, *gap_m, *for_s)
         }
         Predicate::Abreast { human, for_s } => company::abreast(signals, *human, *for_s),
+        Predicate::Parallel { human, for_s } => company::parallel(signals, *human, *for_s),
+        Predicate::Flow { count, within_m, angle_deg } => crowd::flow(signals, *count, *within_m, *angle_deg),
+        Predicate::Density { per_m2, radius_m, for_s } => crowd::density(signals, *per_m2, *radius_m, *for_s),
+        Predicate::Surrounds { count, within_m, for_s } => crowd::surrounds(signals, *count, *within_m, *for_s),
+        Predicate::Converges { within_m, within_s } => crowd::converges(signals, *within_m, *within_s),
         Predicate::Blocks { human, for_s } => acts::blocks(signals, *human, *for_s),
         Predicate::Looks { human, for_s } => acts::looks(signals, *human, *for_s),
         Predicate::StandsStill { human, for_s } => acts::stands_still(signals, *human, *for_s),
@@ -141,10 +146,12 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),
         Predicate::StaysInside { human, door } => either(doorway::stays_inside(signals, *human, door)),
+        Predicate::Enters { human, door } => either(doorway::enters(signals, *human, door)),
         Predicate::DoorOpens { door, robot_m } => either(doorway::door_opens(signals, door, *robot_m)),
         Predicate::HiddenUntil { human, within_m } => either(doorway::hidden_until(signals, *human, *within_m)),
         Predicate::Formation { group, spread_m } => either(groups::formation(signals, *group, *spread_m)),
         Predicate::WalksTogether { group, spread_m } => either(groups::walks_together(signals, *group, *spread_m)),
+        Predicate::Queues { group, gap_m } => either(groups::queues(signals, *group, *gap_m)),
         Predicate::Order { first, then } => order(found, first, then),
         Predicate::EncounterAt { place } => setting::encounter_at(signals, *place),
         Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
@@ -152,6 +159,9 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::RobotArrives => robot::arrives(signals),
         Predicate::RobotKeeps { min_m } => robot::keeps(signals, *min_m),
         Predicate::RobotEntersLast => either(doorway::robot_enters_last(signals)),
+        Predicate::RobotLeavesFirst => either(doorway::robot_leaves_first(signals)),
+        Predicate::RobotJoins { group } => either(ring::robot_joins(signals, *group)),
+        Predicate::RobotLeavesGroup { group } => either(ring::robot_leaves(signals, *group)),
         Predicate::RobotObeys { gesture, within_s } => robot::obeys(signals, *gesture, *within_s),
     }
 }

@@ -1,6 +1,6 @@
-//! Monitors of going together: follows, abreast.
+//! Monitors of going together: follows, abreast, parallel.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use socrates_model::{AgentId, HumanId};
 
@@ -9,11 +9,18 @@ use crate::fidelity::follow::{Gap, arcs, gaps};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
 use crate::fidelity::windows::{Mark, held, stretches};
+use crate::tracks::MOVING_MPS;
 
 /// How far off the leader's trail one still follows, m.
 const TRAIL_M: f64 = 1.2;
 /// Share of the asked time for which the leader must move at 0.5 m/s: standing behind somebody is not following.
 const LEAD_MPS: f64 = 0.1;
+/// Courses nearer to each other than this are the same way, rad (30°).
+const SAME_WAY_RAD: f64 = PI / 6.0;
+/// Within this distance two go in parallel, m.
+const PARALLEL_M: f64 = 4.0;
+/// Slower than this is not walking along, m/s.
+const WALKING_MPS: f64 = 0.2;
 
 /// Marks of one who goes behind another with the gap in a range.
 #[must_use]
@@ -97,4 +104,38 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
             }
         },
     }
+}
+
+/// Human and robot go the same way near each other for some time.
+pub(super) fn parallel(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(robot) = &signals.tracks.robot else { return Finding::not_applicable("there is no robot") };
+    let moments = signals.of(human);
+    let marks = moments.iter().zip(arcs(&robot.samples)).map(|(moment, arc_m)| {
+        let margin = (PARALLEL_M - moment.distance_m)
+            .min(SAME_WAY_RAD - moment.course_rad)
+            .min(moment.human.speed() - WALKING_MPS)
+            .min(moment.robot.speed() - MOVING_MPS);
+        Mark { t: moment.t, margin, arc_m }
+    });
+    let marks: Vec<Mark> = marks.collect();
+    let what = format!("{human} goes the robot's way within {PARALLEL_M:.0} m for {for_s:.1} s");
+    let Some(nearest) = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)) else {
+        return Finding::not_applicable("the recording is empty");
+    };
+    let Some(found) = held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) else {
+        return Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long"));
+    };
+    if let Some(from) = found.first_s {
+        let text = format!("{what}: from {from:.1} s, margin {:.2}", found.margin);
+        return Finding::holds(found.margin, vec![from, from + for_s], text).scaled(0.3);
+    }
+    if nearest.distance_m > PARALLEL_M {
+        let text = format!("{what}: never near, closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
+        return Finding::never(found.margin, vec![nearest.t], text);
+    }
+    let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+    Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s")).scaled(0.3)
 }

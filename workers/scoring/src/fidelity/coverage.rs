@@ -23,10 +23,11 @@ pub(super) fn uncovered(evidence: &Evidence<'_>, clauses: &[(Clause, Finding)]) 
         .collect();
     let mut missing = Vec::new();
     if let Some(proposal) = evidence.proposal {
+        let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
         for human in &proposal.humans {
             let group = human.group;
             // A clause that the map cannot judge verifies nobody.
-            if !judged.iter().any(|clause| about(clause, human.id, group)) {
+            if !judged.iter().any(|clause| about(clause, human.id, group, count)) {
                 missing.push(format!("{}: no must-clause about this human could be judged", human.id));
             }
         }
@@ -42,41 +43,15 @@ pub(super) fn uncovered(evidence: &Evidence<'_>, clauses: &[(Clause, Finding)]) 
     missing
 }
 
-/// Whether a clause is about the human, alone or in its group.
-fn about(clause: &Clause, human: HumanId, group: Option<socrates_model::GroupId>) -> bool {
-    match &clause.predicate {
-        Predicate::Formation { group: of, .. } | Predicate::WalksTogether { group: of, .. } => group == Some(*of),
-        Predicate::Follows { follower, leader, .. } => {
-            [follower, leader].into_iter().any(|agent| *agent == AgentId::Human(human))
-        }
-        Predicate::Humans { .. }
-        | Predicate::Meets { .. }
-        | Predicate::HeadOn { .. }
-        | Predicate::Crosses { .. }
-        | Predicate::Ahead { .. }
-        | Predicate::Overtakes { .. }
-        | Predicate::RobotPasses { .. }
-        | Predicate::Abreast { .. }
-        | Predicate::Blocks { .. }
-        | Predicate::Looks { .. }
-        | Predicate::StandsStill { .. }
-        | Predicate::RunsAway { .. }
-        | Predicate::GivesWay { .. }
-        | Predicate::Reacts { .. }
-        | Predicate::Gestures { .. }
-        | Predicate::Leaves { .. }
-        | Predicate::StaysInside { .. }
-        | Predicate::DoorOpens { .. }
-        | Predicate::HiddenUntil { .. }
-        | Predicate::Order { .. }
-        | Predicate::EncounterAt { .. }
-        | Predicate::Reaches { .. }
-        | Predicate::Plausible
-        | Predicate::RobotArrives
-        | Predicate::RobotKeeps { .. }
-        | Predicate::RobotEntersLast
-        | Predicate::RobotObeys { .. } => clause.predicate.human() == Some(human),
+/// Whether a clause is about the human, alone, in its group, or because it takes in everybody.
+fn about(clause: &Clause, human: HumanId, group: Option<socrates_model::GroupId>, humans: u32) -> bool {
+    if let Some(of) = clause.predicate.group() {
+        return group == Some(of);
     }
+    if let Predicate::Follows { follower, leader, .. } = &clause.predicate {
+        return [follower, leader].into_iter().any(|agent| *agent == AgentId::Human(human));
+    }
+    clause.predicate.takes_in_all(humans) || clause.predicate.human() == Some(human)
 }
 
 /// Facts that a scenario must show; the task and its ends are the robot's own business.
@@ -100,15 +75,15 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
     match &fact.kind {
         FactKind::Reacts { human, rule } => {
             let same = matches!(&clause.predicate, Predicate::Reacts { human: who, act, .. } if who == human && *act == rule.act);
-            same || named && about(clause, *human, None)
+            same || named && about(clause, *human, None, u32::MAX)
         }
         FactKind::Gestures { human, gesture } => {
             let asked = Predicate::Gestures { agent: AgentId::Human(*human), gesture: *gesture };
-            clause.predicate == asked || named && about(clause, *human, None)
+            clause.predicate == asked || named && about(clause, *human, None, u32::MAX)
         }
         FactKind::Group { group, members } => members
             .first()
-            .is_some_and(|first| about(clause, *first, Some(*group)) && clause.predicate.human().is_none()),
+            .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
         FactKind::Place(place) => named || clause.predicate == Predicate::EncounterAt { place: *place },
         FactKind::Humans(_)
         | FactKind::Relates { .. }

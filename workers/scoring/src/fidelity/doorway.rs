@@ -1,4 +1,5 @@
-//! Monitors of doors and lines of sight: leaves, stays inside, door opens, hidden until, robot enters last.
+//! Monitors of doors and lines of sight: leaves, enters, stays inside, door opens, hidden until, robot enters last,
+//! robot leaves first.
 
 use socrates_model::{AgentId, Door, HumanId, Location, Point, Relation};
 
@@ -78,6 +79,51 @@ pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Resul
             Ok(Finding::fails(-1.0, out, text))
         }
     }
+}
+
+/// The human starts outside and crosses the door line inward exactly once.
+pub(super) fn enters(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
+    let track = person(signals, human)?;
+    let (door, inside) = match destination(signals, human).filter(|_| door.is_empty()) {
+        Some(door) => door_of(signals, &door.id, Some(human))?,
+        None => door_of(signals, door, Some(human))?,
+    };
+    let Some(start) = track.samples.first() else { return Err(Finding::not_applicable("the recording is empty")) };
+    let depth = door.depth_m(&start.at, &inside);
+    let found = crossings(door, &inside, &track.samples);
+    let inward: Vec<f64> = found.iter().filter(|crossing| !crossing.outward).map(|crossing| crossing.t).collect();
+    let end = track.samples.last().map_or(0.0, |sample| door.depth_m(&sample.at, &inside));
+    let list = inward.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
+    match (inward.as_slice(), found.len()) {
+        ([at], 1) => {
+            let text = format!("{human} enters through `{}` at {at:.1} s", door.id);
+            Ok(Finding::by_margin(end.max(0.05), vec![*at], text))
+        }
+        ([], 0) if depth > 0.0 && end > 0.0 => {
+            let text = format!("{human} starts {depth:.1} m inside the door `{}`", door.id);
+            Ok(Finding::fails((-depth).min(-0.01), vec![0.0], text))
+        }
+        ([], _) => {
+            let text = format!("{human} never enters through `{}`: {:.1} m outside at the end", door.id, -end);
+            Ok(Finding::fails(end.min(-0.05), vec![], text))
+        }
+        _ => {
+            let text =
+                format!("{human} crosses the door `{}` {} times (in at {list}); once asked", door.id, found.len());
+            Ok(Finding::fails(-1.0, inward, text))
+        }
+    }
+}
+
+/// The door that a human's way leads into: the one of its last node, else the nearest to it.
+fn destination<'a>(signals: &Signals<'a>, human: HumanId) -> Option<&'a Door> {
+    let place = signals.evidence.location?;
+    let last = signals.evidence.paths?.humans.get(&human)?.last()?;
+    let near = || {
+        let at = signals.node(last)?;
+        place.doors.iter().min_by(|a, b| (a.middle() - at).norm().total_cmp(&(b.middle() - at).norm()))
+    };
+    place.door_of(last).or_else(near)
 }
 
 /// The human is behind the door for the whole run.
@@ -184,5 +230,40 @@ pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Findin
             Finding::by_margin(entry.t - t, vec![entry.t, t], text)
         }
         None => Finding::never(-1.0, vec![entry.t], format!("nobody leaves through `{}`", door.id)),
+    })
+}
+
+/// The robot is out of the door before the first human goes in.
+pub(super) fn robot_leaves_first(signals: &Signals<'_>) -> Result<Finding, Finding> {
+    let paths = signals.evidence.paths;
+    let own = paths
+        .and_then(|paths| paths.robot.first())
+        .and_then(|node| signals.evidence.location?.door_of(node))
+        .map_or(String::new(), |door| door.id.clone());
+    let (door, inside) = door_of(signals, &own, None)?;
+    let Some(robot) = &signals.tracks.robot else {
+        return Err(Finding::not_applicable("there is no robot in the recording"));
+    };
+    let first = signals
+        .tracks
+        .humans
+        .iter()
+        .filter_map(|track| {
+            let entry = crossings(door, &inside, &track.samples).into_iter().find(|crossing| !crossing.outward)?;
+            Some((entry.t, track.agent))
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let exit = crossings(door, &inside, &robot.samples).into_iter().find(|crossing| crossing.outward);
+    Ok(match (exit, first) {
+        (None, Some((t, who))) => {
+            let text = format!("{who} enters `{}` at {t:.1} s, the robot never leaves", door.id);
+            Finding::fails(-1.0, vec![t], text)
+        }
+        (None, None) => Finding::never(-1.0, vec![], format!("the robot never leaves through `{}`", door.id)),
+        (Some(exit), None) => Finding::never(-1.0, vec![exit.t], format!("nobody enters through `{}`", door.id)),
+        (Some(exit), Some((t, who))) => {
+            let text = format!("the robot leaves `{}` at {:.1} s, {who} enters first at {t:.1} s", door.id, exit.t);
+            Finding::by_margin(t - exit.t, vec![exit.t, t], text)
+        }
     })
 }

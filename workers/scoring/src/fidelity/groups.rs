@@ -1,9 +1,10 @@
-//! Monitors of groups: standing formation, walking together.
+//! Monitors of groups: standing formation, walking together, queue.
 
 use std::f64::consts::FRAC_PI_4;
 
-use socrates_model::{GroupId, Point};
+use socrates_model::{GroupId, Point, Vector};
 
+use crate::circle::STANDING_MPS;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
 use crate::tracks::{Sample, Track};
@@ -12,10 +13,12 @@ use crate::tracks::{Sample, Track};
 const NEAR_M: f64 = 3.0;
 /// People settle into their places in the first moments, s.
 const SETTLE_SECS: f64 = 0.5;
-/// Somebody of a standing group who is faster than this walks, m/s.
-const STANDING_MPS: f64 = 0.25;
 /// Share of member-time that must face the centre (`spec/case_studies` G.S1), and of time together (clause text).
 const SHARE: f64 = 0.8;
+/// Somebody farther from the line of a queue does not stand in it, m.
+const OFF_LINE_M: f64 = 0.6;
+/// A queue may bend: from end to end it is at least this share of the way from neighbour to neighbour.
+const STRAIGHT_SHARE: f64 = 0.7;
 /// A formation may be broken for this share of the time before it is not one.
 const BROKEN_SHARE: f64 = 0.05;
 
@@ -29,7 +32,8 @@ struct Together {
     robot_m: f64,
 }
 
-fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, usize), Finding> {
+/// The tracks of a group's members, or why there are none.
+pub(super) fn members<'s>(signals: &'s Signals<'_>, group: GroupId) -> Result<Vec<&'s Track>, Finding> {
     let Some(proposal) = signals.evidence.proposal else {
         return Err(Finding::not_applicable("there is no proposal that names the group's members"));
     };
@@ -41,6 +45,11 @@ fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, us
         let text = format!("{group} has {} members, {} are in the recording", members.len(), tracks.len());
         return Err(Finding::fails(-1.0, vec![], text));
     }
+    Ok(tracks)
+}
+
+fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, usize), Finding> {
+    let tracks = members(signals, group)?;
     #[expect(clippy::cast_precision_loss, reason = "a group has few members")]
     let count = tracks.len() as f64;
     let mut columns: Vec<_> = tracks.iter().map(|track| track.samples.iter()).collect();
@@ -53,7 +62,7 @@ fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, us
     loop {
         let now: Vec<&Sample> = columns.iter_mut().filter_map(Iterator::next).collect();
         let Some(first) = now.first().filter(|_| now.len() == tracks.len()) else { break };
-        let sum: socrates_model::Vector = now.iter().map(|sample| sample.at - first.at).sum();
+        let sum: Vector = now.iter().map(|sample| sample.at - first.at).sum();
         let center = first.at + sum / count;
         let spread_m = now.iter().map(|sample| (sample.at - center).norm()).fold(0.0, f64::max);
         let robot_m = robot.get(index).copied().flatten().map_or(f64::INFINITY, |r| {
@@ -129,4 +138,72 @@ pub(super) fn walks_together(signals: &Signals<'_>, group: GroupId, spread_m: f6
         return Ok(Finding::fails((way - 1.0).min(together - SHARE), vec![nearest.t], text));
     }
     Ok(Finding::by_margin(together - SHARE, vec![nearest.t], text).scaled(0.2))
+}
+
+/// How well the members stand in a line at one time: margin, smallest and largest gap, all in m.
+fn line_up(now: &[&Sample], [low, high]: [f64; 2]) -> Option<(f64, f64, f64)> {
+    let first = now.first()?;
+    #[expect(clippy::cast_precision_loss, reason = "a group has few members")]
+    let count = now.len() as f64;
+    let sum: Vector = now.iter().map(|sample| sample.at - first.at).sum();
+    let middle = first.at + sum / count;
+    // The line of least squares: half the angle of the second moments.
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for sample in now {
+        let p = sample.at - middle;
+        xx += p.x * p.x;
+        xy += p.x * p.y;
+        yy += p.y * p.y;
+    }
+    let angle = libm::atan2(2.0 * xy, xx - yy) / 2.0;
+    let line = Vector::new(libm::cos(angle), libm::sin(angle));
+    let off = now.iter().map(|sample| line.perp(&(sample.at - middle)).abs()).fold(0.0, f64::max);
+    let mut order: Vec<(f64, Point)> = now.iter().map(|s| (line.dot(&(s.at - middle)), s.at)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let gaps: Vec<f64> = order.iter().zip(order.iter().skip(1)).map(|((_, a), (_, b))| (b - a).norm()).collect();
+    let least = gaps.iter().copied().min_by(f64::total_cmp)?;
+    let most = gaps.iter().copied().max_by(f64::total_cmp)?;
+    let length = order.first().zip(order.last()).map_or(0.0, |((_, a), (_, b))| (b - a).norm());
+    let straight = length / gaps.iter().sum::<f64>().max(1e-9) - STRAIGHT_SHARE;
+    let standing = now.iter().map(|sample| STANDING_MPS - sample.speed()).fold(f64::INFINITY, f64::min);
+    Some(((least - low).min(high - most).min(OFF_LINE_M - off).min(straight).min(standing), least, most))
+}
+
+/// The group stands in a line until the robot is near.
+pub(super) fn queues(signals: &Signals<'_>, group: GroupId, gap_m: [f64; 2]) -> Result<Finding, Finding> {
+    let tracks = members(signals, group)?;
+    let (moments, _) = over_time(signals, group)?;
+    let Some(arrival) = moments.iter().find(|moment| moment.robot_m <= NEAR_M) else {
+        let near = moments.iter().map(|moment| moment.robot_m).fold(f64::INFINITY, f64::min);
+        let text = format!("the robot never comes within {NEAR_M:.0} m of {group}: nearest {near:.1} m");
+        return Ok(Finding::never(-1.0, vec![], text));
+    };
+    let mut before: Vec<(f64, f64, f64, f64)> = Vec::new();
+    for (index, moment) in moments.iter().enumerate().filter(|(_, m)| m.t <= arrival.t) {
+        let now: Vec<&Sample> = tracks.iter().filter_map(|track| track.samples.get(index)).collect();
+        if moment.t < SETTLE_SECS.min(arrival.t) {
+            continue;
+        }
+        before.extend(line_up(&now, gap_m).map(|(margin, least, most)| (margin, moment.t, least, most)));
+    }
+    let broken = before.iter().filter(|(margin, ..)| *margin < 0.0).count();
+    let kept = BROKEN_SHARE - share(broken, before.len());
+    let least = before.iter().map(|found| found.2).fold(f64::INFINITY, f64::min);
+    let most = before.iter().map(|found| found.3).fold(0.0, f64::max);
+    let [low, high] = gap_m;
+    let text = format!(
+        "{group} in a line, gaps {least:.2} to {most:.2} m ({low:.1} to {high:.1} m asked), until the robot is near at {:.1} s",
+        arrival.t
+    );
+    let worst = before.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(match worst {
+        None => Finding::not_applicable("the recording is empty"),
+        Some((margin, t, ..)) if kept < 0.0 => Finding::fails(
+            margin.min(kept),
+            vec![*t],
+            format!("{text}; no line for {:.0} % of the time, worst at {t:.1} s", (BROKEN_SHARE - kept) * 100.0),
+        )
+        .scaled(0.3),
+        Some((margin, ..)) => Finding::holds(margin.max(0.0), vec![arrival.t], text).scaled(0.3),
+    })
 }

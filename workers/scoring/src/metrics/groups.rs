@@ -1,7 +1,8 @@
 //! The space of groups.
 
-use socrates_model::{HumanId, Point, Vector};
+use socrates_model::{HumanId, Point};
 
+use crate::circle::Circle;
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
@@ -97,42 +98,14 @@ fn outside(robot: &Track, group: &[&Track]) -> Series {
     let mut found = Vec::new();
     for (index, r) in robot.samples.iter().enumerate() {
         let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).collect();
-        if now.len() < group.len() || now.iter().any(|sample| sample.speed() > 0.25) {
+        if now.len() < group.len() {
             continue;
         }
-        let Some(center) = o_center(&now) else { continue };
-        let reach: f64 = now.iter().map(|sample| (sample.at - center).norm()).sum::<f64>() / count(now.len());
         let radius = group.first().map_or(0.0, |track| track.radius_m);
-        found.push((r.t, (r.at - center).norm() - robot.radius_m - (reach - radius).max(0.1)));
+        let Some(circle) = Circle::of(&now, radius) else { continue };
+        found.push((r.t, circle.outside_o(&r.at, robot.radius_m)));
     }
     found.into_iter().collect()
-}
-
-/// The point nearest to all lines of sight in the sense of least squares; the middle of the members
-/// where the lines are nearly parallel or meet behind their backs.
-fn o_center(now: &[&Sample]) -> Option<Point> {
-    let first = now.first()?;
-    let sum: Vector = now.iter().map(|sample| sample.at - first.at).sum();
-    let middle = first.at + sum / count(now.len());
-    // Sum of (I - d dᵀ), and of its product with the positions relative to the middle.
-    let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for sample in now {
-        let d = sample.facing();
-        let p = sample.at - middle;
-        let (a, b, c) = (1.0 - d.x * d.x, -d.x * d.y, 1.0 - d.y * d.y);
-        xx += a;
-        xy += b;
-        yy += c;
-        bx += a * p.x + b * p.y;
-        by += b * p.x + c * p.y;
-    }
-    let determinant = xx * yy - xy * xy;
-    if determinant < 0.05 * count(now.len()) {
-        return Some(middle);
-    }
-    let center = middle + Vector::new((yy * bx - xy * by) / determinant, (xx * by - xy * bx) / determinant);
-    let spread = now.iter().map(|sample| (sample.at - middle).norm()).fold(0.0, f64::max);
-    Some(if (center - middle).norm() <= spread { center } else { middle })
 }
 
 fn crossings(robot: &Track, a: &Track, b: &Track) -> usize {
