@@ -1,25 +1,17 @@
 //! One step of a human: wish and social forces to velocity, heading and place.
 
 use socrates_crowd::{Goal, Params, Person, forces_on};
-use socrates_model::geometry::wrap_angle;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{GroupId, Point, Vector};
 
 use crate::floor::Floor;
+use crate::gait::{self, A_MAX, V_MAX};
 use crate::human::Human;
 use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
 use crate::near::Other;
 
-/// Largest acceleration of a person, m/s².
-const A_MAX: f64 = 3.0;
-/// Nobody is faster, m/s.
-const V_MAX: f64 = 1.95;
-/// Turning rate of somebody who stands and turns, rad/s.
-const TURN_STANDING: f64 = std::f64::consts::PI;
-/// Turning rate of the heading of somebody who walks, rad/s.
-const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
 /// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
@@ -31,8 +23,6 @@ const WALLS_M: f64 = 3.2;
 const FEW: usize = 24;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
-/// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
-const KEEP: (f64, f64) = (12.0, 7.0);
 
 /// Steers people, one after the other; keeps the list of whom each of them feels.
 pub(crate) struct Walker<'a> {
@@ -61,7 +51,7 @@ impl<'a> Walker<'a> {
                     human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
                 }
             }
-            Some(_) | None => stand(human),
+            Some(_) | None => gait::stand(&mut human.anchor, &human.at, &human.velocity, STEP_SECS),
         };
         let mut velocity = wished;
         let most = want.speed_mps.max(human.velocity.norm() - A_MAX * STEP_SECS).min(V_MAX);
@@ -117,9 +107,7 @@ impl<'a> Walker<'a> {
         if back < 0.0 && floor.straight(&human.at, target, DOORWAY_M) {
             forces.obstacle -= way * back;
         }
-        let force = forces.total();
-        let size = force.norm();
-        if size > A_MAX { force * (A_MAX / size) } else { force }
+        gait::limited(&forces.total())
     }
 }
 
@@ -145,22 +133,6 @@ fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: 
     }
 }
 
-fn stand(human: &mut Human) -> Vector {
-    let Some(anchor) = human.anchor else {
-        let speed = human.velocity.norm();
-        if speed < 0.03 {
-            human.anchor = Some(human.at);
-            return Vector::zeros();
-        }
-        return human.velocity * ((speed - A_MAX * STEP_SECS).max(0.0) / speed);
-    };
-    let pull = (anchor - human.at) * KEEP.0 - human.velocity * KEEP.1;
-    let size = pull.norm();
-    let pull = if size > A_MAX { pull * (A_MAX / size) } else { pull };
-    let velocity = human.velocity + pull * STEP_SECS;
-    if velocity.norm() < 2e-3 && (anchor - human.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
-}
-
 fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
     Person { velocity, radius_m, ..Person::standing(id, at) }
 }
@@ -169,18 +141,8 @@ fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
 pub(crate) fn settle(human: &mut Human, want: &Want, at: Point, velocity: Vector) {
     human.at = at;
     human.velocity = velocity;
-    let speed = velocity.norm();
-    let (goal, rate) = if speed > 0.15 && want.target.is_some() {
-        (Some(libm::atan2(velocity.y, velocity.x)), TURN_WALKING)
-    } else {
-        (want.face.map(|face| libm::atan2(face.y - at.y, face.x - at.x)), TURN_STANDING)
-    };
-    let before = human.yaw;
-    if let Some(goal) = goal {
-        let turn = wrap_angle(goal - human.yaw).clamp(-rate * STEP_SECS, rate * STEP_SECS);
-        human.yaw = wrap_angle(human.yaw + turn);
-    }
-    human.omega = wrap_angle(human.yaw - before) / STEP_SECS;
+    (human.yaw, human.omega) =
+        gait::turned(human.yaw, &at, &velocity, want.target.is_some(), want.face.as_ref(), STEP_SECS);
     if human.trail.end().is_none_or(|end| (at - end).norm() > 0.1) {
         human.trail.push(at);
     }
