@@ -203,8 +203,10 @@ impl Card {
         // Into a room that somebody leaves there must be room for both.
         let shared = self.goal == Some(PlaceClass::Room) && self.inside;
         let roomy = !shared || location.doors.iter().any(|door| door.kind == DoorKind::Room && door.inside.len() > 1);
+        let arms = self.arms.is_none_or(|least| crate::place::meets_arms(location, self.start, least));
         inside
             && roomy
+            && arms
             && self.needs.iter().all(there)
             && self.places.iter().any(|class| *class == PlaceClass::Plain || there(class))
     }

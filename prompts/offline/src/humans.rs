@@ -29,6 +29,8 @@ pub(crate) struct Way {
 pub(crate) struct Taken<'a> {
     pub(crate) net: &'a Net<'a>,
     pub(crate) starts: Vec<usize>,
+    /// Where others end: who ends where somebody stands already does not get there.
+    pub(crate) goals: Vec<usize>,
     /// There is no room for everybody to start apart: the checks will say so.
     pub(crate) crowded: bool,
     /// Where on the robot's way those stand who stand.
@@ -71,10 +73,14 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let net = taken.net;
     let meet = *route.nodes.get(route.meet)?;
     let mut back: Vec<usize> = route.nodes.get(..route.meet)?.iter().rev().copied().collect();
-    let long = (1..=back.len())
-        .find(|n| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M)
-        .unwrap_or(back.len());
-    back.truncate(long);
+    if let Some(class) = human.goal {
+        indoors(net, class, &mut back, &taken.goals);
+    } else {
+        let far = |n: &usize| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M;
+        let new = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).is_some_and(|node| !taken.goals.contains(node));
+        let long = (1..=back.len()).find(|n| far(n) && new(n)).or_else(|| (1..=back.len()).find(far));
+        back.truncate(long.unwrap_or(back.len()));
+    }
     let ideal = ideal_m(human, net, route);
     // Where the robot goes on to, and the nodes beyond its goal.
     let after = route.nodes.get(route.meet + 1..)?;
@@ -98,7 +104,44 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
     nodes.extend(back);
+    if human.goal.is_none() {
+        onward(net, &mut nodes, &taken.goals);
+    }
     Some(Way { nodes, meet, cost: best.0 * 0.2 })
+}
+
+/// Into the room or car at the end of a way: to a place of it where nobody else goes.
+fn indoors(net: &Net<'_>, class: PlaceClass, back: &mut Vec<usize>, taken: &[usize]) {
+    let Some(entry) = back.iter().position(|node| net.inside(*node)) else { return };
+    back.truncate(entry + 1);
+    let Some(first) = back.last().copied() else { return };
+    let tree = net.tree(first, &|node| !net.inside(node));
+    let all = place::inside(net.location, Some(class));
+    let free = all.iter().filter_map(|id| net.index(id)).filter(|node| tree.length_m(*node).is_finite());
+    // The deepest first, so that the next one finds room.
+    let end = free.filter(|node| !taken.contains(node)).max_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)));
+    if let Some(end) = end {
+        back.extend(tree.way(end).into_iter().skip(1));
+    }
+}
+
+/// Lengthens a way that ends where somebody else's does, straight on, to the next node where nobody ends.
+fn onward(net: &Net<'_>, nodes: &mut Vec<usize>, taken: &[usize]) {
+    for _ in 0..4 {
+        let (Some(last), Some(previous)) =
+            (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
+        else {
+            return;
+        };
+        if !taken.contains(&last) {
+            return;
+        }
+        let next = net.near(last).iter().map(|(node, _)| *node);
+        let next = next.filter(|node| !nodes.contains(node) && !net.inside(*node));
+        let turn = |node: usize| net.straight(previous, last, node) - if taken.contains(&node) { 0.5 } else { 0.0 };
+        let Some(next) = next.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else { return };
+        nodes.push(next);
+    }
 }
 
 fn onward_m(net: &Net<'_>, from: usize, nodes: &[usize]) -> f64 {
@@ -149,6 +192,7 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                     nodes.push(meet);
                     nodes.push(*exit);
                     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && node != *exit);
+                    onward(net, &mut nodes, &taken.goals);
                     best = Some(Way { nodes, meet, cost });
                 }
             }
@@ -289,11 +333,13 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         } else {
             0.0
         };
-        net.straight(entry, meet, *node) - own
+        let used = if taken.goals.contains(node) { 1.5 } else { 0.0 };
+        net.straight(entry, meet, *node) - own - used
     };
     let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
     nodes.extend(exit);
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
+    onward(net, &mut nodes, &taken.goals);
     let length = tree.length_m(start);
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }

@@ -125,6 +125,13 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let found = card(&proposal.pattern);
     let wide = found.and_then(|card| card.width_m);
     let field = (standing > 0 || wide.is_some()).then(|| DistanceField::new(&net.location.grid));
+    // People who come out are met near the place that they leave.
+    let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
+    let sources: Option<Vec<Tree>> = leaver.map(|human| {
+        let inside = place::inside(net.location, human.start);
+        inside.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect()
+    });
+    let many = proposal.humans.len() > 3;
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
@@ -144,7 +151,11 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             };
             let clear_m = field.as_ref().map_or(0.0, |field| field.clearance(&net.at(*node)));
             let room = if standing > 0 { 1.5 * clear_m.min(2.5) } else { 0.0 };
-            (own + cross + room + layout(found, arms, clear_m), *node)
+            let far = sources.as_ref().map_or(0.0, |trees| {
+                let nearest = trees.iter().map(|tree| tree.length_m(*node)).fold(f64::INFINITY, f64::min);
+                if nearest > 12.0 { -20.0 } else { -0.4 * (nearest - 3.0).max(0.0) }
+            });
+            (own + cross + room + far + layout(found, arms, clear_m), *node)
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -153,12 +164,18 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
         for route in over(net, meet, wish).into_iter().take(ROUTES) {
             let hidden = sight.as_ref().map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
             if let Some(mut solution) = people(net, proposal, route, crowded) {
-                solution.score += rank + hidden;
+                // Many people do not get through a doorway against each other.
+                let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
+                solution.score += rank + hidden - if many { 3.0 * tight } else { 0.0 };
                 found.push(solution);
             }
         }
     }
     found
+}
+
+fn tight(net: &Net<'_>, node: usize) -> bool {
+    matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
 }
 
 /// How well a node suits the layout that the card asks for: 0 where it does.
@@ -230,7 +247,7 @@ fn out_of(net: &Net<'_>, proposal: &Proposal, wish: &Wish, start: usize) -> Vec<
             let cross = if crossing && arms < 3 {
                 -20.0
             } else if crossing && arms > 3 {
-                2.0
+                6.0
             } else {
                 0.0
             };
@@ -294,7 +311,9 @@ fn best(routes: &mut Vec<Route>) {
 /// Everybody's way for one way of the robot.
 fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Option<Solution> {
     let ends = card(&proposal.pattern).map_or(Ends::Past, |card| card.ends);
-    let mut taken = Taken { net, starts: route.nodes.first().copied().into_iter().collect(), crowded, ends };
+    let starts = route.nodes.first().copied().into_iter().collect();
+    let goals = route.nodes.last().copied().into_iter().collect();
+    let mut taken = Taken { net, starts, goals, crowded, ends };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
     let along = proposal
         .humans
@@ -320,6 +339,9 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());
+        }
+        if own.nodes.len() > 1 && mate.is_none() {
+            taken.goals.extend(own.nodes.last());
         }
         ways.insert(human.id, own);
     }
