@@ -241,7 +241,8 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             list.setup(said, source, format!("{id} comes towards the robot"), Predicate::HeadOn { human: id });
         }
         Relation::Crossing => {
-            meets(list, true, 3.0);
+            // Of a stream, not all are near at the same time.
+            meets(list, true, if usual_gap_s > GAP_S { 4.0 } else { 3.0 });
             let gap_s = if halts { 10.0 } else { usual_gap_s };
             list.setup(
                 said && !halts,

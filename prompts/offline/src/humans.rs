@@ -44,6 +44,11 @@ impl Taken<'_> {
     fn free(&self, node: usize) -> bool {
         self.crowded || self.starts.iter().all(|other| (self.net.at(*other) - self.net.at(node)).norm() >= APART_M)
     }
+
+    /// Whether somebody may end there: nobody else does, and nobody has to get through.
+    fn can_end(&self, node: usize) -> bool {
+        !self.goals.contains(&node) && self.net.kind(node) != PlaceClass::Doorway
+    }
 }
 
 /// The way of a human, if the robot's way has room for it.
@@ -77,7 +82,7 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         indoors(net, class, &mut back, &taken.goals);
     } else {
         let far = |n: &usize| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M;
-        let new = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).is_some_and(|node| !taken.goals.contains(node));
+        let new = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).is_some_and(|node| taken.can_end(*node));
         let long = (1..=back.len()).find(|n| far(n) && new(n)).or_else(|| (1..=back.len()).find(far));
         back.truncate(long.unwrap_or(back.len()));
     }
@@ -105,7 +110,7 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     nodes.push(meet);
     nodes.extend(back);
     if human.goal.is_none() {
-        onward(net, &mut nodes, &taken.goals);
+        onward(&mut nodes, taken);
     }
     Some(Way { nodes, meet, cost: best.0 * 0.2 })
 }
@@ -126,19 +131,20 @@ fn indoors(net: &Net<'_>, class: PlaceClass, back: &mut Vec<usize>, taken: &[usi
 }
 
 /// Lengthens a way that ends where somebody else's does, straight on, to the next node where nobody ends.
-fn onward(net: &Net<'_>, nodes: &mut Vec<usize>, taken: &[usize]) {
+fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
+    let net = taken.net;
     for _ in 0..4 {
         let (Some(last), Some(previous)) =
             (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
         else {
             return;
         };
-        if !taken.contains(&last) {
+        if taken.can_end(last) {
             return;
         }
         let next = net.near(last).iter().map(|(node, _)| *node);
         let next = next.filter(|node| !nodes.contains(node) && !net.inside(*node));
-        let turn = |node: usize| net.straight(previous, last, node) - if taken.contains(&node) { 0.5 } else { 0.0 };
+        let turn = |node: usize| net.straight(previous, last, node) - if taken.can_end(node) { 0.0 } else { 0.5 };
         let Some(next) = next.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else { return };
         nodes.push(next);
     }
@@ -181,8 +187,9 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
                 let own = if used.contains(&Some(*exit)) { 1.5 } else { 0.0 };
+                let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
                 let inside = way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0
-                    + if net.inside(*exit) { 3.0 } else { 0.0 };
+                    + if into { 2.0 } else { 0.0 };
                 let cost = 0.2 * (length - ideal).abs() + if length < 3.0 { 10.0 } else { 0.0 } + 2.0 * side
                     - 0.5 * turn
                     + own
@@ -192,7 +199,7 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                     nodes.push(meet);
                     nodes.push(*exit);
                     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && node != *exit);
-                    onward(net, &mut nodes, &taken.goals);
+                    onward(&mut nodes, taken);
                     best = Some(Way { nodes, meet, cost });
                 }
             }
@@ -339,7 +346,7 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
     nodes.extend(exit);
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
-    onward(net, &mut nodes, &taken.goals);
+    onward(&mut nodes, taken);
     let length = tree.length_m(start);
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }

@@ -63,7 +63,12 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
     let has = |relation: Relation| proposal.humans.iter().any(|human| human.relation == relation);
     let straight = if proposal.place == PlaceClass::BlindCorner {
         -1.0
-    } else if has(Relation::Frontal) || has(Relation::Crossing) || has(Relation::Ahead) {
+    } else if has(Relation::Frontal)
+        || has(Relation::Crossing)
+        || has(Relation::Ahead)
+        || proposal.pattern == "emergency_team"
+        || proposal.groups.iter().any(|group| group.standing)
+    {
         1.0
     } else {
         0.3
