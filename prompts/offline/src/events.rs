@@ -237,12 +237,12 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             list.setup(said, source, text, Predicate::HiddenUntil { human: id, within_m: CORNER_M });
         }
         Relation::Frontal => {
-            meets(list, true, MEETS_M);
+            // Of a group abreast, the outermost keeps a little more distance.
+            meets(list, true, if human.group.is_some() { 3.0 } else { MEETS_M });
             list.setup(said, source, format!("{id} comes towards the robot"), Predicate::HeadOn { human: id });
         }
         Relation::Crossing => {
-            // Of a stream, not all are near at the same time.
-            meets(list, true, if usual_gap_s > GAP_S { 4.0 } else { 3.0 });
+            meets(list, true, 3.0);
             let gap_s = if halts { 10.0 } else { usual_gap_s };
             list.setup(
                 said && !halts,

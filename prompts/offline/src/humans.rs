@@ -1,6 +1,6 @@
 //! Ways of humans, by how they stand to the robot's way.
 
-use socrates_model::{HumanProposal, Location, PlaceClass, Relation};
+use socrates_model::{Action, HumanProposal, Location, PlaceClass, Relation};
 
 use crate::card::Ends;
 use crate::place;
@@ -14,6 +14,9 @@ const HUMAN_MPS: f64 = 1.2;
 const APART_M: f64 = 0.8;
 /// Somebody goes on at least so far after the meeting, m.
 const ONWARD_M: f64 = 4.0;
+
+/// Who overtakes comes level with the robot after so much of its way, m.
+const EARLY_M: f64 = 4.0;
 
 /// One human's way and where it meets the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +38,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) crowded: bool,
     /// Where on the robot's way those stand who stand.
     pub(crate) ends: Ends,
+    /// The class of place where people should meet.
+    pub(crate) place: PlaceClass,
 }
 
 /// No node: somebody with whom the robot starts is met nowhere.
@@ -56,7 +61,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
     match human.relation {
         Relation::Frontal => frontal(human, route, taken),
         Relation::Crossing => crossing(human, route, taken),
-        Relation::Behind => behind(route, taken, along),
+        Relation::Behind => behind(human, route, taken, along),
         Relation::Ahead | Relation::Abreast => ahead(human, route, taken),
         Relation::Static => standing(route, taken),
         Relation::Leaving => leaving(human, route, taken),
@@ -234,7 +239,7 @@ fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(us
 }
 
 /// Behind: the robot's way, from its start or from before it.
-fn behind(route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+fn behind(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
     let net = taken.net;
     let start = *route.nodes.first()?;
     let second = *route.nodes.get(1)?;
@@ -249,6 +254,13 @@ fn behind(route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
     nodes.extend(&route.nodes);
     // Somebody who only walks along is met on the way, before others are.
     let meet = if along && route.meet > 1 { route.meet - 1 } else { route.meet };
+    // Who overtakes is level with the robot early, so that the way is long enough to get past it.
+    let follows = human.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)));
+    let early = (1..=meet).find(|i| {
+        let known = route.nodes.get(*i).is_some_and(|node| net.is(*node, taken.place));
+        known && net.length_m(route.nodes.get(..=*i).unwrap_or_default()) >= EARLY_M
+    });
+    let meet = if follows { meet } else { early.unwrap_or(meet) };
     let cost = if before.is_some() { 0.0 } else { 1.0 };
     Some(Way { nodes, meet: *route.nodes.get(meet)?, cost })
 }

@@ -318,7 +318,7 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
     let ends = card(&proposal.pattern).map_or(Ends::Past, |card| card.ends);
     let starts = route.nodes.first().copied().into_iter().collect();
     let goals = route.nodes.last().copied().into_iter().collect();
-    let mut taken = Taken { net, starts, goals, crowded, ends };
+    let mut taken = Taken { net, starts, goals, crowded, ends, place: proposal.place };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
     let along = proposal
         .humans
