@@ -277,22 +277,104 @@ mod tests {
     }
 
     #[test]
+    fn the_canonical_scenarios_are_all_there_once_and_most_of_the_further_ones() {
+        let mut letters: Vec<char> = catalog().iter().filter_map(|card| card.letter).collect();
+        letters.sort_unstable();
+        assert_eq!(letters, ('a'..='y').collect::<Vec<char>>());
+        let mut further: Vec<u8> = catalog().iter().filter_map(|card| card.further).collect();
+        further.sort_unstable();
+        assert!(further.windows(2).all(|pair| pair[0] < pair[1]), "{further:?}");
+        assert!(further.len() >= 15 && further.iter().all(|number| (1..=20).contains(number)), "{further:?}");
+        let table = include_str!("../../catalog/README.md");
+        for card in catalog() {
+            assert!(table.contains(&format!("`{}`", card.id)), "{} is not in the table of the README", card.id);
+        }
+    }
+
+    #[test]
     fn every_clause_and_rule_of_every_card_is_sound() {
         let human = HumanId::new(1);
         for card in catalog() {
-            assert!(card.clauses.iter().any(|clause| clause.role == ClauseRole::Outcome), "{}", card.id);
-            assert!(!card.places.is_empty() && !card.principles.is_empty(), "{}", card.id);
+            let id = &card.id;
+            assert!(card.clauses.iter().any(|clause| clause.role == ClauseRole::Outcome), "{id}");
+            assert!(!card.places.is_empty() && !card.principles.is_empty() && !card.expected.is_empty(), "{id}");
+            for principle in &card.principles {
+                let number = principle.strip_prefix('P').and_then(|n| n.parse::<u8>().ok());
+                assert!(number.is_some_and(|n| (1..=8).contains(&n)), "{id}: {principle}");
+            }
+            assert!(card.width_m.is_none_or(|[least, most]| 0.6 <= least && least < most), "{id}");
+            assert!((0.5..=15.0).contains(&card.gap_s), "{id}");
             for clause in &card.clauses {
                 let each = clause.each.as_ref();
-                assert!(
-                    each.is_none_or(|name| card.roles.iter().any(|role| role.name == *name)),
-                    "{} {each:?}",
-                    card.id
-                );
-                assert!(clause.filled(Some(human), Some(GroupId(1))).is_some(), "{}: {:?}", card.id, clause.predicate);
+                assert!(each.is_none_or(|name| card.roles.iter().any(|role| role.name == *name)), "{id} {each:?}");
+                assert!(clause.filled(Some(human), Some(GroupId(1))).is_some(), "{id}: {:?}", clause.predicate);
             }
             for role in &card.roles {
-                assert!(role.count[0] >= 1 && role.count[0] <= role.count[1] && !role.who.is_empty(), "{}", card.id);
+                let [least, most] = role.count;
+                assert!(least >= 1 && least <= most && most <= 8 && !role.who.is_empty(), "{id}");
+                assert!(!role.group || least > 1, "{id}: a group of one");
+                assert!(role.speed.is_none_or(|[low, high]| 0.2 <= low && low <= high && high <= 1.8), "{id}");
+                for rule in &role.rules {
+                    assert!(!rule.when.is_empty(), "{id}");
+                    assert!(rule.within_m.is_none_or(|[low, high]| 0.5 <= low && low <= high && high <= 12.0), "{id}");
+                    assert!(rule.for_s.is_none_or(|[low, high]| 1.0 <= low && low <= high && high <= 60.0), "{id}");
+                }
+            }
+        }
+    }
+
+    fn ask(card: &Card, location: &Location, seed: u64) -> socrates_prompts::Question {
+        let request: socrates_model::Request = serde_json::from_value(serde_json::json!({
+            "location": location.name, "social_context": "", "task": "Deliver mail", "expect": { "pattern": card.id },
+        }))
+        .unwrap();
+        socrates_prompts::Question {
+            stage: socrates_model::job::Stage::Proposal,
+            reading: crate::read(&request, location),
+            request,
+            location: location.clone(),
+            proposal: None,
+            only: Vec::new(),
+            feedback: Vec::new(),
+            refused: None,
+            seed,
+        }
+    }
+
+    #[test]
+    fn every_card_fits_a_shipped_location_and_every_human_has_a_clause_that_decides() {
+        for card in catalog() {
+            let places: Vec<Location> = socrates_maps::shipped::names()
+                .iter()
+                .map(|name| socrates_maps::shipped::load(name).unwrap())
+                .filter(|location| card.fits(location))
+                .collect();
+            assert!(!places.is_empty(), "{} fits nowhere", card.id);
+            for (location, seed) in places.iter().flat_map(|location| (1..4).map(move |seed| (location, seed))) {
+                let proposal = crate::proposal::propose(&ask(card, location, seed));
+                assert_eq!(proposal.pattern, card.id);
+                let deciding: Vec<&Predicate> = proposal
+                    .expected_events
+                    .iter()
+                    .filter(|clause| clause.role == ClauseRole::Setup && clause.must)
+                    .map(|clause| &clause.predicate)
+                    .collect();
+                for human in &proposal.humans {
+                    let own = |predicate: &&&Predicate| {
+                        predicate.human() == Some(human.id) || human.group.is_some() && predicate.group() == human.group
+                    };
+                    assert!(deciding.iter().any(|predicate| own(&predicate)), "{} {}", card.id, human.id);
+                }
+                // What the card says must be seen decides.
+                for clause in card.clauses.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup) {
+                    let (_, wanted) = clause.filled(Some(HumanId::new(1)), Some(GroupId(1))).unwrap();
+                    let kind = std::mem::discriminant(&wanted);
+                    assert!(
+                        deciding.iter().any(|found| std::mem::discriminant(*found) == kind),
+                        "{}: {wanted:?}",
+                        card.id
+                    );
+                }
             }
         }
     }

@@ -66,7 +66,6 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
     } else if has(Relation::Frontal)
         || has(Relation::Crossing)
         || has(Relation::Ahead)
-        || proposal.pattern == "emergency_team"
         || proposal.groups.iter().any(|group| group.standing)
     {
         1.0
