@@ -116,6 +116,12 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: MapVerb,
     },
+    /// List, show and rate the canonical scenarios of the catalogue.
+    Scenarios {
+        /// What to do.
+        #[command(subcommand)]
+        verb: ScenariosVerb,
+    },
     /// The same parts spread over machines.
     Cluster {
         /// What to do.
@@ -134,6 +140,32 @@ pub(crate) enum Verb {
     /// The orchestrator process; started by `run` and `cluster up`.
     #[command(hide = true)]
     Orchestrator(OrchestratorOptions),
+}
+
+/// Verbs on the catalogue.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ScenariosVerb {
+    /// List every scenario.
+    List,
+    /// Show the card of a scenario.
+    Show {
+        /// Its id, or the letter of a canonical one.
+        id: String,
+    },
+    /// Play scenarios with the reference robot and count how often each is realised.
+    Rate {
+        /// Ids or letters; all of them where none is named.
+        ids: Vec<String>,
+        /// Seeds 1 to N for each.
+        #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+        seeds: u64,
+        /// A location for all of them; default: the shipped ones that fit, in turn.
+        #[arg(long)]
+        location: Option<String>,
+        /// Markdown file for the table.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Options of `run` and `demo`.

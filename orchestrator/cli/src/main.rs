@@ -27,9 +27,11 @@ mod library;
 mod map;
 mod mutations;
 mod orchestrate;
+mod play;
 mod prepare;
 mod process;
 mod run;
+mod scenarios;
 mod session;
 mod supervise;
 mod talk;
@@ -106,6 +108,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Doctor => done(explain::doctor(talk, key_found)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),
+        Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
             ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),

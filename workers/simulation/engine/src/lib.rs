@@ -27,6 +27,7 @@ mod advance;
 mod cells;
 mod drive;
 mod ending;
+mod gathering;
 mod human;
 mod lanes;
 mod motion;

@@ -57,7 +57,10 @@ impl Engine {
         let robot = (setup.planner != NO_ROBOT).then(|| start::robot(&setup, &floor));
         let humans = start::humans(&setup, trees, &floor, robot.as_ref());
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
-        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors);
+        let by_nearness = |door: usize| {
+            setup.location.doors.get(door).is_some_and(|door| matches!(door.opens, socrates_model::DoorOpens::Near(_)))
+        };
+        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors, &by_nearness);
         let header = start::header(&setup, &humans, robot.as_ref());
         let script = Script::new(&setup.proposal.robot.script);
         let ending = Ending::new(setup.duration_s);
