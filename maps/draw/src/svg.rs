@@ -39,6 +39,18 @@ impl Svg {
         svg
     }
 
+    /// A part of a document: no frame of its own.
+    #[must_use]
+    pub const fn part() -> Self {
+        Self { text: String::new() }
+    }
+
+    /// What was written so far, without an end.
+    #[must_use]
+    pub fn text_so_far(self) -> String {
+        self.text
+    }
+
     /// Adds text as it is.
     pub fn raw(&mut self, text: &str) {
         self.text.push_str(text);

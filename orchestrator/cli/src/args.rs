@@ -69,6 +69,11 @@ pub(crate) enum Verb {
         /// Bundle folder.
         bundle: PathBuf,
     },
+    /// Write the page of a bundle anew, or one page for a folder of bundles.
+    Report {
+        /// Bundle folder, or a folder that holds bundles.
+        what: PathBuf,
+    },
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(SimulateOptions),
     /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).

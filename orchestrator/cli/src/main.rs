@@ -10,6 +10,7 @@
 mod again;
 mod agents;
 mod args;
+mod batch;
 mod bench;
 mod bt;
 mod bundle;
@@ -25,6 +26,7 @@ mod map;
 mod orchestrate;
 mod prepare;
 mod process;
+mod report;
 mod run;
 mod session;
 mod supervise;
@@ -89,6 +91,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
             Ok(Code::Ok)
         }
         Verb::Open { bundle } => done(explain::open(talk, bundle)),
+        Verb::Report { what } => done(report::report(talk, what)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
         Verb::Simulate(options) => {
             let SimulateOptions { what, planner, seed, out, .. } = options;
