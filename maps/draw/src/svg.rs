@@ -39,6 +39,18 @@ impl Svg {
         svg
     }
 
+    /// A document of this width on paper, mm, in drawing units of one point.
+    #[must_use]
+    pub fn in_mm(width_mm: f64, width_pt: f64, height_pt: f64) -> Self {
+        let mut svg = Self { text: String::new() };
+        let height_mm = height_pt * width_mm / width_pt.max(1e-9);
+        svg.raw(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width_mm}mm\" height=\"{height_mm:.2}mm\" \
+             viewBox=\"0 0 {width_pt:.2} {height_pt:.2}\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\">"
+        ));
+        svg
+    }
+
     /// A part of a document: no frame of its own.
     #[must_use]
     pub const fn part() -> Self {

@@ -56,6 +56,8 @@ mod tests {
             include_str!("web/page.js"),
             include_str!("web/batch.html"),
             include_str!("web/batch.js"),
+            include_str!("web/labels.html"),
+            include_str!("web/labels.js"),
         ];
         for part in parts {
             let part = part.replace("http://www.w3.org/2000/svg", "");

@@ -14,13 +14,16 @@ mod batch;
 mod bench;
 mod bt;
 mod bundle;
+mod cite;
 mod cluster;
 mod config;
 mod dev;
 mod exit;
 mod explain;
+mod figure;
 mod files;
 mod history;
+mod labels;
 mod library;
 mod map;
 mod orchestrate;
@@ -32,6 +35,7 @@ mod session;
 mod supervise;
 mod talk;
 mod traces;
+mod video;
 mod watch;
 
 use std::process::ExitCode;
@@ -92,6 +96,10 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         }
         Verb::Open { bundle } => done(explain::open(talk, bundle)),
         Verb::Report { what } => done(report::report(talk, what)),
+        Verb::Video(options) => done(video::video(talk, options)),
+        Verb::Figure(options) => done(figure::figure(talk, options)),
+        Verb::Cite { bundle } => done(cite::cite(talk, bundle)),
+        Verb::Labels { verb } => done(labels::labels(talk, verb)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
         Verb::Simulate(options) => {
             let SimulateOptions { what, planner, seed, out, .. } = options;

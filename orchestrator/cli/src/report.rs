@@ -76,7 +76,7 @@ fn provenance_rows(bundle: &Bundle, author: &str) -> Vec<ProvenanceRow> {
 }
 
 /// Stage lines and author out of the provenance of a bundle; a bundle without one has neither.
-fn past(dir: &Path) -> (Vec<StageRow>, String) {
+pub(crate) fn past(dir: &Path) -> (Vec<StageRow>, String) {
     let text = std::fs::read_to_string(dir.join("details/provenance.json")).unwrap_or_default();
     let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
     let word = |value: &serde_json::Value, key: &str| -> String {

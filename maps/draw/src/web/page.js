@@ -19,7 +19,7 @@
     ["zone_social", "#56b4e9", "social"], ["zone_public", "#cfd6de", "public"]];
   const STANDINGS = { holds: ["✔", ""], late: ["✔", "late"], not_triggered: ["✘", "not triggered"], fails: ["✘", "fails"], not_applicable: ["–", "not judged"] };
   const PLOTS = [ // series, title, unit, largest value shown, lines with names
-    { id: "distance", title: "distance to the nearest human, surface to surface", unit: "m", top: 6, lines: [[0.45, "intimate"], [1.2, "personal"]] },
+    { id: "distance", title: "distance to the nearest human, surface to surface", unit: "m", top: 4, lines: [[0.45, "intimate"], [1.2, "personal"]] },
     { id: "speed", title: "speed of the robot", unit: "m/s", top: null, lines: [] },
     { id: "ttc", title: "time to collision at constant velocity", unit: "s", top: 8, lines: [[3, "exposed"]] },
   ];
@@ -139,7 +139,7 @@
     const box = at("timeline"), ax = axis(), lane = 24;
     // Everybody where they fit; in a crowd the robot and those who do most.
     const busy = (a) => (a.number === 0 ? 1e9 : run.events.filter((e) => e[1] === a.number && e[2] !== "leaf").length * 100 - a.number / 1000);
-    const chosen = run.agents.length <= LANES ? run.agents : [...run.agents].sort((a, b) => busy(b) - busy(a)).slice(0, LANES).sort((a, b) => a.number - b.number);
+    const chosen = run.agents.length <= LANES ? run.agents : run.agents.filter((a) => busy(a) >= 100).sort((a, b) => busy(b) - busy(a)).slice(0, LANES).sort((a, b) => a.number - b.number);
     const lanes = [...chosen, { name: "checklist", words: "#1f2328", number: -1 }];
     const h = lanes.length * lane + 24, rest = run.agents.length - chosen.length;
     // The thumb of a range is 16 px wide: its middle then stands right above the cursor.
@@ -175,7 +175,7 @@
 
   function drawPlots() {
     const box = at("plots"); box.textContent = "";
-    const ax = axis(), h = 96, low = 6;
+    const ax = axis(), h = 104, low = 8;
     for (const plot of PLOTS) {
       const mine = run.series[plot.id], theirs = other ? other.series[plot.id] : [];
       const known = [...mine, ...theirs].filter((v) => v !== null);
@@ -190,21 +190,24 @@
         make("line", { x1: ax.left, x2: ax.right, y1: y(v), y2: y(v), stroke: "#eceff2" }, svg);
         make("text", { x: ax.left - 6, y: y(v) + 4, "font-size": 12, "text-anchor": "end", fill: "#5b636e" }, svg).textContent = +v.toFixed(1) + " " + plot.unit;
       }
+      const named = [];
       for (const [v, name] of plot.lines) if (v > least && v < most) {
         make("line", { x1: ax.left, x2: ax.right, y1: y(v), y2: y(v), stroke: "#b3400b", "stroke-width": 1, "stroke-dasharray": "2 4" }, svg);
-        make("text", { x: ax.right, y: y(v) - 3, "font-size": 11, "text-anchor": "end", fill: "#b3400b" }, svg).textContent = name + " " + v + " " + plot.unit;
+        named.push(() => make("text", { x: ax.right, y: y(v) - 3, "font-size": 11, "text-anchor": "end", fill: "#b3400b", stroke: "#fff", "stroke-width": 3, "paint-order": "stroke" }, svg).textContent = name + " " + v + " " + plot.unit);
       }
       const curve = (r, values, look) => {
         let d = "", pen = false;
         values.forEach((v, i) => {
-          if (v === null) { pen = false; return; }
-          d += (pen ? "L" : "M") + (ax.left + i / r.hz * ax.k).toFixed(1) + " " + y(v).toFixed(1);
+          // What is beyond the scale is not drawn; a single sample is a dot.
+          if (v === null || v > most) { pen = false; return; }
+          d += (pen ? "L" : "M") + (ax.left + i / r.hz * ax.k).toFixed(1) + " " + y(v).toFixed(1) + (pen ? "" : "h.01");
           pen = true;
         });
         make("path", { d, fill: "none", "stroke-linejoin": "round", "stroke-linecap": "round", ...look }, svg);
       };
       if (other) curve(other, theirs, { stroke: "#d55e00", "stroke-width": 1.6, "stroke-dasharray": "6 4" });
       curve(run, mine, { stroke: "#0072b2", "stroke-width": 2 });
+      for (const write of named) write();
       if (plot.id !== "speed") {
         let i = -1;
         mine.forEach((v, j) => { if (v !== null && (i < 0 || v < mine[i])) i = j; });

@@ -83,6 +83,9 @@ const player = (() => {
       const k = Math.max(box[2] / Math.max(shown.width, 1), box[3] / Math.max(shown.height, 1));
       this.k = k;
       for (const s of this.shapes) {
+        // Nobody is smaller than a fingertip can see.
+        s.grow = Math.max(1, (this.crowd ? 3 : 6) * k / s.agent.radius);
+        s.ring.setAttribute("r", s.agent.radius * 1.7 * s.grow);
         s.name.setAttribute("font-size", 14 * k); s.name.setAttribute("stroke-width", 4 * k); s.says.setAttribute("font-size", 14 * k);
       }
       const bar = this.bar; bar.textContent = "";
@@ -94,15 +97,18 @@ const player = (() => {
     }
     show(now) {
       if (!this.run || !this.box) return;
-      const hz = this.run.hz, at = now * hz, k = this.k;
-      for (const s of this.shapes) {
-        const track = s.agent.track, p = state(track, at);
-        if (!p) continue;
-        const [x, y, yaw, code] = p, r = s.agent.radius, said = SAYS[code] || "";
+      const hz = this.run.hz, at = now * hz, k = this.k, places = this.shapes.map((s) => state(s.agent.track, at));
+      this.shapes.forEach((s, index) => {
+        const track = s.agent.track, p = places[index];
+        if (!p) return;
+        const [x, y, yaw, code] = p, r = s.agent.radius * s.grow, said = SAYS[code] || "";
         s.group.setAttribute("transform", `translate(${x} ${y})`);
-        s.turned.setAttribute("transform", `rotate(${-yaw * 180 / Math.PI})`);
+        s.turned.setAttribute("transform", `rotate(${-yaw * 180 / Math.PI}) scale(${s.grow})`);
         s.ring.setAttribute("opacity", said ? 1 : 0);
-        const below = y - r - 48 * k < this.box[1], rim = said ? r * 1.7 : r;
+        const rim = said ? r * 1.7 : r, high = (said ? 44 : 20) * k, half = 16 * k;
+        // The name stands above, and below where it would hide somebody or leave the picture.
+        const hides = (from, to) => !this.crowd && places.some((o, j) => o && j !== index && Math.abs(o[0] - x) < half + r && o[1] + r > from && o[1] - r < to);
+        const below = y - rim - high < this.box[1] || (hides(y - rim - high, y - rim) && !hides(y + rim, y + rim + high) && y + rim + high < this.box[1] + this.box[3]);
         s.name.setAttribute("y", below ? rim + 15 * k : -rim - 5 * k);
         s.says.textContent = said;
         s.bubble.setAttribute("opacity", said ? 1 : 0);
@@ -116,7 +122,7 @@ const player = (() => {
         let points = "";
         for (let i = first; i <= last; i++) points += track[i * 4] / 10 + "," + track[i * 4 + 1] / 10 + " ";
         s.trail.setAttribute("points", points + x + "," + y);
-      }
+      });
       for (const d of this.doors) {
         let open = false;
         for (const [t, is] of d.times) if (t <= now + 1e-6) open = is;
