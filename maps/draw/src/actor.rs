@@ -33,7 +33,7 @@ impl Look {
     /// The look of a recording on a picture of this height at this scale.
     pub(crate) fn new(recording: &Recording, px_per_m: f64, height_px: f64, names: bool) -> Self {
         let crowd = recording.header.agents.len() > CROWD;
-        let least_px = if crowd { height_px / 140.0 } else { height_px / 80.0 };
+        let least_px = if crowd { height_px / 140.0 } else { height_px / 72.0 };
         Self { text_px: (height_px / 36.0).clamp(11.0, 26.0), names, crowd, px_per_m, least_px }
     }
 
@@ -184,7 +184,7 @@ pub(crate) fn body(robot: bool, r: f64, color: &str) -> String {
             -r * 0.2
         );
     }
-    let (depth, nose, base, side, head) = (r * 0.68, r * 1.05, r * 0.5, r * 0.34, r * 0.42);
+    let (depth, nose, base, side, head) = (r * 0.74, r * 1.15, r * 0.55, r * 0.36, r * 0.36);
     format!(
         "<ellipse rx=\"{depth:.1}\" ry=\"{r:.1}\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\"/>\
          <path d=\"M{nose:.1} 0L{base:.1} {side:.1}L{base:.1} -{side:.1}z\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1\"/>\

@@ -71,13 +71,13 @@ pub fn figure(
     let entries = legend(first, shown);
     let (columns, rows) = legend_grid(&entries, width);
     #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-    let height = h + 7.0 + TEXT_PT * 1.5 * (rows as f64 + 1.0);
+    let height = h + 1.0 + TEXT_PT * 1.5 * (rows as f64 + 0.75) + TEXT_PT * 0.7;
     let mut svg = Svg::in_mm(width_mm, width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     svg.begin_clip(frame.at, (w, h));
     draw_floor(&mut svg, location, &frame);
     draw_doors(&mut svg, location, &frame);
-    let mut labels = Labels::within(Area { x: frame.at.0, y: frame.at.1, w, h });
+    let mut labels = Labels::scaled(Area { x: frame.at.0, y: frame.at.1, w, h }, TEXT_PT / 16.0);
     labels.avoid(wall_areas(location, &frame));
     let px = |x: f64, y: f64| frame.px(location, &socrates_model::Point::new(x, y));
     let mut tracks = Vec::new();
@@ -122,10 +122,10 @@ pub fn figure(
     for track in tracks.iter().filter(|track| track.named && std::ptr::eq(track.run, *first)) {
         let Some(start) = track.line(&px).first().copied() else { continue };
         let name = track.agent.to_string().replace("human_", "h");
-        label(&mut svg, &mut labels, start, &name, palette::agent_words(track.agent.number()), 4.0);
+        label(&mut svg, &mut labels, start, &name, palette::agent_words(track.agent.number()), 3.5);
     }
     for mark in marks.iter().filter(|mark| mark.told) {
-        label(&mut svg, &mut labels, mark.at, &mark.words, palette::INK, 2.5);
+        label(&mut svg, &mut labels, mark.at, &mark.words, mark.ink, 2.0);
     }
     svg.end_clip();
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"0.5\"", palette::WALL));
@@ -150,6 +150,7 @@ struct Mark {
     at: (f64, f64),
     words: String,
     color: &'static str,
+    ink: &'static str,
     told: bool,
 }
 
@@ -171,20 +172,23 @@ impl Track<'_> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number of ticks")]
         let ticks = (every / self.run.header.step_s.max(1e-4)).round().max(1.0) as usize;
         let mut marks = Vec::new();
-        let mut last: Option<(f64, f64)> = None;
+        let line = self.line(px);
+        let (Some(mut last), Some(end)) = (line.first().copied(), line.last().copied()) else { return marks };
+        let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).hypot(a.1 - b.1) < 4.5;
         for (index, state) in self.run.track(self.agent).step_by(ticks).enumerate().skip(1) {
             if !(state.x.is_finite() && state.y.is_finite()) {
                 continue;
             }
             let at = px(state.x, state.y);
-            // Who stands would get a heap of marks.
-            if last.is_some_and(|last| (last.0 - at.0).hypot(last.1 - at.1) < 4.0) {
+            // Who stands would get a heap of marks; both ends have marks of their own.
+            if near(at, last) || near(at, end) {
                 continue;
             }
-            last = Some(at);
+            last = at;
             #[expect(clippy::cast_precision_loss, reason = "few marks")]
             let words = format!("{:.0}", index as f64 * every);
-            marks.push(Mark { at, words, color: self.color, told: self.dash.is_empty() });
+            let ink = palette::agent_words(self.agent.number());
+            marks.push(Mark { at, words, color: self.color, ink, told: self.dash.is_empty() });
         }
         marks
     }
@@ -289,7 +293,8 @@ fn legend_grid(entries: &[Entry], width: f64) -> (usize, usize) {
 
 fn draw_legend(svg: &mut Svg, entries: &[Entry], columns: usize, width: f64, top: f64, px_per_m: f64, every_s: f64) {
     let line = TEXT_PT * 1.5;
-    let style = format!("font-size=\"{TEXT_PT}\" fill=\"{}\"", palette::INK);
+    // A thin outline gives the light letters body in print.
+    let style = format!("font-size=\"{TEXT_PT}\" fill=\"{0}\" stroke=\"{0}\" stroke-width=\"0.15\"", palette::INK);
     let metres = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|m| m * px_per_m >= 22.0).unwrap_or(100.0);
     let (y, w) = (top + line * 0.75, metres * px_per_m);
     svg.raw(&format!(
@@ -300,14 +305,16 @@ fn draw_legend(svg: &mut Svg, entries: &[Entry], columns: usize, width: f64, top
         palette::INK
     ));
     svg.text((w + 4.0, y + TEXT_PT * 0.35), &format!("{metres} m"), &style);
-    let notes = [
-        format!("○ start  ● end  ◆ encounter  numbers: s (every {every_s:.0})"),
-        format!("○ start  ● end  ◆ meets  numbers: s"),
+    let mut parts = vec![
+        (Sign::Start, "start".to_owned()),
+        (Sign::End, "end".to_owned()),
+        (Sign::Encounter, "encounter".to_owned()),
+        (Sign::Mark, format!("every {every_s:.0} s")),
     ];
-    let room = width - w - 10.0 - text_width("50 m", TEXT_PT);
-    let note =
-        notes.iter().find(|note| text_width(note, TEXT_PT) <= room).or(notes.last()).cloned().unwrap_or_default();
-    draw_note(svg, width - 1.0, y + TEXT_PT * 0.35, &note, &style);
+    while parts.len() > 1 && note_width(&parts) > width - w - 14.0 - text_width("50 m", TEXT_PT) {
+        parts.pop();
+    }
+    draw_note(svg, width - 1.0, y + TEXT_PT * 0.35, &parts, &style);
     for (index, entry) in entries.iter().enumerate() {
         #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
         let (column, row) = ((index % columns) as f64, (index / columns) as f64);
@@ -321,34 +328,42 @@ fn draw_legend(svg: &mut Svg, entries: &[Entry], columns: usize, width: f64, top
     }
 }
 
+/// A sign of the map.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Start,
+    End,
+    Encounter,
+    Mark,
+}
+
+/// Room of a sign and the gap behind its words, pt.
+const SIGN_PT: f64 = 6.0;
+const GAP_PT: f64 = 5.0;
+
+fn note_width(parts: &[(Sign, String)]) -> f64 {
+    parts.iter().map(|(_, words)| SIGN_PT + text_width(words, TEXT_PT) + GAP_PT).sum::<f64>() - GAP_PT
+}
+
 /// The explanation of the signs, ending at the right edge; the signs are drawn, for fonts differ in them.
-fn draw_note(svg: &mut Svg, right: f64, base: f64, note: &str, style: &str) {
+fn draw_note(svg: &mut Svg, right: f64, base: f64, parts: &[(Sign, String)], style: &str) {
     let ink = palette::INK;
-    let mut x = right - text_width(note, TEXT_PT);
-    let middle = base - TEXT_PT * 0.35;
-    let mut words = String::new();
-    for c in note.chars().chain(['\0']) {
-        if !matches!(c, '○' | '●' | '◆' | '\0') {
-            words.push(c);
-            continue;
-        }
-        if !words.trim().is_empty() {
-            svg.text((x, base), words.trim_end(), style);
-        }
-        x += text_width(&words, TEXT_PT);
-        words.clear();
-        let center = (x + 2.0, middle);
-        match c {
-            '○' => svg.circle(center, 1.9, &format!("fill=\"#ffffff\" stroke=\"{ink}\" stroke-width=\"0.8\"")),
-            '●' => svg.circle(center, 2.1, &format!("fill=\"{ink}\"")),
-            '◆' => svg.raw(&format!(
-                "<path d=\"M{:.2} {:.2}l2.4 2.4l-2.4 2.4l-2.4 -2.4z\" fill=\"{ink}\"/>",
+    let ring = |width: f64| format!("fill=\"#ffffff\" stroke=\"{ink}\" stroke-width=\"{width}\"");
+    let mut x = right - note_width(parts);
+    for (sign, words) in parts {
+        let center = (x + 2.4, base - TEXT_PT * 0.33);
+        match sign {
+            Sign::Start => svg.circle(center, 2.0, &ring(0.9)),
+            Sign::End => svg.circle(center, 2.3, &format!("fill=\"{ink}\"")),
+            Sign::Encounter => svg.raw(&format!(
+                "<path d=\"M{:.2} {:.2}l2.6 2.6l-2.6 2.6l-2.6 -2.6z\" fill=\"{ink}\"/>",
                 center.0,
-                center.1 - 2.4
+                center.1 - 2.6
             )),
-            _ => {}
+            Sign::Mark => svg.circle(center, 1.3, &ring(0.8)),
         }
-        x += 4.0;
+        svg.text((x + SIGN_PT, base), words, style);
+        x += SIGN_PT + text_width(words, TEXT_PT) + GAP_PT;
     }
 }
 

@@ -290,19 +290,17 @@ impl<'a> Film<'a> {
         let size = panel.look.text_px;
         let (x, y) = panel.at;
         let plate = |svg: &mut Svg, at: (f64, f64), words: &str| {
-            let w = text_width(words, size) + size * 1.1;
+            let w = text_width(words, size) + size * 0.8;
             svg.rect(at, (w, size * 1.7), &format!("rx=\"{:.1}\" fill=\"#ffffff\" fill-opacity=\"0.88\"", size * 0.3));
             svg.heading((at.0 + size * 0.5, at.1 + size * 1.2), words, size, palette::INK);
-            w
         };
         let margin = size * 0.6;
-        let wide = plate(svg, (x + margin, y + margin), &panel.title);
         let speed = if (self.times.speed - 1.0).abs() < 1e-9 {
             String::new()
         } else {
-            format!(" · {}×", (self.times.speed * 100.0).round() / 100.0)
+            format!(" ({}×)", (self.times.speed * 100.0).round() / 100.0)
         };
-        plate(svg, (x + margin + wide + margin, y + margin), &format!("{now_s:.1} s{speed}"));
+        plate(svg, (x + margin, y + margin), &format!("{} · {now_s:.1} s{speed}", panel.title));
         let newest = panel.captions.iter().rfind(|(t, _)| *t <= now_s + 1e-9 && now_s - t < CAPTION_SECS);
         if let Some((_, words)) = newest {
             let words = wrapped(words, panel.size.0 - size * 3.0, size, 1).concat();

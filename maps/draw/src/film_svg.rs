@@ -231,7 +231,7 @@ impl Film<'_> {
     fn animate_words(&self, svg: &mut Svg, panel: &Panel<'_>) {
         let size = panel.look.text_px;
         let at = (panel.at.0 + size * 0.6, panel.at.1 + size * 0.6);
-        let wide = text_width(&panel.title, size) + size * 6.5;
+        let wide = text_width(&panel.title, size) + size * 3.0;
         svg.rect(at, (wide, size * 1.7), &format!("rx=\"{:.1}\" fill=\"#ffffff\" fill-opacity=\"0.88\"", size * 0.3));
         svg.heading((at.0 + size * 0.5, at.1 + size * 1.2), &panel.title, size, palette::INK);
         let mut second = self.times.from_s.floor();

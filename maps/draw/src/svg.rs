@@ -90,9 +90,12 @@ impl Svg {
         ));
     }
 
-    /// An open line through points; nothing where there are fewer than two.
+    /// An open line through points; nothing where there are fewer than two different ones: a line without a length
+    /// cannot be drawn.
     pub fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
-        if points.len() < 2 {
+        const LEAST: f64 = 0.1;
+        let Some(first) = points.first() else { return };
+        if points.iter().all(|(x, y)| (x - first.0).abs() < LEAST && (y - first.1).abs() < LEAST) {
             return;
         }
         let mut list = String::new();
