@@ -276,11 +276,22 @@ impl<'a> Film<'a> {
     /// What moves, at a moment of the run, as SVG without the ground.
     fn drawing(&self, now_s: f64) -> String {
         let mut svg = Svg::new(f64::from(self.options.size.0), f64::from(self.options.size.1));
-        for panel in &self.panels {
+        // Doors and people outside the camera of one panel must not be seen in the next one; a lone panel is cut by
+        // the picture itself.
+        let clipped = self.panels.len() > 1;
+        for (index, panel) in self.panels.iter().enumerate() {
+            if clipped {
+                svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
+                svg.rect(panel.at, panel.size, "");
+                svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
+            }
             actor::draw_doors(&mut svg, panel.location, &panel.frame, panel.recording, now_s);
             actor::draw_everybody(&mut svg, panel.location, &panel.frame, panel.recording, now_s, &panel.look);
             if self.options.labels {
                 self.draw_words(&mut svg, panel, now_s);
+            }
+            if clipped {
+                svg.raw("</g>");
             }
         }
         svg.finish()
@@ -403,6 +414,25 @@ mod tests {
         let all = [&one, &other];
         let frame = |shown: &Recording| Film::new(&location, None, &all, &[shown], SMALL).unwrap().panels[0].frame;
         assert_eq!(frame(&one), frame(&other));
+    }
+
+    #[test]
+    fn nobody_walks_from_one_panel_into_the_next() {
+        let (location, mut run) = (hall("hall"), walk(0));
+        // Far to the right of the camera, in the middle of the second panel.
+        for state in &mut run.frames {
+            state.x += 7.0;
+        }
+        let still = walk(0);
+        let film = |first: &Recording| {
+            let options = FilmOptions { labels: false, ..SMALL };
+            Film::new(&location, None, &[&still], &[first, &still], options).unwrap().picture(15).unwrap()
+        };
+        let right_half = |picture: &[u8]| -> Vec<u8> {
+            picture.chunks_exact(320 * 3).flat_map(|row| row.iter().skip(162 * 3).copied()).collect()
+        };
+        assert_eq!(right_half(&film(&run)), right_half(&film(&still)));
+        assert_ne!(film(&run), film(&still));
     }
 
     #[test]

@@ -208,7 +208,7 @@ fn by_ffmpeg(
     let codec: &[&str] = if kind == Kind::Mp4 {
         &["-c:v", "libx264", "-profile:v", "high", "-preset", "medium", "-crf", "20", "-movflags", "+faststart"]
     } else {
-        &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "32", "-row-mt", "1"]
+        &["-c:v", "libvpx-vp9", "-b:v", "0", "-crf", "32", "-row-mt", "1", "-deadline", "good", "-cpu-used", "5"]
     };
     let failed =
         |what: String| Complaint::input(what, "name a .gif or .svg file, which need no ffmpeg").with_code(Code::Input);
