@@ -69,6 +69,26 @@ pub(crate) enum Verb {
         /// Bundle folder.
         bundle: PathBuf,
     },
+    /// Write the page of a bundle anew, or one page for a folder of bundles.
+    Report {
+        /// Bundle folder, or a folder that holds bundles.
+        what: PathBuf,
+    },
+    /// Film a bundle, seen from above: MP4 or WebM with ffmpeg, GIF or animated SVG without.
+    Video(crate::video::VideoOptions),
+    /// Draw a figure for a paper: who went where and when.
+    Figure(crate::figure::FigureOptions),
+    /// Print what a paper says about how a bundle was made, and what to cite.
+    Cite {
+        /// Bundle folder.
+        bundle: PathBuf,
+    },
+    /// Let people label runs by hand.
+    Labels {
+        /// What to do.
+        #[command(subcommand)]
+        verb: crate::labels::LabelsVerb,
+    },
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(SimulateOptions),
     /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).
