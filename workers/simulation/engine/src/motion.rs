@@ -121,7 +121,11 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     // The sidestep is taken up at 0.9 m/s sideways, so that nobody jumps.
     human.aside_m += (wish - human.aside_m).clamp(-0.009, 0.009);
     let base = human.route.point(human.s + LOOK_AHEAD_M);
-    let target = beside(scene.floor, &base, &ahead, human.aside_m, human.radius_m + 0.08);
+    let aside = Vector::new(-ahead.y, ahead.x) * human.aside_m;
+    if scene.looks {
+        human.notice.share = share(scene.floor, &base, &aside, human.radius_m + 0.08);
+    }
+    let target = base + aside * human.notice.share;
     if scene.looks {
         human.notice.straight = scene.floor.straight(&human.at, &target, 0.15);
     }
@@ -173,16 +177,10 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
     false
 }
 
-/// The point `aside` m to the left of `base`, as far as the floor allows.
-fn beside(floor: &Floor, base: &Point, ahead: &Vector, aside: f64, clearance_m: f64) -> Point {
-    let left = Vector::new(-ahead.y, ahead.x);
-    for share in [1.0, 0.75, 0.5, 0.25] {
-        let point = base + left * (aside * share);
-        if floor.clearance_m(&point) >= clearance_m {
-            return point;
-        }
-    }
-    *base
+/// How much of the way `aside` from `base` the floor allows.
+fn share(floor: &Floor, base: &Point, aside: &Vector, clearance_m: f64) -> f64 {
+    let free = |share: &f64| floor.clearance_m(&(base + aside * *share)) >= clearance_m;
+    [1.0, 0.75, 0.5, 0.25].into_iter().find(free).unwrap_or(0.0)
 }
 
 /// How far to go aside for whoever is ahead and in the way, m to the left.

@@ -68,6 +68,10 @@ pub(crate) struct Notice {
     pub(crate) walls: Vec<Point>,
     /// How far it means to go aside for whoever is in its way, m to the left.
     pub(crate) aside_m: f64,
+    /// Share of that which the floor allows.
+    pub(crate) share: f64,
+    /// Whether it and the robot are in line of sight, once that was asked since the last look.
+    pub(crate) robot_seen: Option<bool>,
     /// Whether nothing stands between it and the next point of its way.
     pub(crate) straight: bool,
     /// Whether it does something else than at its last look, and has to look anew.
@@ -164,6 +168,7 @@ impl Near {
         human.notice.close = close;
         human.notice.near = near;
         human.notice.far = None;
+        human.notice.robot_seen = None;
         human.notice.walls = if clearance_m > WALLS_M + BETWEEN_M { Vec::new() } else { floor.felt(&human.at) };
         human.notice.stale = false;
     }

@@ -191,6 +191,7 @@ impl Engine {
             human.tree.tick(&mut human.state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
             human.robot_in_sight = view.looked();
+            human.notice.robot_seen = human.robot_in_sight;
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
             }

@@ -64,7 +64,7 @@ impl<'a> View<'a> {
             travel: human.travel(),
             at_goal: human.at_goal(),
             at_encounter,
-            sight: Cell::new(None),
+            sight: Cell::new(human.notice.robot_seen),
             act: None,
             say: None,
         }
