@@ -10,8 +10,8 @@ use socrates_model::hash::derive_seed;
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, Predicate,
-    RecordingHeader, Relation, Vector,
+    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
+    Predicate, RecordingHeader, Relation, Vector,
 };
 
 use crate::floor::Floor;
