@@ -351,6 +351,7 @@ mod tests {
     const SEEDS: u64 = 5;
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    #[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
     async fn every_scenario_of_the_catalogue_really_happens() {
         let (mut runs, mut realised, mut lines) = (0, 0, Vec::new());
         for card in catalog() {

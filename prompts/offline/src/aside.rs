@@ -111,7 +111,7 @@ pub(crate) fn language(text: &str) -> Option<&'static str> {
     let foreign: Vec<&str> = letters.iter().filter_map(|c| script(*c)).collect();
     if foreign.len() * 2 > letters.len() {
         // Japanese is written with Chinese characters too.
-        return foreign.iter().copied().find(|name| *name == "Japanese").or(foreign.first().copied());
+        return foreign.iter().copied().find(|name| *name == "Japanese").or_else(|| foreign.first().copied());
     }
     let lower = text.to_lowercase();
     let words: Vec<&str> = lower.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_empty()).collect();

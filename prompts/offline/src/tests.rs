@@ -429,6 +429,7 @@ fn a_reaction_that_never_came_gets_a_longer_reach() {
 }
 
 #[test]
+#[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
 fn requests_without_a_rough_scenario_use_many_patterns_and_every_place_that_fits() {
     let contexts =
         ["", "A busy morning with nurses and visitors", "A quiet night shift", "Employees on their lunch break"];

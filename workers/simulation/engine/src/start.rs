@@ -129,9 +129,8 @@ pub(crate) fn humans(
 
 /// Groups that wait in line: those of which a clause says so.
 fn lines(proposal: &socrates_model::Proposal) -> Vec<GroupId> {
-    let queue = |clause: &Clause| match clause.predicate {
-        Predicate::Queues { group, .. } => Some(group),
-        _ => None,
+    let queue = |clause: &Clause| {
+        if let Predicate::Queues { group, .. } = clause.predicate { Some(group) } else { None }
     };
     proposal.expected_events.iter().filter_map(queue).collect()
 }
