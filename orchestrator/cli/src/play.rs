@@ -14,7 +14,6 @@ const PLANNER: &str = "reference";
 #[derive(Debug)]
 pub(crate) struct Played {
     pub(crate) proposal: Proposal,
-    pub(crate) paths: Paths,
     pub(crate) report: Report,
 }
 
@@ -45,7 +44,7 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
         return wrong();
     };
     let report = judged(request, &reading, location, (&proposal, &paths, behaviors), seed)?;
-    Ok(Played { proposal, paths, report })
+    Ok(Played { proposal, report })
 }
 
 /// One stage, asked again with what was wrong until it is right.

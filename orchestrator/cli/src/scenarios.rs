@@ -1,7 +1,6 @@
 //! `scenarios`: the catalogue of canonical scenarios, and how often each of them really happens.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::Path;
 
 use serde_json::{Value, json};
@@ -62,8 +61,10 @@ fn fitting(card: &Card) -> Vec<&'static str> {
 }
 
 fn find(id: &str) -> Result<&'static Card, Complaint> {
-    catalog().iter().find(|card| card.id == id || card.letter.is_some_and(|letter| letter.to_string() == id)).ok_or_else(
-        || {
+    catalog()
+        .iter()
+        .find(|card| card.id == id || card.letter.is_some_and(|letter| letter.to_string() == id))
+        .ok_or_else(|| {
             let known: Vec<&str> = catalog().iter().map(|card| card.id.as_str()).collect();
             let first = id.chars().next().unwrap_or(' ');
             let near: Vec<&str> = known.iter().copied().filter(|other| other.starts_with(first)).collect();
@@ -73,8 +74,7 @@ fn find(id: &str) -> Result<&'static Card, Complaint> {
                 format!("`socrates scenarios list` lists them; with `{first}` begin: {}", near.join(", "))
             };
             Complaint::input(format!("there is no scenario `{id}`"), hint)
-        },
-    )
+        })
 }
 
 fn show(talk: &Talk, id: &str) -> Result<(), Complaint> {
@@ -171,9 +171,11 @@ fn first_word(value: &Value) -> String {
 fn plain(value: &Value) -> String {
     match value {
         Value::String(text) => text.replace('_', " "),
-        Value::Object(members) => {
-            members.iter().map(|(key, value)| format!("{} {}", key.replace('_', " "), plain(value))).collect::<Vec<_>>().join(", ")
-        }
+        Value::Object(members) => members
+            .iter()
+            .map(|(key, value)| format!("{} {}", key.replace('_', " "), plain(value)))
+            .collect::<Vec<_>>()
+            .join(", "),
         Value::Null | Value::Bool(_) | Value::Number(_) | Value::Array(_) => value.to_string(),
     }
 }
@@ -222,7 +224,11 @@ fn failing(played: &Played) -> Option<String> {
         .map(|found| kind(&found.id))
         .collect();
     kinds.dedup();
-    Some(format!("{}: {}", report.verdict, if kinds.is_empty() { report.verdict_text.clone() } else { kinds.join(", ") }))
+    Some(format!(
+        "{}: {}",
+        report.verdict,
+        if kinds.is_empty() { report.verdict_text.clone() } else { kinds.join(", ") }
+    ))
 }
 
 /// Plays one card with seeds `1..=seeds` over the locations in turn.
@@ -241,7 +247,8 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
         let wrong = match &played {
             Ok(played) => failing(played),
             Err(faults) => {
-                let mut codes: Vec<&str> = faults.iter().filter(|f| !f.is_soft()).map(|fault| fault.code.code()).collect();
+                let mut codes: Vec<&str> =
+                    faults.iter().filter(|f| !f.is_soft()).map(|fault| fault.code.code()).collect();
                 codes.dedup();
                 Some(format!("not written: {}", codes.join(", ")))
             }
@@ -277,9 +284,14 @@ async fn rate(
     location: Option<&str>,
     out: Option<&Path>,
 ) -> Result<(), Complaint> {
-    let cards: Vec<&'static Card> =
-        if ids.is_empty() { catalog().iter().collect() } else { ids.iter().map(|id| find(id)).collect::<Result<_, _>>()? };
-    let mut table = String::from("| | scenario | locations | realised | Wilson ≥ | what failed (seeds) |\n|---|---|---|---|---|---|\n");
+    let cards: Vec<&'static Card> = if ids.is_empty() {
+        catalog().iter().collect()
+    } else {
+        ids.iter().map(|id| find(id)).collect::<Result<_, _>>()?
+    };
+    let mut table = String::from(
+        "| | scenario | locations | realised | Wilson ≥ | what failed (seeds) |\n|---|---|---|---|---|---|\n",
+    );
     let (mut runs, mut realised, mut rows) = (0, 0, Vec::new());
     for card in cards {
         let rate = rated(card, &places(card, location)?, seeds).await?;
@@ -295,12 +307,22 @@ async fn rate(
             .collect();
         talk.line(&format!(
             "{:>3}  {:<26} {:>3}/{:<3}  {:.3}  {}",
-            mark(card), card.id, rate.realised, rate.runs, rate.low(), failures.join(" · ")
+            mark(card),
+            card.id,
+            rate.realised,
+            rate.runs,
+            rate.low(),
+            failures.join(" · ")
         ));
-        drop(writeln!(
-            table,
-            "| {} | {} | {} | {}/{} | {:.3} | {} |",
-            mark(card), card.id, rate.locations.join(", "), rate.realised, rate.runs, rate.low(), failures.join("; ")
+        table.push_str(&format!(
+            "| {} | {} | {} | {}/{} | {:.3} | {} |\n",
+            mark(card),
+            card.id,
+            rate.locations.join(", "),
+            rate.realised,
+            rate.runs,
+            rate.low(),
+            failures.join("; ")
         ));
         rows.push(json!({ "id": card.id, "letter": card.letter, "runs": rate.runs, "realised": rate.realised,
             "wilson_low": rate.low(), "failures": rate.failures, "locations": rate.locations }));
@@ -308,7 +330,10 @@ async fn rate(
     #[expect(clippy::cast_precision_loss, reason = "a few thousand runs")]
     let pooled = realised as f64 / runs.max(1) as f64;
     talk.line(&format!("pooled     {realised}/{runs} = {:.1} %", pooled * 100.0));
-    drop(writeln!(table, "\nPooled: {realised} of {runs}, {:.1} %. Command: `socrates scenarios rate --seeds {seeds}`.", pooled * 100.0));
+    table.push_str(&format!(
+        "\nPooled: {realised} of {runs}, {:.1} %. Command: `socrates scenarios rate --seeds {seeds}`.\n",
+        pooled * 100.0
+    ));
     if let Some(path) = out {
         std::fs::write(path, &table)
             .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder"))?;
@@ -316,4 +341,38 @@ async fn rate(
     }
     talk.result(&json!({ "scenarios": rows, "runs": runs, "realised": realised }));
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seeds per scenario: as many as a test may take.
+    const SEEDS: u64 = 5;
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    #[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
+    async fn every_scenario_of_the_catalogue_really_happens() {
+        let (mut runs, mut realised, mut lines) = (0, 0, Vec::new());
+        for card in catalog() {
+            let rate = rated(card, &places(card, None).unwrap(), SEEDS).await.unwrap();
+            (runs, realised) = (runs + rate.runs, realised + rate.realised);
+            if rate.realised < rate.runs {
+                lines.push(format!("{}: {} of {} {:?}", card.id, rate.realised, rate.runs, rate.failures));
+            }
+            // One of five may fail; two of five are another scenario than the card says.
+            assert!(rate.realised + 1 >= rate.runs, "{}", lines.join("\n"));
+        }
+        println!("{realised} of {runs}\n{}", lines.join("\n"));
+        assert!(realised * 100 >= runs * 97, "{}", lines.join("\n"));
+    }
+
+    #[test]
+    fn a_scenario_is_found_by_id_or_letter_and_others_are_named() {
+        assert_eq!(find("a").unwrap().id, "frontal_approach");
+        assert_eq!(find("queue").unwrap().id, "queue");
+        let complaint = find("quark").unwrap_err();
+        assert!(complaint.what.contains("`quark`") && complaint.hint.contains("queue"), "{complaint}");
+        assert!(places(find("exiting_elevator").unwrap(), Some("office")).unwrap_err().hint.contains("hospital"));
+    }
 }

@@ -294,9 +294,7 @@ fn of_card(list: &mut List, part: &Part<'_>, proposal: &Proposal, location: &Loc
         let role = clause.each.as_ref().and_then(|name| card.roles.iter().find(|role| role.name == *name));
         let plays = |human: &HumanProposal| match role {
             None => false,
-            Some(role) if part.by_card => {
-                part.read.iter().any(|read| read.id == human.id && read.summary == role.name)
-            }
+            Some(role) if part.by_card => part.read.iter().any(|read| read.id == human.id && read.summary == role.name),
             Some(role) => human.relation == role.relation,
         };
         let who: Vec<Option<HumanId>> = if role.is_some() {

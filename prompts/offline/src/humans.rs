@@ -193,8 +193,8 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let turn = net.straight(*entry, meet, *exit);
                 let own = if used.contains(&Some(*exit)) { 1.5 } else { 0.0 };
                 let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
-                let inside = way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0
-                    + if into { 2.0 } else { 0.0 };
+                let inside =
+                    way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0 + if into { 2.0 } else { 0.0 };
                 let cost = 0.2 * (length - ideal).abs() + if length < 3.0 { 10.0 } else { 0.0 } + 2.0 * side
                     - 0.5 * turn
                     + own

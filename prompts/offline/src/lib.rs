@@ -14,6 +14,7 @@
 
 pub mod card;
 
+mod aside;
 mod lexicon;
 mod words;
 

@@ -55,7 +55,8 @@ pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<Node
 pub(crate) fn meets_arms(location: &Location, from: Option<PlaceClass>, least: usize) -> bool {
     let graph = &location.graph;
     let arms = |id: &NodeId| graph.neighbors(id).len();
-    let doorway = |id: &NodeId| graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway);
+    let doorway =
+        |id: &NodeId| graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway);
     let outside = |id: &NodeId| !is_inside(location, id) && !doorway(id);
     let Some(class) = from else {
         return graph.nodes.iter().any(|node| outside(&node.id) && arms(&node.id) >= least);

@@ -167,6 +167,8 @@ pub(crate) struct Wish {
     pub(crate) start: Option<PlaceClass>,
     pub(crate) goal: Option<PlaceClass>,
     pub(crate) place: PlaceClass,
+    /// A class of place that the way should lead past.
+    pub(crate) via: Option<PlaceClass>,
     /// 1: straight over the meeting node, -1: round a corner, 0: no matter.
     pub(crate) straight: f64,
     /// Ways shorter than this are not good enough, m.
@@ -255,6 +257,9 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
     score -= 4.0 * nodes.windows(3).filter(|triple| back(triple)).count() as f64;
     let mid = nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default();
     score -= 5.0 * mid.iter().filter(|node| net.inside(**node)).count() as f64;
+    if wish.via.is_some_and(|class| mid.iter().any(|node| net.is(*node, class))) {
+        score += 3.0;
+    }
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
     score += 0.3 * of_place as f64;
     for (end, class) in [(nodes.first(), wish.start), (nodes.last(), wish.goal)] {

@@ -31,7 +31,8 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let told = |code: FaultCode| {
         u32::try_from(question.feedback.iter().filter(|fault| fault.code == code).count()).unwrap_or(0)
     };
-    let wish = wish(proposal, told(FaultCode::GShort));
+    let via = crate::task::read(&question.request.task).via.map(|(class, _)| class);
+    let wish = Wish { via, ..wish(proposal, told(FaultCode::GShort)) };
     let mut solutions = solutions(&net, proposal, &wish);
     if solutions.is_empty() {
         // Better another place than no answer; the checks and the person see what became of it.
@@ -79,6 +80,7 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         start: proposal.robot.start,
         goal: proposal.robot.goal,
         place: proposal.place,
+        via: None,
         straight,
         least_m: 6.5 + 2.0 * longer,
         aim_m: if along { 20.0 } else { 16.0 } + 4.0 * longer,
@@ -102,7 +104,11 @@ fn solutions(net: &Net<'_>, proposal: &Proposal, wish: &Wish) -> Vec<Solution> {
     }
     if let Some(class) = found.and_then(|card| card.start).filter(|class| proposal.robot.start == Some(*class)) {
         let inside = place::inside(net.location, Some(class));
-        return inside.iter().filter_map(|id| net.index(id)).flat_map(|start| out_of(net, proposal, wish, start)).collect();
+        return inside
+            .iter()
+            .filter_map(|id| net.index(id))
+            .flat_map(|start| out_of(net, proposal, wish, start))
+            .collect();
     }
     let typed: Vec<usize> =
         socrates_maps::place::nodes_of(net.location, wish.place).iter().filter_map(|id| net.index(id)).collect();
@@ -240,8 +246,7 @@ fn out_of(net: &Net<'_>, proposal: &Proposal, wish: &Wish, start: usize) -> Vec<
         .filter(|goal| !net.inside(*goal) && tree.length_m(*goal).is_finite())
         .filter_map(|goal| {
             let nodes = tree.way(goal);
-            let meet =
-                nodes.iter().position(|node| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway)?;
+            let meet = nodes.iter().position(|node| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway)?;
             let out = nodes.get(meet..)?.iter().all(|node| !net.inside(*node));
             if meet == 0 || !out || meet + 1 >= nodes.len() {
                 return None;

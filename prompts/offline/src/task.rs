@@ -12,6 +12,8 @@ pub(crate) struct Task {
     pub(crate) start: Option<(PlaceClass, String)>,
     pub(crate) goal: Option<(PlaceClass, String)>,
     pub(crate) via: Option<(PlaceClass, String)>,
+    /// Words that ask for the way back.
+    pub(crate) back: Option<String>,
     pub(crate) ignored: Vec<String>,
 }
 
@@ -21,6 +23,20 @@ pub(crate) fn read(text: &str) -> Task {
     for mut stretch in sentences(text).into_iter().flatten() {
         let quote = stretch.quote(text).to_owned();
         let found = clause::read(&mut stretch);
+        // `deliver mail and return (to the desk)`: the second errand; `return the cup to the kitchen` is the first.
+        let comes_back = |i: usize| {
+            let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+            let last = matches!(text(i + 1), "" | "to" | "back" | "home" | "again");
+            matches!(text(i), "return" | "returns" | "returning") && last
+                || matches!(text(i), "come" | "comes" | "go" | "goes" | "coming") && text(i + 1) == "back"
+        };
+        if let Some(at) = (0..stretch.words.len()).find(|i| comes_back(*i)) {
+            task.back.get_or_insert_with(|| quote.clone());
+            for word in stretch.words.iter_mut().skip(at).take(2) {
+                word.used = true;
+            }
+            continue;
+        }
         for (class, at) in found.places {
             let before: Vec<&str> = (1..=3)
                 .filter_map(|back| at.checked_sub(back))
@@ -71,6 +87,9 @@ mod tests {
         assert_eq!(task.start.unwrap().0, PlaceClass::Exit);
         assert_eq!(task.goal.unwrap().0, PlaceClass::Room);
         assert_eq!(task.via.unwrap().0, PlaceClass::Corridor);
+        let task = read("Deliver mail to the kitchen and come back to the exit");
+        assert_eq!((task.goal.unwrap().0, task.back.as_deref()), (PlaceClass::Room, Some("come back to the exit")));
+        assert_eq!(read("Return the cup to the kitchen").back, None);
         let task = read("Deliver coffee from one corner of the warehouse to another.");
         assert_eq!(task.start, None);
     }

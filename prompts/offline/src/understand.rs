@@ -9,7 +9,7 @@ use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{default_cast, place, words};
+use crate::{aside, default_cast, place, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -32,10 +32,20 @@ pub(crate) struct Extra {
 
 /// Reads a request. Never fails: what cannot be read stands in `ignored` and `problems`.
 pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
-    let rough = request.rough_scenario.as_deref().map(str::trim).filter(|text| !text.is_empty());
+    let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
+    let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
+    let asked = aside::split(&request.task);
     let mut story = rough.map(story::read).unwrap_or_default();
-    let mut task = task::read(&request.task);
-    let mut reading = Reading { format: FORMAT, task: shortened(&request.task), ..Reading::default() };
+    let mut task = task::read(&asked.story);
+    let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
+    let context = aside::split(&request.social_context);
+    for (at, found) in [("rough_scenario", &told), ("task", &asked), ("social_context", &context)] {
+        reading.problems.extend(found.instructions.iter().map(|sentence| {
+            let message =
+                format!("`{sentence}` speaks to the program and is no part of a scenario; nothing was done about it");
+            Fault::new(FaultCode::PRead, at, message)
+        }));
+    }
     language(request, &mut reading);
     expectations(request, &mut story, &mut reading);
     story.finish();
@@ -131,9 +141,13 @@ fn language(request: &Request, reading: &mut Reading) {
             .filter(|word| lex.known.contains(&word.stem) || lex.known.contains(&word.text) || word.stem == "robot")
             .count();
         // English texts of a few words still have half of theirs in the tables; other languages share single words only.
-        if letters.len() >= 4 && known * 10 < letters.len() * 3 {
-            let message =
-                format!("{known} of {} words are known; the offline author reads plain English only", letters.len());
+        let script = known == 0 && letters.len() < 4 && aside::language(text).is_some();
+        if script || letters.len() >= 4 && known * 10 < letters.len() * 3 {
+            let named = aside::language(text).map_or_else(String::new, |name| format!(" (this looks like {name})"));
+            let message = format!(
+                "{known} of {} words are known{named}; the offline author reads plain English only",
+                letters.len()
+            );
             reading.problems.push(Fault::new(FaultCode::PLang, key, message));
         }
     }
@@ -188,6 +202,7 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
     absent(&mut story.robot_leaves, "rough_scenario");
     absent(&mut task.start, "task");
     absent(&mut task.goal, "task");
+    absent(&mut task.via, "task");
     let rooms = !place::inside(location, None).is_empty();
     let cars = !place::inside(location, Some(PlaceClass::Elevator)).is_empty();
     for who in 0..story.cast.people.len() {
@@ -285,7 +300,24 @@ fn facts(story: &Story, task: &Task, reading: &mut Reading) {
         .collect();
 }
 
+/// What of the task is no start and no goal: the way over a place, and the way back.
+fn errand(task: &Task, reading: &mut Reading) {
+    if let Some((class, quote)) = &task.via {
+        reading
+            .notes
+            .push(format!("`{quote}`: the robot's way leads past {} where the map has such a way", place::an(*class)));
+    }
+    if let Some(quote) = &task.back {
+        reading.problems.push(Fault::new(
+            FaultCode::PRead,
+            "task",
+            format!("`{quote}`: the way back is not played; a run ends where the robot gets to its goal"),
+        ));
+    }
+}
+
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
+    errand(task, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.

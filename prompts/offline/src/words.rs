@@ -127,6 +127,13 @@ fn pieces(text: &str) -> Vec<Piece> {
             while at(i).is_some_and(char::is_alphabetic) {
                 i += 1;
             }
+            // `gate B12` is a name and counts nothing; `human2` is the second human.
+            while i - start <= 4
+                && chars.get(start + 1..i).is_none_or(|rest| rest.iter().all(|(_, c)| c.is_ascii_digit()))
+                && at(i).is_some_and(|c| c.is_ascii_digit())
+            {
+                i += 1;
+            }
             let lower: String =
                 chars.get(start..i).unwrap_or_default().iter().flat_map(|(_, c)| c.to_lowercase()).collect();
             i += apostrophe(&lower, &at, i, &mut out, byte(start), &byte);

@@ -95,17 +95,18 @@ pub(crate) fn line(home: &Point, count: usize, around: &Around<'_>) -> Option<Ve
                     along * (0.25 * f64::from(ahead)) + Vector::new(-along.y, along.x) * (0.25 * f64::from(aside));
                 let center = home + offset;
                 #[expect(clippy::cast_precision_loss, reason = "a few people")]
-                let places: Vec<(Point, f64)> = (0..count)
-                    .map(|place| (center + toward * ((half - place as f64) * LINE_GAP_M), yaw))
-                    .collect();
+                let places: Vec<(Point, f64)> =
+                    (0..count).map(|place| (center + toward * ((half - place as f64) * LINE_GAP_M), yaw)).collect();
                 let off = places.iter().map(|(at, _)| around.off_way_m(at)).fold(f64::INFINITY, f64::min);
                 let near = off < 2.5;
                 if !near || !places.iter().all(|(at, _)| around.free(at) && around.floor.straight(&center, at, 0.2)) {
                     continue;
                 }
                 // Off the way first, then near the node; lengthwise before across.
-                let score =
-                    4.0 * off.min(BESIDE_M) - 0.5 * offset.norm() - 0.4 * (off - BESIDE_M).max(0.0) - 0.2 * f64::from(quarter % 2);
+                let score = 4.0 * off.min(BESIDE_M)
+                    - 0.5 * offset.norm()
+                    - 0.4 * (off - BESIDE_M).max(0.0)
+                    - 0.2 * f64::from(quarter % 2);
                 if best.as_ref().is_none_or(|(top, _)| score > *top + 1e-9) {
                     best = Some((score, places));
                 }

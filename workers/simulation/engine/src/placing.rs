@@ -181,8 +181,7 @@ fn stand(
         gathering::line(&home, members.len(), &around)
     } else {
         let ring = ring_m(members.len());
-        gathering::at_end(&home, route)
-            .and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
+        gathering::at_end(&home, route).and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
     };
     let places = places.unwrap_or_else(|| formation(&home, members.len(), body, floor, route, taken));
     for (member, (at, yaw)) in members.iter().zip(places) {

@@ -133,7 +133,9 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
         Some((_, true)) => true,
         // A door that opens for those who come near would wait for who waits for it.
         Some((_, false)) => timing.opens_door && near_along(robot, &human.at, LEAVE_AT_M + DOOR_M),
-        None => (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at, LEAVE_AT_M),
+        None => {
+            (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at, LEAVE_AT_M)
+        }
     };
     if !since {
         timing.open_since_s = None;

@@ -10,8 +10,8 @@ use socrates_model::hash::derive_seed;
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, Predicate,
-    RecordingHeader, Relation, Vector,
+    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
+    Predicate, RecordingHeader, Relation, Vector,
 };
 
 use crate::floor::Floor;
@@ -130,9 +130,8 @@ pub(crate) fn humans(
 
 /// Groups that wait in line: those of which a clause says so.
 fn lines(proposal: &socrates_model::Proposal) -> Vec<GroupId> {
-    let queue = |clause: &Clause| match clause.predicate {
-        Predicate::Queues { group, .. } => Some(group),
-        _ => None,
+    let queue = |clause: &Clause| {
+        if let Predicate::Queues { group, .. } = clause.predicate { Some(group) } else { None }
     };
     proposal.expected_events.iter().filter_map(queue).collect()
 }
