@@ -90,9 +90,9 @@ async fn in_the_elevator_two_leave_one_stays_startled() {
     let robot = track(&scenario, AgentId::Robot);
     assert!((robot[0].point() - door.middle()).norm() >= 4.0);
     // S2: the door opens with the robot 1 to 4 m away.
-    let opens = scenario.run.events.iter().find_map(|event| match &event.kind {
-        EventKind::Door { door: id, open: true } if *id == door.id => Some(event.time.secs()),
-        _ => None,
+    let opens = scenario.run.events.iter().find_map(|event| {
+        let EventKind::Door { door: id, open: true } = &event.kind else { return None };
+        (*id == door.id).then(|| event.time.secs())
     });
     let opens = opens.expect("the door opens");
     let distance = (robot[(opens * 100.0) as usize].point() - door.middle()).norm();
