@@ -61,9 +61,10 @@ impl DistanceField {
         let (column, row) = (floor_index(u), floor_index(v));
         #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells a side")]
         let (right, down) = (u - column as f64, v - row as f64);
-        let at = |c: usize, r: usize| self.lattice.get(c, r).map_or(0.0, f64::from);
-        let top = at(column, row) * (1.0 - right) + at(column + 1, row) * right;
-        let bottom = at(column, row + 1) * (1.0 - right) + at(column + 1, row + 1) * right;
+        let pair = |row: usize| self.lattice.pair(column, row).map(f64::from);
+        let ([top_left, top_right], [bottom_left, bottom_right]) = (pair(row), pair(row + 1));
+        let top = top_left * (1.0 - right) + top_right * right;
+        let bottom = bottom_left * (1.0 - right) + bottom_right * right;
         top * (1.0 - down) + bottom * down
     }
 

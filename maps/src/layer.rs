@@ -21,6 +21,21 @@ impl<T: Copy> Layer<T> {
         self.values.get(row.checked_mul(self.width)?.checked_add(column)?).copied()
     }
 
+    /// The value here and the one to its right; outside they are the default.
+    pub(crate) fn pair(&self, column: usize, row: usize) -> [T; 2]
+    where
+        T: Default,
+    {
+        let start = row.saturating_mul(self.width).saturating_add(column);
+        // Inside a row both are found with one look at the bounds.
+        if column.saturating_add(1) < self.width
+            && let Some([here, right]) = self.values.get(start..start.saturating_add(2))
+        {
+            return [*here, *right];
+        }
+        [column, column.saturating_add(1)].map(|column| self.get(column, row).unwrap_or_default())
+    }
+
     pub(crate) fn set(&mut self, column: usize, row: usize, value: T) {
         if column >= self.width {
             return;

@@ -5,6 +5,7 @@ mod bad_input;
 mod bundles;
 mod live;
 mod originals;
+mod pages;
 mod repairs;
 mod requests;
 

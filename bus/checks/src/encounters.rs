@@ -36,7 +36,10 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
     }
     for human in &proposal.humans {
         let path = paths.humans.get(&human.id);
-        if human.relation != Relation::Staying && path.is_some() && paths.encounter_of(human.id).is_none() {
+        // Whoever stands where the robot starts is left, not met.
+        let left = path.is_some_and(|nodes| nodes.len() == 1 && nodes.first() == paths.robot.first());
+        let met = human.relation == Relation::Staying || human.relation == Relation::Static && left;
+        if !met && path.is_some() && paths.encounter_of(human.id).is_none() {
             let shared = path.map(|nodes| shared(nodes, &paths.robot)).unwrap_or_default();
             let message = format!("has no encounter; nodes it shares with the robot: {}", list(shared));
             faults.push(Fault::new(FaultCode::GMeet, human.id, message));
@@ -86,7 +89,9 @@ fn ends(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: &
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let stands = own.len() == 1;
     let last = paths.robot.last() == Some(&encounter.node);
-    if paths.robot.first() == Some(&encounter.node) || last && !((indoors || stands) && at_car) {
+    // A standing group may be where the robot's way ends: it joins them.
+    let joined = stands && human.group.is_some();
+    if paths.robot.first() == Some(&encounter.node) || last && !((indoors || stands) && at_car || joined) {
         let which = if last { "last" } else { "first" };
         let message = format!(
             "meets the robot at `{}`, the robot's {which} node; the encounter needs a robot node before and after it. Choose \

@@ -79,7 +79,9 @@ fn belong(one: AgentId, other: AgentId, proposal: &Proposal) -> bool {
                 || along(a.relation) && along(b.relation)
         }
         (None, Some(human)) | (Some(human), None) => {
-            matches!(human.relation, Relation::Behind | Relation::Abreast | Relation::Ahead)
+            // A standing group with which the robot starts is placed round it.
+            let with = human.relation == Relation::Static && human.group.is_some();
+            with || matches!(human.relation, Relation::Behind | Relation::Abreast | Relation::Ahead)
         }
         (None, None) => false,
     }

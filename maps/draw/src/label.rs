@@ -33,17 +33,24 @@ const FURTHER: f64 = 24.0;
 const LINE_STEP_PX: f64 = 6.0;
 
 /// Places labels one after another.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Labels {
     taken: Vec<(Area, f64)>,
     bounds: Option<Area>,
+    unit: f64,
 }
 
 impl Labels {
     /// A sheet within which labels stay.
     #[must_use]
     pub fn within(bounds: Area) -> Self {
-        Self { taken: Vec::new(), bounds: Some(bounds) }
+        Self::scaled(bounds, 1.0)
+    }
+
+    /// The same on a sheet whose drawing unit is so many pixels of a screen: 0.5 where letters are half as large.
+    #[must_use]
+    pub const fn scaled(bounds: Area, unit: f64) -> Self {
+        Self { taken: Vec::new(), bounds: Some(bounds), unit }
     }
 
     /// Marks a box as taken by something that a label must not hide.
@@ -60,12 +67,13 @@ impl Labels {
     pub fn avoid_line(&mut self, points: &[(f64, f64)]) {
         for (from, to) in points.iter().zip(points.iter().skip(1)) {
             let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-            let n = (dx.hypot(dy) / LINE_STEP_PX).ceil().clamp(1.0, 400.0);
+            let step = LINE_STEP_PX * self.unit;
+            let n = (dx.hypot(dy) / step).ceil().clamp(1.0, 400.0);
             let mut i = 0.0;
             while i < n {
                 let (x, y) = (from.0 + dx * i / n, from.1 + dy * i / n);
-                let half = LINE_STEP_PX / 2.0;
-                self.taken.push((Area { x: x - half, y: y - half, w: LINE_STEP_PX, h: LINE_STEP_PX }, CROSSES));
+                let half = step / 2.0;
+                self.taken.push((Area { x: x - half, y: y - half, w: step, h: step }, CROSSES));
                 i += 1.0;
             }
         }
@@ -76,7 +84,7 @@ impl Labels {
         let (w, h) = size;
         let mut best: Option<(f64, Area)> = None;
         // Right, left, above, below, the diagonals, then the same further out.
-        for (ring, reach) in [(0.0, gap), (1.0, gap + 9.0), (2.0, gap + 20.0)] {
+        for (ring, reach) in [(0.0, gap), (1.0, gap + 9.0 * self.unit), (2.0, gap + 20.0 * self.unit)] {
             let places = [
                 (at.0 + reach, at.1 - h / 2.0),
                 (at.0 - reach - w, at.1 - h / 2.0),
@@ -92,7 +100,7 @@ impl Labels {
                 let covered: f64 = self.taken.iter().map(|(other, cost)| area.overlap(other) * cost).sum();
                 let outside = self.bounds.as_ref().map_or(0.0, |bounds| w * h - area.overlap(bounds));
                 #[expect(clippy::cast_precision_loss, reason = "eight places")]
-                let cost = covered + outside * 20.0 + ring * FURTHER + order as f64;
+                let cost = covered + outside * 20.0 + (ring * FURTHER + order as f64) * self.unit * self.unit;
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, area));
                 }

@@ -8,17 +8,35 @@
 //!
 //! *Never here:* a file, a clock, a rule of scoring; everything drawn is handed in.
 
+mod actor;
 pub mod annotated;
+pub mod batch;
+pub mod facts;
+pub mod figure;
+pub mod film;
+mod film_svg;
+#[cfg(test)]
+mod fixture;
+pub mod gif;
 pub mod label;
+pub mod label_page;
 pub mod map_layer;
 pub mod page;
 mod page_data;
 pub mod palette;
+mod play;
 pub mod png;
 pub mod run;
+pub mod series;
 pub mod svg;
+mod template;
 
 pub use annotated::annotated_map;
+pub use batch::{BatchEntry, BatchPage};
+pub use facts::fact_words;
+pub use figure::{FigureError, figure};
+pub use film::{Film, FilmError, FilmOptions};
+pub use label_page::LabelPage;
 pub use page::{Page, ProvenanceRow, StageRow};
-pub use png::{PngError, png_from_svg};
+pub use png::{PngError, png_at_dpi, png_from_svg};
 pub use run::run_picture;

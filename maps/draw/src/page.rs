@@ -4,17 +4,13 @@ use std::collections::BTreeSet;
 
 use socrates_model::{Location, Paths, Proposal, Reading, Recording, Report, Request};
 
-use crate::map_layer::{Frame, draw_floor, draw_graph};
 use crate::page_data::page_data;
-use crate::palette;
-use crate::svg::{Svg, escape};
+use crate::svg::escape;
+use crate::template::{self, STYLE};
+use crate::{palette, play};
 
-const TEMPLATE: &str = include_str!("page.html");
-const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
-
-/// Width of the map's drawing units; the page scales it.
-const WIDTH: f64 = 1120.0;
+const TEMPLATE: &str = include_str!("web/page.html");
+const SCRIPT: &str = include_str!("web/page.js");
 
 /// One line of the stage table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,29 +65,18 @@ impl Page<'_> {
     /// The page.
     #[must_use]
     pub fn html(&self) -> String {
-        let frame = Frame::around(self.location, WIDTH, 720.0, (0.0, 0.0));
-        let whole = frame.size();
-        let mut map = Svg::new(whole.0, whole.1);
-        draw_floor(&mut map, self.location, &frame);
-        draw_graph(&mut map, self.location, &frame, palette::UNKNOWN, 1.5);
         let way = self.location.graph.polyline(&self.paths.robot);
-        let line: Vec<(f64, f64)> = way.iter().map(|p| frame.px(self.location, p)).collect();
-        let style = "stroke-width=\"1.6\" stroke-dasharray=\"3 5\" opacity=\"0.65\"";
-        map.polyline(&line, &format!("stroke=\"{}\" {style}", palette::ROBOT));
-        map.raw("<g id=\"trails\"></g><g id=\"agents\"></g><g id=\"scale\"></g>");
-        let map =
-            map.finish().replacen("<svg ", "<svg id=\"map\" role=\"img\" aria-label=\"animation of the run\" ", 1);
-        let data = page_data(self.location, &frame, &way, self.runs);
-        let style = STYLE.to_owned();
+        let data = page_data(self.location, &way, self.reading, self.runs);
         let location = match self.location.description.as_str() {
             "" => escape(&self.location.name),
             about => format!("<abbr title=\"{}\">{}</abbr>", escape(about), escape(&self.location.name)),
         };
-        fill(
+        template::fill(
             TEMPLATE,
             &[
-                ("style", style),
+                ("style", STYLE.to_owned()),
                 ("title", escape(self.title)),
+                ("floors", play::floors([self.location])),
                 ("author", escape(&self.proposal.author)),
                 ("location", location),
                 ("reading_line", escape(self.reading_line)),
@@ -99,10 +84,8 @@ impl Page<'_> {
                 ("people", self.people_html()),
                 ("stages", self.stages_html()),
                 ("provenance", self.provenance_html()),
-                ("map", map),
-                ("script", SCRIPT.to_owned()),
-                // No `<` at all: neither the end of a script nor a comment can begin, whatever a user wrote.
-                ("data", data.to_string().replace('<', "\\u003c")),
+                ("script", template::script(SCRIPT)),
+                ("data", template::json(&data)),
             ],
         )
     }
@@ -178,97 +161,95 @@ impl Page<'_> {
     }
 }
 
-/// The template with every `{{name}}` replaced in one pass: a value that looks like a name stays as it is.
-fn fill(template: &str, values: &[(&str, String)]) -> String {
-    let mut out = String::with_capacity(template.len());
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once("{{") {
-        out.push_str(before);
-        let Some((name, tail)) = after.split_once("}}") else {
-            out.push_str("{{");
-            rest = after;
-            break;
-        };
-        if let Some((_, value)) = values.iter().find(|(known, _)| *known == name) {
-            out.push_str(value);
-        }
-        rest = tail;
-    }
-    out.push_str(rest);
-    out
-}
-
 #[cfg(test)]
 mod tests {
-    use serde_json::json;
-
     use super::*;
+    use crate::fixture::{EVIL, hall, papers, report, walk};
 
-    #[test]
-    fn a_value_that_looks_like_a_place_is_not_filled_again() {
-        let out = fill("<{{a}}|{{b}}>", &[("a", "{{b}}".to_owned()), ("b", "2".to_owned())]);
-        assert_eq!(out, "<{{b}}|2>");
+    fn html(text: &str, runs: &[(Recording, Report)]) -> String {
+        let (request, reading, proposal, paths) = papers(text);
+        let row = |text: &str| text.to_owned();
+        let stages = [StageRow { stage: row(text), state: row(text), attempts: 1, wall_ms: 2, remark: row(text) }];
+        let provenance = [ProvenanceRow { name: row(text), value: row(text) }];
+        let page = Page {
+            title: text,
+            request: &request,
+            reading: &reading,
+            reading_line: text,
+            location: &hall(text),
+            proposal: &proposal,
+            paths: &paths,
+            runs,
+            stages: &stages,
+            provenance: &provenance,
+        };
+        page.html()
+    }
+
+    fn run_of(humans: u32, text: &str) -> (Recording, Report) {
+        let recording = walk(humans);
+        let report = report(&recording, text);
+        (recording, report)
+    }
+
+    /// The data of the page, as its script reads them.
+    fn data(html: &str) -> serde_json::Value {
+        let (_, rest) = html.split_once("id=\"data\">").unwrap();
+        let (text, _) = rest.split_once("</script>").unwrap();
+        serde_json::from_str(text).unwrap()
     }
 
     #[test]
-    fn every_place_of_the_template_has_a_value_and_the_page_loads_nothing() {
+    fn every_place_of_the_template_has_a_value() {
         let names: Vec<&str> =
             TEMPLATE.split("{{").skip(1).filter_map(|rest| rest.split_once("}}")).map(|(name, _)| name).collect();
         assert_eq!(names.len(), 13, "{names:?}");
-        for part in [TEMPLATE, STYLE, SCRIPT] {
-            let part = part.replace("http://www.w3.org/2000/svg", "");
-            assert!(!part.contains("://") && !part.contains("@import") && !part.contains("url("));
-        }
+        assert!(!html("hall", &[run_of(1, "x")]).contains("{{"));
     }
 
     #[test]
     fn words_of_a_user_cannot_become_markup() {
-        const EVIL: &str = "</script><script>alert(1)</script>{{data}}<!--\"'";
-        fn read<T: serde::de::DeserializeOwned>(value: serde_json::Value) -> T {
-            serde_json::from_value(value).unwrap()
-        }
-        let request: Request = read(json!({
-            "location": EVIL, "social_context": EVIL, "task": EVIL, "rough_scenario": EVIL,
-        }));
-        let reading = Reading {
-            task: EVIL.to_owned(),
-            ignored: vec![EVIL.to_owned()],
-            notes: vec![EVIL.to_owned()],
-            ..Reading::default()
-        };
-        let proposal: Proposal = read(json!({
-            "format": 1, "title": EVIL, "description": EVIL, "pattern": EVIL, "place": "corridor",
-            "humans": [{"id": "human_1", "role": EVIL, "behavior": EVIL, "relation": "frontal", "rules": [], "speed_mps": 1.0}],
-            "robot": {"task": EVIL, "script": [], "expected_behavior": EVIL}, "expected_events": [], "author": EVIL,
-        }));
-        let paths: Paths = read(json!({ "format": 1, "robot": [], "humans": {}, "encounters": [], "author": EVIL }));
-        let location: Location = read(json!({
-            "format": 1, "name": EVIL, "description": EVIL, "graph": { "nodes": [], "edges": [] },
-            "grid": { "width": 4, "height": 1, "resolution_m": 0.1, "origin": { "x": 0.0, "y": 0.0, "yaw": 0.0 }, "cells": "1o2f1o" },
-        }));
-        let stages = [StageRow {
-            stage: EVIL.to_owned(),
-            state: EVIL.to_owned(),
-            attempts: 1,
-            wall_ms: 2,
-            remark: EVIL.to_owned(),
-        }];
-        let provenance = [ProvenanceRow { name: EVIL.to_owned(), value: EVIL.to_owned() }];
-        let page = Page {
-            title: EVIL,
-            request: &request,
-            reading: &reading,
-            reading_line: EVIL,
-            location: &location,
-            proposal: &proposal,
-            paths: &paths,
-            runs: &[],
-            stages: &stages,
-            provenance: &provenance,
-        };
-        let html = page.html();
-        assert!(!html.contains("<script>alert") && !html.contains("<!--"));
+        let html = html(EVIL, &[run_of(1, EVIL)]);
+        assert!(!html.contains("<script>alert") && !html.contains("<!--") && !html.contains("<img"));
         assert_eq!(html.matches("</script>").count(), 2, "only the page's own two scripts end");
         assert!(html.matches("{{data}}").count() > 10, "what looks like a place of the template stays text");
+    }
+
+    #[test]
+    fn clauses_come_with_ids_times_and_the_facts_that_they_promise() {
+        let data = data(&html("hall", &[run_of(1, "told")]));
+        let clause = &data["runs"][0]["clauses"][0];
+        assert_eq!((&clause["id"], &clause["source"]), (&"c1".into(), &"f1".into()));
+        assert_eq!(clause["times"], serde_json::json!([2.5, 3.25]));
+        assert_eq!(data["facts"][0]["says"], "1 human");
+        assert_eq!(data["facts"][1]["id"], "f2");
+    }
+
+    #[test]
+    fn curves_and_tracks_have_as_many_samples() {
+        let data = data(&html("hall", &[run_of(2, "x")]));
+        let run = &data["runs"][0];
+        let samples = run["series"]["distance"].as_array().unwrap().len();
+        assert_eq!(samples, 61);
+        assert_eq!(run["agents"].as_array().unwrap().len(), 3);
+        assert_eq!(run["agents"][0]["track"].as_array().unwrap().len(), samples * 4);
+        assert_eq!(run["series"]["ttc"].as_array().unwrap().len(), samples);
+    }
+
+    #[test]
+    fn nobody_and_five_hundred_people_have_a_page_too() {
+        for humans in [0, 500] {
+            let run = run_of(humans, "x");
+            let page = html("hall", &[run]);
+            let agents = data(&page)["runs"][0]["agents"].as_array().unwrap().len();
+            assert_eq!(agents, humans as usize + 1);
+        }
+        assert!(data(&html("hall", &[]))["runs"].as_array().unwrap().is_empty());
+    }
+
+    #[test]
+    fn the_same_runs_give_the_same_page() {
+        let runs = [run_of(3, "x"), run_of(3, "y")];
+        assert_eq!(html("hall", &runs), html("hall", &runs));
     }
 }

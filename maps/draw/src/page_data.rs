@@ -1,75 +1,47 @@
-//! What the page's script plays and lists, as JSON.
+//! What the script of the report page plays and lists, as JSON.
 
 use serde_json::{Value, json};
-use socrates_model::{ClauseRole, EventKind, Location, Point, Recording, Report};
+use socrates_model::{ClauseRole, EventKind, Location, Point, Reading, Recording, Report};
 
-use crate::map_layer::Frame;
-use crate::palette;
+use crate::facts::fact_words;
+use crate::play;
+use crate::series::curves;
 
-/// Samples per second of the animation.
-const SAMPLE_HZ: usize = 10;
-
-/// All runs, and where on the map they happen.
-pub(crate) fn page_data(location: &Location, frame: &Frame, way: &[Point], runs: &[(Recording, Report)]) -> Value {
-    let seen: Vec<Point> = runs
+/// All runs, where on the map they happen, and what was asked for.
+pub(crate) fn page_data(location: &Location, way: &[Point], reading: &Reading, runs: &[(Recording, Report)]) -> Value {
+    let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
+    let hz = play::rate(&recordings);
+    let place = play::place(location, 0);
+    let focus = play::focus(location, way, &recordings);
+    let facts: Vec<Value> = reading
+        .facts
         .iter()
-        .flat_map(|(recording, _)| recording.header.agents.iter().map(move |info| (recording, info.agent)))
-        .flat_map(|(recording, agent)| recording.track(agent).map(|state| state.point()))
-        .chain(way.iter().copied())
+        .map(|fact| json!({ "id": fact.id, "quote": fact.quote, "says": fact_words(&fact.kind) }))
         .collect();
-    let focus = Frame::focused(location, &seen, 1120.0, 640.0, (0.0, 0.0)).cells;
-    #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
-    let place = |cell: usize, first: usize| (cell as f64 - first as f64) * frame.scale;
-    let (w, h) = frame.size();
-    let focus = [place(focus.0, frame.cells.0), place(focus.1, frame.cells.1), place(focus.2, 0), place(focus.3, 0)];
     let runs: Vec<Value> =
-        runs.iter().map(|(recording, report)| run_data(location, frame, recording, report)).collect();
-    json!({ "runs": runs, "whole": [0.0, 0.0, w, h], "focus": focus, "px_per_m": frame.len(location, 1.0) })
+        runs.iter().map(|(recording, report)| run_data(location, way, recording, report, hz)).collect();
+    json!({ "runs": runs, "facts": facts, "whole": place["whole"], "focus": focus, "places": [place] })
 }
 
-fn run_data(location: &Location, frame: &Frame, recording: &Recording, report: &Report) -> Value {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number of ticks")]
-    let every = ((1.0 / recording.header.step_s.max(1e-4)).round() as usize / SAMPLE_HZ).max(1);
-    let round = |x: f64| (x * 10.0).round() / 10.0;
-    let agents: Vec<Value> = recording
-        .header
-        .agents
-        .iter()
-        .map(|info| {
-            let track: Vec<Value> = recording
-                .track(info.agent)
-                .step_by(every)
-                .map(|state| {
-                    let (x, y) = frame.px(location, &state.point());
-                    json!([round(x), round(y), (state.yaw * 100.0).round() / 100.0, state.gesture().code()])
-                })
-                .collect();
-            json!({
-                "name": info.agent.to_string(), "role": info.role, "color": palette::agent(info.agent.number()),
-                "words": palette::agent_words(info.agent.number()), "number": info.agent.number(),
-                "radius": frame.len(location, info.radius_m).max(4.0), "track": track,
-            })
-        })
-        .collect();
-    let doors: Vec<Value> = location
-        .doors
-        .iter()
-        .map(|door| {
-            let times: Vec<Value> = recording
-                .events
-                .iter()
-                .filter_map(|event| {
-                    let EventKind::Door { door: id, open } = &event.kind else { return None };
-                    (*id == door.id).then(|| json!([event.time.secs(), open]))
-                })
-                .collect();
-            let (from, to) = (frame.px(location, &door.from), frame.px(location, &door.to));
-            json!({ "id": door.id, "line": [from.0, from.1, to.0, to.1], "times": times })
-        })
-        .collect();
-    let events: Vec<Value> =
-        recording.events.iter().filter_map(|event| timeline_mark(event.time.secs(), &event.kind)).collect();
-    let clauses: Vec<Value> = report
+fn run_data(location: &Location, way: &[Point], recording: &Recording, report: &Report, hz: u32) -> Value {
+    let mut run = play::run(location, way, recording, hz);
+    let Some(members) = run.as_object_mut() else { return run };
+    let more = json!({
+        "name": format!("{} · seed {}", report.planner, report.seed), "verdict": report.verdict.name(),
+        "verdict_text": report.verdict_text, "robot_text": report.robot_text,
+        "events": marks(recording), "clauses": clauses(report), "metrics": report.metrics, "story": report.story,
+        "series": series(recording, hz), "simulated": report.simulated_s, "planner": report.planner,
+        "seed": report.seed, "gaps": report.encounter_gaps_s, "success": report.success,
+    });
+    if let Value::Object(more) = more {
+        members.extend(more);
+    }
+    run
+}
+
+/// Clauses with their evidence.
+fn clauses(report: &Report) -> Vec<Value> {
+    report
         .clauses
         .iter()
         .map(|clause| {
@@ -78,18 +50,28 @@ fn run_data(location: &Location, frame: &Frame, recording: &Recording, report: &
                 "standing": clause.standing, "times": clause.times_s, "evidence": clause.evidence, "source": clause.source,
             })
         })
-        .collect();
+        .collect()
+}
+
+/// The curves of the plots, rounded to what a plot can show.
+fn series(recording: &Recording, hz: u32) -> Value {
+    let curves = curves(recording, play::ticks_per_sample(recording, hz));
+    let short = |values: &[Option<f64>]| -> Vec<Option<f64>> {
+        values.iter().map(|value| value.map(|value| (value * 1000.0).round() / 1000.0)).collect()
+    };
     json!({
-        "name": format!("{} · seed {}", report.planner, report.seed), "verdict": report.verdict.name(),
-        "verdict_text": report.verdict_text, "robot_text": report.robot_text, "hz": SAMPLE_HZ, "agents": agents,
-        "doors": doors, "events": events, "clauses": clauses, "metrics": report.metrics, "story": report.story,
-        "simulated": report.simulated_s,
-        "planner": report.planner, "seed": report.seed, "gaps": report.encounter_gaps_s, "success": report.success,
+        "distance": short(&curves.distance_m), "distance_to": curves.distance_to, "speed": short(&curves.speed_mps),
+        "ttc": short(&curves.ttc_s), "ttc_to": curves.ttc_to,
     })
 }
 
+/// The marks of a time line.
+pub(crate) fn marks(recording: &Recording) -> Vec<Value> {
+    recording.events.iter().filter_map(|event| mark(event.time.secs(), &event.kind)).collect()
+}
+
 /// A mark on the time line: time, lane (agent number), kind and words.
-fn timeline_mark(secs: f64, kind: &EventKind) -> Option<Value> {
+fn mark(secs: f64, kind: &EventKind) -> Option<Value> {
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
     match kind {
         EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
@@ -113,6 +95,10 @@ fn timeline_mark(secs: f64, kind: &EventKind) -> Option<Value> {
 
 /// A leaf's tag as words: `StandStill` becomes `stand still`.
 fn spoken(tag: &str) -> String {
+    // The tag of walking is that of the original library; nobody but its users knows it.
+    if tag == "RegularNav" {
+        return "walks on".to_owned();
+    }
     let mut out = String::new();
     for c in tag.chars() {
         if c.is_uppercase() && !out.is_empty() {
@@ -131,5 +117,6 @@ mod tests {
     fn a_leaf_is_told_in_words() {
         assert_eq!(spoken("StandStill"), "stand still");
         assert_eq!(spoken("wait"), "wait");
+        assert_eq!(spoken("RegularNav"), "walks on");
     }
 }

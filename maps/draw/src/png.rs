@@ -37,49 +37,104 @@ fn fonts() -> Arc<usvg::fontdb::Database> {
         .clone()
 }
 
+fn options() -> usvg::Options<'static> {
+    usvg::Options { fontdb: fonts(), font_family: "Ubuntu".to_owned(), ..usvg::Options::default() }
+}
+
 /// Renders an SVG drawing at so many pixels per drawing unit.
 ///
 /// # Errors
 /// [`PngError`] when the drawing is not valid or has an impossible size.
 pub fn png_from_svg(svg: &str, scale: f32) -> Result<Vec<u8>, PngError> {
-    let options = usvg::Options { fontdb: fonts(), font_family: "Ubuntu".to_owned(), ..usvg::Options::default() };
-    let tree = usvg::Tree::from_str(svg, &options).map_err(PngError::Svg)?;
-    let size = tree.size().to_int_size();
+    encode(&render(svg, scale)?, None)
+}
+
+/// Renders an SVG drawing with a size on paper at so many pixels per inch, and says so in the file.
+///
+/// # Errors
+/// [`PngError`] when the drawing is not valid or has an impossible size.
+pub fn png_at_dpi(svg: &str, dpi: f32) -> Result<Vec<u8>, PngError> {
+    // A drawing's own pixel is a 96th of an inch.
+    encode(&render(svg, dpi / 96.0)?, Some(dpi))
+}
+
+fn render(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap, PngError> {
+    let tree = usvg::Tree::from_str(svg, &options()).map_err(PngError::Svg)?;
+    let size = tree.size();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
         reason = "the result is checked against the allowed size"
     )]
-    let (width, height) = ((size.width() as f32 * scale).round() as u32, (size.height() as f32 * scale).round() as u32);
+    let (width, height) = ((size.width() * scale).round() as u32, (size.height() * scale).round() as u32);
     if !(1..=10_000).contains(&width) || !(1..=10_000).contains(&height) {
         return Err(PngError::Size { width, height });
     }
     let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(PngError::Size { width, height })?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    encode(&pixels)
+    Ok(pixels)
+}
+
+/// A drawing that stays, on which others are drawn one after another: the ground of a film.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    pixels: tiny_skia::Pixmap,
+}
+
+impl Ground {
+    /// Renders a drawing at one pixel per drawing unit.
+    ///
+    /// # Errors
+    /// [`PngError`] when the drawing is not valid or has an impossible size.
+    pub fn new(svg: &str) -> Result<Self, PngError> {
+        Ok(Self { pixels: render(svg, 1.0)? })
+    }
+
+    /// The colors (red, green, blue, row by row) of the ground with a drawing of the same size on it.
+    ///
+    /// # Errors
+    /// [`PngError::Svg`] when the drawing is not valid.
+    pub fn with(&self, svg: &str) -> Result<Vec<u8>, PngError> {
+        let tree = usvg::Tree::from_str(svg, &options()).map_err(PngError::Svg)?;
+        let mut pixels = self.pixels.clone();
+        resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
+        Ok(opaque(&pixels))
+    }
 }
 
 /// A picture as PNG: opaque, lightly compressed, for pictures are made on the way of every run.
-fn encode(pixels: &tiny_skia::Pixmap) -> Result<Vec<u8>, PngError> {
-    // Colors are stored multiplied with their opacity: over white, what is missing to opaque is added.
-    let colors: Vec<u8> = pixels
-        .pixels()
-        .iter()
-        .flat_map(|pixel| {
-            [pixel.red(), pixel.green(), pixel.blue()].map(|color| color.saturating_add(255 - pixel.alpha()))
-        })
-        .collect();
+fn encode(pixels: &tiny_skia::Pixmap, dpi: Option<f32>) -> Result<Vec<u8>, PngError> {
+    let colors = opaque(pixels);
     let wrong = |why: png::EncodingError| PngError::Encode(why.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
+    if let Some(dpi) = dpi {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a positive number of pixels per metre"
+        )]
+        let per_metre = (dpi / 0.0254).round() as u32;
+        encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
+    }
     let mut writer = encoder.write_header().map_err(wrong)?;
     writer.write_image_data(&colors).map_err(wrong)?;
     writer.finish().map_err(wrong)?;
     Ok(bytes)
+}
+
+/// Colors over white: they are stored multiplied with their opacity, so what is missing to opaque is added.
+fn opaque(pixels: &tiny_skia::Pixmap) -> Vec<u8> {
+    pixels
+        .pixels()
+        .iter()
+        .flat_map(|pixel| {
+            [pixel.red(), pixel.green(), pixel.blue()].map(|color| color.saturating_add(255 - pixel.alpha()))
+        })
+        .collect()
 }
 
 #[cfg(test)]

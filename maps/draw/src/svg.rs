@@ -39,6 +39,30 @@ impl Svg {
         svg
     }
 
+    /// A document of this width on paper, mm, in drawing units of one point.
+    #[must_use]
+    pub fn in_mm(width_mm: f64, width_pt: f64, height_pt: f64) -> Self {
+        let mut svg = Self { text: String::new() };
+        let height_mm = height_pt * width_mm / width_pt.max(1e-9);
+        svg.raw(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width_mm}mm\" height=\"{height_mm:.2}mm\" \
+             viewBox=\"0 0 {width_pt:.2} {height_pt:.2}\" font-family=\"Ubuntu, 'Segoe UI', Helvetica, Arial, sans-serif\">"
+        ));
+        svg
+    }
+
+    /// A part of a document: no frame of its own.
+    #[must_use]
+    pub const fn part() -> Self {
+        Self { text: String::new() }
+    }
+
+    /// What was written so far, without an end.
+    #[must_use]
+    pub fn text_so_far(self) -> String {
+        self.text
+    }
+
     /// Adds text as it is.
     pub fn raw(&mut self, text: &str) {
         self.text.push_str(text);
@@ -66,9 +90,12 @@ impl Svg {
         ));
     }
 
-    /// An open line through points; nothing where there are fewer than two.
+    /// An open line through points; nothing where there are fewer than two different ones: a line without a length
+    /// cannot be drawn.
     pub fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
-        if points.len() < 2 {
+        const LEAST: f64 = 0.1;
+        let Some(first) = points.first() else { return };
+        if points.iter().all(|(x, y)| (x - first.0).abs() < LEAST && (y - first.1).abs() < LEAST) {
             return;
         }
         let mut list = String::new();

@@ -69,6 +69,26 @@ pub(crate) enum Verb {
         /// Bundle folder.
         bundle: PathBuf,
     },
+    /// Write the page of a bundle anew, or one page for a folder of bundles.
+    Report {
+        /// Bundle folder, or a folder that holds bundles.
+        what: PathBuf,
+    },
+    /// Film a bundle, seen from above: MP4 or WebM with ffmpeg, GIF or animated SVG without.
+    Video(crate::video::VideoOptions),
+    /// Draw a figure for a paper: who went where and when.
+    Figure(crate::figure::FigureOptions),
+    /// Print what a paper says about how a bundle was made, and what to cite.
+    Cite {
+        /// Bundle folder.
+        bundle: PathBuf,
+    },
+    /// Let people label runs by hand.
+    Labels {
+        /// What to do.
+        #[command(subcommand)]
+        verb: crate::labels::LabelsVerb,
+    },
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(SimulateOptions),
     /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).
@@ -116,6 +136,12 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: MapVerb,
     },
+    /// List, show and rate the canonical scenarios of the catalogue.
+    Scenarios {
+        /// What to do.
+        #[command(subcommand)]
+        verb: ScenariosVerb,
+    },
     /// The same parts spread over machines.
     Cluster {
         /// What to do.
@@ -134,6 +160,32 @@ pub(crate) enum Verb {
     /// The orchestrator process; started by `run` and `cluster up`.
     #[command(hide = true)]
     Orchestrator(OrchestratorOptions),
+}
+
+/// Verbs on the catalogue.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ScenariosVerb {
+    /// List every scenario.
+    List,
+    /// Show the card of a scenario.
+    Show {
+        /// Its id, or the letter of a canonical one.
+        id: String,
+    },
+    /// Play scenarios with the reference robot and count how often each is realised.
+    Rate {
+        /// Ids or letters; all of them where none is named.
+        ids: Vec<String>,
+        /// Seeds 1 to N for each.
+        #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+        seeds: u64,
+        /// A location for all of them; default: the shipped ones that fit, in turn.
+        #[arg(long)]
+        location: Option<String>,
+        /// Markdown file for the table.
+        #[arg(long, short)]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Options of `run` and `demo`.

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use socrates_draw::{Page, ProvenanceRow, StageRow};
+use socrates_draw::StageRow;
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Behaviors, Digest, Location, Paths, Proposal, Reading, Recording, Report, Request, Verdict};
@@ -167,22 +167,6 @@ pub(crate) fn write(
     }
     let stages = stage_rows(status);
     let provenance = provenance(prepared, seed, status, past, fetch);
-    let rows = provenance_rows(prepared, seed, &entries);
-    let reading_line = socrates_offline::summary(&prepared.reading);
-    let page = Page {
-        title: &title,
-        request: &prepared.request,
-        reading: &prepared.reading,
-        reading_line: &reading_line,
-        location: &prepared.location,
-        proposal: &proposal,
-        paths: &paths,
-        runs: &runs,
-        stages: &stages,
-        provenance: &rows,
-    };
-    // The page shows working times, so it stands outside the bundle's digest, like the provenance.
-    out.put_outside("report.html", page.html().as_bytes())?;
     out.put_outside("details/provenance.json", pretty(&provenance)?.as_bytes())?;
     let manifest = Manifest {
         format: socrates_model::FORMAT,
@@ -193,8 +177,7 @@ pub(crate) fn write(
         runs: entries,
         files: out.files.clone(),
     };
-    out.put_outside("details/manifest.json", pretty(&manifest)?.as_bytes())?;
-    Ok(Bundle {
+    let bundle = Bundle {
         dir: dir.to_path_buf(),
         manifest,
         request: prepared.request.clone(),
@@ -204,11 +187,20 @@ pub(crate) fn write(
         paths,
         behaviors,
         runs,
-    })
+    };
+    // The page shows working times, so it stands outside the bundle's digest, like the provenance.
+    out.put_outside("report.html", crate::report::page(&bundle, &stages, &prepared.author).as_bytes())?;
+    out.put_outside("details/manifest.json", pretty(&bundle.manifest)?.as_bytes())?;
+    Ok(bundle)
 }
 
 /// Reads a finished bundle back, here or wherever it was moved to.
 pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
+    read_some(dir, |_, _| true)
+}
+
+/// The same with some of its runs only, chosen by their place in the manifest and what it says of them.
+pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
     let manifest = manifest(dir).ok_or_else(|| {
         Complaint::input(
             format!("`{}` is no finished bundle: details/manifest.json is missing or broken", dir.display()),
@@ -233,7 +225,7 @@ pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
     let request: Request = toml::from_str(&request_text)
         .map_err(|why| Complaint::input(format!("request.toml of the bundle: {why}"), "the bundle is damaged"))?;
     let mut runs = Vec::new();
-    for entry in &manifest.runs {
+    for (_, entry) in manifest.runs.iter().enumerate().filter(|(index, entry)| wanted(*index, entry)) {
         let item = format!("{}-{}", entry.planner, entry.seed);
         let path = dir.join(format!("details/recordings/{item}.mcap"));
         let bytes = std::fs::read(&path).map_err(|why| {
@@ -254,6 +246,21 @@ pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
         behaviors: parse("behaviors", &load("behaviors.json")?)?,
         runs,
     })
+}
+
+/// The reports of all runs of a bundle, without their recordings.
+pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
+    manifest
+        .runs
+        .iter()
+        .map(|entry| {
+            let path = dir.join(format!("details/reports/{}-{}.json", entry.planner, entry.seed));
+            let text = std::fs::read_to_string(&path).map_err(|why| {
+                Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged")
+            })?;
+            parse("report", &text)
+        })
+        .collect()
 }
 
 struct Writer {
@@ -391,19 +398,6 @@ pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
             }
         })
         .collect()
-}
-
-fn provenance_rows(prepared: &Prepared, seed: u64, runs: &[RunEntry]) -> Vec<ProvenanceRow> {
-    let mut rows = vec![
-        ("version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("author", prepared.author.clone()),
-        ("seed", seed.to_string()),
-        ("request", Digest::of(serde_json::to_string(&prepared.request).unwrap_or_default().as_bytes()).to_string()),
-        ("location", Digest::of(serde_json::to_string(&prepared.location).unwrap_or_default().as_bytes()).to_string()),
-    ];
-    let names: Vec<String> = runs.iter().map(|run| format!("recording {}-{}", run.planner, run.seed)).collect();
-    rows.extend(names.iter().zip(runs).map(|(name, run)| (name.as_str(), run.recording_hash.to_string())));
-    rows.into_iter().map(|(name, value)| ProvenanceRow { name: name.to_owned(), value }).collect()
 }
 
 /// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.

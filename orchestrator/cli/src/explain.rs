@@ -130,7 +130,7 @@ pub(crate) fn doctor(talk: &Talk, key_found: bool) -> Result<(), Complaint> {
             format!("/dev/shm has {} MiB free; without it runs stream over the network only", shm_free.unwrap_or(0)),
         ),
         ("language model key", key_found, false, "without it the offline author writes the scenarios".to_owned()),
-        ("ffmpeg", program("ffmpeg"), false, "only for videos".to_owned()),
+        ("ffmpeg", program("ffmpeg"), false, "only for MP4 and WebM videos; GIF and SVG need nothing".to_owned()),
         (
             "browser",
             program("xdg-open") || program("chromium") || program("firefox"),

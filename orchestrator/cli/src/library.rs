@@ -64,7 +64,7 @@ pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<C
     let realised = verdicts.get("realised").copied().unwrap_or(0);
     let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
     talk.line(&format!("made       {} of {} · {}", library.scenarios.len(), library.count, words.join(" · ")));
-    talk.line(&format!("look       {}", root.display()));
+    talk.line(&format!("look       {}", root.join("report.html").display()));
     let whole = realised == library.count;
     talk.result(&json!({
         "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},

@@ -11,29 +11,37 @@ mod again;
 mod agents;
 mod agreement;
 mod args;
+mod batch;
 mod bench;
 mod bt;
 mod bundle;
 #[cfg(test)]
 mod case_studies;
+mod cite;
 mod cluster;
 mod config;
 mod dev;
 mod exit;
 mod explain;
+mod figure;
 mod files;
 mod history;
+mod labels;
 mod library;
 mod map;
 mod mutations;
 mod orchestrate;
+mod play;
 mod prepare;
 mod process;
+mod report;
 mod run;
+mod scenarios;
 mod session;
 mod supervise;
 mod talk;
 mod traces;
+mod video;
 mod watch;
 
 use std::process::ExitCode;
@@ -93,6 +101,11 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
             Ok(Code::Ok)
         }
         Verb::Open { bundle } => done(explain::open(talk, bundle)),
+        Verb::Report { what } => done(report::report(talk, what)),
+        Verb::Video(options) => done(video::video(talk, options)),
+        Verb::Figure(options) => done(figure::figure(talk, options)),
+        Verb::Cite { bundle } => done(cite::cite(talk, bundle)),
+        Verb::Labels { verb } => done(labels::labels(talk, verb)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
         Verb::Simulate(options) => {
             let SimulateOptions { what, planner, seed, out, .. } = options;
@@ -106,6 +119,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Doctor => done(explain::doctor(talk, key_found)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),
+        Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
             ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),

@@ -254,6 +254,7 @@ async fn batch(
     }
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
+    crate::batch::write(&root)?;
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
     library::finish(talk, options, &root)

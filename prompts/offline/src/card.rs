@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 use socrates_model::rule::RobotRule;
 use socrates_model::{
-    Action, ClauseRole, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
+    Action, ClauseRole, DoorKind, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
 };
 
 use crate::draw::Draw;
@@ -20,6 +20,12 @@ pub struct Card {
     pub title: String,
     /// What happens, in a sentence.
     pub about: String,
+    /// Its letter among the 25 canonical scenarios, `a` to `y` (Francis et al. 2023, figure 7).
+    #[serde(default)]
+    pub letter: Option<char>,
+    /// Its number in our list of further scenarios (`prompts/catalog/README.md`).
+    #[serde(default)]
+    pub further: Option<u8>,
     /// Principles of social navigation that it probes, `P1` safety to `P8` context (Francis et al. 2023).
     pub principles: Vec<String>,
     /// Place classes of the encounter, the best first.
@@ -30,9 +36,24 @@ pub struct Card {
     /// Whether the map must have a place inside a room or an elevator.
     #[serde(default)]
     pub inside: bool,
+    /// Free width of the floor across the meeting node, least and most, m.
+    #[serde(default)]
+    pub width_m: Option<[f64; 2]>,
+    /// Ways that meet in the meeting node, at least.
+    #[serde(default)]
+    pub arms: Option<usize>,
+    /// Where the robot starts, if the card says.
+    #[serde(default)]
+    pub start: Option<PlaceClass>,
     /// Where the robot has to go, if the card says.
     #[serde(default)]
     pub goal: Option<PlaceClass>,
+    /// How the robot's way and those who stand go together.
+    #[serde(default)]
+    pub ends: Ends,
+    /// Largest difference of the arrival times of robot and human where their ways cross, s.
+    #[serde(default = "usual_gap")]
+    pub gap_s: f64,
     /// What a good robot would do.
     pub expected: String,
     /// Who is there.
@@ -44,6 +65,19 @@ pub struct Card {
     /// What should be seen, beyond what every human's own part demands.
     #[serde(default, rename = "clause")]
     pub clauses: Vec<CardClause>,
+}
+
+/// Where on the robot's way people stand who stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ends {
+    /// On the way: the robot gets past them.
+    #[default]
+    Past,
+    /// At its end: the robot comes to them.
+    With,
+    /// At its start: the robot leaves them.
+    From,
 }
 
 /// A part to play.
@@ -64,9 +98,15 @@ pub struct Role {
     /// Whether these people form a group.
     #[serde(default)]
     pub group: bool,
+    /// Whether the group stands in a line instead of a circle.
+    #[serde(default)]
+    pub line: bool,
     /// Where they start.
     #[serde(default)]
     pub start: Option<PlaceClass>,
+    /// Where they go.
+    #[serde(default)]
+    pub goal: Option<PlaceClass>,
     /// Reactions.
     #[serde(default, rename = "rule")]
     pub rules: Vec<RoleRule>,
@@ -116,15 +156,24 @@ const fn yes() -> bool {
     true
 }
 
+const fn usual_gap() -> f64 {
+    4.0
+}
+
 macro_rules! cards {
     ($($id:literal)*) => { &[$(include_str!(concat!("../../catalog/", $id, ".toml")),)*] };
 }
 
 /// Every card file. Adding a card is a file and a line here.
 const FILES: &[&str] = cards! {
-    "frontal_approach" "pedestrian_obstruction" "robot_overtaking" "human_overtaking" "intersection_crossing" "intersection_wait"
-    "intersection_proceed" "blind_corner" "narrow_doorway" "room_exit" "entering_elevator" "group_passing" "group_walking" "follower"
-    "corridor_follow_and_block" "curious" "frightened" "leading" "robot_following"
+    "frontal_approach" "pedestrian_obstruction" "human_overtaking" "robot_overtaking" "down_path"
+    "intersection_crossing" "intersection_wait" "intersection_proceed" "blind_corner" "narrow_hallway"
+    "narrow_doorway" "entering_room" "exiting_room" "entering_elevator" "exiting_elevator" "join_group" "leave_group"
+    "robot_following" "leading" "accompanying" "crowd_navigation" "parallel_traffic" "perpendicular_traffic"
+    "circular_crossing" "robot_crowding" "startled" "room_exit" "group_blocking_aisle" "corridor_follow_and_block"
+    "evacuation_guide" "queue" "staff_blocks" "handover" "distracted_walker" "darting_child" "door_opens"
+    "people_waiting" "emergency_team" "cleaning_area" "full_elevator" "group_passing" "group_walking" "follower"
+    "curious" "frightened"
 };
 
 static CATALOG: LazyLock<Vec<Card>> = LazyLock::new(|| {
@@ -149,9 +198,15 @@ impl Card {
     #[must_use]
     pub fn fits(&self, location: &Location) -> bool {
         let there = |class: &PlaceClass| crate::place::has(location, *class);
-        let inside =
-            !self.inside || !crate::place::inside(location, self.roles.iter().find_map(|role| role.start)).is_empty();
+        let indoors = self.roles.iter().find_map(|role| role.start).or(self.start);
+        let inside = !self.inside || !crate::place::inside(location, indoors).is_empty();
+        // Into a room that somebody leaves there must be room for both.
+        let shared = self.goal == Some(PlaceClass::Room) && self.inside;
+        let roomy = !shared || location.doors.iter().any(|door| door.kind == DoorKind::Room && door.inside.len() > 1);
+        let arms = self.arms.is_none_or(|least| crate::place::meets_arms(location, self.start, least));
         inside
+            && roomy
+            && arms
             && self.needs.iter().all(there)
             && self.places.iter().any(|class| *class == PlaceClass::Plain || there(class))
     }
@@ -179,7 +234,8 @@ impl CardClause {
         let mut value = serde_json::to_value(&self.predicate).ok()?;
         fill(&mut value, &name, group);
         let predicate = serde_json::from_value(value).ok()?;
-        Some((self.text.replace("{human}", &name), predicate))
+        let group = group.map_or_else(String::new, |id| id.to_string());
+        Some((self.text.replace("{human}", &name).replace("{group}", &group), predicate))
     }
 }
 
@@ -221,22 +277,104 @@ mod tests {
     }
 
     #[test]
+    fn the_canonical_scenarios_are_all_there_once_and_most_of_the_further_ones() {
+        let mut letters: Vec<char> = catalog().iter().filter_map(|card| card.letter).collect();
+        letters.sort_unstable();
+        assert_eq!(letters, ('a'..='y').collect::<Vec<char>>());
+        let mut further: Vec<u8> = catalog().iter().filter_map(|card| card.further).collect();
+        further.sort_unstable();
+        assert!(further.windows(2).all(|pair| pair[0] < pair[1]), "{further:?}");
+        assert!(further.len() >= 15 && further.iter().all(|number| (1..=20).contains(number)), "{further:?}");
+        let table = include_str!("../../catalog/README.md");
+        for card in catalog() {
+            assert!(table.contains(&format!("`{}`", card.id)), "{} is not in the table of the README", card.id);
+        }
+    }
+
+    #[test]
     fn every_clause_and_rule_of_every_card_is_sound() {
         let human = HumanId::new(1);
         for card in catalog() {
-            assert!(card.clauses.iter().any(|clause| clause.role == ClauseRole::Outcome), "{}", card.id);
-            assert!(!card.places.is_empty() && !card.principles.is_empty(), "{}", card.id);
+            let id = &card.id;
+            assert!(card.clauses.iter().any(|clause| clause.role == ClauseRole::Outcome), "{id}");
+            assert!(!card.places.is_empty() && !card.principles.is_empty() && !card.expected.is_empty(), "{id}");
+            for principle in &card.principles {
+                let number = principle.strip_prefix('P').and_then(|n| n.parse::<u8>().ok());
+                assert!(number.is_some_and(|n| (1..=8).contains(&n)), "{id}: {principle}");
+            }
+            assert!(card.width_m.is_none_or(|[least, most]| 0.6 <= least && least < most), "{id}");
+            assert!((0.5..=15.0).contains(&card.gap_s), "{id}");
             for clause in &card.clauses {
                 let each = clause.each.as_ref();
-                assert!(
-                    each.is_none_or(|name| card.roles.iter().any(|role| role.name == *name)),
-                    "{} {each:?}",
-                    card.id
-                );
-                assert!(clause.filled(Some(human), Some(GroupId(1))).is_some(), "{}: {:?}", card.id, clause.predicate);
+                assert!(each.is_none_or(|name| card.roles.iter().any(|role| role.name == *name)), "{id} {each:?}");
+                assert!(clause.filled(Some(human), Some(GroupId(1))).is_some(), "{id}: {:?}", clause.predicate);
             }
             for role in &card.roles {
-                assert!(role.count[0] >= 1 && role.count[0] <= role.count[1] && !role.who.is_empty(), "{}", card.id);
+                let [least, most] = role.count;
+                assert!(least >= 1 && least <= most && most <= 8 && !role.who.is_empty(), "{id}");
+                assert!(!role.group || least > 1, "{id}: a group of one");
+                assert!(role.speed.is_none_or(|[low, high]| 0.2 <= low && low <= high && high <= 1.8), "{id}");
+                for rule in &role.rules {
+                    assert!(!rule.when.is_empty(), "{id}");
+                    assert!(rule.within_m.is_none_or(|[low, high]| 0.5 <= low && low <= high && high <= 12.0), "{id}");
+                    assert!(rule.for_s.is_none_or(|[low, high]| 1.0 <= low && low <= high && high <= 60.0), "{id}");
+                }
+            }
+        }
+    }
+
+    fn ask(card: &Card, location: &Location, seed: u64) -> socrates_prompts::Question {
+        let request: socrates_model::Request = serde_json::from_value(serde_json::json!({
+            "location": location.name, "social_context": "", "task": "Deliver mail", "expect": { "pattern": card.id },
+        }))
+        .unwrap();
+        socrates_prompts::Question {
+            stage: socrates_model::job::Stage::Proposal,
+            reading: crate::read(&request, location),
+            request,
+            location: location.clone(),
+            proposal: None,
+            only: Vec::new(),
+            feedback: Vec::new(),
+            refused: None,
+            seed,
+        }
+    }
+
+    #[test]
+    fn every_card_fits_a_shipped_location_and_every_human_has_a_clause_that_decides() {
+        for card in catalog() {
+            let places: Vec<Location> = socrates_maps::shipped::names()
+                .iter()
+                .map(|name| socrates_maps::shipped::load(name).unwrap())
+                .filter(|location| card.fits(location))
+                .collect();
+            assert!(!places.is_empty(), "{} fits nowhere", card.id);
+            for (location, seed) in places.iter().flat_map(|location| (1..4).map(move |seed| (location, seed))) {
+                let proposal = crate::proposal::propose(&ask(card, location, seed));
+                assert_eq!(proposal.pattern, card.id);
+                let deciding: Vec<&Predicate> = proposal
+                    .expected_events
+                    .iter()
+                    .filter(|clause| clause.role == ClauseRole::Setup && clause.must)
+                    .map(|clause| &clause.predicate)
+                    .collect();
+                for human in &proposal.humans {
+                    let own = |predicate: &&&Predicate| {
+                        predicate.human() == Some(human.id) || human.group.is_some() && predicate.group() == human.group
+                    };
+                    assert!(deciding.iter().any(|predicate| own(&predicate)), "{} {}", card.id, human.id);
+                }
+                // What the card says must be seen decides.
+                for clause in card.clauses.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup) {
+                    let (_, wanted) = clause.filled(Some(HumanId::new(1)), Some(GroupId(1))).unwrap();
+                    let kind = std::mem::discriminant(&wanted);
+                    assert!(
+                        deciding.iter().any(|found| std::mem::discriminant(*found) == kind),
+                        "{}: {wanted:?}",
+                        card.id
+                    );
+                }
             }
         }
     }

@@ -58,6 +58,7 @@ pub(crate) fn people(
             extras.push(Extra {
                 speed_mps: role.speed.map(|range| draw.tenths(range)),
                 start: role.start,
+                goal: role.goal,
                 stated: vec![false; rules.len()],
             });
             humans.push(ReadHuman {

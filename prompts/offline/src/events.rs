@@ -1,5 +1,6 @@
 //! The clauses of a proposal: every human and every fact gets one that must hold.
 
+use socrates_model::reading::ReadHuman;
 use socrates_model::{
     Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, PlaceClass,
     Predicate, Proposal, Reading, Relation, Rule, Trigger,
@@ -15,8 +16,16 @@ use crate::understand::Extra;
 const MEETS_M: f64 = 2.5;
 /// People at a blind corner see each other from no farther, m.
 const CORNER_M: f64 = 5.0;
-/// Largest difference of arrival where ways cross, s.
+/// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
+
+/// What the pattern has to do with a proposal.
+pub(crate) struct Part<'a> {
+    pub(crate) card: Option<&'a Card>,
+    /// Whether the people are the card's own: then all of its clauses count as it says, else none decides.
+    pub(crate) by_card: bool,
+    pub(crate) read: &'a [ReadHuman],
+}
 
 #[derive(Default)]
 struct List(Vec<Clause>);
@@ -64,7 +73,7 @@ impl List {
 pub(crate) fn events(
     proposal: &Proposal,
     reading: &Reading,
-    card: Option<&Card>,
+    part: &Part<'_>,
     extras: &[Extra],
     location: &Location,
 ) -> Vec<Clause> {
@@ -87,22 +96,22 @@ pub(crate) fn events(
     for fact in &reading.facts {
         of_fact(&mut list, fact, proposal, extras);
     }
-    for group in &proposal.groups {
+    let line = part.card.is_some_and(|card| card.roles.iter().any(|role| role.line));
+    for group in proposal.groups.iter().filter(|_| !line) {
         of_group(&mut list, "", group.id, proposal);
     }
+    let gap_s = part.card.map_or(GAP_S, |card| card.gap_s);
     for human in &proposal.humans {
         for rule in &human.rules {
             of_rule(&mut list, "", human, rule, false);
         }
-        of_relation(&mut list, "", human, proposal.place);
+        of_relation(&mut list, "", human, proposal, gap_s);
     }
     if place::has(location, proposal.place) {
         let text = format!("it happens at {}", place::an(proposal.place));
         list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place });
     }
-    if let Some(card) = card {
-        of_card(&mut list, card, proposal, location);
-    }
+    of_card(&mut list, part, proposal, location);
     list.add(ClauseRole::Outcome, true, "", "the robot gets to its goal".to_owned(), Predicate::RobotArrives);
     list.add(
         ClauseRole::Outcome,
@@ -126,7 +135,7 @@ fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) 
         }
         FactKind::Relates { human, .. } => {
             if let Some(who) = proposal.human(*human) {
-                of_relation(list, &fact.id, who, proposal.place);
+                of_relation(list, &fact.id, who, proposal, GAP_S);
             }
         }
         FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),
@@ -196,8 +205,8 @@ fn follows(follower: HumanId, leader: AgentId) -> Predicate {
 }
 
 /// What must be seen of how a human stands to the robot's way.
-fn of_relation(list: &mut List, source: &str, human: &HumanProposal, place: PlaceClass) {
-    let id = human.id;
+fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &Proposal, usual_gap_s: f64) {
+    let (id, place) = (human.id, proposal.place);
     let said = !source.is_empty();
     let does = |act: &Action| human.rules.iter().any(|rule| rule.act == *act);
     let halts = does(&Action::StandStill)
@@ -228,12 +237,13 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, place: Plac
             list.setup(said, source, text, Predicate::HiddenUntil { human: id, within_m: CORNER_M });
         }
         Relation::Frontal => {
-            meets(list, true, MEETS_M);
+            // Of a group abreast, the outermost keeps a little more distance.
+            meets(list, true, if human.group.is_some() { 3.0 } else { MEETS_M });
             list.setup(said, source, format!("{id} comes towards the robot"), Predicate::HeadOn { human: id });
         }
         Relation::Crossing => {
             meets(list, true, 3.0);
-            let gap_s = if halts { 10.0 } else { GAP_S };
+            let gap_s = if halts { 10.0 } else { usual_gap_s };
             list.setup(
                 said && !halts,
                 source,
@@ -277,19 +287,22 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, place: Plac
     }
 }
 
-fn of_card(list: &mut List, card: &Card, proposal: &Proposal, location: &Location) {
+fn of_card(list: &mut List, part: &Part<'_>, proposal: &Proposal, location: &Location) {
+    let Some(card) = part.card else { return };
     let group = proposal.groups.first().map(|group| group.id);
     for clause in &card.clauses {
-        let relation = clause
-            .each
-            .as_ref()
-            .and_then(|name| card.roles.iter().find(|role| role.name == *name))
-            .map(|role| role.relation);
-        let who: Vec<Option<HumanId>> = match relation {
-            Some(relation) => {
-                proposal.humans.iter().filter(|human| human.relation == relation).map(|human| Some(human.id)).collect()
+        let role = clause.each.as_ref().and_then(|name| card.roles.iter().find(|role| role.name == *name));
+        let plays = |human: &HumanProposal| match role {
+            None => false,
+            Some(role) if part.by_card => {
+                part.read.iter().any(|read| read.id == human.id && read.summary == role.name)
             }
-            None => vec![None],
+            Some(role) => human.relation == role.relation,
+        };
+        let who: Vec<Option<HumanId>> = if role.is_some() {
+            proposal.humans.iter().filter(|human| plays(human)).map(|human| Some(human.id)).collect()
+        } else {
+            vec![None]
         };
         for human in who {
             let Some((text, predicate)) = clause.filled(human, group) else { continue };
@@ -297,7 +310,8 @@ fn of_card(list: &mut List, card: &Card, proposal: &Proposal, location: &Locatio
             if matches!(predicate, Predicate::DoorOpens { .. }) && location.doors.is_empty() {
                 continue;
             }
-            list.add(clause.role, clause.must, "", text, predicate);
+            let must = clause.must && (part.by_card || clause.role == ClauseRole::Outcome);
+            list.add(clause.role, must, "", text, predicate);
         }
     }
 }

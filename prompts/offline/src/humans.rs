@@ -1,7 +1,8 @@
 //! Ways of humans, by how they stand to the robot's way.
 
-use socrates_model::{HumanProposal, Location, PlaceClass, Relation};
+use socrates_model::{Action, HumanProposal, Location, PlaceClass, Relation};
 
+use crate::card::Ends;
 use crate::place;
 use crate::routes::{Net, Route};
 
@@ -13,6 +14,9 @@ const HUMAN_MPS: f64 = 1.2;
 const APART_M: f64 = 0.8;
 /// Somebody goes on at least so far after the meeting, m.
 const ONWARD_M: f64 = 4.0;
+
+/// Who overtakes comes level with the robot after so much of its way, m.
+const EARLY_M: f64 = 4.0;
 
 /// One human's way and where it meets the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,13 +32,27 @@ pub(crate) struct Way {
 pub(crate) struct Taken<'a> {
     pub(crate) net: &'a Net<'a>,
     pub(crate) starts: Vec<usize>,
+    /// Where others end: who ends where somebody stands already does not get there.
+    pub(crate) goals: Vec<usize>,
     /// There is no room for everybody to start apart: the checks will say so.
     pub(crate) crowded: bool,
+    /// Where on the robot's way those stand who stand.
+    pub(crate) ends: Ends,
+    /// The class of place where people should meet.
+    pub(crate) place: PlaceClass,
 }
+
+/// No node: somebody with whom the robot starts is met nowhere.
+const NOWHERE: usize = usize::MAX;
 
 impl Taken<'_> {
     fn free(&self, node: usize) -> bool {
         self.crowded || self.starts.iter().all(|other| (self.net.at(*other) - self.net.at(node)).norm() >= APART_M)
+    }
+
+    /// Whether somebody may end there: nobody else does, and nobody has to get through.
+    fn can_end(&self, node: usize) -> bool {
+        !self.goals.contains(&node) && self.net.kind(node) != PlaceClass::Doorway
     }
 }
 
@@ -43,7 +61,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
     match human.relation {
         Relation::Frontal => frontal(human, route, taken),
         Relation::Crossing => crossing(human, route, taken),
-        Relation::Behind => behind(route, taken, along),
+        Relation::Behind => behind(human, route, taken, along),
         Relation::Ahead | Relation::Abreast => ahead(human, route, taken),
         Relation::Static => standing(route, taken),
         Relation::Leaving => leaving(human, route, taken),
@@ -65,10 +83,14 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let net = taken.net;
     let meet = *route.nodes.get(route.meet)?;
     let mut back: Vec<usize> = route.nodes.get(..route.meet)?.iter().rev().copied().collect();
-    let long = (1..=back.len())
-        .find(|n| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M)
-        .unwrap_or(back.len());
-    back.truncate(long);
+    if let Some(class) = human.goal {
+        indoors(net, class, &mut back, &taken.goals);
+    } else {
+        let far = |n: &usize| onward_m(net, meet, back.get(..*n).unwrap_or_default()) >= ONWARD_M;
+        let new = |n: &usize| n.checked_sub(1).and_then(|n| back.get(n)).is_some_and(|node| taken.can_end(*node));
+        let long = (1..=back.len()).find(|n| far(n) && new(n)).or_else(|| (1..=back.len()).find(far));
+        back.truncate(long.unwrap_or(back.len()));
+    }
     let ideal = ideal_m(human, net, route);
     // Where the robot goes on to, and the nodes beyond its goal.
     let after = route.nodes.get(route.meet + 1..)?;
@@ -92,7 +114,45 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
     nodes.extend(back);
+    if human.goal.is_none() {
+        onward(&mut nodes, taken);
+    }
     Some(Way { nodes, meet, cost: best.0 * 0.2 })
+}
+
+/// Into the room or car at the end of a way: to a place of it where nobody else goes.
+fn indoors(net: &Net<'_>, class: PlaceClass, back: &mut Vec<usize>, taken: &[usize]) {
+    let Some(entry) = back.iter().position(|node| net.inside(*node)) else { return };
+    back.truncate(entry + 1);
+    let Some(first) = back.last().copied() else { return };
+    let tree = net.tree(first, &|node| !net.inside(node));
+    let all = place::inside(net.location, Some(class));
+    let free = all.iter().filter_map(|id| net.index(id)).filter(|node| tree.length_m(*node).is_finite());
+    // The deepest first, so that the next one finds room.
+    let end = free.filter(|node| !taken.contains(node)).max_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)));
+    if let Some(end) = end {
+        back.extend(tree.way(end).into_iter().skip(1));
+    }
+}
+
+/// Lengthens a way that ends where somebody else's does, straight on, to the next node where nobody ends.
+fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
+    let net = taken.net;
+    for _ in 0..4 {
+        let (Some(last), Some(previous)) =
+            (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
+        else {
+            return;
+        };
+        if taken.can_end(last) {
+            return;
+        }
+        let next = net.near(last).iter().map(|(node, _)| *node);
+        let next = next.filter(|node| !nodes.contains(node) && !net.inside(*node));
+        let turn = |node: usize| net.straight(previous, last, node) - if taken.can_end(node) { 0.0 } else { 0.5 };
+        let Some(next) = next.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else { return };
+        nodes.push(next);
+    }
 }
 
 fn onward_m(net: &Net<'_>, from: usize, nodes: &[usize]) -> f64 {
@@ -132,8 +192,9 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
                 let own = if used.contains(&Some(*exit)) { 1.5 } else { 0.0 };
+                let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
                 let inside = way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0
-                    + if net.inside(*exit) { 3.0 } else { 0.0 };
+                    + if into { 2.0 } else { 0.0 };
                 let cost = 0.2 * (length - ideal).abs() + if length < 3.0 { 10.0 } else { 0.0 } + 2.0 * side
                     - 0.5 * turn
                     + own
@@ -143,6 +204,7 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                     nodes.push(meet);
                     nodes.push(*exit);
                     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && node != *exit);
+                    onward(&mut nodes, taken);
                     best = Some(Way { nodes, meet, cost });
                 }
             }
@@ -177,7 +239,7 @@ fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(us
 }
 
 /// Behind: the robot's way, from its start or from before it.
-fn behind(route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+fn behind(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
     let net = taken.net;
     let start = *route.nodes.first()?;
     let second = *route.nodes.get(1)?;
@@ -192,6 +254,13 @@ fn behind(route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
     nodes.extend(&route.nodes);
     // Somebody who only walks along is met on the way, before others are.
     let meet = if along && route.meet > 1 { route.meet - 1 } else { route.meet };
+    // Who overtakes is level with the robot early, so that the way is long enough to get past it.
+    let follows = human.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)));
+    let early = (1..=meet).find(|i| {
+        let known = route.nodes.get(*i).is_some_and(|node| net.is(*node, taken.place));
+        known && net.length_m(route.nodes.get(..=*i).unwrap_or_default()) >= EARLY_M
+    });
+    let meet = if follows { meet } else { early.unwrap_or(meet) };
     let cost = if before.is_some() { 0.0 } else { 1.0 };
     Some(Way { nodes, meet: *route.nodes.get(meet)?, cost })
 }
@@ -223,6 +292,14 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
 
 /// Standing: at the meeting node, or at the free node of the robot's way nearest to it.
 fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    match taken.ends {
+        Ends::Past => {}
+        Ends::With => {
+            let at = *route.nodes.last()?;
+            return Some(Way { nodes: vec![at], meet: at, cost: 0.0 });
+        }
+        Ends::From => return Some(Way { nodes: vec![*route.nodes.first()?], meet: NOWHERE, cost: 0.0 }),
+    }
     let last = route.nodes.len().checked_sub(1)?;
     let mut places: Vec<usize> = (1..last).collect();
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
@@ -275,11 +352,13 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         } else {
             0.0
         };
-        net.straight(entry, meet, *node) - own
+        let used = if taken.goals.contains(node) { 1.5 } else { 0.0 };
+        net.straight(entry, meet, *node) - own - used
     };
     let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
     nodes.extend(exit);
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
+    onward(&mut nodes, taken);
     let length = tree.length_m(start);
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }

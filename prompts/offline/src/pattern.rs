@@ -51,7 +51,9 @@ pub(crate) fn of(story: &Story, wanted: Option<&str>) -> Option<String> {
         "blind_corner"
     } else if relation(Relation::Crossing) {
         "intersection_crossing"
-    } else if matches!(place, Some(PlaceClass::Doorway | PlaceClass::NarrowPassage)) {
+    } else if place == Some(PlaceClass::NarrowPassage) {
+        "narrow_hallway"
+    } else if place == Some(PlaceClass::Doorway) {
         "narrow_doorway"
     } else if relation(Relation::Frontal) {
         "frontal_approach"
@@ -69,7 +71,8 @@ fn by_place(place: Option<PlaceClass>) -> Option<&'static str> {
     Some(match place? {
         PlaceClass::Intersection => "intersection_crossing",
         PlaceClass::BlindCorner => "blind_corner",
-        PlaceClass::Doorway | PlaceClass::NarrowPassage => "narrow_doorway",
+        PlaceClass::Doorway => "narrow_doorway",
+        PlaceClass::NarrowPassage => "narrow_hallway",
         PlaceClass::Elevator | PlaceClass::ElevatorLobby => "entering_elevator",
         PlaceClass::Room => "room_exit",
         PlaceClass::OpenArea => "group_passing",

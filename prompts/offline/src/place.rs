@@ -50,3 +50,19 @@ pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<Node
     let ids = location.graph.nodes.iter().map(|node| &node.id);
     ids.filter(|id| is_inside(location, id) && is_car(location, id) == car).cloned().collect()
 }
+
+/// Whether so many ways meet somewhere outside; for somebody who comes out of a place, right outside its door.
+pub(crate) fn meets_arms(location: &Location, from: Option<PlaceClass>, least: usize) -> bool {
+    let graph = &location.graph;
+    let arms = |id: &NodeId| graph.neighbors(id).len();
+    let doorway = |id: &NodeId| graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway);
+    let outside = |id: &NodeId| !is_inside(location, id) && !doorway(id);
+    let Some(class) = from else {
+        return graph.nodes.iter().any(|node| outside(&node.id) && arms(&node.id) >= least);
+    };
+    inside(location, Some(class)).iter().any(|start| {
+        let next = graph.neighbors(start);
+        let beyond = next.iter().filter(|id| doorway(id)).flat_map(|id| graph.neighbors(id));
+        next.iter().cloned().chain(beyond).any(|id| outside(&id) && arms(&id) >= least)
+    })
+}

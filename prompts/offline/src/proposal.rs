@@ -22,14 +22,17 @@ pub(crate) fn propose(question: &Question) -> Proposal {
     let mut draw =
         Draw::new(question.seed.wrapping_add(u64::try_from(question.feedback.len()).unwrap_or(0)), "proposal");
     let mut found = reading.pattern.as_deref().and_then(card);
-    let (read, extras) = if reading.humans.is_empty() {
+    let (read, extras, by_card) = if reading.humans.is_empty() {
         found = found.filter(|card| card.fits(location)).or_else(|| default_cast::unguided(location, &mut draw));
-        found.map(|card| default_cast::people(card, request.expect.humans, &mut draw, request)).unwrap_or_default()
+        let (people, extras) =
+            found.map(|card| default_cast::people(card, request.expect.humans, &mut draw, request)).unwrap_or_default();
+        (people, extras, true)
     } else {
-        let extras = understand(request, location).extras;
+        let understood = understand(request, location);
+        let extras = understood.extras;
         let extras =
             if extras.len() == reading.humans.len() { extras } else { vec![Extra::default(); reading.humans.len()] };
-        (reading.humans.clone(), extras)
+        (reading.humans.clone(), extras, understood.by_card)
     };
     let place = where_at(reading, found, &read, location, &mut draw);
     let humans: Vec<HumanProposal> = read
@@ -38,6 +41,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         .map(|(human, extra)| proposed(human, extra, place, request, location, &mut draw))
         .collect();
     let groups = groups(&humans);
+    let part = events::Part { card: found, by_card, read: &read };
     let robot = robot(reading, request, found, &humans, location);
     let (title, about, id) = found.map_or_else(
         || ("A free scenario".to_owned(), "People and the robot meet.".to_owned(), FREE.to_owned()),
@@ -60,7 +64,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         notes,
         author: NAME.to_owned(),
     };
-    proposal.expected_events = events::events(&proposal, reading, found, &extras, location);
+    proposal.expected_events = events::events(&proposal, reading, &part, &extras, location);
     proposal
 }
 
@@ -140,7 +144,7 @@ fn proposed(
         group: human.group,
         speed_mps: usual.filter(|_| moves),
         start,
-        goal: None,
+        goal: extra.goal.filter(|class| place::has(location, *class)),
     }
 }
 
@@ -167,6 +171,7 @@ fn robot(
     let class = |wanted: fn(&FactKind) -> Option<PlaceClass>| reading.facts.iter().find_map(|fact| wanted(&fact.kind));
     let start = class(|kind| if let FactKind::RobotStart(class) = kind { Some(*class) } else { None });
     let goal = class(|kind| if let FactKind::RobotGoal(class) = kind { Some(*class) } else { None });
+    let start = start.or_else(|| found.and_then(|card| card.start)).filter(|class| place::has(location, *class));
     let goal = goal.or_else(|| found.and_then(|card| card.goal)).filter(|class| place::has(location, *class));
     let mut script: Vec<RobotRule> = found.map(|card| card.script.clone()).unwrap_or_default();
     let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);

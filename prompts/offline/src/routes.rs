@@ -250,6 +250,9 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
             score -= 6.0;
         }
     }
+    // Nor anywhere else on the way.
+    let back = |triple: &[usize]| matches!(triple, [a, b, c] if net.straight(*a, *b, *c) < -0.5);
+    score -= 4.0 * nodes.windows(3).filter(|triple| back(triple)).count() as f64;
     let mid = nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default();
     score -= 5.0 * mid.iter().filter(|node| net.inside(**node)).count() as f64;
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
@@ -260,6 +263,8 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
             Some(class) if net.is(*end, class) => score += 4.0,
             Some(_) => {}
             None if net.inside(*end) => score -= 4.0,
+            // Nobody stays in a doorway.
+            None if net.kind(*end) == PlaceClass::Doorway => score -= 3.0,
             None => {}
         }
     }

@@ -7,10 +7,11 @@ use socrates_model::{Encounter, FORMAT, FaultCode, HumanId, NodeId, Paths, Place
 use socrates_prompts::Question;
 
 use crate::NAME;
+use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
 use crate::humans::{Taken, Way, way};
 use crate::place;
-use crate::routes::{Net, Route, Wish, over, score};
+use crate::routes::{Net, Route, Tree, Wish, over, score};
 
 /// Meeting nodes that are tried, and ways of the robot over each.
 const NODES: usize = 14;
@@ -62,7 +63,11 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
     let has = |relation: Relation| proposal.humans.iter().any(|human| human.relation == relation);
     let straight = if proposal.place == PlaceClass::BlindCorner {
         -1.0
-    } else if has(Relation::Frontal) || has(Relation::Crossing) || has(Relation::Ahead) {
+    } else if has(Relation::Frontal)
+        || has(Relation::Crossing)
+        || has(Relation::Ahead)
+        || proposal.groups.iter().any(|group| group.standing)
+    {
         1.0
     } else {
         0.3
@@ -91,12 +96,24 @@ fn enters(net: &Net<'_>, proposal: &Proposal) -> Option<Vec<usize>> {
 }
 
 fn solutions(net: &Net<'_>, proposal: &Proposal, wish: &Wish) -> Vec<Solution> {
+    let found = card(&proposal.pattern);
     if let Some(inside) = enters(net, proposal) {
         return inside.iter().flat_map(|goal| into(net, proposal, wish, *goal)).collect();
+    }
+    if let Some(class) = found.and_then(|card| card.start).filter(|class| proposal.robot.start == Some(*class)) {
+        let inside = place::inside(net.location, Some(class));
+        return inside.iter().filter_map(|id| net.index(id)).flat_map(|start| out_of(net, proposal, wish, start)).collect();
     }
     let typed: Vec<usize> =
         socrates_maps::place::nodes_of(net.location, wish.place).iter().filter_map(|id| net.index(id)).collect();
     let nodes: Vec<usize> = if wish.place == PlaceClass::Plain { (0..net.len()).collect() } else { typed };
+    match found.map(|card| card.ends) {
+        Some(Ends::With) => return nodes.into_iter().flat_map(|node| to_node(net, proposal, wish, node)).collect(),
+        Some(Ends::From) => {
+            return nodes.into_iter().flat_map(|node| from_node(net, proposal, wish, node)).collect();
+        }
+        Some(Ends::Past) | None => {}
+    }
     at_nodes(net, proposal, wish, &nodes, false)
 }
 
@@ -109,7 +126,16 @@ fn anywhere(net: &Net<'_>, proposal: &Proposal, wish: &Wish, crowded: bool) -> V
 fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], crowded: bool) -> Vec<Solution> {
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
-    let field = if standing > 0 { Some(DistanceField::new(&net.location.grid)) } else { None };
+    let found = card(&proposal.pattern);
+    let wide = found.and_then(|card| card.width_m);
+    let field = (standing > 0 || wide.is_some()).then(|| DistanceField::new(&net.location.grid));
+    // People who come out are met near the place that they leave.
+    let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
+    let sources: Option<Vec<Tree>> = leaver.map(|human| {
+        let inside = place::inside(net.location, human.start);
+        inside.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect()
+    });
+    let many = proposal.humans.len() > 3;
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
@@ -127,8 +153,13 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             } else {
                 -20.0
             };
-            let room = field.as_ref().map_or(0.0, |field| 1.5 * field.clearance(&net.at(*node)).min(2.5));
-            (own + cross + room, *node)
+            let clear_m = field.as_ref().map_or(0.0, |field| field.clearance(&net.at(*node)));
+            let room = if standing > 0 { 1.5 * clear_m.min(2.5) } else { 0.0 };
+            let far = sources.as_ref().map_or(0.0, |trees| {
+                let nearest = trees.iter().map(|tree| tree.length_m(*node)).fold(f64::INFINITY, f64::min);
+                if nearest > 12.0 { -20.0 } else { -0.4 * (nearest - 3.0).max(0.0) }
+            });
+            (own + cross + room + far + layout(found, arms, clear_m), *node)
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -137,12 +168,27 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
         for route in over(net, meet, wish).into_iter().take(ROUTES) {
             let hidden = sight.as_ref().map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
             if let Some(mut solution) = people(net, proposal, route, crowded) {
-                solution.score += rank + hidden;
+                // Many people do not get through a doorway against each other.
+                let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
+                solution.score += rank + hidden - if many { 3.0 * tight } else { 0.0 };
                 found.push(solution);
             }
         }
     }
     found
+}
+
+fn tight(net: &Net<'_>, node: usize) -> bool {
+    matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
+}
+
+/// How well a node suits the layout that the card asks for: 0 where it does.
+fn layout(card: Option<&Card>, arms: usize, clear_m: f64) -> f64 {
+    let Some(card) = card else { return 0.0 };
+    let few = if card.arms.is_some_and(|least| arms < least) { -8.0 } else { 0.0 };
+    // A node lies in the middle of its floor: the free width is twice the way to the nearest wall.
+    let off = card.width_m.is_some_and(|[least, most]| 2.0 * clear_m < least || 2.0 * clear_m > most);
+    few + if off { -8.0 } else { 0.0 }
 }
 
 /// Whether the nodes before and after the meeting cannot see each other.
@@ -186,9 +232,92 @@ fn into(net: &Net<'_>, proposal: &Proposal, wish: &Wish, goal: usize) -> Vec<Sol
     found
 }
 
+/// The robot's ways out of a car or room: met is who comes by at the first node outside.
+fn out_of(net: &Net<'_>, proposal: &Proposal, wish: &Wish, start: usize) -> Vec<Solution> {
+    let tree = net.tree(start, &|_| false);
+    let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
+    let mut routes: Vec<Route> = (0..net.len())
+        .filter(|goal| !net.inside(*goal) && tree.length_m(*goal).is_finite())
+        .filter_map(|goal| {
+            let nodes = tree.way(goal);
+            let meet =
+                nodes.iter().position(|node| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway)?;
+            let out = nodes.get(meet..)?.iter().all(|node| !net.inside(*node));
+            if meet == 0 || !out || meet + 1 >= nodes.len() {
+                return None;
+            }
+            let value = score(net, &nodes, meet, &Wish { aim_m: 14.0, straight: 0.5, start: None, ..*wish });
+            let arms = net.near(*nodes.get(meet)?).len();
+            let cross = if crossing && arms < 3 {
+                -20.0
+            } else if crossing && arms > 3 {
+                6.0
+            } else {
+                0.0
+            };
+            value.is_finite().then_some(Route { nodes, meet, score: value + cross })
+        })
+        .collect();
+    best(&mut routes);
+    routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()
+}
+
+/// The robot's ways to people who stand at a node, where it stays.
+fn to_node(net: &Net<'_>, proposal: &Proposal, wish: &Wish, node: usize) -> Vec<Solution> {
+    if net.inside(node) || net.kind(node) == PlaceClass::Doorway {
+        return Vec::new();
+    }
+    let tree = net.tree(node, &|_| false);
+    let mut routes: Vec<Route> = outside(net, &tree, node)
+        .filter_map(|start| {
+            let mut nodes = tree.way(start);
+            nodes.reverse();
+            let meet = nodes.len().checked_sub(1)?;
+            let value = score(net, &nodes, meet, &Wish { aim_m: 12.0, straight: 0.0, goal: None, ..*wish });
+            value.is_finite().then_some(Route { nodes, meet, score: value + roomy(net, node) })
+        })
+        .collect();
+    best(&mut routes);
+    routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()
+}
+
+/// The robot's ways away from people who stand at a node.
+fn from_node(net: &Net<'_>, proposal: &Proposal, wish: &Wish, node: usize) -> Vec<Solution> {
+    if net.inside(node) || net.kind(node) == PlaceClass::Doorway {
+        return Vec::new();
+    }
+    let tree = net.tree(node, &|_| false);
+    let mut routes: Vec<Route> = outside(net, &tree, node)
+        .filter_map(|goal| {
+            let nodes = tree.way(goal);
+            let value = score(net, &nodes, 1, &Wish { aim_m: 12.0, straight: 0.0, start: None, ..*wish });
+            value.is_finite().then_some(Route { nodes, meet: 0, score: value + roomy(net, node) })
+        })
+        .collect();
+    best(&mut routes);
+    routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()
+}
+
+fn outside(net: &Net<'_>, tree: &Tree, but: usize) -> impl Iterator<Item = usize> {
+    (0..net.len()).filter(move |node| *node != but && !net.inside(*node) && tree.length_m(*node).is_finite())
+}
+
+/// Nodes with many ways have room around them.
+fn roomy(net: &Net<'_>, node: usize) -> f64 {
+    if net.kind(node) == PlaceClass::OpenArea { 2.0 } else { 0.0 }
+}
+
+fn best(routes: &mut Vec<Route>) {
+    routes.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.nodes.cmp(&b.nodes)));
+    routes.truncate(ROUTES);
+}
+
 /// Everybody's way for one way of the robot.
 fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Option<Solution> {
-    let mut taken = Taken { net, starts: route.nodes.first().copied().into_iter().collect(), crowded };
+    let ends = card(&proposal.pattern).map_or(Ends::Past, |card| card.ends);
+    let starts = route.nodes.first().copied().into_iter().collect();
+    let goals = route.nodes.last().copied().into_iter().collect();
+    let mut taken = Taken { net, starts, goals, crowded, ends, place: proposal.place };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
     let along = proposal
         .humans
@@ -214,6 +343,9 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());
+        }
+        if own.nodes.len() > 1 && mate.is_none() {
+            taken.goals.extend(own.nodes.last());
         }
         ways.insert(human.id, own);
     }

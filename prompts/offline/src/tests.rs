@@ -427,3 +427,36 @@ fn a_reaction_that_never_came_gets_a_longer_reach() {
     ask.feedback.push(Fault::new(FaultCode::DNoTrig, "human_1", "x"));
     assert_ne!(first, Offline::answer(&ask));
 }
+
+#[test]
+fn requests_without_a_rough_scenario_use_many_patterns_and_every_place_that_fits() {
+    let contexts =
+        ["", "A busy morning with nurses and visitors", "A quiet night shift", "Employees on their lunch break"];
+    let mut patterns = std::collections::BTreeMap::<String, u32>::new();
+    let mut used = std::collections::BTreeSet::new();
+    let mut fitting = std::collections::BTreeSet::new();
+    let locations: Vec<Location> = socrates_maps::shipped::names().iter().map(|name| map(name)).collect();
+    for location in &locations {
+        for card in crate::catalog().iter().filter(|card| card.fits(location)) {
+            let there = |class: &&PlaceClass| **class != PlaceClass::Plain && crate::place::has(location, **class);
+            fitting.extend(card.places.iter().filter(there));
+        }
+    }
+    for seed in 1..=100_u64 {
+        let location = &locations[usize::try_from(seed).unwrap() % locations.len()];
+        let context = contexts[usize::try_from(seed).unwrap() / 3 % contexts.len()];
+        let asked = Request { social_context: context.to_owned(), ..request("Deliver mail", None) };
+        let proposal = parsed(socrates_prompts::parse_proposal(
+            &Offline::answer(&question(Stage::Proposal, &asked, location, seed)),
+            &question(Stage::Proposal, &asked, location, seed),
+        ));
+        *patterns.entry(proposal.pattern).or_default() += 1;
+        used.insert(proposal.place);
+    }
+    let counts: Vec<String> = patterns.iter().map(|(id, count)| format!("{id} {count}")).collect();
+    println!("{} patterns: {}", patterns.len(), counts.join(", "));
+    println!("places used: {used:?}");
+    assert!(patterns.len() >= 12, "{patterns:?}");
+    let missing: Vec<_> = fitting.difference(&used).collect();
+    assert!(missing.is_empty(), "never used: {missing:?}");
+}

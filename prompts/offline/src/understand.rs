@@ -16,6 +16,8 @@ pub(crate) struct Understood {
     pub(crate) reading: Reading,
     /// Per human: desired speed, where it starts, whether its rules' triggers were said.
     pub(crate) extras: Vec<Extra>,
+    /// Whether the people are those of the pattern, because the text names none.
+    pub(crate) by_card: bool,
 }
 
 /// What is known of one human beyond the reading.
@@ -23,6 +25,7 @@ pub(crate) struct Understood {
 pub(crate) struct Extra {
     pub(crate) speed_mps: Option<f64>,
     pub(crate) start: Option<PlaceClass>,
+    pub(crate) goal: Option<PlaceClass>,
     /// Per rule: whether the text says when.
     pub(crate) stated: Vec<bool>,
 }
@@ -56,6 +59,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         .map(|person| Extra {
             speed_mps: person.speed_mps,
             start: person.start,
+            goal: None,
             stated: person.rules.iter().map(|read| read.stated).collect(),
         })
         .collect();
@@ -65,12 +69,42 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     }
     let foreign = reading.problems.iter().any(|fault| fault.code == FaultCode::PLang);
     let empty = reading.humans.is_empty() && story.cast.nobody.is_none() && !foreign;
-    if empty && (rough.is_some() || request.expect.pattern.is_some()) {
+    let by_card = empty && rough.is_some();
+    if by_card {
         extras = default_cast::fill(&mut reading, &story, request, location);
     }
+    unfitting(request, location, &mut reading);
     facts(&story, &task, &mut reading);
+    if request.expect.pattern.is_some()
+        && let Some(id) = &reading.pattern
+    {
+        let id_of_fact = format!("f{}", reading.facts.len() + 1);
+        let kind = FactKind::Pattern(id.clone());
+        reading.facts.push(Fact { id: id_of_fact, quote: format!("expect.pattern = \"{id}\""), kind });
+    }
     leftovers(request, location, &mut story, &task, &mut reading);
-    Understood { reading, extras }
+    Understood { reading, extras, by_card }
+}
+
+/// A pattern by name that this map cannot hold: a fault that says what is missing.
+fn unfitting(request: &Request, location: &Location, reading: &mut Reading) {
+    let Some(card) = request.expect.pattern.as_deref().and_then(crate::card::card) else { return };
+    if card.fits(location) {
+        return;
+    }
+    let needs: Vec<String> = card.needs.iter().chain(&card.places).map(|class| place::words(*class)).collect();
+    let inside = if card.inside { " and a place inside a room or an elevator with room for all" } else { "" };
+    reading.problems.push(Fault::new(
+        FaultCode::PPlace,
+        "expect.pattern",
+        format!(
+            "`{}` needs {}{inside}, which this map does not have; it has: {}",
+            card.id,
+            needs.join(" or "),
+            place::listed(location)
+        ),
+    ));
+    reading.pattern = None;
 }
 
 fn shortened(text: &str) -> String {

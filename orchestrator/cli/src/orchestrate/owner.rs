@@ -27,6 +27,14 @@ pub(super) fn row(effect: Effect) -> Option<Row> {
     }
 }
 
+/// The stage of an effect that is a hint.
+fn hint(effect: &Effect) -> Option<Stage> {
+    match effect {
+        Effect::Hint(stage) => Some(*stage),
+        Effect::Save(_) | Effect::Reply { .. } | Effect::Notice { .. } | Effect::ScenarioDone { .. } => None,
+    }
+}
+
 /// An acquire that waits for work.
 struct Waiting {
     until: Millis,
@@ -108,32 +116,29 @@ impl Owner {
         self.event(event).await;
     }
 
-    /// One step, then another look at the acquires that its hints may serve.
+    /// One step, and the acquires that it can serve now, in one commit: who waits for work hears of it as soon as
+    /// the work is durable.
     async fn event(&mut self, event: Event) {
         let now = self.now();
-        let effects = step(&mut self.state, event, now);
-        let hinted: Vec<Stage> = effects
-            .iter()
-            .filter_map(|effect| match effect {
-                Effect::Hint(stage) => Some(*stage),
-                Effect::Save(_) | Effect::Reply { .. } | Effect::Notice { .. } | Effect::ScenarioDone { .. } => None,
-            })
-            .collect();
-        self.commit(effects).await;
-        if hinted.is_empty() {
-            return;
-        }
-        for waiting in std::mem::take(&mut self.waiting) {
-            if waiting.acquire.stages.iter().any(|stage| hinted.contains(stage)) {
-                self.acquire(waiting.acquire, waiting.ask, Some(waiting.until)).await;
-            } else {
-                self.waiting.push_back(waiting);
+        let mut effects = step(&mut self.state, event, now);
+        let mut hinted: Vec<Stage> = effects.iter().filter_map(hint).collect();
+        if !hinted.is_empty() {
+            for waiting in std::mem::take(&mut self.waiting) {
+                if waiting.acquire.stages.iter().any(|stage| hinted.contains(stage)) {
+                    effects.extend(self.acquired(waiting.acquire, waiting.ask, Some(waiting.until)));
+                } else {
+                    self.waiting.push_back(waiting);
+                }
             }
+            // A hint wakes every worker of its stage: only work that is left over is worth that.
+            hinted.retain(|stage| self.state.has_ready(*stage));
+            effects.retain(|effect| hint(effect).is_none_or(|stage| hinted.contains(&stage)));
         }
+        self.commit(effects).await;
     }
 
-    /// Answers an acquire, or lets it wait a little for work.
-    async fn acquire(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) {
+    /// Answers an acquire, or lets it wait a little for work: then there is nothing to commit.
+    fn acquired(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) -> Vec<Effect> {
         self.next += 1;
         let to = self.next;
         let now = self.now();
@@ -147,9 +152,15 @@ impl Owner {
         let until = until.unwrap_or_else(|| now.saturating_add(HOLD_MS));
         if idle && until > now && self.waiting.len() < HELD {
             let at = self.waiting.partition_point(|other| other.until <= until);
-            return self.waiting.insert(at, Waiting { until, acquire, ask });
+            self.waiting.insert(at, Waiting { until, acquire, ask });
+            return Vec::new();
         }
         self.asks.insert(to, ask);
+        effects
+    }
+
+    async fn acquire(&mut self, acquire: Acquire, ask: Ask, until: Option<Millis>) {
+        let effects = self.acquired(acquire, ask, until);
         self.commit(effects).await;
     }
 

@@ -6,7 +6,7 @@ use socrates_model::{Action, AgentId, HumanId, Point, Relation};
 use crate::contacts::{self, Body};
 use crate::human::Human;
 use crate::motion::{self, Scene, Want};
-use crate::near::Other;
+use crate::near::{Near, Other};
 use crate::recorder::Recorder;
 use crate::rendezvous::{self, Moment};
 use crate::run::Engine;
@@ -15,9 +15,11 @@ use crate::walk::{self, Walker};
 impl Engine {
     /// Moves everybody by one tick.
     pub(crate) fn advance(&mut self, now_s: f64, recorder: &mut Recorder) {
-        let Self { humans, robot, near, .. } = &mut *self;
+        let Self { humans, robot, near, doors_moved, ticks, .. } = &mut *self;
         let people = humans.iter().filter(|human| human.present()).map(Other::from);
-        near.fill(people.chain(robot.iter().map(Other::from)));
+        let anew = near.fill(people.chain(robot.iter().map(Other::from))) | std::mem::take(doors_moved);
+        let tick = *ticks;
+        *ticks += 1;
         let led: Vec<HumanId> = self
             .humans
             .iter()
@@ -34,7 +36,7 @@ impl Engine {
         let mut bodies: Vec<Body> = Vec::with_capacity(self.humans.len() + 1);
         let mut around: Vec<Other> = Vec::new();
         let mut walker = Walker::new(&self.params, self.humans.len());
-        for (human, pace) in self.humans.iter_mut().zip(&paces) {
+        for (place, (human, pace)) in self.humans.iter_mut().zip(&paces).enumerate() {
             if human.is_recorded() {
                 human.replay(now_s + STEP_SECS);
                 wants.push(Want::STAND);
@@ -43,11 +45,16 @@ impl Engine {
                 }
                 continue;
             }
-            self.near.around(human.id, &human.at, &mut around);
+            let looks = anew || human.notice.stale || Near::is_turn(tick, place);
+            if looks {
+                self.near.look(human, &self.floor);
+            }
+            self.near.noticed(&human.notice, &mut around);
             let scene = Scene {
                 location: &self.setup.location,
                 floor: &self.floor,
                 now_s,
+                looks,
                 robot: self.robot.as_ref(),
                 others: &around,
                 trails: &trails,

@@ -4,6 +4,7 @@ use socrates_bt::{Tree, TreeState};
 use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
 
 use crate::models::Walks;
+use crate::near::Notice;
 
 /// Where a human meets the robot.
 #[derive(Debug, Clone)]
@@ -81,6 +82,8 @@ pub(crate) struct Human {
     pub(crate) started: bool,
     /// Where it walked, a point every decimetre.
     pub(crate) trail: Polyline,
+    /// What it noticed when it last looked round.
+    pub(crate) notice: Notice,
     /// The model by which it walks.
     pub(crate) walks: Walks,
 }
@@ -104,7 +107,8 @@ impl Human {
 
     /// Direction it faces.
     pub(crate) fn heading(&self) -> Vector {
-        Vector::new(libm::cos(self.yaw), libm::sin(self.yaw))
+        let (sin, cos) = libm::sincos(self.yaw);
+        Vector::new(cos, sin)
     }
 
     /// Direction of travel: along the way while there is some left, else where it faces.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, walk, lanes, [`models`], advance, [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, walk, [`gait`], lanes, [`models`], advance, [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!
@@ -16,6 +16,7 @@
 pub mod contacts;
 pub mod doors;
 pub mod floor;
+pub mod gait;
 pub mod lidar;
 pub mod models;
 pub mod recorder;
@@ -26,6 +27,7 @@ mod advance;
 mod cells;
 mod drive;
 mod ending;
+mod gathering;
 mod human;
 mod lanes;
 mod motion;

@@ -11,7 +11,6 @@ use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Fault, FaultCode, HumanId, Point, Vector};
 
-use crate::floor::Floor;
 use crate::human::Human;
 use crate::near::Other;
 use crate::run::Engine;
@@ -143,25 +142,19 @@ impl Human {
 }
 
 /// The velocity that avoidance takes towards a target.
-pub(crate) fn avoid(
-    orca: &Orca,
-    human: &Human,
-    (target, speed_mps): (&Point, f64),
-    floor: &Floor,
-    others: &[Other],
-) -> Vector {
+pub(crate) fn avoid(orca: &Orca, human: &Human, (target, speed_mps): (&Point, f64), others: &[Other]) -> Vector {
     let person =
         |id: u32, at: Point, velocity: Vector, radius_m: f64| Person { velocity, radius_m, ..Person::standing(id, at) };
     let goal = Some(Goal { at: *target, radius_m: 0.02 });
     let mut people = vec![Person { goal, speed_mps, ..person(0, human.at, human.velocity, human.radius_m) }];
     for (number, other) in (1_u32..).zip(others) {
         let mate = human.group.is_some() && other.group == human.group;
-        if !mate && floor.sees(&human.at, &other.at) {
+        if !mate && other.seen {
             people.push(person(number, other.at, other.velocity, other.radius_m));
         }
     }
     let point = |at: Point| Segment { from: at, to: at };
-    let walls: Vec<Segment> = floor.felt(&human.at).into_iter().map(point).collect();
+    let walls: Vec<Segment> = human.notice.walls.iter().copied().map(point).collect();
     people.first().map_or_else(Vector::zeros, |me| {
         orca.velocity(&View { me, place: Some(0), people: &people, walls: &walls, now_s: 0.0, dt_s: STEP_SECS })
     })

@@ -66,6 +66,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) location: &'a Location,
     pub(crate) floor: &'a Floor,
     pub(crate) now_s: f64,
+    /// Whether the human in question looks round at this tick.
+    pub(crate) looks: bool,
     pub(crate) robot: Option<&'a Robot>,
     /// Everybody else who is near the human in question.
     pub(crate) others: &'a [Other],
@@ -112,12 +114,18 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     let left = human.route.length_m() - human.s;
     let speed = pace.min(0.25 + libm::sqrt(2.0 * left.max(0.0)));
     let ahead = human.route.direction(human.s + 0.5 * LOOK_AHEAD_M);
-    let wish = human.lane_m + sidestep(human, scene, &ahead);
+    if scene.looks {
+        human.notice.aside_m = sidestep(human, scene, &ahead);
+    }
+    let wish = human.lane_m + human.notice.aside_m;
     // The sidestep is taken up at 0.9 m/s sideways, so that nobody jumps.
     human.aside_m += (wish - human.aside_m).clamp(-0.009, 0.009);
     let base = human.route.point(human.s + LOOK_AHEAD_M);
     let target = beside(scene.floor, &base, &ahead, human.aside_m, human.radius_m + 0.08);
-    if scene.floor.straight(&human.at, &target, 0.15) {
+    if scene.looks {
+        human.notice.straight = scene.floor.straight(&human.at, &target, 0.15);
+    }
+    if human.notice.straight {
         human.errand.way = None;
         return Want::go(target, speed);
     }
@@ -189,7 +197,12 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
             continue;
         }
         let way = other.at - human.at;
-        let (before, beside) = (way.dot(ahead), way.dot(&left));
+        let before = way.dot(ahead);
+        // Most are behind it or farther than the nearest so far.
+        if before < -PASSED_M || before > nearest.0 {
+            continue;
+        }
+        let beside = way.dot(&left);
         let closing = (human.velocity - other.velocity).dot(ahead);
         let across = other.velocity.dot(&left).abs();
         let need = human.radius_m + other.radius_m + BERTH_M;
@@ -197,7 +210,7 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
         // Somebody level with it is still passed: going back to the line now would run into its side.
         let level = before > -PASSED_M && before < 0.1 && human.aside_m.abs() > 0.1;
         // Who crosses is left to the forces: going aside would lead into its way.
-        if !level && (before < 0.1 || closing < 0.1) || before > nearest.0 || off.abs() > need || across > 0.5 {
+        if !level && (before < 0.1 || closing < 0.1) || off.abs() > need || across > 0.5 {
             continue;
         }
         // Whoever stands where its way ends is joined, not passed.

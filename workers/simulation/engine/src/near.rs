@@ -1,12 +1,25 @@
-//! Who is near whom at the start of a tick.
+//! Who is near whom at the start of a tick, and what each person has noticed of it.
 
 use socrates_model::{GroupId, HumanId, Point, Vector};
 
+use crate::floor::Floor;
 use crate::human::Human;
+use crate::models::Walks;
 use crate::robot::Robot;
 
 /// Everybody whom somebody may take notice of on its way is nearer than this, m.
 pub(crate) const NEAR_M: f64 = 7.0;
+/// A look round is taken every so many ticks, each person at its own: 20 times a second. What was seen then is
+/// followed with its present place and velocity in between.
+const LOOK_TICKS: u64 = 5;
+/// How much nearer two can come, or somebody a wall, between two looks, m: 0.05 s at twice the speed of a run.
+const BETWEEN_M: f64 = 0.2;
+/// Nobody is touched soon who is farther away, m.
+pub(crate) const CLOSE_M: f64 = 3.0;
+/// Others farther away are not felt, m.
+pub(crate) const FEEL_M: f64 = 5.0;
+/// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
+const WALLS_M: f64 = 3.2;
 /// Up to so many everybody is looked at; more are sorted into cells first.
 const FEW: usize = 64;
 /// Cells that [`NEAR_M`] spans.
@@ -23,6 +36,42 @@ pub(crate) struct Other {
     pub(crate) velocity: Vector,
     pub(crate) radius_m: f64,
     pub(crate) group: Option<GroupId>,
+    /// Whether the one who looks sees it, where it is near enough to be felt.
+    pub(crate) seen: bool,
+}
+
+/// Somebody who was noticed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Noticed {
+    /// Place in the list of everybody.
+    place: usize,
+    /// Whether it was in line of sight.
+    seen: bool,
+}
+
+impl Noticed {
+    const fn at(place: usize) -> Self {
+        Self { place, seen: false }
+    }
+}
+
+/// What somebody has noticed at its last look round.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Notice {
+    /// Whoever is near: the close ones first.
+    near: Vec<Noticed>,
+    /// How many of them are close.
+    pub(crate) close: usize,
+    /// Social force of those who are not close, m/s², kept until the next look: it hardly changes in that time.
+    pub(crate) far: Option<Vector>,
+    /// Wall points that are felt.
+    pub(crate) walls: Vec<Point>,
+    /// How far it means to go aside for whoever is in its way, m to the left.
+    pub(crate) aside_m: f64,
+    /// Whether nothing stands between it and the next point of its way.
+    pub(crate) straight: bool,
+    /// Whether it does something else than at its last look, and has to look anew.
+    pub(crate) stale: bool,
 }
 
 impl From<&Human> for Other {
@@ -33,13 +82,21 @@ impl From<&Human> for Other {
             velocity: human.velocity,
             radius_m: human.radius_m,
             group: human.group,
+            seen: false,
         }
     }
 }
 
 impl From<&Robot> for Other {
     fn from(robot: &Robot) -> Self {
-        Self { id: None, at: robot.at(), velocity: robot.velocity, radius_m: robot.model.radius_m, group: None }
+        Self {
+            id: None,
+            at: robot.at(),
+            velocity: robot.velocity,
+            radius_m: robot.model.radius_m,
+            group: None,
+            seen: false,
+        }
     }
 }
 
@@ -47,32 +104,86 @@ impl From<&Robot> for Other {
 #[derive(Debug, Default)]
 pub(crate) struct Near {
     others: Vec<Other>,
+    /// Room for the next moment.
+    next: Vec<Other>,
     low: (f64, f64),
     cell_m: f64,
     columns: usize,
     rows: usize,
-    /// Everybody by cells, in the order of the list within a cell.
-    sorted: Vec<Other>,
+    /// Places in the list by cells, in the order of the list within a cell.
+    sorted: Vec<usize>,
     /// Where the people of each cell begin in `sorted`; one more than there are cells.
     starts: Vec<usize>,
 }
 
 impl Near {
-    /// Takes over a new moment.
-    pub(crate) fn fill(&mut self, others: impl Iterator<Item = Other>) {
-        self.others.clear();
-        self.others.extend(others);
+    /// Takes over a new moment. Says whether others are there than before: then everybody has to look anew.
+    pub(crate) fn fill(&mut self, others: impl Iterator<Item = Other>) -> bool {
+        let mut before = 0;
+        let mut same = true;
+        let mut next = std::mem::take(&mut self.next);
+        next.clear();
+        for other in others {
+            same &= self.others.get(before).is_some_and(|known| known.id == other.id);
+            before += 1;
+            next.push(other);
+        }
+        same &= before == self.others.len();
+        self.next = std::mem::replace(&mut self.others, next);
         if self.others.len() > FEW {
             self.sort();
         }
+        !same
     }
 
-    /// Everybody within [`NEAR_M`] of `at` but `me`: few in the order of the list, many by cells.
-    pub(crate) fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Other>) {
+    /// Whether it is the turn of the person at this place to look round.
+    pub(crate) fn is_turn(tick: u64, place: usize) -> bool {
+        (tick + place as u64).is_multiple_of(LOOK_TICKS)
+    }
+
+    /// A look round: who is near, who of them is in line of sight, which walls are felt.
+    pub(crate) fn look(&self, human: &mut Human, floor: &Floor) {
+        let mut near = std::mem::take(&mut human.notice.near);
+        self.around(human.id, &human.at, &mut near);
+        // Most of those who are felt are within open floor: no line has to be drawn to them.
+        let clearance_m = floor.clearance_m(&human.at);
+        let open_m = floor.open_of(clearance_m);
+        let felt_m = if matches!(human.walks, Walks::Orca(_)) { NEAR_M } else { FEEL_M } + BETWEEN_M;
+        let mut close = 0;
+        for number in 0..near.len() {
+            let Some(noticed) = near.get_mut(number) else { break };
+            let Some(other) = self.others.get(noticed.place) else { continue };
+            let apart_2 = (other.at - human.at).norm_squared();
+            noticed.seen = apart_2 < felt_m * felt_m
+                && (open_m > 0.0 && apart_2 < open_m * open_m || floor.sees(&human.at, &other.at));
+            if apart_2 < (CLOSE_M + BETWEEN_M) * (CLOSE_M + BETWEEN_M) {
+                near.swap(close, number);
+                close += 1;
+            }
+        }
+        human.notice.close = close;
+        human.notice.near = near;
+        human.notice.far = None;
+        human.notice.walls = if clearance_m > WALLS_M + BETWEEN_M { Vec::new() } else { floor.felt(&human.at) };
+        human.notice.stale = false;
+    }
+
+    /// Whom somebody has noticed, as they are now.
+    pub(crate) fn noticed(&self, notice: &Notice, found: &mut Vec<Other>) {
         found.clear();
-        let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < NEAR_M * NEAR_M;
+        let now = |noticed: &Noticed| Some(Other { seen: noticed.seen, ..*self.others.get(noticed.place)? });
+        found.extend(notice.near.iter().filter_map(now));
+    }
+
+    /// Everybody within [`NEAR_M`] of `at` but `me`.
+    fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Noticed>) {
+        found.clear();
+        let reach = NEAR_M + BETWEEN_M;
+        let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < reach * reach;
         if self.others.len() <= FEW {
-            found.extend(self.others.iter().filter(|other| near(other)));
+            found.extend(
+                self.others.iter().enumerate().filter(|(_, other)| near(other)).map(|(place, _)| Noticed::at(place)),
+            );
             return;
         }
         let (column, row) = self.cell(at);
@@ -82,7 +193,10 @@ impl Near {
             // The cells of a row lie one after the other, and so do the people in them.
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
-            found.extend(self.sorted.get(start..end).into_iter().flatten().filter(|other| near(other)));
+            let places = self.sorted.get(start..end).into_iter().flatten();
+            found.extend(
+                places.filter(|place| self.others.get(**place).is_some_and(near)).map(|place| Noticed::at(*place)),
+            );
         }
     }
 
@@ -110,7 +224,7 @@ impl Near {
         self.low = low;
         #[expect(clippy::cast_precision_loss, reason = "two")]
         let reach = CELLS_PER_REACH as f64;
-        self.cell_m = (NEAR_M / reach).max(side / MOST_CELLS);
+        self.cell_m = ((NEAR_M + BETWEEN_M) / reach).max(side / MOST_CELLS);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 129")]
         let cells = |from: f64, to: f64| ((to - from).max(0.0) / self.cell_m) as usize + 1;
         (self.columns, self.rows) = (cells(low.0, high.0), cells(low.1, high.1));
@@ -130,11 +244,12 @@ impl Near {
             *start = sum;
         }
         let mut next = self.starts.clone();
-        self.sorted.clone_from(&self.others);
-        for (other, cell) in self.others.iter().zip(&cells) {
+        self.sorted.clear();
+        self.sorted.resize(self.others.len(), 0);
+        for (place, cell) in cells.iter().enumerate() {
             let Some(slot) = next.get_mut(*cell) else { continue };
             if let Some(target) = self.sorted.get_mut(*slot) {
-                *target = *other;
+                *target = place;
             }
             *slot += 1;
         }
@@ -159,6 +274,7 @@ mod tests {
                 velocity: Vector::zeros(),
                 radius_m: 0.3,
                 group: None,
+                seen: false,
             })
             .collect();
         let mut near = Near::default();
@@ -166,13 +282,12 @@ mod tests {
         let mut found = Vec::new();
         for (me, other) in others.iter().enumerate() {
             near.around(other.id.unwrap(), &other.at, &mut found);
-            let want: Vec<Option<HumanId>> = others
+            let want: Vec<Noticed> = others
                 .iter()
                 .enumerate()
-                .filter(|(place, o)| *place != me && (o.at - other.at).norm() < NEAR_M)
-                .map(|(_, o)| o.id)
+                .filter(|(place, o)| *place != me && (o.at - other.at).norm() < NEAR_M + BETWEEN_M)
+                .map(|(place, _)| Noticed::at(place))
                 .collect();
-            let mut found: Vec<Option<HumanId>> = found.iter().map(|o| o.id).collect();
             found.sort_unstable();
             assert_eq!(found, want);
         }

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use socrates_model::{GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
+use socrates_model::{GroupId, GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
 
 use crate::floor::Floor;
+use crate::gathering::{self, Around};
 use crate::human::Human;
 
 /// Smallest distance of two strangers' centers, m.
@@ -15,7 +16,7 @@ const APART_CLOSE_M: f64 = 0.65;
 /// Smallest distance to the robot at the start, m.
 const ROBOT_APART_M: f64 = 0.9;
 /// Free floor round a center beyond the body, m.
-const MARGIN_M: f64 = 0.04;
+pub(crate) const MARGIN_M: f64 = 0.04;
 /// Distance of neighbors in a standing circle, m.
 const NEIGHBOR_M: f64 = 1.1;
 /// Free width beside a standing group that lets a robot pass, m: its diameter and 0.4 m.
@@ -25,10 +26,11 @@ const BEHIND_M: f64 = 2.2;
 /// Lane distance of people who walk side by side, m.
 const LANE_M: f64 = 0.75;
 
-/// Places everybody. `inside` gives the door line and depth side for humans who start behind a door.
+/// Places everybody. `lines` are standing groups that wait in line; `doors` gives the door line and depth side for humans who start behind a door.
 pub(crate) fn place(
     humans: &mut [Human],
     groups: &[GroupProposal],
+    lines: &[GroupId],
     floor: &Floor,
     robot: Option<(Pose, &Polyline)>,
     doors: &BTreeMap<HumanId, Point>,
@@ -37,7 +39,7 @@ pub(crate) fn place(
     let route = robot.map(|(_, route)| route);
     for group in groups {
         if group.standing {
-            circle(humans, group, floor, route, &mut taken);
+            stand(humans, group, lines.contains(&group.id), floor, route, &mut taken);
         } else {
             lanes(humans, group);
         }
@@ -160,10 +162,11 @@ fn lanes(humans: &mut [Human], group: &GroupProposal) {
     }
 }
 
-/// A circle facing its middle, on the side of the robot's way that leaves the wider passage.
-fn circle(
+/// A circle facing its middle, on the side of the robot's way that leaves the wider passage; or a line.
+fn stand(
     humans: &mut [Human],
     group: &GroupProposal,
+    line: bool,
     floor: &Floor,
     route: Option<&Polyline>,
     taken: &mut Vec<(Point, f64)>,
@@ -173,7 +176,15 @@ fn circle(
     let Some(first) = members.first().and_then(|place| humans.get(*place)) else { return };
     let home = first.meeting.as_ref().map_or_else(|| first.route.point(0.0), |meeting| meeting.at);
     let body = first.radius_m;
-    let places = formation(&home, members.len(), body, floor, route, taken);
+    let around = Around { floor, route, taken, body };
+    let places = if line {
+        gathering::line(&home, members.len(), &around)
+    } else {
+        let ring = ring_m(members.len());
+        gathering::at_end(&home, route)
+            .and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
+    };
+    let places = places.unwrap_or_else(|| formation(&home, members.len(), body, floor, route, taken));
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
             human.at = at;
@@ -188,6 +199,13 @@ fn circle(
     }
 }
 
+/// Radius of a standing circle of so many, m.
+fn ring_m(count: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "a few people")]
+    let n = count.max(1) as f64;
+    if count < 2 { 0.0 } else { (NEIGHBOR_M / (2.0 * libm::sin(std::f64::consts::PI / n))).min(1.45) }
+}
+
 /// Places and headings of a circle near `home`.
 fn formation(
     home: &Point,
@@ -199,7 +217,7 @@ fn formation(
 ) -> Vec<(Point, f64)> {
     #[expect(clippy::cast_precision_loss, reason = "a few people")]
     let n = count.max(1) as f64;
-    let ring = if count < 2 { 0.0 } else { (NEIGHBOR_M / (2.0 * libm::sin(std::f64::consts::PI / n))).min(1.45) };
+    let ring = ring_m(count);
     let (s, along) = route.map_or((0.0, Vector::new(1.0, 0.0)), |route| {
         let (s, _) = route.project(home);
         (s, route.direction(s))
@@ -247,7 +265,7 @@ fn way_round(floor: &Floor, center: &Point, rim: f64, heading: f64) -> f64 {
     free(1.0).max(free(-1.0))
 }
 
-fn ring_places(center: &Point, ring: f64, count: usize, phase: f64) -> Vec<(Point, f64)> {
+pub(crate) fn ring_places(center: &Point, ring: f64, count: usize, phase: f64) -> Vec<(Point, f64)> {
     #[expect(clippy::cast_precision_loss, reason = "a few people")]
     let n = count.max(1) as f64;
     (0..count)

@@ -28,6 +28,8 @@ const AFTER_OPENING_S: f64 = 0.4;
 const BETWEEN_LEAVERS_S: f64 = 1.1;
 /// A robot this near, along its way, makes people leave a place without a door, m.
 const LEAVE_AT_M: f64 = 4.0;
+/// Behind a closed door it makes them leave from so much farther: it waits before the door, and they have to get there, m.
+const DOOR_M: f64 = 2.0;
 /// Somebody who crosses aims at being there so long before the robot, s: on the last steps the robot's nearness slows it.
 const CROSS_S: f64 = 1.1;
 /// Somebody who comes towards the robot aims at being there so long before it, s: who stops on seeing the robot
@@ -48,6 +50,8 @@ pub(crate) struct Timing {
     pub(crate) over: bool,
     /// Whether the robot's own way leads into the place that is left.
     pub(crate) robot_enters: bool,
+    /// Whether its door opens for whoever comes near, so that it need not wait for it.
+    pub(crate) opens_door: bool,
 }
 
 /// What is asked of a human who walks its way.
@@ -127,8 +131,9 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
     let since = match moment.door {
         Some((_, true)) => true,
-        Some((_, false)) => false,
-        None => (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at),
+        // A door that opens for those who come near would wait for who waits for it.
+        Some((_, false)) => timing.opens_door && near_along(robot, &human.at, LEAVE_AT_M + DOOR_M),
+        None => (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at, LEAVE_AT_M),
     };
     if !since {
         timing.open_since_s = None;
@@ -139,9 +144,9 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     Pace { speed_mps: if go { human.speed_mps.max(0.9) } else { 0.0 } }
 }
 
-fn near_along(robot: &Robot, at: &Point) -> bool {
+fn near_along(robot: &Robot, at: &Point, reach_m: f64) -> bool {
     let (s, aside) = robot.route.project(at);
-    aside < 2.5 && s - robot.s <= LEAVE_AT_M
+    aside < 2.5 && s - robot.s <= reach_m
 }
 
 /// Speed of somebody who keeps level with the robot.
@@ -152,7 +157,13 @@ fn beside(human: &Human, robot: &Robot) -> f64 {
 }
 
 /// The controller's memory at the start: who leaves a place that the robot enters, and in which order.
-pub(crate) fn timings(humans: &[Human], robot: Option<&Robot>, robot_doors: &[DoorOnWay]) -> Vec<Timing> {
+/// `by_nearness` tells the doors that open for whoever comes near.
+pub(crate) fn timings(
+    humans: &[Human],
+    robot: Option<&Robot>,
+    robot_doors: &[DoorOnWay],
+    by_nearness: &dyn Fn(usize) -> bool,
+) -> Vec<Timing> {
     let enters = |human: &Human| {
         let Some(robot) = robot else { return false };
         let start = human.route.point(0.0);
@@ -178,7 +189,8 @@ pub(crate) fn timings(humans: &[Human], robot: Option<&Robot>, robot_doors: &[Do
                 .position(|(_, other)| *other == place)
                 .and_then(|order| u32::try_from(order).ok())
                 .unwrap_or(0);
-            Timing { leaving_order: order, robot_enters: enters(human), ..Timing::default() }
+            let opens_door = human.doors.first().is_some_and(|on_way| by_nearness(on_way.door));
+            Timing { leaving_order: order, robot_enters: enters(human), opens_door, ..Timing::default() }
         })
         .collect()
 }

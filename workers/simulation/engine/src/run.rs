@@ -36,6 +36,10 @@ pub struct Engine {
     pub(crate) script: Script,
     pub(crate) params: Params,
     pub(crate) near: Near,
+    /// Whether a door has moved in this tick.
+    pub(crate) doors_moved: bool,
+    /// Ticks of motion so far.
+    pub(crate) ticks: u64,
     ending: Ending,
     pub(crate) header: RecordingHeader,
 }
@@ -53,7 +57,10 @@ impl Engine {
         let robot = (setup.planner != NO_ROBOT).then(|| start::robot(&setup, &floor));
         let humans = start::humans(&setup, trees, &floor, robot.as_ref());
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
-        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors);
+        let by_nearness = |door: usize| {
+            setup.location.doors.get(door).is_some_and(|door| matches!(door.opens, socrates_model::DoorOpens::Near(_)))
+        };
+        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors, &by_nearness);
         let header = start::header(&setup, &humans, robot.as_ref());
         let script = Script::new(&setup.proposal.robot.script);
         let ending = Ending::new(setup.duration_s);
@@ -68,6 +75,8 @@ impl Engine {
             script,
             params: Params::default(),
             near: Near::default(),
+            doors_moved: false,
+            ticks: 0,
             ending,
             header,
         })
@@ -102,6 +111,7 @@ impl Engine {
                 let changed = self.doors.step(now.secs(), STEP_SECS, &self.passers(), &raised);
                 if !changed.is_empty() {
                     self.floor.close(self.doors.closed());
+                    self.doors_moved = true;
                 }
                 for (door, open) in changed {
                     recorder.tell(EventKind::Door { door, open });
@@ -194,6 +204,7 @@ impl Engine {
                     walk::resume(human);
                 }
                 human.errand = crate::human::Errand::default();
+                human.notice.stale = true;
                 human.action = act;
             }
             if let Some(gesture) = say.filter(|gesture| *gesture != human.gesture) {

@@ -10,13 +10,14 @@ use socrates_model::hash::derive_seed;
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, Command, Gesture, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, RecordingHeader,
-    Relation, Vector,
+    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, Predicate,
+    RecordingHeader, Relation, Vector,
 };
 
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::models::Walks;
+use crate::near::Notice;
 use crate::placing;
 use crate::robot::Robot;
 use crate::setup::{PERSON_RADIUS_M, Setup};
@@ -122,8 +123,18 @@ pub(crate) fn humans(
         humans.push(human);
     }
     let robot = robot.map(|robot| (robot.pose, &robot.route));
-    placing::place(&mut humans, &setup.proposal.groups, floor, robot, &inside);
+    let lines = lines(&setup.proposal);
+    placing::place(&mut humans, &setup.proposal.groups, &lines, floor, robot, &inside);
     humans
+}
+
+/// Groups that wait in line: those of which a clause says so.
+fn lines(proposal: &socrates_model::Proposal) -> Vec<GroupId> {
+    let queue = |clause: &Clause| match clause.predicate {
+        Predicate::Queues { group, .. } => Some(group),
+        _ => None,
+    };
+    proposal.expected_events.iter().filter_map(queue).collect()
 }
 
 /// Who walks to the robot's own goal ends beside it, so that both can arrive.
@@ -263,6 +274,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         robot_in_sight: None,
         started: false,
         trail: Polyline::default(),
+        notice: Notice::default(),
         walks: Walks::Forces,
     }
 }

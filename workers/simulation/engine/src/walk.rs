@@ -1,38 +1,24 @@
 //! One step of a human: wish and social forces to velocity, heading and place.
 
 use socrates_crowd::{Goal, Params, Person, forces_on};
-use socrates_model::geometry::wrap_angle;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{GroupId, Point, Vector};
 
 use crate::floor::Floor;
+use crate::gait::{self, A_MAX, V_MAX};
 use crate::human::Human;
 use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
-use crate::near::Other;
+use crate::near::{CLOSE_M, FEEL_M, Other};
 
-/// Largest acceleration of a person, m/s².
-const A_MAX: f64 = 3.0;
-/// Nobody is faster, m/s.
-const V_MAX: f64 = 1.95;
-/// Turning rate of somebody who stands and turns, rad/s.
-const TURN_STANDING: f64 = std::f64::consts::PI;
-/// Turning rate of the heading of somebody who walks, rad/s.
-const TURN_WALKING: f64 = 2.0 * std::f64::consts::PI;
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
 /// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
 const ROBOT_GAP_M: f64 = 0.3;
-/// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
-const WALLS_M: f64 = 3.2;
 /// Up to so many people forces are those of the crowd library to the last bit; more are reckoned in lanes, within
 /// 1e-9 m/s² of them.
 const FEW: usize = 24;
-/// Others farther away are not felt, m.
-const FEEL_M: f64 = 5.0;
-/// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
-const KEEP: (f64, f64) = (12.0, 7.0);
 
 /// Steers people, one after the other; keeps the list of whom each of them feels.
 pub(crate) struct Walker<'a> {
@@ -54,72 +40,70 @@ impl<'a> Walker<'a> {
             Some(target) if want.speed_mps > 0.0 => {
                 human.anchor = None;
                 if let Walks::Orca(orca) = &human.walks {
-                    let wished = avoid(orca, human, (&target, want.speed_mps), floor, others);
+                    let wished = avoid(orca, human, (&target, want.speed_mps), others);
                     let change = wished - human.velocity;
                     human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
                 } else {
                     human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
                 }
             }
-            Some(_) | None => stand(human),
+            Some(_) | None => gait::stand(&mut human.anchor, &human.at, &human.velocity, STEP_SECS),
         };
         let mut velocity = wished;
         let most = want.speed_mps.max(human.velocity.norm() - A_MAX * STEP_SECS).min(V_MAX);
         if want.target.is_some() && velocity.norm() > most {
             velocity *= most / velocity.norm();
         }
-        stop_before_touching(human, want, others, &mut velocity);
+        let close = others.get(..human.notice.close).unwrap_or(others);
+        stop_before_touching(human, want, close, &mut velocity);
         human.velocity = velocity;
     }
 
-    fn pull(&mut self, human: &Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
+    /// Acceleration by wish, people and walls, m/s².
+    fn pull(&mut self, human: &mut Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
         self.felt.clear();
-        if let Some(lanes) = &mut self.lanes {
-            lanes.clear();
-        }
         self.felt.push(Person {
             speed_mps: want.speed_mps,
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
             ..person(0, human.at, human.velocity, human.radius_m)
         });
-        // Most of those who are felt are within open floor: no line has to be drawn to them.
-        let clearance_m = floor.clearance_m(&human.at);
-        let open_m = floor.open_of(clearance_m);
-        for (number, other) in (1_u32..).zip(others) {
-            let way = other.at - human.at;
-            // Most are too far off; that is seen without a root.
-            if way.norm_squared() > 1.01 * FEEL_M * FEEL_M {
-                continue;
-            }
-            let apart_m = way.norm();
-            let near = apart_m < FEEL_M;
+        let feels = |other: &Other| {
             let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
             let drawn = want.drawn && other.id.is_none();
-            if near && !mate && !drawn && (apart_m < open_m || floor.sees(&human.at, &other.at)) {
-                match &mut self.lanes {
-                    Some(lanes) => lanes.push(&(other.at - human.at), &(human.velocity - other.velocity)),
-                    None => self.felt.push(person(number, other.at, other.velocity, other.radius_m)),
+            other.seen && (other.at - human.at).norm_squared() < FEEL_M * FEEL_M && !mate && !drawn
+        };
+        let mut social = None;
+        if let Some(lanes) = &mut self.lanes {
+            let (close, far) = others.split_at(human.notice.close.min(others.len()));
+            let mut of = |others: &[Other]| {
+                lanes.clear();
+                for other in others.iter().filter(|other| feels(other)) {
+                    lanes.push(&(other.at - human.at), &(human.velocity - other.velocity));
                 }
-            }
+                lanes.social(self.params)
+            };
+            let from_afar = human.notice.far.unwrap_or_else(|| of(far));
+            social = Some(of(close) + from_afar);
+            human.notice.far = Some(from_afar);
+        } else {
+            let felt = (1_u32..).zip(others).filter(|(_, other)| feels(other));
+            let felt = felt.map(|(number, other)| person(number, other.at, other.velocity, other.radius_m));
+            self.felt.extend(felt);
         }
         // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
         let meant = want.face.is_some()
             && (target - human.at).norm() < 1.3
             && floor.straight(&human.at, target, human.radius_m);
-        let walls = if meant || clearance_m > WALLS_M { Vec::new() } else { floor.felt(&human.at) };
-        let mut forces = forces_on(0, &self.felt, &walls, self.params);
-        if let Some(lanes) = &mut self.lanes {
-            forces.social = lanes.social(self.params);
-        }
+        let walls: &[Point] = if meant { &[] } else { &human.notice.walls };
+        let mut forces = forces_on(0, &self.felt, walls, self.params);
+        forces.social = social.unwrap_or(forces.social);
         // Walls beside a free way push aside, not back: their sum over both jambs would bar a narrow doorway.
         let way = target - human.at;
         let back = forces.obstacle.dot(&way) / way.norm_squared().max(1e-9);
         if back < 0.0 && floor.straight(&human.at, target, DOORWAY_M) {
             forces.obstacle -= way * back;
         }
-        let force = forces.total();
-        let size = force.norm();
-        if size > A_MAX { force * (A_MAX / size) } else { force }
+        gait::limited(&forces.total())
     }
 }
 
@@ -127,7 +111,7 @@ impl<'a> Walker<'a> {
 fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: &mut Vector) {
     for other in others {
         let way = other.at - human.at;
-        if way.norm_squared() > 9.0 {
+        if way.norm_squared() > CLOSE_M * CLOSE_M {
             continue;
         }
         let distance = way.norm();
@@ -145,22 +129,6 @@ fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: 
     }
 }
 
-fn stand(human: &mut Human) -> Vector {
-    let Some(anchor) = human.anchor else {
-        let speed = human.velocity.norm();
-        if speed < 0.03 {
-            human.anchor = Some(human.at);
-            return Vector::zeros();
-        }
-        return human.velocity * ((speed - A_MAX * STEP_SECS).max(0.0) / speed);
-    };
-    let pull = (anchor - human.at) * KEEP.0 - human.velocity * KEEP.1;
-    let size = pull.norm();
-    let pull = if size > A_MAX { pull * (A_MAX / size) } else { pull };
-    let velocity = human.velocity + pull * STEP_SECS;
-    if velocity.norm() < 2e-3 && (anchor - human.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
-}
-
 fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
     Person { velocity, radius_m, ..Person::standing(id, at) }
 }
@@ -169,18 +137,8 @@ fn person(id: u32, at: Point, velocity: Vector, radius_m: f64) -> Person {
 pub(crate) fn settle(human: &mut Human, want: &Want, at: Point, velocity: Vector) {
     human.at = at;
     human.velocity = velocity;
-    let speed = velocity.norm();
-    let (goal, rate) = if speed > 0.15 && want.target.is_some() {
-        (Some(libm::atan2(velocity.y, velocity.x)), TURN_WALKING)
-    } else {
-        (want.face.map(|face| libm::atan2(face.y - at.y, face.x - at.x)), TURN_STANDING)
-    };
-    let before = human.yaw;
-    if let Some(goal) = goal {
-        let turn = wrap_angle(goal - human.yaw).clamp(-rate * STEP_SECS, rate * STEP_SECS);
-        human.yaw = wrap_angle(human.yaw + turn);
-    }
-    human.omega = wrap_angle(human.yaw - before) / STEP_SECS;
+    (human.yaw, human.omega) =
+        gait::turned(human.yaw, &at, &velocity, want.target.is_some(), want.face.as_ref(), STEP_SECS);
     if human.trail.end().is_none_or(|end| (at - end).norm() > 0.1) {
         human.trail.push(at);
     }

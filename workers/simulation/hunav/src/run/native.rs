@@ -4,25 +4,15 @@ use std::f64::consts::{PI, TAU};
 
 use socrates_crowd::model::View;
 use socrates_crowd::{Goal, Person, Segment, forces_on};
+use socrates_engine::gait::{self, A_MAX, V_MAX};
 use socrates_engine::{Body, Touch, resolve};
-use socrates_model::geometry::wrap_angle;
 use socrates_model::{AgentId, Point, Polyline, Vector};
 
 use super::agent::{Agent, HumanModel};
 use super::scene::{Deed, Scene, Target};
 
-/// Largest acceleration of a person, m/s².
-const A_MAX: f64 = 3.0;
-/// Nobody is faster, m/s.
-const V_MAX: f64 = 1.95;
-/// Turning rate of somebody who stands, rad/s.
-const TURN_STANDING: f64 = PI;
-/// Turning rate of somebody who walks, rad/s.
-const TURN_WALKING: f64 = TAU;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
-/// Spring of somebody who keeps a place, 1/s², and its damping, 1/s.
-const KEEP: (f64, f64) = (12.0, 7.0);
 /// Lengths of a planned way that a walker looks ahead, m, the farthest first.
 const LOOK_AHEAD_M: [f64; 4] = [0.7, 0.4, 0.2, 0.05];
 /// The most that walls push a walker, m/s²: half of what its wish can pull.
@@ -411,27 +401,12 @@ fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
 }
 
 fn stand(agent: &mut Agent, dt: f64) -> Vector {
-    let Some(anchor) = agent.errand.anchor else {
-        let speed = agent.velocity.norm();
-        if speed < 0.03 {
-            agent.errand.anchor = Some(agent.at);
-            return Vector::zeros();
-        }
-        return agent.velocity * ((speed - A_MAX * dt).max(0.0) / speed);
-    };
-    if (anchor - agent.at).norm() > 0.4 {
+    if agent.errand.anchor.is_some_and(|anchor| (anchor - agent.at).norm() > 0.4) {
         // Pushed that far, it has a new place.
         agent.errand.anchor = Some(agent.at);
         return Vector::zeros();
     }
-    let pull = limited(&((anchor - agent.at) * KEEP.0 - agent.velocity * KEEP.1));
-    let velocity = agent.velocity + pull * dt;
-    if velocity.norm() < 2e-3 && (anchor - agent.at).norm() < 2e-3 { Vector::zeros() } else { velocity }
-}
-
-fn limited(force: &Vector) -> Vector {
-    let size = force.norm();
-    if size > A_MAX { force * (A_MAX / size) } else { *force }
+    gait::stand(&mut agent.errand.anchor, &agent.at, &agent.velocity, dt)
 }
 
 fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
@@ -443,7 +418,7 @@ fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     if push > WALL_MOST_MPS2 {
         forces.obstacle *= WALL_MOST_MPS2 / push;
     }
-    limited(&forces.total())
+    gait::limited(&forces.total())
 }
 
 /// The agent with its wish, then everybody it feels: in line of sight and near.
@@ -473,16 +448,6 @@ fn felt(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vec<Person> {
 fn settle(agent: &mut Agent, want: &Want, body: &Body, dt: f64) {
     agent.at = body.at;
     agent.velocity = body.velocity;
-    let walks = body.velocity.norm() > 0.15 && want.target.is_some();
-    let (goal, rate) = if walks {
-        (Some(libm::atan2(body.velocity.y, body.velocity.x)), TURN_WALKING)
-    } else {
-        (want.face.map(|face| libm::atan2(face.y - agent.at.y, face.x - agent.at.x)), TURN_STANDING)
-    };
-    let before = agent.yaw;
-    if let Some(goal) = goal {
-        let turn = wrap_angle(goal - agent.yaw).clamp(-rate * dt, rate * dt);
-        agent.yaw = wrap_angle(agent.yaw + turn);
-    }
-    agent.omega = wrap_angle(agent.yaw - before) / dt;
+    (agent.yaw, agent.omega) =
+        gait::turned(agent.yaw, &body.at, &body.velocity, want.target.is_some(), want.face.as_ref(), dt);
 }

@@ -1,0 +1,302 @@
+//! Robot, people, their trails, gestures and doors at one moment, seen from above.
+
+use socrates_model::{AgentState, EventKind, Gesture, Location, Recording};
+
+use crate::label::text_width;
+use crate::map_layer::Frame;
+use crate::palette;
+use crate::svg::Svg;
+
+/// Above this many agents names would hide the crowd.
+const CROWD: usize = 24;
+/// Length of a trail, s; it fades.
+const TRAIL_SECS: f64 = 4.0;
+/// Pieces of a fading trail.
+const PIECES: u8 = 6;
+
+/// How agents look in one film or picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Look {
+    /// Height of letters, px.
+    pub(crate) text_px: f64,
+    /// Whether names are written.
+    names: bool,
+    /// Whether humans are too many for names and long trails.
+    crowd: bool,
+    /// Pixels per metre.
+    px_per_m: f64,
+    /// Least radius of an agent, px.
+    least_px: f64,
+}
+
+impl Look {
+    /// The look of a recording on a picture of this height at this scale.
+    pub(crate) fn new(recording: &Recording, px_per_m: f64, height_px: f64, names: bool) -> Self {
+        let crowd = recording.header.agents.len() > CROWD;
+        let least_px = if crowd { height_px / 140.0 } else { height_px / 72.0 };
+        Self { text_px: (height_px / 36.0).clamp(11.0, 26.0), names, crowd, px_per_m, least_px }
+    }
+
+    /// Whether an agent's name is written.
+    pub(crate) const fn named(&self, number: u32) -> bool {
+        self.names && (!self.crowd || number == 0)
+    }
+
+    /// Radius of an agent in the picture, px.
+    pub(crate) fn radius_px(&self, radius_m: f64) -> f64 {
+        (radius_m * self.px_per_m).max(self.least_px)
+    }
+}
+
+/// The states of the tick at a moment; after the end those of the last one.
+pub(crate) fn moment(recording: &Recording, now_s: f64) -> &[AgentState] {
+    let at = (now_s / recording.header.step_s.max(1e-4)).max(0.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a tick of the recording, clipped")]
+    let tick = (at.floor() as usize).min(recording.ticks().saturating_sub(1));
+    recording.tick(tick)
+}
+
+/// Draws the doors as they stand at a moment: a closed door is a bar, an open one two stubs.
+pub(crate) fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame, recording: &Recording, now_s: f64) {
+    for door in &location.doors {
+        let open = recording
+            .events
+            .iter()
+            .filter(|event| event.time.secs() <= now_s + 1e-9)
+            .filter_map(|event| match &event.kind {
+                EventKind::Door { door: id, open } if *id == door.id => Some(*open),
+                _ => None,
+            })
+            .next_back()
+            .unwrap_or(false);
+        let (from, to) = (frame.px(location, &door.from), frame.px(location, &door.to));
+        let part = if open { 0.14 } else { 0.5 };
+        let (dx, dy) = ((to.0 - from.0) * part, (to.1 - from.1) * part);
+        let style =
+            format!("stroke=\"{}\" stroke-width=\"{:.1}\"", palette::DOOR, (frame.len(location, 0.14)).max(3.0));
+        svg.line(from, (from.0 + dx, from.1 + dy), &style);
+        svg.line(to, (to.0 - dx, to.1 - dy), &style);
+    }
+}
+
+/// Draws trails, then everybody with the robot on top, then names and what is said.
+pub(crate) fn draw_everybody(
+    svg: &mut Svg,
+    location: &Location,
+    frame: &Frame,
+    recording: &Recording,
+    now_s: f64,
+    look: &Look,
+) {
+    let states: Vec<AgentState> = moment(recording, now_s)
+        .iter()
+        .filter(|s| s.x.is_finite() && s.y.is_finite() && s.yaw.is_finite())
+        .copied()
+        .collect();
+    let radius = |state: &AgentState| {
+        let info = recording.header.agents.iter().find(|info| info.agent == state.agent_id());
+        look.radius_px(info.map_or(0.28, |info| info.radius_m))
+    };
+    for state in states.iter().rev() {
+        draw_trail(svg, location, frame, recording, state, now_s, look);
+    }
+    for state in states.iter().rev() {
+        let at = frame.px(location, &state.point());
+        draw_body(svg, at, state, radius(state));
+    }
+    let mut taken: Vec<(f64, f64, f64, f64)> = states
+        .iter()
+        .map(|state| {
+            let ((x, y), r) = (frame.px(location, &state.point()), radius(state));
+            (x - r, y - r, 2.0 * r, 2.0 * r)
+        })
+        .collect();
+    for state in &states {
+        let at = frame.px(location, &state.point());
+        draw_words(svg, at, state, radius(state), look, &mut taken);
+    }
+}
+
+fn draw_trail(
+    svg: &mut Svg,
+    location: &Location,
+    frame: &Frame,
+    recording: &Recording,
+    state: &AgentState,
+    now_s: f64,
+    look: &Look,
+) {
+    let (secs, pieces) = if look.crowd && state.agent != 0 { (TRAIL_SECS / 2.0, 2) } else { (TRAIL_SECS, PIECES) };
+    let width = (look.least_px * 0.5).max(2.0);
+    let place = recording.header.agents.iter().position(|info| info.agent == state.agent_id()).unwrap_or(usize::MAX);
+    for piece in 0..pieces {
+        let part = |index: u8| now_s - secs * (1.0 - f64::from(index) / f64::from(pieces));
+        let (from, to) = (part(piece), part(piece + 1));
+        if to <= 0.0 {
+            continue;
+        }
+        // A point every fifth of a second is a smooth line at walking speed.
+        let mut line = Vec::new();
+        let mut t = from.max(0.0);
+        loop {
+            let there = moment(recording, t).get(place);
+            line.extend(there.filter(|s| s.x.is_finite() && s.y.is_finite()).map(|s| frame.px(location, &s.point())));
+            if t >= to {
+                break;
+            }
+            t = (t + 0.2).min(to);
+        }
+        let opacity = 0.6 * f64::from(piece + 1) / f64::from(pieces);
+        svg.polyline(
+            &line,
+            &format!(
+                "stroke=\"{}\" stroke-width=\"{width:.1}\" stroke-opacity=\"{opacity:.2}\" stroke-linejoin=\"round\"",
+                palette::agent(state.agent)
+            ),
+        );
+    }
+}
+
+/// A robot is a square with an arrow, a human a pair of shoulders with a head that looks ahead.
+fn draw_body(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64) {
+    let color = palette::agent(state.agent);
+    let turn = -state.yaw.to_degrees();
+    svg.raw(&format!("<g transform=\"translate({:.2} {:.2}) rotate({turn:.1})\">", at.0, at.1));
+    if state.gesture() != Gesture::None {
+        svg.circle((0.0, 0.0), r * 1.6, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
+    }
+    svg.raw(&body(state.agent == 0, r, color));
+    svg.raw("</g>");
+}
+
+/// The body of an agent that looks along x, around 0 0.
+pub(crate) fn body(robot: bool, r: f64, color: &str) -> String {
+    if robot {
+        return format!(
+            "<rect x=\"{0:.1}\" y=\"{0:.1}\" width=\"{1:.1}\" height=\"{1:.1}\" rx=\"{2:.1}\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\"/>\
+             <path d=\"M{3:.1} 0L{4:.1} {5:.1}L{6:.1} 0L{4:.1} -{5:.1}z\" fill=\"#ffffff\"/>",
+            -r,
+            2.0 * r,
+            r * 0.3,
+            r * 0.75,
+            -r * 0.45,
+            r * 0.55,
+            -r * 0.2
+        );
+    }
+    let (depth, nose, base, side, head) = (r * 0.74, r * 1.15, r * 0.55, r * 0.36, r * 0.36);
+    format!(
+        "<ellipse rx=\"{depth:.1}\" ry=\"{r:.1}\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\"/>\
+         <path d=\"M{nose:.1} 0L{base:.1} {side:.1}L{base:.1} -{side:.1}z\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1\"/>\
+         <circle r=\"{head:.1}\" fill=\"#ffffff\" fill-opacity=\"0.92\"/>"
+    )
+}
+
+/// Name and what is said, at the first place around the agent that is free.
+fn draw_words(
+    svg: &mut Svg,
+    at: (f64, f64),
+    state: &AgentState,
+    r: f64,
+    look: &Look,
+    taken: &mut Vec<(f64, f64, f64, f64)>,
+) {
+    let size = look.text_px * 0.95;
+    let name =
+        if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };
+    let said = match state.gesture() {
+        Gesture::None => String::new(),
+        gesture => gesture.name().replace('_', " "),
+    };
+    if name.is_empty() && said.is_empty() {
+        return;
+    }
+    let bubble = if said.is_empty() { 0.0 } else { size * 1.6 };
+    let letters = if name.is_empty() { 0.0 } else { size * 1.1 };
+    let w = text_width(&name, size).max(if said.is_empty() { 0.0 } else { text_width(&said, size) + size * 0.9 });
+    let h = bubble + letters;
+    let reach = r * if said.is_empty() { 1.0 } else { 1.6 } + 3.0;
+    let places = [
+        (at.0 - w / 2.0, at.1 - reach - h),
+        (at.0 - w / 2.0, at.1 + reach),
+        (at.0 + reach, at.1 - h / 2.0),
+        (at.0 - reach - w, at.1 - h / 2.0),
+    ];
+    let covered = |place: &(f64, f64)| -> f64 {
+        taken
+            .iter()
+            .map(|(x, y, tw, th)| {
+                let across = (place.0 + w).min(x + tw) - place.0.max(*x);
+                let down = (place.1 + h).min(y + th) - place.1.max(*y);
+                if across > 0.0 && down > 0.0 { across * down } else { 0.0 }
+            })
+            .sum()
+    };
+    let mut best = (f64::MAX, (at.0, at.1));
+    for place in places {
+        let hidden = covered(&place);
+        if hidden < best.0 - 1e-9 {
+            best = (hidden, place);
+        }
+    }
+    let (x, y) = best.1;
+    taken.push((x, y, w, h));
+    let middle = x + w / 2.0;
+    if !said.is_empty() {
+        let wide = text_width(&said, size) + size * 0.9;
+        svg.rect(
+            (middle - wide / 2.0, y),
+            (wide, size * 1.4),
+            &format!("rx=\"{:.1}\" fill=\"#fff4d6\" stroke=\"#b07a00\" stroke-width=\"1.5\"", size * 0.3),
+        );
+        let ink = palette::INK;
+        svg.text(
+            (middle, y + size * 1.05),
+            &said,
+            &format!(
+                "font-size=\"{size:.1}\" text-anchor=\"middle\" fill=\"{ink}\" stroke=\"{ink}\" stroke-width=\"0.7\""
+            ),
+        );
+    }
+    if !name.is_empty() {
+        svg.label((middle, y + bubble + size * 0.85), &name, size, palette::agent_words(state.agent));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{hall, recording, robot, state, walk};
+
+    fn drawn(run: &Recording, names: bool) -> String {
+        let location = hall("hall");
+        let frame = Frame::around(&location, 640.0, 360.0, (0.0, 0.0));
+        let look = Look::new(run, frame.len(&location, 1.0), 360.0, names);
+        let mut svg = Svg::part();
+        draw_everybody(&mut svg, &location, &frame, run, 2.0, &look);
+        svg.text_so_far()
+    }
+
+    #[test]
+    fn what_somebody_says_is_seen_without_labels_too() {
+        let mut speaker = state(1, 3.0, 1.0, 0.0, 0.0);
+        speaker.flags = AgentState::flags(speaker.agent_id(), Gesture::ExcuseMe, 0);
+        let run = recording(&[&[robot(1.0, 1.0, 1.0, 0.0), speaker]]);
+        assert!(drawn(&run, false).contains("EXCUSE ME") && !drawn(&run, false).contains(">h1<"));
+        assert!(drawn(&run, true).contains(">h1<"));
+    }
+
+    #[test]
+    fn a_crowd_has_no_names_but_the_robots() {
+        let words = drawn(&walk(300), true);
+        assert!(words.contains(">robot<") && !words.contains(">h7<"));
+        assert_eq!(words.matches("<ellipse").count(), 300);
+    }
+
+    #[test]
+    fn somebody_who_is_nowhere_is_not_drawn() {
+        let run = recording(&[&[robot(1.0, 1.0, 1.0, 0.0), state(1, f64::NAN, 0.0, 0.0, 0.0)]]);
+        let words = drawn(&run, true);
+        assert!(!words.contains("NaN") && !words.contains("<ellipse"));
+    }
+}

@@ -1,0 +1,225 @@
+//! The page of a folder of bundles: every scenario with its verdict, picture and runs, to filter and to open.
+
+use serde_json::{Value, json};
+use socrates_model::report::Standing;
+use socrates_model::{ClauseRole, Location, Paths, Proposal, Recording, Report, Request};
+
+use crate::svg::escape;
+use crate::template::{self, STYLE};
+use crate::{palette, play};
+
+const TEMPLATE: &str = include_str!("web/batch.html");
+const SCRIPT: &str = include_str!("web/batch.js");
+
+/// So many scenarios have a small picture; more would make the page too heavy to open.
+const PICTURES: usize = 1000;
+/// Tracks of so many agents are drawn in a small picture, the robot's among them.
+const TRACKS: usize = 16;
+/// A small track has a point whenever somebody went so far, drawing units.
+const STEP: f64 = 5.0;
+
+/// One scenario of the folder.
+#[derive(Debug, Clone, Copy)]
+pub struct BatchEntry<'a> {
+    /// Its folder, relative to the page.
+    pub folder: &'a str,
+    /// Its id.
+    pub scenario: &'a str,
+    /// What the user gave.
+    pub request: &'a Request,
+    /// The reading in one line.
+    pub reading_line: &'a str,
+    /// The place.
+    pub location: &'a Location,
+    /// The proposal.
+    pub proposal: &'a Proposal,
+    /// The paths.
+    pub paths: &'a Paths,
+    /// Reports of all runs, the reference first.
+    pub reports: &'a [Report],
+    /// The first run, for the picture.
+    pub recording: Option<&'a Recording>,
+}
+
+/// The page while it is being filled, one scenario after another.
+#[derive(Debug, Clone, Default)]
+pub struct BatchPage {
+    places: Vec<Location>,
+    rows: Vec<Value>,
+}
+
+impl BatchPage {
+    /// Adds a scenario.
+    pub fn add(&mut self, entry: &BatchEntry<'_>) {
+        let first = entry.reports.first();
+        let runs: Vec<Value> = entry.reports.iter().map(run_row).collect();
+        let picture = entry.recording.filter(|_| self.rows.len() < PICTURES).map(|recording| {
+            let index = self.places.iter().position(|known| known == entry.location).unwrap_or_else(|| {
+                self.places.push(entry.location.clone());
+                self.places.len() - 1
+            });
+            picture(entry.location, entry.paths, recording, index)
+        });
+        self.rows.push(json!({
+            "folder": entry.folder, "scenario": entry.scenario, "title": entry.proposal.title,
+            "reading": entry.reading_line, "context": entry.request.social_context, "task": entry.request.task,
+            "rough": entry.request.rough_scenario, "location": entry.location.name, "place": entry.proposal.place.name(),
+            "pattern": entry.proposal.pattern, "humans": entry.proposal.humans.len(), "author": entry.proposal.author,
+            "verdict": first.map_or("failed", |report| report.verdict.name()),
+            "told": first.map_or("", |report| report.verdict_text.as_str()), "why": first.and_then(why), "runs": runs,
+            "picture": picture,
+        }));
+    }
+
+    /// Adds a scenario of which there is no bundle, and why.
+    pub fn add_failed(&mut self, scenario: &str, why: &str) {
+        self.rows.push(json!({ "scenario": scenario, "verdict": "failed", "told": why, "runs": [] }));
+    }
+
+    /// Scenarios added so far.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether no scenario was added.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// The page.
+    #[must_use]
+    pub fn html(&self, title: &str) -> String {
+        let places: Vec<Value> =
+            self.places.iter().enumerate().map(|(index, location)| play::place(location, index)).collect();
+        let data = json!({ "rows": self.rows, "places": places });
+        template::fill(
+            TEMPLATE,
+            &[
+                ("style", STYLE.to_owned()),
+                ("title", escape(title)),
+                ("floors", play::floors(&self.places)),
+                ("script", template::script(SCRIPT)),
+                ("data", template::json(&data)),
+            ],
+        )
+    }
+}
+
+fn run_row(report: &Report) -> Value {
+    let metric = |id: &str| report.metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value);
+    json!({
+        "planner": report.planner, "seed": report.seed, "verdict": report.verdict.name(), "success": report.success,
+        "distance": metric("human_distance_min"), "time": metric("time_to_goal"), "contacts": metric("human_collisions"),
+    })
+}
+
+/// The first clause that was needed and not seen.
+fn why(report: &Report) -> Option<String> {
+    report
+        .clauses
+        .iter()
+        .find(|clause| {
+            clause.must
+                && clause.role == ClauseRole::Setup
+                && matches!(clause.standing, Standing::Fails | Standing::NotTriggered)
+        })
+        .map(|clause| format!("{}: {}", clause.id, clause.text))
+}
+
+fn picture(location: &Location, paths: &Paths, recording: &Recording, place: usize) -> Value {
+    let frame = play::frame(location);
+    let way = location.graph.polyline(&paths.robot);
+    let mut tracks: Vec<Value> = Vec::new();
+    for info in recording.header.agents.iter().take(TRACKS) {
+        let mut line: Vec<(f64, f64)> = Vec::new();
+        let mut last = None;
+        for state in recording.track(info.agent).filter(|state| state.x.is_finite() && state.y.is_finite()) {
+            let at = frame.px(location, &state.point());
+            if line.last().is_none_or(|before| (before.0 - at.0).hypot(before.1 - at.1) >= STEP) {
+                line.push(at);
+            }
+            last = Some(at);
+        }
+        line.extend(last);
+        let points: Vec<String> = line.iter().map(|(x, y)| format!("{x:.0},{y:.0}")).collect();
+        tracks.push(json!([palette::agent(info.agent.number()), points.join(" ")]));
+    }
+    // The robot lies on top.
+    tracks.reverse();
+    json!({ "place": place, "focus": play::focus(location, &way, &[recording]), "tracks": tracks })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::{EVIL, hall, papers, report, walk};
+
+    fn page(text: &str, count: usize, humans: u32) -> String {
+        let (request, _, proposal, paths) = papers(text);
+        let recording = walk(humans);
+        let reports = [report(&recording, text)];
+        let location = hall(text);
+        let mut page = BatchPage::default();
+        for _ in 0..count {
+            page.add(&BatchEntry {
+                folder: text,
+                scenario: text,
+                request: &request,
+                reading_line: text,
+                location: &location,
+                proposal: &proposal,
+                paths: &paths,
+                reports: &reports,
+                recording: Some(&recording),
+            });
+        }
+        page.html(text)
+    }
+
+    fn data(html: &str) -> Value {
+        let (_, rest) = html.split_once("id=\"data\">").unwrap();
+        serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    #[test]
+    fn a_row_says_what_was_asked_what_became_of_it_and_where_it_lies() {
+        let data = data(&page("hall", 1, 2));
+        let row = &data["rows"][0];
+        assert_eq!((row["folder"].as_str(), row["verdict"].as_str()), (Some("hall"), Some("realised")));
+        assert_eq!(row["why"], "c2: hall");
+        assert_eq!(row["runs"][0]["time"], 6.0);
+        assert_eq!(row["picture"]["tracks"].as_array().unwrap().len(), 3);
+    }
+
+    #[test]
+    fn words_of_a_user_cannot_become_markup() {
+        let html = page(EVIL, 1, 1);
+        assert!(!html.contains("<script>alert") && !html.contains("<!--") && !html.contains("<img"));
+        assert_eq!(html.matches("</script>").count(), 2);
+    }
+
+    #[test]
+    fn a_place_is_drawn_once_however_many_scenarios_it_has() {
+        let html = page("hall", 7, 1);
+        assert_eq!(html.matches("id=\"floor-").count(), 1);
+        assert_eq!(data(&html)["rows"].as_array().unwrap().len(), 7);
+    }
+
+    #[test]
+    fn a_large_folder_has_a_page_without_pictures_for_the_rest() {
+        let html = page("hall", PICTURES + 5, 0);
+        let rows = data(&html)["rows"].as_array().unwrap().clone();
+        assert!(rows[PICTURES - 1]["picture"].is_object() && rows[PICTURES]["picture"].is_null());
+    }
+
+    #[test]
+    fn an_empty_folder_and_a_failed_scenario_have_a_page() {
+        let mut page = BatchPage::default();
+        assert!(page.is_empty() && page.html("none").contains("\"rows\":[]"));
+        page.add_failed("odd-1", "no author");
+        assert_eq!(page.len(), 1);
+        assert!(page.html("one").contains("no author"));
+    }
+}

@@ -1,0 +1,78 @@
+//! What a fact of the reading says, in words.
+
+use socrates_model::{FactKind, HumanId, PlaceClass, Relation, Rule};
+
+/// The fact in a few words, for people.
+#[must_use]
+pub fn fact_words(kind: &FactKind) -> String {
+    match kind {
+        FactKind::Humans(1) => "1 human".to_owned(),
+        FactKind::Humans(count) => format!("{count} humans"),
+        FactKind::Group { group, members } => format!("{} are a group ({group})", names(members)),
+        FactKind::Reacts { human, rule } => format!("{human} {}", rule_words(rule)),
+        FactKind::Relates { human, relation } => format!("{human} {}", relation_words(*relation)),
+        FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
+        FactKind::Place(place) => format!("place: {}", place_words(*place)),
+        FactKind::RobotTask(task) => format!("task of the robot: {task}"),
+        FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
+        FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
+        FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
+        FactKind::Pattern(card) => format!("pattern: {}", card.replace('_', " ")),
+    }
+}
+
+fn names(members: &[HumanId]) -> String {
+    members.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn place_words(place: PlaceClass) -> String {
+    place.name().replace('_', " ")
+}
+
+fn rule_words(rule: &Rule) -> String {
+    let when: Vec<String> = rule.when.iter().map(socrates_model::Trigger::phrase).collect();
+    let mut out = rule.act.phrase();
+    if let Some(gesture) = rule.gesture {
+        out.push_str(&format!(" and says {gesture}"));
+    }
+    if let Some(secs) = rule.for_s {
+        out.push_str(&format!(" for {secs} s"));
+    }
+    if when.is_empty() { out } else { format!("{out} {}", when.join(" and ")) }
+}
+
+const fn relation_words(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Frontal => "comes towards the robot",
+        Relation::Behind => "comes from behind the robot",
+        Relation::Ahead => "walks ahead of the robot",
+        Relation::Crossing => "crosses the robot's way",
+        Relation::Static => "stands where the robot passes",
+        Relation::Leaving => "comes out as the robot arrives",
+        Relation::Staying => "stays inside",
+        Relation::Abreast => "walks beside the robot",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn a_fact_is_told_in_words() {
+        let told = |value: serde_json::Value| fact_words(&serde_json::from_value(value).unwrap());
+        assert_eq!(told(json!({ "humans": 1 })), "1 human");
+        assert_eq!(
+            told(json!({ "reacts": { "human": "human_2", "rule": {
+                "when": [{ "robot_visible": 5.0 }], "act": "run_away", "for_s": 4.0 } } })),
+            "human_2 runs away from the robot for 4 s when it sees the robot within 5 m"
+        );
+        assert_eq!(
+            told(json!({ "group": { "group": 1, "members": ["human_1", "human_2"] } })),
+            "human_1, human_2 are a group (group_1)"
+        );
+        assert_eq!(told(json!({ "place": "narrow_passage" })), "place: narrow passage");
+    }
+}

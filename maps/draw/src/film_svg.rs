@@ -1,0 +1,272 @@
+//! The film as an animated SVG (SMIL): a few dozen kilobytes that a browser plays at any size.
+
+use socrates_model::{EventKind, Gesture};
+
+use crate::actor::{body, moment};
+use crate::film::{Film, Panel};
+use crate::label::text_width;
+use crate::map_layer::draw_floor;
+use crate::palette;
+use crate::svg::Svg;
+
+/// Samples of a way per second of the film; between them it goes straight.
+const HZ: f64 = 6.0;
+
+impl Film<'_> {
+    /// The film as SVG that plays by itself, again and again.
+    #[must_use]
+    pub fn animated_svg(&self) -> String {
+        let (w, h) = (f64::from(self.options.size.0), f64::from(self.options.size.1));
+        let mut svg = Svg::new(w, h);
+        svg.rect((0.0, 0.0), (w, h), "fill=\"#ffffff\"");
+        for (index, panel) in self.panels.iter().enumerate() {
+            svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
+            svg.rect(panel.at, panel.size, "");
+            svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
+            svg.rect(panel.at, panel.size, &format!("fill=\"{}\"", palette::UNKNOWN));
+            draw_floor(&mut svg, panel.location, &panel.frame);
+            self.animate_doors(&mut svg, panel);
+            self.animate_agents(&mut svg, panel);
+            if self.options.labels {
+                self.animate_words(&mut svg, panel);
+            }
+            svg.raw("</g>");
+        }
+        svg.finish()
+    }
+
+    /// Moments of the run at even steps of the film.
+    fn samples(&self) -> Vec<f64> {
+        let length = self.times.length_s();
+        let count = (length * HZ).ceil().max(1.0);
+        let mut moments = Vec::new();
+        let mut step = 0.0;
+        while step <= count {
+            moments.push(self.times.at_film_s(length * step / count));
+            step += 1.0;
+        }
+        moments
+    }
+
+    fn timing(&self) -> String {
+        format!("dur=\"{:.2}s\" repeatCount=\"indefinite\"", self.times.length_s())
+    }
+
+    /// Shows what is drawn so far in a group only within stretches of the run, s.
+    fn shown_within(&self, stretches: &[(f64, f64)]) -> String {
+        let length = self.times.length_s();
+        let (mut values, mut times) = (vec!["0"], vec![0.0]);
+        for (from, to) in stretches {
+            let (from, to) = (self.times.film_s(*from) / length, self.times.film_s(*to) / length);
+            if to <= from {
+                continue;
+            }
+            if from <= 1e-9 {
+                values = vec!["1"];
+            } else {
+                values.push("1");
+                times.push(from);
+            }
+            if to < 1.0 - 1e-9 {
+                values.push("0");
+                times.push(to);
+            }
+        }
+        let times: Vec<String> = times.iter().map(|t| format!("{t:.4}")).collect();
+        format!(
+            "<animate attributeName=\"opacity\" calcMode=\"discrete\" values=\"{}\" keyTimes=\"{}\" {}/>",
+            values.join(";"),
+            times.join(";"),
+            self.timing()
+        )
+    }
+
+    fn animate_agents(&self, svg: &mut Svg, panel: &Panel<'_>) {
+        let moments = self.samples();
+        let agents: Vec<_> = panel.recording.header.agents.iter().enumerate().collect();
+        for (place, info) in agents.iter().rev() {
+            let color = palette::agent(info.agent.number());
+            let mut spots: Vec<(f64, f64)> = Vec::new();
+            let mut turns: Vec<f64> = Vec::new();
+            for now in &moments {
+                let state = moment(panel.recording, *now).get(*place);
+                let state = state.filter(|s| s.x.is_finite() && s.y.is_finite() && s.yaw.is_finite());
+                let spot = state.map(|state| panel.frame.px(panel.location, &state.point()));
+                let turn = state.map(|state| -state.yaw.to_degrees());
+                let before = (spots.last().copied(), turns.last().copied());
+                let Some(spot) = spot.or(before.0) else { continue };
+                let last = before.1.unwrap_or(0.0);
+                let turn = turn.unwrap_or(last);
+                spots.push(spot);
+                // The short way round.
+                turns.push(last + (turn - last) - 360.0 * ((turn - last) / 360.0).round());
+            }
+            let (Some(first), Some(turn)) = (spots.first().copied(), turns.first().copied()) else { continue };
+            self.animate_trail(svg, &spots, color);
+            let r = panel.look.radius_px(info.radius_m);
+            let list: Vec<String> = spots.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+            let angles: Vec<String> = turns.iter().map(|turn| format!("{turn:.0}")).collect();
+            let timing = self.timing();
+            svg.raw(&format!(
+                "<g transform=\"translate({:.1},{:.1})\"><animateTransform attributeName=\"transform\" type=\"translate\" values=\"{}\" {timing}/>",
+                first.0, first.1, list.join(";")
+            ));
+            svg.raw(&format!(
+                "<g transform=\"rotate({turn:.0})\"><animateTransform attributeName=\"transform\" type=\"rotate\" values=\"{}\" {timing}/>{}</g>",
+                angles.join(";"),
+                body(info.agent.number() == 0, r, color)
+            ));
+            let size = panel.look.text_px * 0.95;
+            if panel.look.named(info.agent.number()) {
+                let name = info.agent.to_string().replace("human_", "h");
+                svg.label((0.0, -r - size * 0.35), &name, size, palette::agent_words(info.agent.number()));
+            }
+            self.animate_gestures(svg, panel, *place, r, size);
+            svg.raw("</g>");
+        }
+    }
+
+    /// A line that grows with the way.
+    fn animate_trail(&self, svg: &mut Svg, spots: &[(f64, f64)], color: &str) {
+        let mut gone = vec![0.0];
+        for (a, b) in spots.iter().zip(spots.iter().skip(1)) {
+            gone.push(gone.last().copied().unwrap_or(0.0) + (b.0 - a.0).hypot(b.1 - a.1));
+        }
+        let whole = gone.last().copied().unwrap_or(0.0);
+        if whole < 1.0 {
+            return;
+        }
+        let left: Vec<String> = gone.iter().map(|done| format!("{:.3}", 1.0 - done / whole)).collect();
+        let points: Vec<String> = spots.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        svg.raw(&format!(
+            "<polyline points=\"{}\" pathLength=\"1\" stroke-dasharray=\"1 2\" stroke-dashoffset=\"1\" fill=\"none\" stroke=\"{color}\" \
+             stroke-width=\"3\" stroke-opacity=\"0.45\" stroke-linejoin=\"round\"><animate attributeName=\"stroke-dashoffset\" values=\"{}\" {}/></polyline>",
+            points.join(" "),
+            left.join(";"),
+            self.timing()
+        ));
+    }
+
+    fn animate_gestures(&self, svg: &mut Svg, panel: &Panel<'_>, place: usize, r: f64, size: f64) {
+        let mut stretches: Vec<(Gesture, f64, f64)> = Vec::new();
+        let step = panel.recording.header.step_s;
+        let mut now_s = 0.0;
+        for tick in 0..panel.recording.ticks() {
+            let said =
+                panel.recording.tick(tick).get(place).map(socrates_model::AgentState::gesture).unwrap_or_default();
+            match stretches.last_mut() {
+                Some((gesture, _, to)) if *gesture == said && (now_s - *to) < step * 1.5 => *to = now_s,
+                _ if said != Gesture::None => stretches.push((said, now_s, now_s + step)),
+                _ => {}
+            }
+            now_s += step;
+        }
+        for gesture in Gesture::ALL {
+            let when: Vec<(f64, f64)> =
+                stretches.iter().filter(|(said, _, _)| *said == gesture).map(|(_, from, to)| (*from, *to)).collect();
+            if when.is_empty() {
+                continue;
+            }
+            let words = gesture.name().replace('_', " ");
+            let wide = text_width(&words, size) + size * 0.9;
+            svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&when)));
+            svg.circle((0.0, 0.0), r * 1.6, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
+            svg.rect(
+                (-wide / 2.0, r * 1.6 + 4.0),
+                (wide, size * 1.4),
+                &format!("rx=\"{:.1}\" fill=\"#fff4d6\" stroke=\"#b07a00\" stroke-width=\"1.5\"", size * 0.3),
+            );
+            svg.text(
+                (0.0, r * 1.6 + 4.0 + size * 1.05),
+                &words,
+                &format!(
+                    "font-size=\"{size:.1}\" font-weight=\"700\" text-anchor=\"middle\" fill=\"{}\"",
+                    palette::INK
+                ),
+            );
+            svg.raw("</g>");
+        }
+    }
+
+    fn animate_doors(&self, svg: &mut Svg, panel: &Panel<'_>) {
+        for door in &panel.location.doors {
+            let mut open: Vec<(f64, f64)> = Vec::new();
+            let mut since: Option<f64> = None;
+            for event in &panel.recording.events {
+                let EventKind::Door { door: id, open: is } = &event.kind else { continue };
+                if *id != door.id {
+                    continue;
+                }
+                match (since, is) {
+                    (None, true) => since = Some(event.time.secs()),
+                    (Some(from), false) => {
+                        open.push((from, event.time.secs()));
+                        since = None;
+                    }
+                    (None, false) | (Some(_), true) => {}
+                }
+            }
+            open.extend(since.map(|from| (from, f64::MAX)));
+            let mut shut = Vec::new();
+            let mut free = 0.0;
+            for (from, to) in &open {
+                shut.push((free, *from));
+                free = *to;
+            }
+            shut.push((free, f64::MAX));
+            let (from, to) = (panel.frame.px(panel.location, &door.from), panel.frame.px(panel.location, &door.to));
+            let width = panel.frame.len(panel.location, 0.14).max(3.0);
+            for (part, when) in [(0.14, open), (0.5, shut)] {
+                let (dx, dy) = ((to.0 - from.0) * part, (to.1 - from.1) * part);
+                svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&when)));
+                let style = format!("stroke=\"{}\" stroke-width=\"{width:.1}\"", palette::DOOR);
+                svg.line(from, (from.0 + dx, from.1 + dy), &style);
+                svg.line(to, (to.0 - dx, to.1 - dy), &style);
+                svg.raw("</g>");
+            }
+        }
+    }
+
+    /// The run's name and a clock that counts whole seconds.
+    fn animate_words(&self, svg: &mut Svg, panel: &Panel<'_>) {
+        let size = panel.look.text_px;
+        let at = (panel.at.0 + size * 0.6, panel.at.1 + size * 0.6);
+        let wide = text_width(&panel.title, size) + size * 3.0;
+        svg.rect(at, (wide, size * 1.7), &format!("rx=\"{:.1}\" fill=\"#ffffff\" fill-opacity=\"0.88\"", size * 0.3));
+        svg.heading((at.0 + size * 0.5, at.1 + size * 1.2), &panel.title, size, palette::INK);
+        let mut second = self.times.from_s.floor();
+        while second <= self.times.to_s {
+            svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&[(second, second + 1.0)])));
+            svg.text(
+                (at.0 + wide - size * 0.5, at.1 + size * 1.2),
+                &format!("{second:.0} s"),
+                &format!("font-size=\"{size:.1}\" text-anchor=\"end\" fill=\"{}\"", palette::INK),
+            );
+            svg.raw("</g>");
+            second += 1.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::film::{Film, FilmOptions};
+    use crate::fixture::{hall, walk};
+
+    #[test]
+    fn an_animated_film_plays_everybody_and_loads_nothing() {
+        let (location, run) = (hall("hall"), walk(3));
+        let film = |labels: bool| {
+            let options = FilmOptions { size: (640, 360), fps: 30, labels, speed: None };
+            Film::new(&location, None, &[&run], &[&run], options).unwrap().animated_svg()
+        };
+        let svg = film(true);
+        assert_eq!(svg.matches("type=\"translate\"").count(), 4);
+        assert!(svg.contains(">h3<") && svg.contains("reference") && svg.contains(">5 s<"));
+        assert!(!film(false).contains("reference") && !film(false).contains(">h3<"));
+        assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("://") && !svg.contains("<script"));
+        assert_eq!(svg, film(true));
+        // It is a drawing too: what does not play it shows its beginning.
+        crate::png::png_from_svg(&svg, 1.0).unwrap();
+    }
+}

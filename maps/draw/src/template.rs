@@ -1,0 +1,72 @@
+//! The shell of every page: one file of HTML that loads nothing and runs nothing that a user wrote.
+
+use serde_json::Value;
+
+/// Words for building pages and the player of a run, in front of every page's own script.
+pub(crate) const PLAYER: &str = include_str!("web/player.js");
+/// The look of every page.
+pub(crate) const STYLE: &str = include_str!("web/page.css");
+
+/// The template with every `{{name}}` replaced in one pass: a value that looks like a name stays as it is.
+pub(crate) fn fill(template: &str, values: &[(&str, String)]) -> String {
+    let mut out = String::with_capacity(template.len());
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        out.push_str(before);
+        let Some((name, tail)) = after.split_once("}}") else {
+            out.push_str("{{");
+            rest = after;
+            break;
+        };
+        if let Some((_, value)) = values.iter().find(|(known, _)| *known == name) {
+            out.push_str(value);
+        }
+        rest = tail;
+    }
+    out.push_str(rest);
+    out
+}
+
+/// JSON for a script element. No `<` at all: neither the end of a script nor a comment can begin, whatever a user wrote.
+pub(crate) fn json(data: &Value) -> String {
+    data.to_string().replace('<', "\\u003c")
+}
+
+/// The player with a page's own script.
+pub(crate) fn script(own: &str) -> String {
+    format!("{PLAYER}{own}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_that_looks_like_a_place_is_not_filled_again() {
+        let out = fill("<{{a}}|{{b}}>", &[("a", "{{b}}".to_owned()), ("b", "2".to_owned())]);
+        assert_eq!(out, "<{{b}}|2>");
+    }
+
+    #[test]
+    fn no_page_loads_anything() {
+        let parts = [
+            PLAYER,
+            STYLE,
+            include_str!("web/page.html"),
+            include_str!("web/page.js"),
+            include_str!("web/batch.html"),
+            include_str!("web/batch.js"),
+            include_str!("web/labels.html"),
+            include_str!("web/labels.js"),
+        ];
+        for part in parts {
+            let part = part.replace("http://www.w3.org/2000/svg", "");
+            assert!(
+                !part.contains("://")
+                    && !part.contains("@import")
+                    && !part.contains("url(")
+                    && !part.contains("fetch(")
+            );
+        }
+    }
+}

@@ -1,0 +1,138 @@
+(() => {
+  const { make, word, plain } = player;
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const at = (id) => document.getElementById(id);
+  const VERDICTS = { // color, sign
+    realised: ["#00795c", "✔"], realised_late: ["#56b4e9", "✔"], not_triggered: ["#e69f00", "✘"], contradicted: ["#d55e00", "✘"],
+    robot_prevented: ["#cc79a7", "✘"], invalid: ["#767d87", "✘"], failed: ["#1f2328", "✘"],
+  };
+  const ORDER = Object.keys(VERDICTS), STEP = 60;
+  let shown = STEP, rows = data.rows;
+  const count = (n, one) => n + " " + one + (n === 1 ? "" : "s");
+
+  // 95 % interval of a share (Wilson), in percent.
+  function wilson(k, n) {
+    if (!n) return "–";
+    const z = 1.959964, p = k / n, d = 1 + z * z / n, m = (p + z * z / (2 * n)) / d, h = z * Math.sqrt(p * (1 - p) / n + z * z / (4 * n * n)) / d;
+    return `${(100 * p).toFixed(0)} % [${(100 * Math.max(0, m - h)).toFixed(0)}, ${(100 * Math.min(1, m + h)).toFixed(0)}]`;
+  }
+  function median(values) {
+    const v = values.filter((x) => x !== null && x !== undefined).sort((a, b) => a - b), n = v.length;
+    return n ? (n % 2 ? v[(n - 1) / 2] : (v[n / 2 - 1] + v[n / 2]) / 2) : null;
+  }
+  const number = (v, unit) => (v === null || v === undefined ? "n/a" : v.toFixed(2) + " " + unit);
+
+  function summary() {
+    const whole = rows.length, good = rows.filter((r) => r.verdict === "realised").length;
+    at("sum").textContent = count(data.rows.length, "scenario") + (whole === data.rows.length ? "" : `, ${whole} shown`) + ` · ${good} realised` + (whole ? ` · ${wilson(good, whole)}` : "");
+    const bar = at("shares"), legend = at("shares-legend");
+    bar.textContent = ""; legend.textContent = "";
+    for (const verdict of ORDER) {
+      const n = rows.filter((r) => r.verdict === verdict).length;
+      if (!n) continue;
+      const part = word("span", "", bar);
+      part.style.cssText = `width:${100 * n / whole}%;background:${VERDICTS[verdict][0]}`;
+      part.title = plain(verdict) + ": " + n;
+      const said = word("span", "", legend);
+      word("i", "", said).style.background = VERDICTS[verdict][0];
+      said.append(`${plain(verdict)} ${n}`);
+    }
+    const table = at("planners"); table.textContent = "";
+    const head = word("tr", "", word("thead", "", table));
+    for (const name of ["planner", "runs", "realised", "success", "contacts per run", "smallest distance, median", "time to goal, median"]) word("th", name, head).scope = "col";
+    const body = word("tbody", "", table), planners = new Map();
+    for (const row of rows) for (const run of row.runs) {
+      if (run.planner === "none") continue;
+      if (!planners.has(run.planner)) planners.set(run.planner, []);
+      planners.get(run.planner).push(run);
+    }
+    for (const [planner, runs] of planners) {
+      const line = word("tr", "", body), n = runs.length;
+      word("th", planner, line).scope = "row";
+      const contacts = runs.map((r) => r.contacts).filter((v) => v !== null);
+      const cells = [String(n), wilson(runs.filter((r) => r.verdict === "realised").length, n), wilson(runs.filter((r) => r.success).length, n),
+        contacts.length ? (contacts.reduce((a, b) => a + b, 0) / contacts.length).toFixed(2) : "n/a",
+        number(median(runs.map((r) => r.distance)), "m"), number(median(runs.map((r) => r.time)), "s")];
+      for (const cell of cells) word("td", cell, line);
+    }
+  }
+
+  function thumbnail(row, link) {
+    const svg = make("svg", { class: "thumb", role: "img", "aria-label": "tracks of " + row.title }, link), picture = row.picture;
+    if (!picture) { svg.setAttribute("viewBox", "0 0 16 9"); return; }
+    // Every picture has the same shape: the box is widened, never cut.
+    const [x, y, w, h] = picture.focus, W = Math.max(w, h * 16 / 9), H = Math.max(h, w * 9 / 16);
+    svg.setAttribute("viewBox", [x - (W - w) / 2, y - (H - h) / 2, W, H].join(" "));
+    make("use", { href: "#floor-" + picture.place }, svg);
+    for (const [color, points] of picture.tracks) {
+      make("polyline", { points, fill: "none", stroke: color, "stroke-width": 2.5, "vector-effect": "non-scaling-stroke", "stroke-linejoin": "round", "stroke-linecap": "round" }, svg);
+      const last = points.split(" ").pop().split(",");
+      make("circle", { cx: last[0], cy: last[1], r: W / 90, fill: color, stroke: "#fff", "stroke-width": 1, "vector-effect": "non-scaling-stroke" }, svg);
+    }
+  }
+
+  function item(row) {
+    const node = word("li", ""), href = row.folder === undefined ? null : row.folder.split("/").map(encodeURIComponent).join("/") + "/report.html";
+    if (href) { const link = word("a", "", node); link.href = href; link.tabIndex = -1; thumbnail(row, link); } else word("span", "", node, "thumb");
+    const middle = word("div", "", node), title = word("h3", "", middle);
+    if (href) { const link = word("a", row.title || row.scenario, title); link.href = href; } else title.textContent = row.scenario;
+    word("span", row.scenario, title, "tag");
+    if (row.reading) word("p", row.reading, middle);
+    if (row.rough || row.context) { const said = word("p", "", middle, "quiet said"); word("q", (row.rough || row.context + " · " + row.task).trim(), said); }
+    if (row.location) word("p", [row.location, plain(row.place), plain(row.pattern), count(row.humans, "human"), row.author].join(" · "), middle, "quiet");
+    const side = word("div", "", node), [color, sign] = VERDICTS[row.verdict] || ["#1f2328", "–"];
+    const verdict = word("p", sign + " " + plain(row.verdict), side, "verdict-word");
+    verdict.style.borderColor = color;
+    if (row.why) word("p", row.why, side, "bad"); else if (row.told) word("p", row.told, side, "quiet");
+    const planners = new Map();
+    for (const run of row.runs) { if (!planners.has(run.planner)) planners.set(run.planner, []); planners.get(run.planner).push(run); }
+    for (const [planner, runs] of planners) {
+      const line = word("p", "", side, "runs-of");
+      word("b", planner, line);
+      for (const run of runs.slice(0, 24)) {
+        const box = word(href ? "a" : "span", run.verdict.startsWith("realised") ? (run.success || planner === "none" ? "✔" : "◐") : "✘", line);
+        if (href) box.href = href + "#run=" + encodeURIComponent(planner + "-" + run.seed);
+        box.title = `seed ${run.seed}: ${plain(run.verdict)}` + (planner === "none" ? "" : run.success ? ", robot arrived without a collision" : ", robot without success") + (run.distance === null ? "" : `, smallest distance ${run.distance.toFixed(2)} m`);
+        box.style.color = (VERDICTS[run.verdict] || ["#1f2328"])[0];
+      }
+      if (runs.length > 24) line.append(` and ${runs.length - 24} more`);
+    }
+    return node;
+  }
+
+  const searched = (row) => [row.scenario, row.title, row.reading, row.context, row.task, row.rough, row.pattern, row.location].join(" ").toLowerCase();
+  const LEAST = { verdict: (r) => ORDER.indexOf(r.verdict), title: (r) => r.title || r.scenario, humans: (r) => r.humans || 0,
+    distance: (r) => Math.min(Infinity, ...r.runs.map((x) => x.distance).filter((x) => x !== null)) };
+  function filter() {
+    const words = at("words").value.toLowerCase().split(/\s+/).filter(Boolean);
+    const fits = (id, key) => { const wanted = at(id).value; return (row) => !wanted || row[key] === wanted; };
+    const tests = [fits("verdict-of", "verdict"), fits("location-of", "location"), fits("pattern-of", "pattern"), (row) => { const text = words.length ? searched(row) : ""; return words.every((w) => text.includes(w)); }];
+    rows = data.rows.filter((row) => tests.every((test) => test(row)));
+    const key = LEAST[at("order").value];
+    if (key) rows = rows.map((row) => [key(row), row]).sort((a, b) => (a[0] < b[0] ? -1 : a[0] > b[0] ? 1 : 0)).map(([, row]) => row);
+    shown = STEP;
+    summary(); list();
+  }
+  function list() {
+    const box = at("rows"); box.textContent = "";
+    for (const row of rows.slice(0, shown)) box.appendChild(item(row));
+    if (!rows.length) word("li", data.rows.length ? "nothing fits these filters" : "there is no scenario in this folder", box, "quiet");
+    at("more").hidden = rows.length <= shown;
+    at("more").textContent = `show ${Math.min(STEP, rows.length - shown)} more of ${rows.length - shown}`;
+  }
+  function options(id, key) {
+    const select = at(id), found = new Map();
+    for (const row of data.rows) if (row[key] !== undefined) found.set(row[key], (found.get(row[key]) || 0) + 1);
+    word("option", "any", select).value = "";
+    for (const name of [...found.keys()].sort()) { const option = word("option", `${plain(name)} (${found.get(name)})`, select); option.value = name; }
+    select.addEventListener("change", filter);
+  }
+  options("verdict-of", "verdict"); options("location-of", "location"); options("pattern-of", "pattern");
+  at("order").addEventListener("change", filter);
+  at("words").addEventListener("input", filter);
+  at("filters").addEventListener("submit", (e) => e.preventDefault());
+  at("clear").addEventListener("click", () => { at("filters").reset(); filter(); });
+  at("more").addEventListener("click", () => { shown += STEP; list(); });
+  addEventListener("beforeprint", () => { shown = Infinity; list(); });
+  filter();
+})();

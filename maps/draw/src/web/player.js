@@ -1,0 +1,172 @@
+"use strict";
+// What every page needs: small words for building it, and the player of a run. One time in seconds drives all views.
+const player = (() => {
+  const NS = "http://www.w3.org/2000/svg";
+  const SAYS = ["", "WAIT", "PROCEED", "ACKNOWLEDGED", "EXCUSE ME", "FOLLOW ME"];
+  // Above this many agents names would hide the crowd and whole trails would slow it down.
+  const CROWD = 24;
+  const TRAIL_SECS = 4;
+  const plain = (text) => text.replace(/_/g, " ");
+  const secs = (t) => t.toFixed(1) + " s";
+  const make = (tag, attrs, parent) => {
+    const node = document.createElementNS(NS, tag);
+    for (const key in attrs) node.setAttribute(key, attrs[key]);
+    if (parent) parent.appendChild(node);
+    return node;
+  };
+  const word = (tag, text, parent, look) => {
+    const node = document.createElement(tag);
+    if (look) node.className = look;
+    node.textContent = text;
+    if (parent) parent.appendChild(node);
+    return node;
+  };
+  // Text in which `names` are set as code.
+  const words = (tag, text, parent) => {
+    const node = word(tag, "", parent);
+    text.split("`").forEach((part, i) => { if (part) node.appendChild(i % 2 ? word("code", part) : document.createTextNode(part)); });
+    return node;
+  };
+  const seconds = (run) => Math.max(0, ...run.agents.map((a) => a.track.length / 4 - 1)) / run.hz;
+  // Where somebody is between two samples: x, y, heading, gesture. Tracks are x y in tenths, heading in hundredths.
+  function state(track, at) {
+    const n = track.length / 4;
+    if (!n) return null;
+    const i = Math.max(0, Math.min(Math.floor(at + 1e-6), n - 1)), j = Math.min(i + 1, n - 1), u = Math.max(0, Math.min(at - i, 1));
+    const a = i * 4, b = j * 4;
+    let turn = (track[b + 2] - track[a + 2]) / 100;
+    turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
+    return [(track[a] + (track[b] - track[a]) * u) / 10, (track[a + 1] + (track[b + 1] - track[a + 1]) * u) / 10, track[a + 2] / 100 + turn * u, track[a + 3]];
+  }
+
+  // One map with one run on it. `box` is what it shows, in the drawing units of the place.
+  class View {
+    constructor(svg, place) {
+      this.svg = svg; this.place = place; this.run = null; this.shapes = []; this.doors = [];
+      svg.textContent = "";
+      svg.setAttribute("role", "img");
+      make("use", { href: "#floor-" + place.index }, svg);
+      this.trails = make("g", {}, svg); this.people = make("g", {}, svg); this.bar = make("g", {}, svg);
+    }
+    load(run) {
+      this.run = run; this.trails.textContent = ""; this.people.textContent = "";
+      this.svg.setAttribute("aria-label", "map with the run " + run.name + ", seen from above");
+      if (run.way) make("polyline", { points: run.way, fill: "none", stroke: "#0072B2", "stroke-width": 1.6, "stroke-dasharray": "3 5", opacity: 0.65, "vector-effect": "non-scaling-stroke" }, this.trails);
+      this.doors = run.doors.map((d) => ({ ...d, node: make("path", { stroke: "#a8641c", "vector-effect": "non-scaling-stroke", fill: "none" }, this.trails) }));
+      this.crowd = run.agents.length > CROWD;
+      this.shapes = [...run.agents].reverse().map((agent) => {
+        const robot = agent.number === 0, r = agent.radius;
+        const trail = make("polyline", { fill: "none", stroke: agent.color, "stroke-width": this.crowd && !robot ? 1.5 : 3, opacity: 0.6, "stroke-linejoin": "round", "vector-effect": "non-scaling-stroke" }, this.trails);
+        const group = make("g", {}, this.people);
+        make("title", {}, group).textContent = agent.name + (agent.role === agent.name ? "" : ", " + agent.role);
+        const ring = make("circle", { r: r * 1.7, fill: "none", stroke: "#e69f00", "vector-effect": "non-scaling-stroke", "stroke-width": 3 }, group);
+        const turned = make("g", {}, group);
+        if (robot) {
+          make("rect", { x: -r, y: -r, width: 2 * r, height: 2 * r, rx: r * 0.3, fill: agent.color, stroke: "#fff", "stroke-width": 1.5, "vector-effect": "non-scaling-stroke" }, turned);
+          make("path", { d: `M${r * 0.75} 0L${-r * 0.45} ${r * 0.55}L${-r * 0.2} 0L${-r * 0.45} ${-r * 0.55}z`, fill: "#fff" }, turned);
+        } else {
+          make("circle", { r, fill: agent.color, stroke: "#fff", "stroke-width": 1.5, "vector-effect": "non-scaling-stroke" }, turned);
+          make("path", { d: `M${r * 0.85} 0L${r * 0.2} ${r * 0.4}L${r * 0.2} ${-r * 0.4}z`, fill: "#fff" }, turned);
+        }
+        const name = make("text", { "text-anchor": "middle", "font-weight": 600, fill: agent.words, stroke: "#fff", "paint-order": "stroke", "stroke-linejoin": "round" }, group);
+        name.textContent = this.crowd && !robot ? "" : agent.name.replace("human_", "h");
+        const bubble = make("rect", { fill: "#fff4d6", stroke: "#b07a00", "vector-effect": "non-scaling-stroke" }, group);
+        const says = make("text", { "text-anchor": "middle", "font-weight": 700, fill: "#1f2328" }, group);
+        return { agent, trail, group, ring, turned, name, bubble, says };
+      });
+    }
+    // Everything that depends on the size of the window.
+    lay(box) {
+      this.box = box;
+      this.svg.setAttribute("viewBox", box.join(" "));
+      const shown = this.svg.getBoundingClientRect();
+      const k = Math.max(box[2] / Math.max(shown.width, 1), box[3] / Math.max(shown.height, 1));
+      this.k = k;
+      for (const s of this.shapes) {
+        // Nobody is smaller than a fingertip can see.
+        s.grow = Math.max(1, (this.crowd ? 3 : 6) * k / s.agent.radius);
+        s.ring.setAttribute("r", s.agent.radius * 1.7 * s.grow);
+        s.name.setAttribute("font-size", 14 * k); s.name.setAttribute("stroke-width", 4 * k); s.says.setAttribute("font-size", 14 * k);
+      }
+      const bar = this.bar; bar.textContent = "";
+      const metres = [0.5, 1, 2, 5, 10, 20, 50].find((m) => m * this.place.px_per_m / k >= 50) || 100;
+      const x = box[0] + 14 * k, y = box[1] + box[3] - 14 * k, w = metres * this.place.px_per_m;
+      make("rect", { x: x - 6 * k, y: y - 12 * k, width: w + 52 * k, height: 20 * k, fill: "#fff", opacity: 0.85, rx: 3 * k }, bar);
+      make("path", { d: `M${x} ${y - 4 * k}v${8 * k}M${x} ${y}h${w}M${x + w} ${y - 4 * k}v${8 * k}`, stroke: "#5b636e", "stroke-width": 2 * k, fill: "none" }, bar);
+      make("text", { x: x + w + 7 * k, y: y + 4 * k, "font-size": 12 * k, fill: "#3b3f46" }, bar).textContent = metres + " m";
+    }
+    show(now) {
+      if (!this.run || !this.box) return;
+      const hz = this.run.hz, at = now * hz, k = this.k, places = this.shapes.map((s) => state(s.agent.track, at));
+      this.shapes.forEach((s, index) => {
+        const track = s.agent.track, p = places[index];
+        if (!p) return;
+        const [x, y, yaw, code] = p, r = s.agent.radius * s.grow, said = SAYS[code] || "";
+        s.group.setAttribute("transform", `translate(${x} ${y})`);
+        s.turned.setAttribute("transform", `rotate(${-yaw * 180 / Math.PI}) scale(${s.grow})`);
+        s.ring.setAttribute("opacity", said ? 1 : 0);
+        const rim = said ? r * 1.7 : r, high = (said ? 44 : 20) * k, half = 16 * k;
+        // The name stands above, and below where it would hide somebody or leave the picture.
+        const hides = (from, to) => !this.crowd && places.some((o, j) => o && j !== index && Math.abs(o[0] - x) < half + r && o[1] + r > from && o[1] - r < to);
+        const below = y - rim - high < this.box[1] || (hides(y - rim - high, y - rim) && !hides(y + rim, y + rim + high) && y + rim + high < this.box[1] + this.box[3]);
+        s.name.setAttribute("y", below ? rim + 15 * k : -rim - 5 * k);
+        s.says.textContent = said;
+        s.bubble.setAttribute("opacity", said ? 1 : 0);
+        if (said) {
+          const base = below ? rim + 37 * k : -rim - 28 * k, w = s.says.getComputedTextLength() + 14 * k;
+          s.says.setAttribute("y", base);
+          for (const [key, value] of Object.entries({ x: -w / 2, y: base - 16 * k, width: w, height: 22 * k, rx: 5 * k })) s.bubble.setAttribute(key, value);
+        }
+        const last = Math.min(Math.floor(at + 1e-6), track.length / 4 - 1);
+        const first = this.crowd && s.agent.number !== 0 ? Math.max(0, last - Math.round(TRAIL_SECS * hz)) : 0;
+        let points = "";
+        for (let i = first; i <= last; i++) points += track[i * 4] / 10 + "," + track[i * 4 + 1] / 10 + " ";
+        s.trail.setAttribute("points", points + x + "," + y);
+      });
+      for (const d of this.doors) {
+        let open = false;
+        for (const [t, is] of d.times) if (t <= now + 1e-6) open = is;
+        const [x1, y1, x2, y2] = d.line, part = open ? 0.14 : 0.5, dx = (x2 - x1) * part, dy = (y2 - y1) * part;
+        d.node.setAttribute("d", `M${x1} ${y1}l${dx} ${dy}M${x2} ${y2}l${-dx} ${-dy}`);
+        d.node.setAttribute("stroke-width", open ? 4 : 5);
+      }
+    }
+  }
+
+  // Runs the time: `show(seconds)` is called for every picture, `state(playing)` whenever it starts or stops.
+  class Clock {
+    constructor(show, state) {
+      this.now = 0; this.end = 0; this.rate = 1; this.playing = false; this.show = show; this.state = state;
+      let last = 0;
+      const tick = (stamp) => {
+        if (this.playing) {
+          this.set(this.now + Math.min(stamp - last, 100) / 1000 * this.rate);
+          if (this.now >= this.end) this.play(false);
+        }
+        last = stamp;
+        requestAnimationFrame(tick);
+      };
+      requestAnimationFrame((stamp) => { last = stamp; tick(stamp); });
+    }
+    set(t) { this.now = Math.max(0, Math.min(t, this.end)); this.show(this.now); }
+    play(on) { this.playing = on; this.state(on); }
+    toggle() {
+      if (!this.playing && this.now >= this.end - 1e-6) this.set(0);
+      this.play(!this.playing);
+    }
+  }
+
+  // Keys that no field wants: `act` gives what each one does, by name.
+  function keys(act) {
+    addEventListener("keydown", (e) => {
+      if (e.ctrlKey || e.metaKey || e.altKey) return;
+      const tag = e.target.tagName, typing = tag === "TEXTAREA" || tag === "SELECT" || (tag === "INPUT" && !/^(range|button|radio)$/.test(e.target.type));
+      if (typing || (e.key === " " && /^(BUTTON|SUMMARY|A)$/.test(tag)) || (e.key === "Enter")) return;
+      const does = act[(e.shiftKey && e.key.startsWith("Arrow") ? "Shift" : "") + e.key];
+      if (does) { does(); e.preventDefault(); }
+    });
+    // After a click the keys belong to the player again.
+    addEventListener("click", (e) => { if (e.detail > 0 && e.target.closest("button") && document.activeElement) document.activeElement.blur(); });
+  }
+  return { SAYS, View, Clock, keys, make, word, words, plain, secs, seconds };
+})();

@@ -1,0 +1,89 @@
+//! The page of a folder of bundles, filled from what lies in it.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use socrates_draw::{BatchEntry, BatchPage};
+
+use crate::bundle;
+use crate::exit::Complaint;
+use crate::library;
+
+/// What the page shows.
+#[derive(Debug)]
+pub(crate) struct Found {
+    /// Scenarios on the page.
+    pub(crate) rows: usize,
+    /// Bundles that could not be read, and why.
+    pub(crate) left_out: Vec<(String, String)>,
+}
+
+/// Names of the folders right below this one that hold a finished bundle, in order.
+pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
+    let entries = std::fs::read_dir(root).map_err(|why| {
+        Complaint::input(
+            format!("cannot read `{}`: {why}", root.display()),
+            "name a bundle folder, or a folder that holds bundles",
+        )
+    })?;
+    let names: BTreeSet<String> = entries
+        .filter_map(Result::ok)
+        .filter(|entry| entry.path().join("details/manifest.json").is_file())
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    Ok(names.into_iter().collect())
+}
+
+/// Writes `report.html` into a folder of bundles: those its library lists first, in their order, then the others.
+pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
+    let listed = library::read(root);
+    let mut names: Vec<String> = Vec::new();
+    let mut failed: Vec<String> = Vec::new();
+    let found = bundles(root)?;
+    for row in listed.iter().flat_map(|library| &library.scenarios) {
+        let name = row.scenario.to_string();
+        if found.contains(&name) { names.push(name) } else { failed.push(name) }
+    }
+    let known: BTreeSet<String> = names.iter().cloned().collect();
+    names.extend(found.into_iter().filter(|name| !known.contains(name)));
+    if names.is_empty() && failed.is_empty() {
+        return Err(Complaint::input(
+            format!("`{}` is no bundle and holds none", root.display()),
+            "name the folder that `socrates run` printed after `look`",
+        ));
+    }
+    let mut page = BatchPage::default();
+    let mut left_out = Vec::new();
+    for name in names {
+        if let Err(why) = add(&mut page, root, &name) {
+            page.add_failed(&name, &why.what);
+            left_out.push((name, why.what));
+        }
+    }
+    for name in &failed {
+        page.add_failed(name, "no bundle could be made");
+    }
+    let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+    let html = page.html(&title.unwrap_or_else(|| "Scenarios".to_owned()));
+    crate::files::write(&root.join("report.html"), html.as_bytes())?;
+    Ok(Found { rows: page.len(), left_out })
+}
+
+fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<(), Complaint> {
+    let dir = root.join(name);
+    // One recording at a time: a library is larger than the memory of a laptop.
+    let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
+    let reports = bundle::reports(&dir, &bundle.manifest)?;
+    page.add(&BatchEntry {
+        folder: name,
+        scenario: &bundle.manifest.scenario,
+        request: &bundle.request,
+        reading_line: &socrates_offline::summary(&bundle.reading),
+        location: &bundle.location,
+        proposal: &bundle.proposal,
+        paths: &bundle.paths,
+        reports: &reports,
+        recording: bundle.runs.first().map(|(recording, _)| recording),
+    });
+    Ok(())
+}

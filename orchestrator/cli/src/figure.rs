@@ -1,0 +1,61 @@
+//! `figure`: who went where and when, at the width of a paper's column.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+use socrates_model::Recording;
+
+use crate::bundle;
+use crate::exit::{Code, Complaint};
+use crate::talk::Talk;
+use crate::video::{run_names, run_of};
+
+/// Options of `figure`.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct FigureOptions {
+    /// Bundle folder.
+    pub(crate) bundle: PathBuf,
+    /// SVG or PNG file to write.
+    #[arg(long, short, default_value = "figure.svg")]
+    pub(crate) out: PathBuf,
+    /// Width on paper, mm: 84 is a column of two, 174 a page.
+    #[arg(long, default_value_t = 84.0)]
+    pub(crate) width_mm: f64,
+    /// Runs to show, such as `reference-1`; of the second to fourth only the robot's way. Default: the first run.
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) run: Vec<String>,
+    /// Pixels per inch of a PNG.
+    #[arg(long, default_value_t = 600, value_parser = clap::value_parser!(u16).range(72..=1200))]
+    pub(crate) dpi: u16,
+}
+
+/// Writes the figure.
+pub(crate) fn figure(talk: &Talk, options: &FigureOptions) -> Result<(), Complaint> {
+    let ending = options.out.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if !matches!(ending.as_str(), "svg" | "png") {
+        return Err(Complaint::input(
+            format!("`{}` is no figure: its ending is `{ending}`", options.out.display()),
+            "name a file that ends in .svg or .png",
+        ));
+    }
+    let bundle = bundle::read(&options.bundle)?;
+    let names = run_names(&bundle, &options.run)?;
+    let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
+    let shown: Vec<&Recording> = names.iter().filter_map(|name| run_of(&bundle, name)).collect();
+    let svg = socrates_draw::figure(&bundle.location, Some(&bundle.paths), &all, &shown, options.width_mm)
+        .map_err(|why| Complaint::input(why.to_string(), "`socrates figure --help` names what is allowed"))?;
+    let bytes = if ending == "png" {
+        socrates_draw::png_at_dpi(&svg, f32::from(options.dpi))
+            .map_err(|why| Complaint::input(why.to_string(), "a smaller --dpi, or an SVG").with_code(Code::Input))?
+    } else {
+        svg.into_bytes()
+    };
+    crate::files::write(&options.out, &bytes)?;
+    talk.line(&format!("wrote      {} · {} mm wide · {}", options.out.display(), options.width_mm, names.join(", ")));
+    talk.result(&json!({
+        "figure": options.out.display().to_string(), "width_mm": options.width_mm, "runs": names,
+        "digest": socrates_model::Digest::of(&bytes),
+    }));
+    Ok(())
+}
