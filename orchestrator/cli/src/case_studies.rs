@@ -1,7 +1,7 @@
 //! The paper's four case studies: the shipped requests show what they ask for, measured on the recording itself and
 //! not by the judge's own clauses; and each way in which they can go wrong is refused.
 
-use socrates_model::geometry::wrap_angle;
+use socrates_model::geometry::{nearest_on_segment, wrap_angle};
 use socrates_model::{AgentId, AgentState, EventKind, HumanId, Point, Relation, Verdict};
 
 use crate::config::Config;
@@ -90,9 +90,9 @@ async fn in_the_elevator_two_leave_one_stays_startled() {
     let robot = track(&scenario, AgentId::Robot);
     assert!((robot[0].point() - door.middle()).norm() >= 4.0);
     // S2: the door opens with the robot 1 to 4 m away.
-    let opens = scenario.run.events.iter().find_map(|event| match &event.kind {
-        EventKind::Door { door: id, open: true } if *id == door.id => Some(event.time.secs()),
-        _ => None,
+    let opens = scenario.run.events.iter().find_map(|event| {
+        let EventKind::Door { door: id, open: true } = &event.kind else { return None };
+        (*id == door.id).then(|| event.time.secs())
     });
     let opens = opens.expect("the door opens");
     let distance = (robot[(opens * 100.0) as usize].point() - door.middle()).norm();
@@ -103,7 +103,8 @@ async fn in_the_elevator_two_leave_one_stays_startled() {
         let depths = depths(AgentId::Human(*id));
         let found = crossings(&depths);
         assert_eq!(found.iter().map(|(_, outward)| *outward).collect::<Vec<_>>(), [true], "{id}");
-        assert!(*depths.last().unwrap() < -2.0);
+        let end = track(&scenario, AgentId::Human(*id)).last().unwrap().point();
+        assert!(*depths.last().unwrap() < 0.0 && (end - door.middle()).norm() >= 2.0, "{id} ends at {end:?}");
         out.push(secs(found[0].0));
     }
     out.sort_by(f64::total_cmp);
@@ -152,16 +153,18 @@ async fn in_the_corridor_one_follows_and_one_obstructs() {
         })
         .count();
     assert!(secs(follows) >= 8.0, "{} s", secs(follows));
-    // S4: somebody else is in front of it within 2.5 m, less than 0.6 m from its line, for three seconds.
+    // S4: somebody else is before it within 2.5 m, less than 0.6 m from its intended line, for three seconds.
+    let way = scenario.prepared.location.graph.polyline(&scenario.made.paths.robot);
+    let off_line = |point: &Point| {
+        way.windows(2).map(|pair| nearest_on_segment(point, &pair[0], &pair[1]).0).fold(f64::INFINITY, f64::min)
+    };
     let blocked = scenario.made.proposal.humans.iter().filter(|human| human.id != behind[0]).any(|human| {
         let ticks = track(&scenario, AgentId::Human(human.id))
             .iter()
             .zip(&robot)
             .filter(|(h, r)| {
                 let line = h.point() - r.point();
-                let ahead = line.x * r.yaw.cos() + line.y * r.yaw.sin();
-                let aside = -line.x * r.yaw.sin() + line.y * r.yaw.cos();
-                (0.0..=2.5).contains(&ahead) && aside.abs() < 0.6
+                line.norm() <= 2.5 && off_line(&h.point()) < 0.6
             })
             .count();
         secs(ticks) >= 3.0

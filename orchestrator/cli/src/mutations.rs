@@ -12,7 +12,7 @@ use socrates_model::{
     Predicate, Proposal, Recording, Relation, Report, RunId, Verdict,
 };
 use socrates_scoring::Evidence;
-use socrates_scoring::mutants::{harmless, spoiled};
+use socrates_scoring::mutants::{harmless, spoiled, time_margin};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -59,6 +59,8 @@ struct Row {
 pub(crate) struct Tally {
     spoiled: BTreeMap<String, Row>,
     harmless: BTreeMap<String, Row>,
+    /// By how much each human could have been sooner and later, s.
+    margins: Vec<(String, f64, f64)>,
     /// Changed artifacts that gave the same meeting all the same: nothing is wrong with those runs.
     equal: usize,
     wrong: Vec<String>,
@@ -241,6 +243,10 @@ fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording
 /// Every harmless and every spoiling change of a realised scenario.
 pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
     let Scenario { prepared, made, run, seed, .. } = scenario;
+    for human in &made.proposal.humans {
+        let (sooner, later) = time_margin(&evidence(prepared, made, run), human.id);
+        tally.margins.push((format!("{name} {}", human.id), sooner, later));
+    }
     for mutant in harmless(run) {
         let report = judge(prepared, made, &mutant.recording);
         tally.enter(true, mutant.kind, &mutant.about, name, report.verdict.name(), &report.verdict_text);
@@ -438,6 +444,20 @@ fn print(talk: &Talk, tally: &Tally, bases: usize, unrealised: &[String], all: b
         tally.equal
     ));
     table("harmless", "let pass", &tally.harmless);
+    let middle = |of: &dyn Fn(&(String, f64, f64)) -> f64| {
+        let mut all: Vec<f64> = tally.margins.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    };
+    talk.line(&format!(
+        "time margin: half of {} people could be {:.2} s sooner, {:.2} s later and more (0.25 to 6 s tried)",
+        tally.margins.len(),
+        middle(&|margin| margin.1),
+        middle(&|margin| margin.2)
+    ));
+    for (who, sooner, later) in tally.margins.iter().filter(|_| all) {
+        talk.line(&format!("  {who:<36} {sooner:.2} s sooner, {later:.2} s later"));
+    }
     for line in if all { &tally.lines } else { &tally.wrong } {
         talk.line(&format!("  {}{line}", if all { "" } else { "WRONG  " }));
     }
@@ -448,6 +468,7 @@ fn print(talk: &Talk, tally: &Tally, bases: usize, unrealised: &[String], all: b
         "unrealised": unrealised,
         "spoiled": { "tried": spoiled, "refused": caught },
         "harmless": { "tried": harmless, "let_pass": kept },
+        "time_margins": tally.margins,
         "wrong": tally.wrong,
     }));
 }

@@ -63,7 +63,7 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
 }
 
 /// The verdict alone, without metrics.
-fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
+pub(crate) fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
     let tracks = Tracks::read(evidence.recording)?;
     let signals = Signals::new(evidence, &tracks);
     let judged = judge(&signals);

@@ -313,7 +313,10 @@ mod tests {
     }
 
     fn same(a: &[f64], b: &[f64]) -> bool {
-        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
+        a.len() == b.len()
+            && a.iter()
+                .zip(b)
+                .all(|(a, b)| a.partial_cmp(b).is_some_and(std::cmp::Ordering::is_eq) || a.is_nan() && b.is_nan())
     }
 
     fn backward(signal: &[(f64, f64)]) -> Vec<(f64, f64)> {

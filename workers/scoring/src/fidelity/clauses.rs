@@ -118,6 +118,9 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         }
     }
     if let (Some(proposal), Some(paths)) = (signals.evidence.proposal, signals.evidence.paths) {
+        let crowd = has(&|predicate| {
+            matches!(predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })
+        });
         let waits = proposal.robot.script.iter().any(|rule| rule.act == RobotDo::WaitForLeavers);
         for human in &proposal.humans {
             let id = human.id;
@@ -134,8 +137,8 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 Relation::Leaving => !waits,
                 Relation::Behind | Relation::Ahead | Relation::Static | Relation::Staying | Relation::Abreast => false,
             };
-            // A reaction may keep somebody from the node: then its own clauses tell.
-            if timed && human.rules.is_empty() && signals.encounter(id).is_some() {
+            // A crowd is timed by the clause that tells of it; a reaction may keep somebody from the node: then its own clauses tell.
+            if timed && !crowd && human.rules.is_empty() && signals.encounter(id).is_some() {
                 let given = has(
                     &|predicate| matches!(predicate, Predicate::OnTime { human: who, .. } | Predicate::Crosses { human: who, .. } if *who == id),
                 );

@@ -5,6 +5,7 @@ use socrates_model::{AgentId, EventKind, Gesture, Point};
 use crate::fidelity::acts::timely;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
+use crate::temporal::{Signal, Within};
 use crate::tracks::MOVING_MPS;
 
 /// The robot is at its goal from this near, m.
@@ -84,13 +85,43 @@ pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> F
         .humans
         .iter()
         .filter_map(|track| Some((track.samples.iter().find(|s| s.gesture == gesture)?.t, track.agent)));
-    let Some((made, who)) = by_event.chain(by_state).min_by(|a, b| a.0.total_cmp(&b.0)) else {
+    let all: Vec<(f64, AgentId)> = by_event.chain(by_state).collect();
+    let Some((made, who)) = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Finding::never(-within_s, vec![], format!("nobody says {gesture} to the robot"));
     };
     let goes = matches!(gesture, Gesture::Proceed | Gesture::FollowMe);
     let done = robot.samples.iter().find(|s| s.t >= made && (s.speed() > MOVING_MPS) == goes);
     let verb = if goes { "goes" } else { "stops" };
+    // Whenever it is said, it is done in time: G (said -> F[0, within] done).
+    let said: Signal = robot
+        .samples
+        .iter()
+        .zip(robot.samples.iter().skip(1))
+        .map(|(before, now)| {
+            let begins = all.iter().any(|(t, _)| *t > before.t && *t <= now.t);
+            (now.t, if begins { 1.0 } else { -1.0 })
+        })
+        .collect();
+    let does: Signal = robot
+        .samples
+        .iter()
+        .skip(1)
+        .map(|sample| {
+            let margin = sample.speed() - MOVING_MPS;
+            (sample.t, if goes { margin } else { -margin })
+        })
+        .collect();
+    let answered = said.not().or(&does.eventually(Within::secs(within_s)));
+    let every_time = answered.always(Within::EVER).holds();
     match done {
+        Some(sample) if every_time == Some(false) && sample.t - made <= within_s => {
+            let missed = answered.not().first_s().unwrap_or(made);
+            let text = format!(
+                "the robot {verb} {:.1} s after {who} says {gesture} at {made:.1} s, but not when it is said at {missed:.1} s",
+                sample.t - made
+            );
+            Finding::fails(-within_s, vec![missed, made], text)
+        }
         Some(sample) => {
             let delay = sample.t - made;
             let text = format!(

@@ -72,7 +72,9 @@ fn gaussian(person: &Sample, robot: &Sample) -> f64 {
     let front = (2.0 * person.speed()).max(0.5);
     let along = if ahead >= 0.0 { front } else { front / 2.0 };
     let across = front * 2.0 / 3.0;
-    libm::exp(-(ahead * ahead) / (2.0 * along * along) - (aside * aside) / (2.0 * across * across))
+    let size = (ahead * ahead) / (2.0 * along * along) + (aside * aside) / (2.0 * across * across);
+    // From here on it is less than 1e-13 and not worth an exponential.
+    if size > 30.0 { 0.0 } else { libm::exp(-size) }
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

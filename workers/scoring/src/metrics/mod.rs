@@ -304,6 +304,25 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn every_test_named_on_the_page_of_differences_exists() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        let page = std::fs::read_to_string(root.join("WHY_OUR_NUMBER_DIFFERS.md")).unwrap();
+        let mut found = 0;
+        for name in page.split('`').filter(|word| word.contains("::tests::")) {
+            let (module, test) = name.split_once("::tests::").unwrap();
+            let path = root.join("src").join(module.replace("::", "/"));
+            let file = if path.is_dir() { path.join("mod.rs") } else { path.with_extension("rs") };
+            let text = std::fs::read_to_string(&file).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
+            assert!(text.contains(&format!("fn {test}()")), "{name} is no test");
+            found += 1;
+        }
+        assert!(found >= 21, "{found}");
+        for id in page.split('`').filter(|word| word.starts_with("hunav.") && word.len() > 6) {
+            assert!(sheet(id).is_some(), "{id} is no metric");
+        }
+    }
+
+    #[test]
     fn every_name_of_the_table_is_a_metric_of_ours() {
         for (name, ours) in francis::NAMES {
             assert!(sheet(ours).is_some(), "{name} is {ours}, which is no metric");

@@ -13,6 +13,32 @@ use socrates_model::Recording;
 pub use harmless::harmless;
 pub use spoil::spoiled;
 
+use socrates_model::{AgentId, HumanId, Verdict};
+
+use crate::evidence::Evidence;
+
+/// Shifts that are tried for the time margin, s.
+const SHIFTS_S: [f64; 8] = [0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0];
+
+/// Time robustness of a realised run for one human, s: by how much it could have done everything sooner and later,
+/// each the largest of the shifts tried up to which the verdict stays `realised`.
+#[must_use]
+pub fn time_margin(evidence: &Evidence<'_>, human: HumanId) -> (f64, f64) {
+    let stays = |sign: f64| {
+        let mut reached = 0.0;
+        for shift in SHIFTS_S {
+            let recording = edit::delayed(evidence.recording, AgentId::Human(human), sign * shift);
+            let shifted = Evidence { recording: &recording, ..*evidence };
+            if crate::score::verdict_of(&shifted) != Ok(Verdict::Realised) {
+                break;
+            }
+            reached = shift;
+        }
+        reached
+    };
+    (stays(-1.0), stays(1.0))
+}
+
 /// A changed recording.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mutant {

@@ -1,6 +1,7 @@
 //! Changes after which the recording no longer shows what was asked.
 
 use socrates_model::nalgebra::Vector2;
+use socrates_model::rule::RobotDo;
 use socrates_model::{
     AgentId, AgentState, Clause, ClauseRole, EventKind, Gesture, GroupProposal, HumanId, Point, Predicate, Recording,
     Relation,
@@ -16,6 +17,9 @@ use crate::evidence::Evidence;
 /// Somebody whose start and end are nearer to each other than this goes no way that could be reversed, m.
 const WAY_M: f64 = 4.0;
 
+/// Who comes out of a room meets the robot after at least so much way, m.
+const OUT_M: f64 = 1.5;
+
 /// Every change that contradicts something the scenario asks for. Needs the proposal and the paths.
 #[must_use]
 pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
@@ -28,7 +32,7 @@ pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
     for id in humans(run) {
         let agent = AgentId::Human(id);
         add("a person is missing", id.to_string(), dropped(run, agent));
-        if walks_before_meeting(evidence, id) {
+        if walks_before_meeting(evidence, id, WAY_M) {
             // Who comes too soon would be better for a later start: then it starts sooner still.
             let shift = if gap_s(evidence, id).is_some_and(|gap| gap < -0.5) { -5.0 } else { 5.0 };
             add("start shifted by 5 s", format!("{id} {shift:+.0} s"), delayed(run, agent, shift));
@@ -86,11 +90,11 @@ fn nearest(run: &Recording, agent: AgentId) -> Option<(f64, f64, usize)> {
 }
 
 /// Whether it comes to the meeting by its own way of some length: else a late start changes nothing.
-fn walks_before_meeting(evidence: &Evidence<'_>, id: HumanId) -> bool {
+fn walks_before_meeting(evidence: &Evidence<'_>, id: HumanId, way_m: f64) -> bool {
     let run = evidence.recording;
     let all = states(run, AgentId::Human(id));
     let (Some(first), Some((_, _, k))) = (all.first(), nearest(run, AgentId::Human(id))) else { return false };
-    all.get(k).is_some_and(|state| (state.point() - first.point()).norm() >= WAY_M)
+    all.get(k).is_some_and(|state| (state.point() - first.point()).norm() >= way_m)
 }
 
 /// How much later than the robot the human is at its encounter, s.
@@ -234,7 +238,7 @@ fn case_lists(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             }
         }
         if let Predicate::HiddenUntil { human, .. } = clause.predicate
-            && walks_before_meeting(evidence, human)
+            && walks_before_meeting(evidence, human, OUT_M)
         {
             let agent = AgentId::Human(human);
             add("N: 8 s late", human.to_string(), delayed(run, agent, until_8_s_late(evidence, human)));
@@ -242,11 +246,16 @@ fn case_lists(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             add("N: walks along with the robot", human.to_string(), beside_robot(run, agent, 1.0, 1.5));
         }
     }
-    for human in proposal.humans.iter().filter(|human| human.relation == Relation::Crossing) {
+    let waits = proposal.robot.script.iter().any(|rule| rule.act == RobotDo::WaitForLeavers);
+    let comes = |relation: Relation| relation == Relation::Crossing || relation == Relation::Leaving && !waits;
+    for human in proposal.humans.iter().filter(|human| comes(human.relation)) {
         let agent = AgentId::Human(human.id);
-        if humans(run).contains(&human.id) && walks_before_meeting(evidence, human.id) {
+        if humans(run).contains(&human.id) && walks_before_meeting(evidence, human.id, OUT_M) {
             let late = until_8_s_late(evidence, human.id);
             add("N: 8 s late", human.id.to_string(), delayed(run, agent, late));
+            if human.relation == Relation::Leaving {
+                add("N: already outside at the start", human.id.to_string(), delayed(run, agent, -8.0));
+            }
             add("N: walks along with the robot", human.id.to_string(), beside_robot(run, agent, 1.0, 1.5));
         }
     }
