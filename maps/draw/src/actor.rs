@@ -63,9 +63,9 @@ pub(crate) fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame, reco
             .events
             .iter()
             .filter(|event| event.time.secs() <= now_s + 1e-9)
-            .filter_map(|event| match &event.kind {
-                EventKind::Door { door: id, open } if *id == door.id => Some(*open),
-                _ => None,
+            .filter_map(|event| {
+                let EventKind::Door { door: id, open } = &event.kind else { return None };
+                (*id == door.id).then_some(*open)
             })
             .next_back()
             .unwrap_or(false);
@@ -204,10 +204,8 @@ fn draw_words(
     let size = look.text_px * 0.95;
     let name =
         if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };
-    let said = match state.gesture() {
-        Gesture::None => String::new(),
-        gesture => gesture.name().replace('_', " "),
-    };
+    let gesture = state.gesture();
+    let said = if gesture == Gesture::None { String::new() } else { gesture.name().replace('_', " ") };
     if name.is_empty() && said.is_empty() {
         return;
     }

@@ -20,7 +20,7 @@ pub(crate) fn page_data(location: &Location, way: &[Point], reading: &Reading, r
         .collect();
     let runs: Vec<Value> =
         runs.iter().map(|(recording, report)| run_data(location, way, recording, report, hz)).collect();
-    json!({ "runs": runs, "facts": facts, "whole": place["whole"], "focus": focus, "places": [place] })
+    json!({ "runs": runs, "facts": facts, "whole": place.get("whole"), "focus": focus, "places": [place] })
 }
 
 fn run_data(location: &Location, way: &[Point], recording: &Recording, report: &Report, hz: u32) -> Value {

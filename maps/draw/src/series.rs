@@ -25,7 +25,8 @@ pub fn curves(recording: &Recording, every: usize) -> Curves {
     for tick in (0..recording.ticks()).step_by(every.max(1)) {
         let states = recording.tick(tick);
         let robot = states.iter().zip(&radius).find(|(state, _)| state.agent == 0);
-        let (mut near, mut soon): (Option<(f64, u32)>, Option<(f64, u32)>) = (None, None);
+        let mut near: Option<(f64, u32)> = None;
+        let mut soon: Option<(f64, u32)> = None;
         if let Some((robot, robot_radius)) = robot {
             for (human, human_radius) in states.iter().zip(&radius).filter(|(state, _)| state.agent != 0) {
                 let radii = robot_radius + human_radius;
