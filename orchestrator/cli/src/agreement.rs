@@ -18,12 +18,12 @@ const COLUMNS: [&str; 5] = ["run", "rater", "simulable", "appropriate", "as_aske
 /// The questions, as the columns spell them.
 const QUESTIONS: [&str; 3] = ["simulable", "appropriate", "as_asked"];
 
-/// One row of labels: run, rater, and the three answers.
+/// One row of labels: run, rater, and the three answers; whoever was unsure gave none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Label {
     run: String,
     rater: String,
-    answers: [bool; 3],
+    answers: [Option<bool>; 3],
 }
 
 /// Does `dev agreement`.
@@ -84,12 +84,12 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
     let bad = |line: usize, what: String| {
         Complaint::input(
             format!("`{name}` line {line}: {what}"),
-            format!("the columns are {}; answers are yes or no", COLUMNS.join(",")),
+            format!("the columns are {}; answers are yes, no or unsure", COLUMNS.join(",")),
         )
     };
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let Some((_, head)) = lines.next() else { return Err(bad(1, "the file is empty".to_owned())) };
-    let names: Vec<String> = head.split(',').map(|cell| cell.trim().trim_matches('"').to_lowercase()).collect();
+    let names: Vec<String> = cells(head).iter().map(|cell| cell.to_lowercase()).collect();
     let mut places = BTreeMap::new();
     for column in COLUMNS {
         let place = names.iter().position(|cell| cell == column);
@@ -98,19 +98,21 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();
     for (index, line) in lines {
-        let cells: Vec<&str> = line.split(',').map(|cell| cell.trim().trim_matches('"')).collect();
-        let cell = |column: &str| {
-            let text = places.get(column).and_then(|place| cells.get(*place)).copied().unwrap_or_default();
-            if text.is_empty() { Err(bad(index + 1, format!("`{column}` is empty"))) } else { Ok(text) }
+        let cells = cells(line);
+        let cell = |column: &str| places.get(column).and_then(|place| cells.get(*place)).map_or("", String::as_str);
+        let name = |column: &str| match cell(column) {
+            "" => Err(bad(index + 1, format!("`{column}` is empty"))),
+            text => Ok(text.to_owned()),
         };
-        let answer = |column: &str| match cell(column)?.to_lowercase().as_str() {
-            "yes" | "y" | "1" | "true" => Ok(true),
-            "no" | "n" | "0" | "false" => Ok(false),
-            other => Err(bad(index + 1, format!("`{column}` is `{other}`; yes or no is expected"))),
+        let answer = |column: &str| match cell(column).to_lowercase().as_str() {
+            "yes" | "y" | "1" | "true" => Ok(Some(true)),
+            "no" | "n" | "0" | "false" => Ok(Some(false)),
+            "unsure" | "" => Ok(None),
+            other => Err(bad(index + 1, format!("`{column}` is `{other}`; yes, no or unsure is expected"))),
         };
         let label = Label {
-            run: cell("run")?.to_owned(),
-            rater: cell("rater")?.to_owned(),
+            run: name("run")?,
+            rater: name("rater")?,
             answers: [answer("simulable")?, answer("appropriate")?, answer("as_asked")?],
         };
         if !seen.insert((label.run.clone(), label.rater.clone())) {
@@ -122,6 +124,25 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
         return Err(bad(1, "there is no label under the head".to_owned()));
     }
     Ok(found)
+}
+
+/// Cells of a line; in quotes a comma is a comma and two quotes are one.
+fn cells(line: &str) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => {
+                cells.last_mut().into_iter().for_each(|cell| cell.push('"'));
+                letters.next();
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
+        }
+    }
+    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
 }
 
 /// One question: how far people agree with each other and with the judge.
@@ -162,7 +183,7 @@ fn compare(labels: &[Label], verdicts: &BTreeMap<String, Verdict>) -> Vec<Row> {
         .map(|(index, question)| {
             let mut units: BTreeMap<&str, Vec<bool>> = BTreeMap::new();
             for label in labels.iter().filter(|label| verdicts.contains_key(&label.run)) {
-                units.entry(&label.run).or_default().extend(label.answers.get(index));
+                units.entry(&label.run).or_default().extend(label.answers.get(index).copied().flatten());
             }
             let raters: BTreeSet<&str> = labels.iter().map(|label| label.rater.as_str()).collect();
             let (mut judge, mut people) = (Vec::new(), Vec::new());
@@ -220,6 +241,16 @@ mod tests {
         assert_eq!(rows[2].counts, [1, 0, 1, 2]);
         assert!((rows[2].kappa.unwrap() - 0.5).abs() < 1e-12);
         assert!((rows[2].alpha.unwrap() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn who_is_unsure_gives_no_answer_and_names_may_hold_commas() {
+        let labels =
+            read("rater,run,simulable,as_asked,appropriate\n\"Ann \"\"A\"\", B\",r,yes,unsure,\n", "l.csv").unwrap();
+        let wanted = Label { run: "r".into(), rater: "Ann \"A\", B".into(), answers: [Some(true), None, None] };
+        assert_eq!(labels, [wanted]);
+        let rows = compare(&labels, &[("r".to_owned(), Verdict::Realised)].into());
+        assert_eq!((rows[0].counts, rows[2].counts), ([1, 0, 0, 0], [0; 4]));
     }
 
     #[test]
