@@ -193,6 +193,30 @@ mod tests {
     }
 
     #[test]
+    fn a_standing_group_may_be_joined_at_the_end_and_left_at_the_start() {
+        let with = |paths: &mut Paths, proposal: &mut Proposal, group: bool| {
+            for human in &mut proposal.humans {
+                human.relation = Relation::Static;
+                human.group = group.then_some(socrates_model::GroupId(1));
+                paths.humans.insert(human.id, nodes(&["n_center"]));
+            }
+        };
+        let end = nodes(&["w_3", "w_2", "w_1", "n_center"]);
+        let joins = |paths: &mut Paths, proposal: &mut Proposal, group: bool| {
+            with(paths, proposal, group);
+            paths.robot = end.clone();
+        };
+        assert!(codes(|paths, proposal| joins(paths, proposal, true)).is_empty());
+        assert_eq!(codes(|paths, proposal| joins(paths, proposal, false)), ["G-MEETEND", "G-MEETEND"]);
+        let leaves = |paths: &mut Paths, proposal: &mut Proposal| {
+            with(paths, proposal, true);
+            paths.robot = end.iter().rev().cloned().collect();
+            paths.encounters.clear();
+        };
+        assert!(codes(leaves).is_empty());
+    }
+
+    #[test]
     fn who_walks_goes_on_after_the_meeting() {
         let stop = |paths: &mut Paths, _: &mut Proposal| {
             paths.humans.insert(HumanId::new(1), nodes(&["n_2", "n_1", "n_center"]));

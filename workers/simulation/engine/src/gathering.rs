@@ -115,3 +115,39 @@ pub(crate) fn line(home: &Point, count: usize, around: &Around<'_>) -> Option<Ve
     }
     best.map(|(_, places)| places)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixture::hall;
+
+    fn floor() -> (Floor, Polyline) {
+        (Floor::new(&hall(16.0, 8.0)), Polyline::new(&[Point::new(2.0, 4.0), Point::new(12.0, 4.0)]))
+    }
+
+    #[test]
+    fn a_line_stands_beside_the_way_with_even_gaps_and_looks_one_way() {
+        let (floor, route) = floor();
+        let around = Around { floor: &floor, route: Some(&route), taken: &[], body: 0.28 };
+        let places = line(&Point::new(7.0, 4.0), 4, &around).unwrap();
+        for pair in places.windows(2) {
+            assert!(((pair[0].0 - pair[1].0).norm() - LINE_GAP_M).abs() < 1e-9);
+            assert!((pair[0].1 - pair[1].1).abs() < 1e-9);
+        }
+        assert!(places.iter().all(|(at, _)| route.project(at).1 >= BESIDE_M - 1e-9), "{places:?}");
+    }
+
+    #[test]
+    fn the_robots_place_is_on_the_rim_of_a_circle_beyond_its_end_or_behind_its_start() {
+        let (floor, route) = floor();
+        let around = Around { floor: &floor, route: Some(&route), taken: &[], body: 0.28 };
+        for (home, ends) in [(Point::new(12.0, 4.0), true), (Point::new(2.0, 4.0), false)] {
+            assert_eq!(at_end(&home, Some(&route)), Some(ends));
+            let places = rim(&home, 3, 0.64, ends, &around).unwrap();
+            let center = Point::from(places.iter().map(|(at, _)| at.coords).sum::<Vector>() / 3.0);
+            assert!(((center - home).norm() - 0.64 - RIM_M).abs() < 0.35, "{center}");
+            assert_eq!(center.x > home.x, ends, "{center}");
+        }
+        assert_eq!(at_end(&Point::new(7.0, 4.0), Some(&route)), None);
+    }
+}
