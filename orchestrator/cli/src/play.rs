@@ -91,6 +91,7 @@ fn judged(
         proposal: Some(proposal),
         paths: Some(paths),
         reference: None,
+        twin: None,
     }))
 }
 
