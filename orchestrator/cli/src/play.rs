@@ -90,6 +90,7 @@ fn judged(
         proposal: Some(proposal),
         paths: Some(paths),
         reference: None,
+        twin: None,
     }))
 }
 
