@@ -139,3 +139,16 @@ fn what_people_write_is_read() {
     println!("open: {right} of {all} facts");
     assert!(right * 100 >= all * 95, "{right} of {all} facts");
 }
+
+/// Written before the grammar was worked on, and not looked at while that went on: 78 of 91 at the first look, below the
+/// 95 % that are aimed at. It only keeps what was reached: whoever works on the grammar next writes new ones first.
+#[test]
+#[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
+fn what_was_kept_aside_is_read_no_worse() {
+    let (right, all, wrong) = judge(include_str!("../corpus/sealed.toml"));
+    for line in &wrong {
+        println!("{line}");
+    }
+    println!("kept aside: {right} of {all} facts");
+    assert!(right * 100 >= all * 85, "{right} of {all} facts");
+}
