@@ -4,11 +4,11 @@ use serde_json::{Value, json};
 use socrates_model::report::Standing;
 use socrates_model::{ClauseRole, Location, Paths, Proposal, Recording, Report, Request};
 
-use crate::svg::escape;
-use crate::template::{self, STYLE};
-use crate::{palette, play};
+use crate::palette;
+use crate::play::{self, Places};
+use crate::template::{self, template};
 
-const TEMPLATE: &str = include_str!("web/batch.html");
+const TEMPLATE: &str = template!("web/batch.html");
 const SCRIPT: &str = include_str!("web/batch.js");
 
 /// So many scenarios have a small picture; more would make the page too heavy to open.
@@ -44,7 +44,7 @@ pub struct BatchEntry<'a> {
 /// The page while it is being filled, one scenario after another.
 #[derive(Debug, Clone, Default)]
 pub struct BatchPage {
-    places: Vec<Location>,
+    places: Places,
     rows: Vec<Value>,
 }
 
@@ -53,13 +53,10 @@ impl BatchPage {
     pub fn add(&mut self, entry: &BatchEntry<'_>) {
         let first = entry.reports.first();
         let runs: Vec<Value> = entry.reports.iter().map(run_row).collect();
-        let picture = entry.recording.filter(|_| self.rows.len() < PICTURES).map(|recording| {
-            let index = self.places.iter().position(|known| known == entry.location).unwrap_or_else(|| {
-                self.places.push(entry.location.clone());
-                self.places.len() - 1
-            });
-            picture(entry.location, entry.paths, recording, index)
-        });
+        let picture = entry
+            .recording
+            .filter(|_| self.rows.len() < PICTURES)
+            .map(|recording| picture(entry.location, entry.paths, recording, self.places.number(entry.location)));
         self.rows.push(json!({
             "folder": entry.folder, "scenario": entry.scenario, "title": entry.proposal.title,
             "reading": entry.reading_line, "context": entry.request.social_context, "task": entry.request.task,
@@ -91,19 +88,8 @@ impl BatchPage {
     /// The page.
     #[must_use]
     pub fn html(&self, title: &str) -> String {
-        let places: Vec<Value> =
-            self.places.iter().enumerate().map(|(index, location)| play::place(location, index)).collect();
-        let data = json!({ "rows": self.rows, "places": places });
-        template::fill(
-            TEMPLATE,
-            &[
-                ("style", STYLE.to_owned()),
-                ("title", escape(title)),
-                ("floors", play::floors(&self.places)),
-                ("script", template::script(SCRIPT)),
-                ("data", template::json(&data)),
-            ],
-        )
+        let data = json!({ "rows": self.rows, "places": self.places.told() });
+        template::page(TEMPLATE, SCRIPT, title, self.places.floors(), &data, Vec::new())
     }
 }
 

@@ -3,17 +3,16 @@
 use serde_json::{Value, json};
 use socrates_model::{Digest, Location, Paths, Recording, Request};
 
-use crate::play;
-use crate::svg::escape;
-use crate::template::{self, STYLE};
+use crate::play::{self, Places};
+use crate::template::{self, template};
 
-const TEMPLATE: &str = include_str!("web/labels.html");
+const TEMPLATE: &str = template!("web/labels.html");
 const SCRIPT: &str = include_str!("web/labels.js");
 
 /// The page while it is being filled, one run after another.
 #[derive(Debug, Clone, Default)]
 pub struct LabelPage {
-    places: Vec<Location>,
+    places: Places,
     runs: Vec<Value>,
 }
 
@@ -27,10 +26,7 @@ impl LabelPage {
         all: &[&Recording],
         recording: &Recording,
     ) {
-        let index = self.places.iter().position(|known| known == location).unwrap_or_else(|| {
-            self.places.push(location.clone());
-            self.places.len() - 1
-        });
+        let index = self.places.number(location);
         let way = location.graph.polyline(&paths.robot);
         // The intended way stays hidden: what is judged is what is seen.
         let mut run = play::run(location, &[], recording, play::rate(all));
@@ -62,21 +58,10 @@ impl LabelPage {
     /// The page. What a rater has answered is kept by the browser under a key that belongs to these very runs.
     #[must_use]
     pub fn html(&self, title: &str) -> String {
-        let places: Vec<Value> =
-            self.places.iter().enumerate().map(|(index, location)| play::place(location, index)).collect();
         let runs = Value::Array(self.runs.clone());
         let key = Digest::of(runs.to_string().as_bytes()).short();
-        let data = json!({ "runs": runs, "places": places, "key": key });
-        template::fill(
-            TEMPLATE,
-            &[
-                ("style", STYLE.to_owned()),
-                ("title", escape(title)),
-                ("floors", play::floors(&self.places)),
-                ("script", template::script(SCRIPT)),
-                ("data", template::json(&data)),
-            ],
-        )
+        let data = json!({ "runs": runs, "places": self.places.told(), "key": key });
+        template::page(TEMPLATE, SCRIPT, title, self.places.floors(), &data, Vec::new())
     }
 }
 

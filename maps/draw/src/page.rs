@@ -6,10 +6,10 @@ use socrates_model::{Location, Paths, Proposal, Reading, Recording, Report, Requ
 
 use crate::page_data::page_data;
 use crate::svg::escape;
-use crate::template::{self, STYLE};
+use crate::template::{self, template};
 use crate::{palette, play};
 
-const TEMPLATE: &str = include_str!("web/page.html");
+const TEMPLATE: &str = template!("web/page.html");
 const SCRIPT: &str = include_str!("web/page.js");
 
 /// One line of the stage table.
@@ -71,23 +71,16 @@ impl Page<'_> {
             "" => escape(&self.location.name),
             about => format!("<abbr title=\"{}\">{}</abbr>", escape(about), escape(&self.location.name)),
         };
-        template::fill(
-            TEMPLATE,
-            &[
-                ("style", STYLE.to_owned()),
-                ("title", escape(self.title)),
-                ("floors", play::floors([self.location])),
-                ("author", escape(&self.proposal.author)),
-                ("location", location),
-                ("reading_line", escape(self.reading_line)),
-                ("reading", self.reading_html()),
-                ("people", self.people_html()),
-                ("stages", self.stages_html()),
-                ("provenance", self.provenance_html()),
-                ("script", template::script(SCRIPT)),
-                ("data", template::json(&data)),
-            ],
-        )
+        let own = vec![
+            ("author", escape(&self.proposal.author)),
+            ("location", location),
+            ("reading_line", escape(self.reading_line)),
+            ("reading", self.reading_html()),
+            ("people", self.people_html()),
+            ("stages", self.stages_html()),
+            ("provenance", self.provenance_html()),
+        ];
+        template::page(TEMPLATE, SCRIPT, self.title, play::floors([self.location]), &data, own)
     }
 
     fn reading_html(&self) -> String {

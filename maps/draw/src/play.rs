@@ -36,6 +36,30 @@ pub(crate) fn floors<'a>(locations: impl IntoIterator<Item = &'a Location>) -> S
     format!("<svg class=\"floors\" aria-hidden=\"true\"><defs>{floors}</defs></svg>")
 }
 
+/// The places of a page of many scenarios, each drawn once.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Places(Vec<Location>);
+
+impl Places {
+    /// The number of a place.
+    pub(crate) fn number(&mut self, location: &Location) -> usize {
+        self.0.iter().position(|known| known == location).unwrap_or_else(|| {
+            self.0.push(location.clone());
+            self.0.len() - 1
+        })
+    }
+
+    /// Their floors, out of sight.
+    pub(crate) fn floors(&self) -> String {
+        floors(&self.0)
+    }
+
+    /// What views need to know about them.
+    pub(crate) fn told(&self) -> Vec<Value> {
+        self.0.iter().enumerate().map(|(index, location)| place(location, index)).collect()
+    }
+}
+
 /// What a view needs to know about a place.
 pub(crate) fn place(location: &Location, index: usize) -> Value {
     let frame = frame(location);

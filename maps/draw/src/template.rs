@@ -2,13 +2,43 @@
 
 use serde_json::Value;
 
+use crate::svg::escape;
+
 /// Words for building pages and the player of a run, in front of every page's own script.
-pub(crate) const PLAYER: &str = include_str!("web/player.js");
+const PLAYER: &str = include_str!("web/player.js");
 /// The look of every page.
-pub(crate) const STYLE: &str = include_str!("web/page.css");
+const STYLE: &str = include_str!("web/page.css");
+
+/// A whole template: a page's own part between the head and the foot that all pages share.
+macro_rules! template {
+    ($own:literal) => {
+        concat!(include_str!("web/head.html"), include_str!($own), include_str!("web/foot.html"))
+    };
+}
+pub(crate) use template;
+
+/// A page: what every page has, and what is its `own`.
+pub(crate) fn page(
+    template: &str,
+    script: &str,
+    title: &str,
+    floors: String,
+    data: &Value,
+    own: Vec<(&str, String)>,
+) -> String {
+    let mut values = vec![
+        ("style", STYLE.to_owned()),
+        ("title", escape(title)),
+        ("floors", floors),
+        ("script", format!("{PLAYER}{script}")),
+        ("data", json(data)),
+    ];
+    values.extend(own);
+    fill(template, &values)
+}
 
 /// The template with every `{{name}}` replaced in one pass: a value that looks like a name stays as it is.
-pub(crate) fn fill(template: &str, values: &[(&str, String)]) -> String {
+fn fill(template: &str, values: &[(&str, String)]) -> String {
     let mut out = String::with_capacity(template.len());
     let mut rest = template;
     while let Some((before, after)) = rest.split_once("{{") {
@@ -28,13 +58,8 @@ pub(crate) fn fill(template: &str, values: &[(&str, String)]) -> String {
 }
 
 /// JSON for a script element. No `<` at all: neither the end of a script nor a comment can begin, whatever a user wrote.
-pub(crate) fn json(data: &Value) -> String {
+fn json(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
-}
-
-/// The player with a page's own script.
-pub(crate) fn script(own: &str) -> String {
-    format!("{PLAYER}{own}")
 }
 
 #[cfg(test)]
@@ -52,6 +77,8 @@ mod tests {
         let parts = [
             PLAYER,
             STYLE,
+            include_str!("web/head.html"),
+            include_str!("web/foot.html"),
             include_str!("web/page.html"),
             include_str!("web/page.js"),
             include_str!("web/batch.html"),

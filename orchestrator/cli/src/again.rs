@@ -8,6 +8,8 @@ use socrates_scoring::Evidence;
 
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
+use crate::files;
+use crate::play::{self, Made};
 use crate::prepare::load_location;
 use crate::talk::Talk;
 
@@ -74,19 +76,9 @@ pub(crate) fn simulate(
 fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
     let name = format!("{}.{planner}-{seed}", bundle.manifest.scenario);
     let run = RunId::new(name).map_err(|bad| Complaint::input(bad.to_string(), "the bundle is damaged"))?;
-    let setup = socrates_simulation::setup(
-        bundle.location.clone(),
-        bundle.proposal.clone(),
-        bundle.paths.clone(),
-        bundle.behaviors.clone(),
-        Some(&bundle.request),
-        run,
-        seed,
-    )
-    .map_err(|faults| {
-        Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
-    })?;
-    socrates_simulation::simulate(setup, planner).map_err(|faults| {
+    let made =
+        Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
+    play::simulate(&bundle.request, &bundle.location, made, run, planner, seed).map_err(|faults| {
         Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
     })
 }
@@ -121,16 +113,7 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
     if let Some((agent, from, length)) = hole(&bytes) {
         talk.warn(&format!("`{agent}` has no line for {length:.1} s from {from:.1} s on: taken as a straight line"));
     }
-    let report = socrates_scoring::score(&Evidence {
-        recording: &recording,
-        location: location.as_ref(),
-        request: None,
-        reading: None,
-        proposal: None,
-        paths: None,
-        reference: None,
-        twin: None,
-    });
+    let report = socrates_scoring::score(&Evidence { location: location.as_ref(), ..Evidence::of(&recording) });
     for metric in &report.metrics {
         let value = metric
             .value
@@ -146,14 +129,12 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
 /// tracks to an even step and fills holes with straight lines.
 fn hole(bytes: &[u8]) -> Option<(String, f64, f64)> {
     let text = std::str::from_utf8(bytes).ok().filter(|_| !bytes.starts_with(b"\x89MCAP"))?;
-    let cells =
-        |line: &str| -> Vec<String> { line.split(',').map(|c| c.trim().trim_matches('"').to_owned()).collect() };
     let mut lines = text.trim_start_matches('\u{feff}').lines().filter(|line| !line.trim().is_empty());
-    let head = cells(&lines.next()?.to_lowercase());
+    let head = files::cells(&lines.next()?.to_lowercase());
     let (t, id) = (head.iter().position(|name| name == "t")?, head.iter().position(|name| name == "id")?);
     let mut times: std::collections::BTreeMap<String, Vec<f64>> = std::collections::BTreeMap::new();
     for line in lines {
-        let cells = cells(line);
+        let cells = files::cells(line);
         if let (Some(Ok(t)), Some(id)) = (cells.get(t).map(|text| text.parse::<f64>()), cells.get(id)) {
             times.entry(id.clone()).or_default().push(t);
         }

@@ -89,7 +89,7 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
     };
     let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let Some((_, head)) = lines.next() else { return Err(bad(1, "the file is empty".to_owned())) };
-    let names: Vec<String> = cells(head).iter().map(|cell| cell.to_lowercase()).collect();
+    let names: Vec<String> = files::cells(head).iter().map(|cell| cell.to_lowercase()).collect();
     let mut places = BTreeMap::new();
     for column in COLUMNS {
         let place = names.iter().position(|cell| cell == column);
@@ -98,7 +98,7 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
     let mut found = Vec::new();
     let mut seen = BTreeSet::new();
     for (index, line) in lines {
-        let cells = cells(line);
+        let cells = files::cells(line);
         let cell = |column: &str| places.get(column).and_then(|place| cells.get(*place)).map_or("", String::as_str);
         let name = |column: &str| match cell(column) {
             "" => Err(bad(index + 1, format!("`{column}` is empty"))),
@@ -124,25 +124,6 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
         return Err(bad(1, "there is no label under the head".to_owned()));
     }
     Ok(found)
-}
-
-/// Cells of a line; in quotes a comma is a comma and two quotes are one.
-fn cells(line: &str) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if quoted && letters.peek() == Some(&'"') => {
-                cells.last_mut().into_iter().for_each(|cell| cell.push('"'));
-                letters.next();
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
-        }
-    }
-    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
 }
 
 /// One question: how far people agree with each other and with the judge.

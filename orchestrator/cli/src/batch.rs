@@ -47,10 +47,7 @@ pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
     let known: BTreeSet<String> = names.iter().cloned().collect();
     names.extend(found.into_iter().filter(|name| !known.contains(name)));
     if names.is_empty() && failed.is_empty() {
-        return Err(Complaint::input(
-            format!("`{}` is no bundle and holds none", root.display()),
-            "name the folder that `socrates run` printed after `look`",
-        ));
+        return Err(none(root));
     }
     let mut page = BatchPage::default();
     let mut left_out = Vec::new();
@@ -86,4 +83,12 @@ fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<(), Complaint> {
         recording: bundle.runs.first().map(|(recording, _)| recording),
     });
     Ok(())
+}
+
+/// What is said of a folder without bundles.
+pub(crate) fn none(dir: &Path) -> Complaint {
+    Complaint::input(
+        format!("`{}` is no bundle and holds none", dir.display()),
+        "name the folder that `socrates run` printed after `look`",
+    )
 }

@@ -9,7 +9,7 @@ use crate::args::{Cli, RunOptions};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::prepare::{prepare_text, scenario_id};
-use crate::session::{Wanted, one_by_one};
+use crate::session::{Wanted, make};
 use crate::talk::Talk;
 
 /// The request that is made again and again.
@@ -90,7 +90,10 @@ async fn hand_overs(talk: &Talk, cli: &Cli, config: &Config, folder: &Path) -> R
     let wanted = (1..=SERIES)
         .map(|seed| Ok(Wanted { id: scenario_id("bench", seed, 0, 1)?, seed, prepared: &prepared }))
         .collect::<Result<Vec<_>, Complaint>>()?;
-    let made = one_by_one(talk, cli, config, &options, &folder.join("series"), &wanted).await?;
+    let work = folder.join("series");
+    std::fs::create_dir_all(&work).map_err(|why| ours(why.to_string()))?;
+    // Each only when the one before it is done: nothing waits for anything else.
+    let made = make(talk, cli, config, &options, &work, &wanted, 1).await?;
     let mut found: Vec<f64> = wanted
         .iter()
         .skip(WARM_UP)

@@ -1,7 +1,7 @@
 //! `labels page`: a page on which people label the runs of bundles by hand.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Subcommand;
 use serde_json::json;
@@ -84,16 +84,9 @@ fn folders(named: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
         }
         let names = batch::bundles(dir)?;
         if names.is_empty() {
-            return Err(none(dir));
+            return Err(batch::none(dir));
         }
         found.extend(names.iter().map(|name| dir.join(name)));
     }
     Ok(found)
-}
-
-fn none(dir: &Path) -> Complaint {
-    Complaint::input(
-        format!("`{}` is no bundle and holds none", dir.display()),
-        "name the folder that `socrates run` printed after `look`",
-    )
 }

@@ -11,18 +11,17 @@ use socrates_model::{
     Action, AgentId, Behaviors, Clause, ClauseRole, Encounter, Fault, GroupId, HumanBehavior, HumanId, NodeId, Paths,
     Predicate, Proposal, Recording, Relation, Report, RunId, Verdict,
 };
-use socrates_scoring::Evidence;
 use socrates_scoring::mutants::{harmless, spoiled, time_margin};
+use socrates_scoring::{Evidence, REFERENCE};
 
 use crate::config::Config;
 use crate::exit::Complaint;
+use crate::play::{self, Made};
 use crate::prepare::{Prepared, prepare, prepare_text, request_files};
 use crate::talk::Talk;
 
 /// Rounds of authoring: what the orchestrator would also ask again.
 const ROUNDS: u64 = 4;
-/// Quantile of 95 %.
-const Z: f64 = 1.96;
 /// A moved encounter is at least this far from where it was asked for, m.
 const MOVED_M: f64 = 6.0;
 
@@ -30,13 +29,6 @@ const MOVED_M: f64 = 6.0;
 const MOVED: &str = "encounter moved";
 /// Two meetings at one time nearer to each other than this are one, m.
 const SAME_M: f64 = 3.0;
-
-/// One scenario's artifacts, as the stages would make them.
-pub(crate) struct Made {
-    pub(crate) proposal: Proposal,
-    pub(crate) paths: Paths,
-    pub(crate) behaviors: Behaviors,
-}
 
 /// A request with its artifacts, its run with the reference robot, and what the judge says of it.
 pub(crate) struct Scenario {
@@ -210,17 +202,8 @@ fn texts(faults: &[Fault]) -> String {
 
 fn simulate(prepared: &Prepared, made: &Made, seed: u64) -> Result<Recording, String> {
     let run = RunId::new(format!("mutations.reference-{seed}")).map_err(|why| why.to_string())?;
-    let setup = socrates_simulation::setup(
-        prepared.location.clone(),
-        made.proposal.clone(),
-        made.paths.clone(),
-        made.behaviors.clone(),
-        Some(&prepared.request),
-        run,
-        seed,
-    )
-    .map_err(|faults| texts(&faults))?;
-    socrates_simulation::simulate(setup, "reference").map_err(|faults| texts(&faults))
+    play::simulate(&prepared.request, &prepared.location, made.clone(), run, REFERENCE, seed)
+        .map_err(|faults| texts(&faults))
 }
 
 fn judge(prepared: &Prepared, made: &Made, recording: &Recording) -> Report {
@@ -228,16 +211,7 @@ fn judge(prepared: &Prepared, made: &Made, recording: &Recording) -> Report {
 }
 
 fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording) -> Evidence<'a> {
-    Evidence {
-        recording,
-        location: Some(&prepared.location),
-        request: Some(&prepared.request),
-        reading: Some(&prepared.reading),
-        proposal: Some(&made.proposal),
-        paths: Some(&made.paths),
-        reference: None,
-        twin: None,
-    }
+    play::evidence(&prepared.request, &prepared.reading, &prepared.location, made, recording)
 }
 
 /// Every harmless and every spoiling change of a realised scenario.
@@ -344,17 +318,13 @@ fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, Strin
     found
 }
 
-fn copy(made: &Made) -> Made {
-    Made { proposal: made.proposal.clone(), paths: made.paths.clone(), behaviors: made.behaviors.clone() }
-}
-
 /// The scenario with a human's rules changed, in the proposal and in the tree.
 fn with_rules(
     made: &Made,
     id: HumanId,
     change: impl Fn(socrates_model::Rule) -> Option<socrates_model::Rule>,
 ) -> Option<Made> {
-    let mut other = copy(made);
+    let mut other = made.clone();
     let human = other.proposal.humans.iter_mut().find(|human| human.id == id)?;
     human.rules = std::mem::take(&mut human.rules).into_iter().filter_map(change).collect();
     let tree = socrates_bt::compile(id, &human.rules).ok()?;
@@ -374,7 +344,7 @@ fn moved(prepared: &Prepared, made: &Made, encounter: &Encounter, group: Option<
         .filter(|(distance, id)| *distance >= MOVED_M && prepared.location.door_of(id).is_none())
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, id)| id.clone())?;
-    let mut other = copy(made);
+    let mut other = made.clone();
     let path = if way.len() == 1 {
         vec![node.clone()]
     } else {
@@ -413,7 +383,7 @@ fn leaving(made: &Made, who: HumanId, leaver: HumanId) -> Option<Made> {
 }
 
 fn share(right: usize, tried: usize) -> String {
-    let interval = socrates_stats::wilson(right, tried, Z).ok();
+    let interval = socrates_stats::wilson(right, tried, socrates_stats::Z_95).ok();
     #[expect(clippy::cast_precision_loss, reason = "counts of a table")]
     let percent = if tried == 0 { 0.0 } else { 100.0 * right as f64 / tried as f64 };
     interval.map_or_else(

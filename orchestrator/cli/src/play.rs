@@ -2,13 +2,21 @@
 
 use socrates_author::{Desk, Papers, Written};
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Report, Request, RunId};
-use socrates_scoring::Evidence;
+use socrates_model::{
+    Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, RunId,
+};
+use socrates_scoring::{Evidence, REFERENCE};
 
 /// Asks per stage, as many as `run` allows.
 const ASKS: u32 = 4;
-/// The planner that plays the robot script along the intended way.
-const PLANNER: &str = "reference";
+
+/// What the authoring stages make of a scenario.
+#[derive(Debug, Clone)]
+pub(crate) struct Made {
+    pub(crate) proposal: Proposal,
+    pub(crate) paths: Paths,
+    pub(crate) behaviors: Behaviors,
+}
 
 /// A scenario that was made and judged.
 #[derive(Debug)]
@@ -43,8 +51,11 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
     let Written::Behaviors(behaviors) = ask(&desk, papers(Stage::Behaviors, Some(proposal.clone()))).await? else {
         return wrong();
     };
-    let report = judged(request, &reading, location, (&proposal, &paths, behaviors), seed)?;
-    Ok(Played { proposal, report })
+    let run = RunId::new(format!("{REFERENCE}-{seed}")).map_err(|bad| vec![ours(bad.to_string())])?;
+    let made = Made { proposal, paths, behaviors };
+    let recording = simulate(request, location, made.clone(), run, REFERENCE, seed)?;
+    let report = socrates_scoring::score(&evidence(request, &reading, location, &made, &recording));
+    Ok(Played { proposal: made.proposal, report })
 }
 
 /// One stage, asked again with what was wrong until it is right.
@@ -64,34 +75,39 @@ async fn ask(desk: &Desk, mut papers: Papers) -> Result<Written, Vec<Fault>> {
     Err(faults)
 }
 
-fn judged(
+/// One run of a scenario.
+///
+/// # Errors
+/// What is wrong with its parts or its planner.
+pub(crate) fn simulate(
     request: &Request,
-    reading: &Reading,
     location: &Location,
-    (proposal, paths, behaviors): (&Proposal, &Paths, Behaviors),
+    made: Made,
+    run: RunId,
+    planner: &str,
     seed: u64,
-) -> Result<Report, Vec<Fault>> {
-    let run = RunId::new(format!("{PLANNER}-{seed}")).map_err(|bad| vec![ours(bad.to_string())])?;
-    let setup = socrates_simulation::setup(
-        location.clone(),
-        proposal.clone(),
-        paths.clone(),
-        behaviors,
-        Some(request),
-        run,
-        seed,
-    )?;
-    let recording = socrates_simulation::simulate(setup, PLANNER)?;
-    Ok(socrates_scoring::score(&Evidence {
-        recording: &recording,
+) -> Result<Recording, Vec<Fault>> {
+    let Made { proposal, paths, behaviors } = made;
+    let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), run, seed)?;
+    socrates_simulation::simulate(setup, planner)
+}
+
+/// All that the judge may look at in a run of the reference robot.
+pub(crate) fn evidence<'a>(
+    request: &'a Request,
+    reading: &'a Reading,
+    location: &'a Location,
+    made: &'a Made,
+    recording: &'a Recording,
+) -> Evidence<'a> {
+    Evidence {
         location: Some(location),
         request: Some(request),
         reading: Some(reading),
-        proposal: Some(proposal),
-        paths: Some(paths),
-        reference: None,
-        twin: None,
-    }))
+        proposal: Some(&made.proposal),
+        paths: Some(&made.paths),
+        ..Evidence::of(recording)
+    }
 }
 
 fn wrong<T>() -> Result<T, Vec<Fault>> {

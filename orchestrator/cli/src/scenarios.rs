@@ -335,8 +335,7 @@ async fn rate(
         pooled * 100.0
     ));
     if let Some(path) = out {
-        std::fs::write(path, &table)
-            .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder"))?;
+        crate::files::write(path, table.as_bytes())?;
         talk.line(&format!("wrote      {}", path.display()));
     }
     talk.result(&json!({ "scenarios": rows, "runs": runs, "realised": realised }));

@@ -59,32 +59,8 @@ const AWAY: Duration = Duration::from_secs(60);
 /// Scenarios in one submit message; keeps it under 64 KiB.
 const SUBMIT_AT_ONCE: usize = 40;
 
-/// Makes the scenarios, resuming what the work folder holds.
+/// Makes the scenarios, at most so many `at_once`, resuming what the work folder holds.
 pub(crate) async fn make(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    options: &RunOptions,
-    work: &Path,
-    wanted: &[Wanted<'_>],
-) -> Result<Made, Complaint> {
-    produce(talk, cli, config, options, work, wanted, wanted.len()).await
-}
-
-/// The same, each only when the one before it is done: nothing waits for anything else.
-pub(crate) async fn one_by_one(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    options: &RunOptions,
-    work: &Path,
-    wanted: &[Wanted<'_>],
-) -> Result<Made, Complaint> {
-    std::fs::create_dir_all(work).map_err(|why| ours(&why.to_string()))?;
-    produce(talk, cli, config, options, work, wanted, 1).await
-}
-
-async fn produce(
     talk: &Talk,
     cli: &Cli,
     config: &Config,

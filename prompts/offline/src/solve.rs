@@ -269,35 +269,39 @@ fn out_of(net: &Net<'_>, proposal: &Proposal, wish: &Wish, start: usize) -> Vec<
 
 /// The robot's ways to people who stand at a node, where it stays.
 fn to_node(net: &Net<'_>, proposal: &Proposal, wish: &Wish, node: usize) -> Vec<Solution> {
-    if net.inside(node) || net.kind(node) == PlaceClass::Doorway {
-        return Vec::new();
-    }
-    let tree = net.tree(node, &|_| false);
-    let mut routes: Vec<Route> = outside(net, &tree, node)
-        .filter_map(|start| {
-            let mut nodes = tree.way(start);
-            nodes.reverse();
-            let meet = nodes.len().checked_sub(1)?;
-            let value = score(net, &nodes, meet, &Wish { aim_m: 12.0, straight: 0.0, goal: None, ..*wish });
-            value.is_finite().then_some(Route { nodes, meet, score: value + roomy(net, node) })
-        })
-        .collect();
-    best(&mut routes);
-    routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()
+    let wish = Wish { aim_m: 12.0, straight: 0.0, goal: None, ..*wish };
+    at_end(net, proposal, node, |mut nodes| {
+        nodes.reverse();
+        let meet = nodes.len().checked_sub(1)?;
+        let score = score(net, &nodes, meet, &wish);
+        Some(Route { nodes, meet, score })
+    })
 }
 
 /// The robot's ways away from people who stand at a node.
 fn from_node(net: &Net<'_>, proposal: &Proposal, wish: &Wish, node: usize) -> Vec<Solution> {
+    let wish = Wish { aim_m: 12.0, straight: 0.0, start: None, ..*wish };
+    at_end(net, proposal, node, |nodes| {
+        let score = score(net, &nodes, 1, &wish);
+        Some(Route { nodes, meet: 0, score })
+    })
+}
+
+/// The best of the robot's ways that have a node at one end; `route` makes one of the nodes from there on.
+fn at_end(
+    net: &Net<'_>,
+    proposal: &Proposal,
+    node: usize,
+    route: impl Fn(Vec<usize>) -> Option<Route>,
+) -> Vec<Solution> {
     if net.inside(node) || net.kind(node) == PlaceClass::Doorway {
         return Vec::new();
     }
     let tree = net.tree(node, &|_| false);
     let mut routes: Vec<Route> = outside(net, &tree, node)
-        .filter_map(|goal| {
-            let nodes = tree.way(goal);
-            let value = score(net, &nodes, 1, &Wish { aim_m: 12.0, straight: 0.0, start: None, ..*wish });
-            value.is_finite().then_some(Route { nodes, meet: 0, score: value + roomy(net, node) })
-        })
+        .filter_map(|other| route(tree.way(other)))
+        .filter(|route| route.score.is_finite())
+        .map(|route| Route { score: route.score + roomy(net, node), ..route })
         .collect();
     best(&mut routes);
     routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()

@@ -129,26 +129,25 @@ fn is(trigger: &Trigger, kind: &str, more: &[&str]) -> bool {
     }
 }
 
-#[test]
-#[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
-fn what_people_write_is_read() {
-    let (right, all, wrong) = judge(include_str!("../corpus/open.toml"));
+/// Prints what is read otherwise and how much is right; at least so many percent have to be.
+#[expect(clippy::print_stdout, reason = "the figure is what the tests are for")]
+fn reads(name: &str, corpus: &str, percent: usize) {
+    let (right, all, wrong) = judge(corpus);
     for line in &wrong {
         println!("{line}");
     }
-    println!("open: {right} of {all} facts");
-    assert!(right * 100 >= all * 95, "{right} of {all} facts");
+    println!("{name}: {right} of {all} facts");
+    assert!(right * 100 >= all * percent, "{right} of {all} facts");
+}
+
+#[test]
+fn what_people_write_is_read() {
+    reads("open", include_str!("../corpus/open.toml"), 95);
 }
 
 /// Written before the grammar was worked on, and not looked at while that went on: 78 of 91 at the first look, below the
 /// 95 % that are aimed at. It only keeps what was reached: whoever works on the grammar next writes new ones first.
 #[test]
-#[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_was_kept_aside_is_read_no_worse() {
-    let (right, all, wrong) = judge(include_str!("../corpus/sealed.toml"));
-    for line in &wrong {
-        println!("{line}");
-    }
-    println!("kept aside: {right} of {all} facts");
-    assert!(right * 100 >= all * 85, "{right} of {all} facts");
+    reads("kept aside", include_str!("../corpus/sealed.toml"), 85);
 }

@@ -30,17 +30,18 @@ pub fn doubts(recording: &Recording, location: Option<&Location>) -> Vec<String>
         found.extend(holes(track));
     }
     if let Some(location) = location {
-        found.extend(tracks.all().filter_map(|track| off(track, location)));
+        let field = DistanceField::new(&location.grid);
+        found.extend(tracks.all().filter_map(|track| off(track, location, &field)));
     }
     found
 }
 
 /// Speed of a moving agent by its positions, in the middle of all.
 fn pace(track: &Track) -> Option<String> {
-    let mut speeds: Vec<f64> = track
-        .even(0.5)
+    let even = track.even(0.5);
+    let mut speeds: Vec<f64> = even
         .iter()
-        .zip(track.even(0.5).iter().skip(1))
+        .zip(even.iter().skip(1))
         .map(|(a, b)| (b.at - a.at).norm() / (b.t - a.t).max(1e-9))
         .filter(|speed| *speed > 1e-9)
         .collect();
@@ -69,8 +70,7 @@ fn holes(track: &Track) -> Option<String> {
 }
 
 /// Whether the agent is in walls or off the map.
-fn off(track: &Track, location: &Location) -> Option<String> {
-    let field = DistanceField::new(&location.grid);
+fn off(track: &Track, location: &Location, field: &DistanceField) -> Option<String> {
     let all = track.samples.len().max(1);
     let bad = track.samples.iter().filter(|s| field.clearance(&s.at) <= 0.0).count();
     #[expect(clippy::cast_precision_loss, reason = "samples of a run")]

@@ -64,16 +64,6 @@ fn effort(track: &Track, end_s: f64) -> (f64, f64) {
     })
 }
 
-/// The value below which a share of them lie, between neighbors straight.
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let place = share * count(last);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the length")]
-    let low = libm::floor(place) as usize;
-    let (a, b) = (sorted.get(low)?, sorted.get((low + 1).min(last))?);
-    Some(a + (b - a) * (place - count(low)))
-}
-
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let fail = |why: String| FAMILY.sheets.iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
     let Some(twin) = scene.signals.evidence.twin else { return fail("there is no twin run".to_owned()) };
@@ -106,14 +96,14 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
             delays.push((with - without).max(0.0));
         }
     }
-    delays.sort_by(f64::total_cmp);
+    let quantile = |share: f64| socrates_stats::quantile(&delays, share).ok();
     let nobody = "nobody walks in the twin run";
     let mean = (!delays.is_empty()).then(|| delays.iter().sum::<f64>() / count(delays.len()));
-    let gap = quantile(&delays, 0.9).zip(quantile(&delays, 0.5)).map(|(high, middle)| high - middle);
+    let gap = quantile(0.9).zip(quantile(0.5)).map(|(high, middle)| high - middle);
     vec![
         or_why((seconds > 0.0).then(|| area / seconds), "the two runs share no time"),
         or_why(mean, nobody),
-        or_why(quantile(&delays, 0.95), nobody),
+        or_why(quantile(0.95), nobody),
         or_why(gap, nobody),
         Ok(spent),
         Ok(turned),

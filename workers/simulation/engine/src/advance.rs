@@ -1,7 +1,7 @@
 //! One tick of motion: paces, wishes, forces, contacts.
 
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, AgentId, HumanId, Point, Relation};
+use socrates_model::{Action, AgentId, HumanId, Point, Relation, SimTime};
 
 use crate::contacts::{self, Body};
 use crate::human::Human;
@@ -14,12 +14,11 @@ use crate::walk::{self, Walker};
 
 impl Engine {
     /// Moves everybody by one tick.
-    pub(crate) fn advance(&mut self, now_s: f64, recorder: &mut Recorder) {
-        let Self { humans, robot, near, doors_moved, ticks, .. } = &mut *self;
+    pub(crate) fn advance(&mut self, now: SimTime, doors_moved: bool, recorder: &mut Recorder) {
+        let now_s = now.secs();
+        let Self { humans, robot, near, .. } = &mut *self;
         let people = humans.iter().filter(|human| human.present()).map(Other::from);
-        let anew = near.fill(people.chain(robot.iter().map(Other::from))) | std::mem::take(doors_moved);
-        let tick = *ticks;
-        *ticks += 1;
+        let anew = near.fill(people.chain(robot.iter().map(Other::from))) | doors_moved;
         let led: Vec<HumanId> = self
             .humans
             .iter()
@@ -45,7 +44,7 @@ impl Engine {
                 }
                 continue;
             }
-            let looks = anew || human.notice.stale || Near::is_turn(tick, place);
+            let looks = anew || human.notice.stale || Near::is_turn(now.tick(), place);
             if looks {
                 self.near.look(human, &self.floor);
             }
@@ -101,7 +100,7 @@ impl Engine {
             // Sight matters to the controller only while a meeting lies ahead.
             let asked = human.meeting.is_some() || human.relation == Relation::Leaving;
             let sight = asked
-                && human.robot_in_sight.unwrap_or_else(|| {
+                && human.notice.robot_seen.unwrap_or_else(|| {
                     self.robot.as_ref().is_some_and(|robot| self.floor.sees(&human.at, &robot.at()))
                 });
             let moment = Moment { now_s, dt: STEP_SECS, sight, door };

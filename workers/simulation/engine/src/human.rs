@@ -76,8 +76,6 @@ pub(crate) struct Human {
     pub(crate) jammed_s: f64,
     /// Until when it lets the robot through, s.
     pub(crate) yields_until_s: f64,
-    /// Whether it and the robot are in line of sight at this tick, where that was looked at.
-    pub(crate) robot_in_sight: Option<bool>,
     /// Whether it ever walked.
     pub(crate) started: bool,
     /// Where it walked, a point every decimetre.

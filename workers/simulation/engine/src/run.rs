@@ -36,10 +36,6 @@ pub struct Engine {
     pub(crate) script: Script,
     pub(crate) params: Params,
     pub(crate) near: Near,
-    /// Whether a door has moved in this tick.
-    pub(crate) doors_moved: bool,
-    /// Ticks of motion so far.
-    pub(crate) ticks: u64,
     ending: Ending,
     pub(crate) header: RecordingHeader,
 }
@@ -75,8 +71,6 @@ impl Engine {
             script,
             params: Params::default(),
             near: Near::default(),
-            doors_moved: false,
-            ticks: 0,
             ending,
             header,
         })
@@ -106,12 +100,13 @@ impl Engine {
         loop {
             let now = SimTime::at_tick(tick);
             recorder.at(now);
+            let mut doors_moved = false;
             if !self.doors.doors.is_empty() {
                 let raised = self.raised(&recorder);
                 let changed = self.doors.step(now.secs(), STEP_SECS, &self.passers(), &raised);
                 if !changed.is_empty() {
                     self.floor.close(self.doors.closed());
-                    self.doors_moved = true;
+                    doors_moved = true;
                 }
                 for (door, open) in changed {
                     recorder.tell(EventKind::Door { door, open });
@@ -129,7 +124,7 @@ impl Engine {
                 recorder.frame(&states, sink);
                 return recorder.finish();
             }
-            self.advance(now.secs(), &mut recorder);
+            self.advance(now, doors_moved, &mut recorder);
             recorder.frame(&states, sink);
             tick += 1;
         }
@@ -190,8 +185,7 @@ impl Engine {
             let mut view = View::of(human, &self.floor, now, robot, &gestures);
             human.tree.tick(&mut human.state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
-            human.robot_in_sight = view.looked();
-            human.notice.robot_seen = human.robot_in_sight;
+            human.notice.robot_seen = view.looked();
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
             }

@@ -270,7 +270,6 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         aside_m: 0.0,
         jammed_s: 0.0,
         yields_until_s: 0.0,
-        robot_in_sight: None,
         started: false,
         trail: Polyline::default(),
         notice: Notice::default(),
