@@ -53,7 +53,8 @@ pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant:
             return Ok(());
         }
     };
-    let wall_ms = u64::try_from(begun.elapsed().as_millis()).unwrap_or(u64::MAX);
+    // To the nearest: always down would count work as overhead.
+    let wall_ms = u64::try_from((begun.elapsed().as_micros() + 500) / 1000).unwrap_or(u64::MAX);
     let number = worker.next_report();
     if let Some(delay) = worker.config.faults.delay {
         tokio::time::sleep(delay).await;

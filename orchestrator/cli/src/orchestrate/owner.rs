@@ -12,8 +12,10 @@ use tokio::sync::mpsc;
 use super::reader::{Inbound, Question};
 use super::writer::{Commit, Reply, Said, Say};
 
-/// How long an acquire without work waits for some, ms. Far below the workers' query limit.
-const HOLD_MS: Millis = 200;
+/// How long an acquire without work waits for some, ms. Well below the workers' query limit of 2 s.
+const HOLD_MS: Millis = 1_000;
+/// Who has waited in vain asks again after, ms: at once, so that somebody always waits where work appears.
+const AGAIN_MS: Millis = 1;
 /// Acquires held at one time at most; more are answered at once.
 const HELD: usize = 4096;
 /// Longest pause between two looks at the clock, ms.
@@ -32,6 +34,15 @@ fn hint(effect: &Effect) -> Option<Stage> {
     match effect {
         Effect::Hint(stage) => Some(*stage),
         Effect::Save(_) | Effect::Reply { .. } | Effect::Notice { .. } | Effect::ScenarioDone { .. } => None,
+    }
+}
+
+/// The pause that an answer without work asks for.
+fn pause_of_idle(effect: &mut Effect) -> Option<&mut Millis> {
+    let Effect::Reply { answer, .. } = effect else { return None };
+    match &mut **answer {
+        Answer::Acquired(Acquired::None { retry_after_ms, reason }) if reason == "empty" => Some(retry_after_ms),
+        Answer::Acquired(_) | Answer::Welcome(_) | Answer::Beat(_) | Answer::Recorded(_) | Answer::Submitted(_) => None,
     }
 }
 
@@ -71,7 +82,11 @@ impl Owner {
             tokio::select! {
                 inbound = line.recv() => match inbound {
                     Some(Inbound::Asked(question, ask)) => self.asked(question, ask).await,
-                    Some(Inbound::Gone(instance)) => self.event(Event::Gone { instance }).await,
+                    Some(Inbound::Gone(instance)) => {
+                        // Nobody is left to hear the answer; a grant to it would only wait for its lease to end.
+                        self.waiting.retain(|waiting| waiting.acquire.instance != instance);
+                        self.event(Event::Gone { instance }).await;
+                    }
                     None => return,
                 },
                 () = tokio::time::sleep(wait) => {}
@@ -97,6 +112,7 @@ impl Owner {
     async fn asked(&mut self, question: Question, ask: Ask) {
         self.next += 1;
         let to = self.next;
+        let mut leaving = None;
         let event = match question {
             Question::Status(about) => {
                 let reply = status(&self.state, &about, self.now());
@@ -106,7 +122,10 @@ impl Owner {
             }
             Question::Acquire(acquire) => return self.acquire(acquire, ask, None).await,
             Question::Hello(hello) => Event::Hello { hello, to },
-            Question::Beat(beat) => Event::Beat { beat, to },
+            Question::Beat(beat) => {
+                leaving = beat.draining.then(|| beat.instance.clone());
+                Event::Beat { beat, to }
+            }
             Question::Report(report) => Event::Report { report, to },
             Question::Release(release) => Event::Release { release, to },
             Question::Submit(submit) => Event::Submit { submit, to },
@@ -114,6 +133,9 @@ impl Owner {
         };
         self.asks.insert(to, ask);
         self.event(event).await;
+        if let Some(instance) = leaving {
+            self.give_up_of(&instance).await;
+        }
     }
 
     /// One step, and the acquires that it can serve now, in one commit: who waits for work hears of it as soon as
@@ -142,13 +164,14 @@ impl Owner {
         self.next += 1;
         let to = self.next;
         let now = self.now();
-        let effects = step(&mut self.state, Event::Acquire { ask: acquire.clone(), to }, now);
-        let idle = effects.iter().any(|effect| match effect {
-            Effect::Reply { answer, .. } => {
-                matches!(&**answer, Answer::Acquired(Acquired::None { reason, .. }) if reason == "empty")
+        let mut effects = step(&mut self.state, Event::Acquire { ask: acquire.clone(), to }, now);
+        let mut idle = false;
+        for pause in effects.iter_mut().filter_map(pause_of_idle) {
+            idle = true;
+            if until.is_some() {
+                *pause = AGAIN_MS;
             }
-            Effect::Save(_) | Effect::Notice { .. } | Effect::Hint(_) | Effect::ScenarioDone { .. } => false,
-        });
+        }
         let until = until.unwrap_or_else(|| now.saturating_add(HOLD_MS));
         if idle && until > now && self.waiting.len() < HELD {
             let at = self.waiting.partition_point(|other| other.until <= until);
@@ -168,6 +191,17 @@ impl Owner {
         while self.waiting.front().is_some_and(|waiting| waiting.until <= now) {
             if let Some(waiting) = self.waiting.pop_front() {
                 self.acquire(waiting.acquire, waiting.ask, Some(0)).await;
+            }
+        }
+    }
+
+    /// Answers what a worker that is about to leave has asked before: it gets no more work.
+    async fn give_up_of(&mut self, instance: &str) {
+        for waiting in std::mem::take(&mut self.waiting) {
+            if waiting.acquire.instance == instance {
+                self.acquire(waiting.acquire, waiting.ask, Some(0)).await;
+            } else {
+                self.waiting.push_back(waiting);
             }
         }
     }
