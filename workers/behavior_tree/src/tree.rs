@@ -142,8 +142,9 @@ impl Cell {
     }
 }
 
-/// The state of one agent in a tree. Its buffers are made once; no tick makes or grows any.
-#[derive(Debug, Clone)]
+/// The state of one agent in a tree. Its buffers are made once; no tick makes or grows any. The default is the state
+/// of no tree: it only holds the place of one that was taken out.
+#[derive(Debug, Clone, Default)]
 pub struct TreeState {
     pub(crate) cells: Box<[Cell]>,
     /// Counts, times and remembered outcomes of the few nodes that have them.

@@ -10,7 +10,20 @@ use crate::near::{Near, Other};
 use crate::recorder::Recorder;
 use crate::rendezvous::{self, Moment};
 use crate::run::Engine;
-use crate::walk::{self, Walker};
+use crate::walk::{self, Pairs, Steps, Walker};
+
+/// People whose forces are reckoned at once: enough to fill the lanes, few enough for the nearest cache.
+const AT_ONCE: usize = 32;
+
+/// Lists that every tick fills anew; kept, so that no tick makes any.
+#[derive(Debug, Default)]
+pub(crate) struct Desk {
+    walker: Walker,
+    around: Vec<Other>,
+    pairs: Vec<Pairs>,
+    wants: Vec<Want>,
+    bodies: Vec<Body>,
+}
 
 impl Engine {
     /// Moves everybody by one tick.
@@ -31,39 +44,58 @@ impl Engine {
             .map(|human| (human.id, (human.at, human.velocity, human.trail.clone())))
             .collect();
         let paces = self.doors_and_paces(now_s);
-        let mut wants: Vec<Want> = Vec::with_capacity(self.humans.len());
-        let mut bodies: Vec<Body> = Vec::with_capacity(self.humans.len() + 1);
-        let mut around: Vec<Other> = Vec::new();
-        let mut walker = Walker::new(&self.params, self.humans.len());
-        for (place, (human, pace)) in self.humans.iter_mut().zip(&paces).enumerate() {
-            if human.is_recorded() {
-                human.replay(now_s + STEP_SECS);
-                wants.push(Want::STAND);
-                if human.present() {
-                    bodies.push(Body { yields: 0.0, ..body(human, human.at) });
+        let mut wants = std::mem::take(&mut self.desk.wants);
+        let mut bodies = std::mem::take(&mut self.desk.bodies);
+        wants.clear();
+        bodies.clear();
+        let count = self.humans.len();
+        for (number, (humans, paces)) in self.humans.chunks_mut(AT_ONCE).zip(paces.chunks(AT_ONCE)).enumerate() {
+            let Desk { walker, around, pairs, .. } = &mut self.desk;
+            walker.begin(count);
+            pairs.clear();
+            for (place, (human, pace)) in (number * AT_ONCE..).zip(humans.iter_mut().zip(paces)) {
+                if human.is_recorded() {
+                    human.replay(now_s + STEP_SECS);
+                    wants.push(Want::STAND);
+                    pairs.push(Pairs::default());
+                    continue;
                 }
-                continue;
+                let looks = anew || human.notice.stale || Near::is_turn(now.tick(), place);
+                if looks {
+                    self.near.look(human, &self.floor);
+                }
+                // On its way and between looks somebody goes by what it made of them at its last look.
+                around.clear();
+                if looks || human.action != Action::Navigate || now_s < human.yields_until_s {
+                    self.near.noticed(&human.notice, around);
+                }
+                let scene = Scene {
+                    location: &self.setup.location,
+                    floor: &self.floor,
+                    now_s,
+                    looks,
+                    robot: self.robot.as_ref(),
+                    others: around,
+                    trails: &trails,
+                };
+                let want = motion::want(human, &scene, *pace);
+                pairs.push(walker.feel(human, &want, &self.near));
+                wants.push(want);
             }
-            let looks = anew || human.notice.stale || Near::is_turn(now.tick(), place);
-            if looks {
-                self.near.look(human, &self.floor);
+            walker.reckon(&self.params);
+            let steps = Steps { params: &self.params, floor: &self.floor, near: &self.near };
+            for ((human, pairs), want) in humans.iter_mut().zip(pairs).zip(wants.iter().skip(number * AT_ONCE)) {
+                if human.is_recorded() {
+                    if human.present() {
+                        bodies.push(Body { yields: 0.0, ..body(human, human.at) });
+                    }
+                    continue;
+                }
+                walker.steer(human, want, pairs, &steps);
+                human.started |= human.action == Action::Navigate && want.target.is_some();
+                let yields = if want.target.is_some() { 1.0 } else { 0.02 };
+                bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });
             }
-            self.near.noticed(&human.notice, &mut around);
-            let scene = Scene {
-                location: &self.setup.location,
-                floor: &self.floor,
-                now_s,
-                looks,
-                robot: self.robot.as_ref(),
-                others: &around,
-                trails: &trails,
-            };
-            let want = motion::want(human, &scene, *pace);
-            walker.steer(human, &want, &self.floor, &around);
-            human.started |= human.action == Action::Navigate && want.target.is_some();
-            let yields = if want.target.is_some() { 1.0 } else { 0.02 };
-            bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });
-            wants.push(want);
         }
         if let Some(robot) = &mut self.robot {
             robot.step();
@@ -74,6 +106,7 @@ impl Engine {
                 velocity: robot.velocity,
                 radius_m: robot.model.radius_m,
                 yields,
+                clear: false,
             });
         }
         for touch in contacts::resolve(&mut bodies, &self.floor) {
@@ -89,6 +122,7 @@ impl Engine {
         if let (Some(robot), Some(body)) = (&mut self.robot, bodies.last()) {
             robot.settle(body.at, body.velocity);
         }
+        (self.desk.wants, self.desk.bodies) = (wants, bodies);
     }
 
     /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.
@@ -144,5 +178,6 @@ impl Engine {
 
 /// A human as contacts see it, at the place where it would be.
 fn body(human: &Human, at: Point) -> Body {
-    Body { agent: human.agent(), at, velocity: human.velocity, radius_m: human.radius_m, yields: 1.0 }
+    let clear = human.notice.clear && !human.is_recorded();
+    Body { agent: human.agent(), at, velocity: human.velocity, radius_m: human.radius_m, yields: 1.0, clear }
 }

@@ -34,6 +34,8 @@ pub struct Body {
     /// Share of a correction it takes, 0 to 1: 1 for somebody who walks, near 0 for somebody who stands.
     /// Of two bodies with 0 neither moves.
     pub yields: f64,
+    /// Whether no wall and no door can be touched, as its own side knows: then none is looked for.
+    pub clear: bool,
 }
 
 /// What touched.
@@ -68,7 +70,7 @@ pub fn resolve(bodies: &mut [Body], floor: &Floor) -> Vec<Touch> {
             push(bodies, second, &(normal * on), &normal);
         }
         for place in 0..bodies.len() {
-            let Some(body) = bodies.get(place).copied() else { continue };
+            let Some(body) = bodies.get(place).filter(|body| !body.clear).copied() else { continue };
             let Some((depth, normal)) = disc_wall(&body, floor) else { continue };
             if pass == 0 {
                 touches.push(Touch::Wall(body.agent, depth));
@@ -201,6 +203,7 @@ mod tests {
             velocity: Vector::new(1.0, 0.0),
             radius_m: 0.28,
             yields,
+            clear: false,
         }
     }
 

@@ -20,6 +20,8 @@ pub(crate) const CLOSE_M: f64 = 3.0;
 pub(crate) const FEEL_M: f64 = 5.0;
 /// Where no wall is nearer than this none is felt, m: their reach and the blur of the distance field.
 const WALLS_M: f64 = 3.2;
+/// Nobody is carried farther than this towards a wall between two looks, neither by its feet nor by others, m.
+const CARRIED_M: f64 = 0.7;
 /// Up to so many everybody is looked at; more are sorted into cells first.
 const FEW: usize = 64;
 /// Cells that [`NEAR_M`] spans.
@@ -74,6 +76,8 @@ pub(crate) struct Notice {
     pub(crate) robot_seen: Option<bool>,
     /// Whether nothing stands between it and the next point of its way.
     pub(crate) straight: bool,
+    /// Whether it stood so far from every wall that it touches none before its next look.
+    pub(crate) clear: bool,
     /// Whether it does something else than at its last look, and has to look anew.
     pub(crate) stale: bool,
 }
@@ -170,6 +174,7 @@ impl Near {
         human.notice.far = None;
         human.notice.robot_seen = None;
         human.notice.walls = if clearance_m > WALLS_M + BETWEEN_M { Vec::new() } else { floor.felt(&human.at) };
+        human.notice.clear = clearance_m > human.radius_m + CARRIED_M;
         human.notice.stale = false;
     }
 
@@ -178,6 +183,20 @@ impl Near {
         found.clear();
         let now = |noticed: &Noticed| Some(Other { seen: noticed.seen, ..*self.others.get(noticed.place)? });
         found.extend(notice.near.iter().filter_map(now));
+    }
+
+    /// The close ones of those whom somebody has noticed, as they are now; whether it sees them.
+    pub(crate) fn close<'a>(&'a self, notice: &'a Notice) -> impl Iterator<Item = (&'a Other, bool)> {
+        self.of(notice.near.get(..notice.close).unwrap_or(&[]))
+    }
+
+    /// The others of those whom somebody has noticed.
+    pub(crate) fn far<'a>(&'a self, notice: &'a Notice) -> impl Iterator<Item = (&'a Other, bool)> {
+        self.of(notice.near.get(notice.close..).unwrap_or(&[]))
+    }
+
+    fn of<'a>(&'a self, noticed: &'a [Noticed]) -> impl Iterator<Item = (&'a Other, bool)> {
+        noticed.iter().filter_map(|noticed| Some((self.others.get(noticed.place)?, noticed.seen)))
     }
 
     /// Everybody within [`NEAR_M`] of `at` but `me`.

@@ -7,6 +7,7 @@ use socrates_model::{
     SimTime,
 };
 
+use crate::advance::Desk;
 use crate::doors::{self, Doors, Passer, Raised};
 use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
@@ -36,6 +37,7 @@ pub struct Engine {
     pub(crate) script: Script,
     pub(crate) params: Params,
     pub(crate) near: Near,
+    pub(crate) desk: Desk,
     ending: Ending,
     pub(crate) header: RecordingHeader,
 }
@@ -71,6 +73,7 @@ impl Engine {
             script,
             params: Params::default(),
             near: Near::default(),
+            desk: Desk::default(),
             ending,
             header,
         })
@@ -182,10 +185,13 @@ impl Engine {
         });
         let gestures: Vec<(HumanId, Gesture)> = self.humans.iter().map(|human| (human.id, human.gesture)).collect();
         for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
+            // Out of the human while its tree looks at it.
+            let mut state = std::mem::take(&mut human.state);
             let mut view = View::of(human, &self.floor, now, robot, &gestures);
-            human.tree.tick(&mut human.state, &mut view);
+            human.tree.tick(&mut state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
             human.notice.robot_seen = view.looked();
+            human.state = state;
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
             }
@@ -278,9 +284,14 @@ impl Engine {
             }
             arrived = robot.arrived_s.is_some();
         }
-        let done = self.humans.iter().all(|human| {
-            human.stays() || human.at_goal() || human.action != Action::Navigate && human.velocity.norm() < 0.05
-        });
+        let mut done = true;
+        let mut walkers = Vec::with_capacity(self.humans.len());
+        for human in &self.humans {
+            let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
+            let walks = human.action == Action::Navigate;
+            done &= human.stays() || there || !walks && speed_mps < 0.05;
+            walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
+        }
         Standing {
             now_s,
             robot: self.robot.as_ref().map(|robot| (robot.s, robot.command.waiting, robot.arrived_s)),
@@ -288,20 +299,7 @@ impl Engine {
             people_done: done,
             met,
             to_meet: self.humans.iter().filter(|human| human.meeting.is_some()).count(),
-            walkers: self
-                .humans
-                .iter()
-                .map(|human| {
-                    (
-                        human.id,
-                        human.s,
-                        human.action == Action::Navigate
-                            && human.started
-                            && !human.at_goal()
-                            && human.velocity.norm() < 0.3,
-                    )
-                })
-                .collect(),
+            walkers,
         }
     }
 }

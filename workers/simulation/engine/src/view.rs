@@ -33,11 +33,7 @@ pub(crate) struct View<'a> {
     pub(crate) robot: Option<RobotSeen>,
     /// Gestures of all humans, in the order of ids.
     pub(crate) gestures: &'a [(HumanId, Gesture)],
-    at: Point,
-    heading: Vector,
-    travel: Vector,
-    at_goal: bool,
-    at_encounter: bool,
+    human: &'a Human,
     sight: Cell<Option<bool>>,
     /// What the tree asked for.
     pub(crate) act: Option<Action>,
@@ -46,41 +42,27 @@ pub(crate) struct View<'a> {
 
 impl<'a> View<'a> {
     pub(crate) fn of(
-        human: &Human,
+        human: &'a Human,
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
         gestures: &'a [(HumanId, Gesture)],
     ) -> Self {
-        let at_encounter =
-            human.meeting.as_ref().is_some_and(|meeting| (human.at - meeting.at).norm() <= AT_ENCOUNTER_M);
-        Self {
-            floor,
-            now,
-            robot,
-            gestures,
-            at: human.at,
-            heading: human.heading(),
-            travel: human.travel(),
-            at_goal: human.at_goal(),
-            at_encounter,
-            sight: Cell::new(human.notice.robot_seen),
-            act: None,
-            say: None,
-        }
+        Self { floor, now, robot, gestures, human, sight: Cell::new(human.notice.robot_seen), act: None, say: None }
     }
 
     /// Whether a way lies in the field of view.
     fn faces(&self, way: &Vector) -> bool {
         // Ahead is always in it; only what is abeam or behind needs the angle.
-        self.heading.dot(way) > 0.0 || angle_between(&self.heading, way) <= HALF_FIELD_OF_VIEW_RAD
+        let heading = self.human.heading();
+        heading.dot(way) > 0.0 || angle_between(&heading, way) <= HALF_FIELD_OF_VIEW_RAD
     }
 
     fn in_sight(&self, robot: &RobotSeen) -> bool {
         if let Some(known) = self.sight.get() {
             return known;
         }
-        let seen = self.floor.sees(&self.at, &robot.at);
+        let seen = self.floor.sees(&self.human.at, &robot.at);
         self.sight.set(Some(seen));
         seen
     }
@@ -93,7 +75,10 @@ impl<'a> View<'a> {
     /// Whether the robot is in the field of view and in line of sight at any distance up to `within_m`.
     pub(crate) fn sees_robot(&self, within_m: f64) -> Option<f64> {
         let robot = self.robot?;
-        let way = robot.at - self.at;
+        if self.sight.get() == Some(false) {
+            return None;
+        }
+        let way = robot.at - self.human.at;
         let distance = way.norm();
         let seen = distance <= within_m && self.faces(&way) && self.in_sight(&robot);
         seen.then_some(distance)
@@ -107,7 +92,7 @@ pub(crate) fn angle_between(a: &Vector, b: &Vector) -> f64 {
 
 impl World for View<'_> {
     fn robot_distance_m(&self) -> Option<f64> {
-        self.robot.map(|robot| (robot.at - self.at).norm())
+        self.robot.map(|robot| (robot.at - self.human.at).norm())
     }
 
     fn robot_visible(&self, within_m: f64) -> bool {
@@ -116,8 +101,8 @@ impl World for View<'_> {
 
     fn robot_blocking(&self, within_m: f64) -> bool {
         self.robot.is_some_and(|robot| {
-            let way = robot.at - self.at;
-            way.norm() <= within_m && angle_between(&self.travel, &way) <= BLOCKING_RAD && self.in_sight(&robot)
+            let way = robot.at - self.human.at;
+            way.norm() <= within_m && angle_between(&self.human.travel(), &way) <= BLOCKING_RAD && self.in_sight(&robot)
         })
     }
 
@@ -135,7 +120,7 @@ impl World for View<'_> {
     }
 
     fn goal_reached(&self) -> bool {
-        self.at_goal
+        self.human.at_goal()
     }
 
     fn next_goal(&mut self) {
@@ -143,7 +128,8 @@ impl World for View<'_> {
     }
 
     fn at_encounter(&self) -> bool {
-        self.at_encounter
+        let meeting = self.human.meeting.as_ref();
+        meeting.is_some_and(|meeting| (self.human.at - meeting.at).norm() <= AT_ENCOUNTER_M)
     }
 
     fn now(&self) -> SimTime {

@@ -1,4 +1,9 @@
 //! One step of a human: wish and social forces to velocity, heading and place.
+//!
+//! Two passes over a few people at a time: first everybody notes whom it feels, then the social forces of all those
+//! pairs are reckoned at once, then everybody is steered. Nobody's steering shows to the others before the next tick.
+
+use std::ops::Range;
 
 use socrates_crowd::{Goal, Params, Person, forces_on};
 use socrates_model::time::STEP_SECS;
@@ -10,7 +15,7 @@ use crate::human::Human;
 use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
-use crate::near::{CLOSE_M, FEEL_M, Other};
+use crate::near::{CLOSE_M, FEEL_M, Near, Other};
 
 /// A way with this much room to both sides can be walked, m: somebody turns the shoulders a little.
 const DOORWAY_M: f64 = 0.22;
@@ -20,31 +25,62 @@ const ROBOT_GAP_M: f64 = 0.3;
 /// 1e-9 m/s² of them.
 const FEW: usize = 24;
 
-/// Steers people, one after the other; keeps the list of whom each of them feels.
-pub(crate) struct Walker<'a> {
-    params: &'a Params,
-    felt: Vec<Person>,
-    /// Instead of [`Self::felt`] where there are many.
-    lanes: Option<Lanes>,
+/// The pairs of one person whose forces are reckoned together with those of others.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pairs {
+    close: Range<usize>,
+    /// Nothing where what was felt of them at the last look still holds.
+    far: Option<Range<usize>>,
 }
 
-impl<'a> Walker<'a> {
-    /// For a run with so many people.
-    pub(crate) fn new(params: &'a Params, people: usize) -> Self {
-        Self { params, felt: Vec::new(), lanes: (people > FEW).then(Lanes::default) }
+/// Steers people; keeps the lists of whom they feel.
+#[derive(Debug, Default)]
+pub(crate) struct Walker {
+    felt: Vec<Person>,
+    around: Vec<Other>,
+    lanes: Lanes,
+    /// Whether there are so many that forces are reckoned in lanes.
+    many: bool,
+}
+
+impl Walker {
+    /// Begins with the next few of so many people.
+    pub(crate) fn begin(&mut self, people: usize) {
+        self.many = people > FEW;
+        self.lanes.clear();
+    }
+
+    /// Notes whom a person feels who wants this.
+    pub(crate) fn feel(&mut self, human: &Human, want: &Want, near: &Near) -> Pairs {
+        if !self.many || !walks(want) || !matches!(human.walks, Walks::Forces) {
+            return Pairs::default();
+        }
+        let felt = |(other, seen): &(&Other, bool)| feels(human, want, other, *seen);
+        let pair = |(other, _): (&Other, bool)| (other.at - human.at, human.velocity - other.velocity);
+        let close = self.lanes.extend(near.close(&human.notice).filter(felt).map(pair));
+        let far = human.notice.far.is_none();
+        Pairs { close, far: far.then(|| self.lanes.extend(near.far(&human.notice).filter(felt).map(pair))) }
+    }
+
+    /// Reckons the forces of all pairs that were noted.
+    pub(crate) fn reckon(&mut self, params: &Params) {
+        if self.many {
+            self.lanes.reckon(params);
+        }
     }
 
     /// Velocity after this tick, before contacts. Heading and place follow in [`settle`].
-    pub(crate) fn steer(&mut self, human: &mut Human, want: &Want, floor: &Floor, others: &[Other]) {
+    pub(crate) fn steer(&mut self, human: &mut Human, want: &Want, pairs: &Pairs, scene: &Steps<'_>) {
         let wished = match want.target {
-            Some(target) if want.speed_mps > 0.0 => {
+            Some(target) if walks(want) => {
                 human.anchor = None;
                 if let Walks::Orca(orca) = &human.walks {
-                    let wished = avoid(orca, human, (&target, want.speed_mps), others);
+                    scene.near.noticed(&human.notice, &mut self.around);
+                    let wished = avoid(orca, human, (&target, want.speed_mps), &self.around);
                     let change = wished - human.velocity;
                     human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
                 } else {
-                    human.velocity + self.pull(human, want, &target, floor, others) * STEP_SECS
+                    human.velocity + self.pull(human, want, &target, pairs, scene) * STEP_SECS
                 }
             }
             Some(_) | None => gait::stand(&mut human.anchor, &human.at, &human.velocity, STEP_SECS),
@@ -54,62 +90,69 @@ impl<'a> Walker<'a> {
         if want.target.is_some() && velocity.norm() > most {
             velocity *= most / velocity.norm();
         }
-        let close = others.get(..human.notice.close).unwrap_or(others);
-        stop_before_touching(human, want, close, &mut velocity);
+        stop_before_touching(human, want, scene.near, &mut velocity);
         human.velocity = velocity;
     }
 
     /// Acceleration by wish, people and walls, m/s².
-    fn pull(&mut self, human: &mut Human, want: &Want, target: &Point, floor: &Floor, others: &[Other]) -> Vector {
+    fn pull(&mut self, human: &mut Human, want: &Want, target: &Point, pairs: &Pairs, scene: &Steps<'_>) -> Vector {
         self.felt.clear();
         self.felt.push(Person {
             speed_mps: want.speed_mps,
             goal: Some(Goal { at: *target, radius_m: 0.02 }),
             ..person(0, human.at, human.velocity, human.radius_m)
         });
-        let feels = |other: &Other| {
-            let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
-            let drawn = want.drawn && other.id.is_none();
-            other.seen && (other.at - human.at).norm_squared() < FEEL_M * FEEL_M && !mate && !drawn
-        };
         let mut social = None;
-        if let Some(lanes) = &mut self.lanes {
-            let (close, far) = others.split_at(human.notice.close.min(others.len()));
-            let mut of = |others: &[Other]| {
-                lanes.clear();
-                for other in others.iter().filter(|other| feels(other)) {
-                    lanes.push(&(other.at - human.at), &(human.velocity - other.velocity));
-                }
-                lanes.social(self.params)
-            };
-            let from_afar = human.notice.far.unwrap_or_else(|| of(far));
-            social = Some(of(close) + from_afar);
+        if self.many {
+            let known = human.notice.far.unwrap_or_else(Vector::zeros);
+            let from_afar = pairs.far.as_ref().map_or(known, |far| self.lanes.sum(far));
+            social = Some(self.lanes.sum(&pairs.close) + from_afar);
             human.notice.far = Some(from_afar);
         } else {
-            let felt = (1_u32..).zip(others).filter(|(_, other)| feels(other));
+            scene.near.noticed(&human.notice, &mut self.around);
+            let felt = (1_u32..).zip(&self.around).filter(|(_, other)| feels(human, want, other, other.seen));
             let felt = felt.map(|(number, other)| person(number, other.at, other.velocity, other.radius_m));
             self.felt.extend(felt);
         }
         // A spot chosen beside a wall is meant: the wall's force would keep it from being reached.
         let meant = want.face.is_some()
             && (target - human.at).norm() < 1.3
-            && floor.straight(&human.at, target, human.radius_m);
+            && scene.floor.straight(&human.at, target, human.radius_m);
         let walls: &[Point] = if meant { &[] } else { &human.notice.walls };
-        let mut forces = forces_on(0, &self.felt, walls, self.params);
+        let mut forces = forces_on(0, &self.felt, walls, scene.params);
         forces.social = social.unwrap_or(forces.social);
         // Walls beside a free way push aside, not back: their sum over both jambs would bar a narrow doorway.
         let way = target - human.at;
         let back = forces.obstacle.dot(&way) / way.norm_squared().max(1e-9);
-        if back < 0.0 && floor.straight(&human.at, target, DOORWAY_M) {
+        if back < 0.0 && scene.floor.straight(&human.at, target, DOORWAY_M) {
             forces.obstacle -= way * back;
         }
         gait::limited(&forces.total())
     }
 }
 
+/// What steering looks at.
+pub(crate) struct Steps<'a> {
+    pub(crate) params: &'a Params,
+    pub(crate) floor: &'a Floor,
+    pub(crate) near: &'a Near,
+}
+
+/// Whether this wish is a way to go.
+fn walks(want: &Want) -> bool {
+    want.target.is_some() && want.speed_mps > 0.0
+}
+
+/// Whether somebody who wants this feels somebody else whom it noticed.
+fn feels(human: &Human, want: &Want, other: &Other, seen: bool) -> bool {
+    let mate = human.group.is_some_and(|mine: GroupId| other.group == Some(mine));
+    let drawn = want.drawn && other.id.is_none();
+    seen && (other.at - human.at).norm_squared() < FEEL_M * FEEL_M && !mate && !drawn
+}
+
 /// A person stops before touching; forces alone would let shoulders meet.
-fn stop_before_touching(human: &Human, want: &Want, others: &[Other], velocity: &mut Vector) {
-    for other in others {
+fn stop_before_touching(human: &Human, want: &Want, near: &Near, velocity: &mut Vector) {
+    for (other, _) in near.close(&human.notice) {
         let way = other.at - human.at;
         if way.norm_squared() > CLOSE_M * CLOSE_M {
             continue;

@@ -171,7 +171,7 @@ fn a_crush_stays_apart_and_out_of_walls() {
                 if free && bodies.len() < 30 && bodies.iter().all(|body| (body.at - at).norm() > 0.56) {
                     let agent = AgentId::from_number(bodies.len() as u32 + 1);
                     let yields = if bodies.len() % 7 == 3 { 0.02 } else { 1.0 };
-                    bodies.push(Body { agent, at, velocity: Vector::zeros(), radius_m: 0.28, yields });
+                    bodies.push(Body { agent, at, velocity: Vector::zeros(), radius_m: 0.28, yields, clear: false });
                 }
             }
             let (mut overlap, mut wall): (f64, f64) = (0.0, 0.0);

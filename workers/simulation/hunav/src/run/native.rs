@@ -75,6 +75,7 @@ pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
             radius_m: robot.spec.radius_m,
             // A robot is not pushed about by people; it waits for them.
             yields: 0.02,
+            clear: false,
         });
     }
     for ((agent, velocity), want) in scene.agents.iter().zip(&velocities).zip(&wants) {
@@ -90,6 +91,7 @@ pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
                     (_, Some(_)) => 1.0,
                     (_, None) => 0.3,
                 },
+                clear: false,
             });
         }
     }
