@@ -114,6 +114,8 @@ pub(crate) struct Near {
     others: Vec<Other>,
     /// Room for the next moment.
     next: Vec<Other>,
+    /// Where they are, close together in memory: most are too far away to be asked anything else.
+    spots: Vec<Point>,
     low: (f64, f64),
     cell_m: f64,
     columns: usize,
@@ -138,6 +140,8 @@ impl Near {
         }
         same &= before == self.others.len();
         self.next = std::mem::replace(&mut self.others, next);
+        self.spots.clear();
+        self.spots.extend(self.others.iter().map(|other| other.at));
         if self.others.len() > FEW {
             self.sort();
         }
@@ -203,11 +207,11 @@ impl Near {
     fn around(&self, me: HumanId, at: &Point, found: &mut Vec<Noticed>) {
         found.clear();
         let reach = NEAR_M + BETWEEN_M;
-        let near = |other: &Other| other.id != Some(me) && (other.at - at).norm_squared() < reach * reach;
+        let near = |spot: &Point| (spot - at).norm_squared() < reach * reach;
+        let other = |place: &usize| self.others.get(*place).is_some_and(|other| other.id != Some(me));
         if self.others.len() <= FEW {
-            found.extend(
-                self.others.iter().enumerate().filter(|(_, other)| near(other)).map(|(place, _)| Noticed::at(place)),
-            );
+            let places = self.spots.iter().enumerate().filter(|(_, spot)| near(spot)).map(|(place, _)| place);
+            found.extend(places.filter(other).map(Noticed::at));
             return;
         }
         let (column, row) = self.cell(at);
@@ -217,9 +221,9 @@ impl Near {
             // The cells of a row lie one after the other, and so do the people in them.
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
-            let places = self.sorted.get(start..end).into_iter().flatten();
+            let places = self.sorted.get(start..end).into_iter().flatten().copied();
             found.extend(
-                places.filter(|place| self.others.get(**place).is_some_and(near)).map(|place| Noticed::at(*place)),
+                places.filter(|place| self.spots.get(*place).is_some_and(near) && other(place)).map(Noticed::at),
             );
         }
     }
