@@ -132,13 +132,20 @@ fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Ve
     } else {
         line_problems(location, door, &mut fault);
     }
-    let (what, value) = match door.opens {
-        DoorOpens::AtTime(secs) => ("opens.at_time", secs),
-        DoorOpens::Near(m) => ("opens.near", m),
-        DoorOpens::RobotNear(m) => ("opens.robot_near", m),
-        DoorOpens::Always | DoorOpens::OnEvent(_) | DoorOpens::Never => ("hold_s", door.hold_s),
+    let mut values = match &door.opens {
+        DoorOpens::AtTimes(times) => times.iter().map(|secs| ("opens.at_times", *secs)).collect(),
+        DoorOpens::Near(m) => vec![("opens.near", *m)],
+        DoorOpens::RobotNear(m) => vec![("opens.robot_near", *m)],
+        DoorOpens::Always | DoorOpens::OnEvent(_) | DoorOpens::Never => Vec::new(),
     };
-    for (key, value) in [(what, value), ("hold_s", door.hold_s)] {
+    if door.opens == DoorOpens::AtTimes(Vec::new()) {
+        fault(
+            FaultCode::MValue,
+            "`opens.at_times` has no time; a door that never opens has `opens = \"never\"`".to_owned(),
+        );
+    }
+    values.push(("hold_s", door.hold_s));
+    for (key, value) in values {
         if !(0.0..=DOOR_VALUE_MAX).contains(&value) {
             fault(FaultCode::MValue, format!("`{key}` is `{value}`; allowed: 0 to {DOOR_VALUE_MAX}"));
         }
@@ -248,6 +255,10 @@ mod tests {
         bad.doors[1].hold_s = -1.0;
         bad.doors[1].opens = DoorOpens::RobotNear(f64::NAN);
         assert_eq!(codes(&bad), ["M-ID", "M-VALUE", "M-VALUE", "M-ID", "M-VALUE"]);
+        bad.doors[1].opens = DoorOpens::AtTimes(vec![4.0, 1e9]);
+        assert_eq!(codes(&bad), ["M-ID", "M-VALUE", "M-VALUE", "M-ID", "M-VALUE"]);
+        bad.doors[1].opens = DoorOpens::AtTimes(vec![]);
+        assert!(check(&bad).iter().any(|fault| fault.message.contains("at_times")));
         bad.doors[1].from = bad.doors[1].to;
         assert!(codes(&bad).contains(&"M-VALUE"));
         let mut open = location();

@@ -172,7 +172,7 @@ fn extra_toml(plan: &Plan) -> String {
         let opens = match &door.opens {
             DoorOpens::Always => "\"always\"".to_owned(),
             DoorOpens::Never => "\"never\"".to_owned(),
-            DoorOpens::AtTime(secs) => format!("{{ at_time = {secs:?} }}"),
+            DoorOpens::AtTimes(secs) => format!("{{ at_times = {secs:?} }}"),
             DoorOpens::Near(m) => format!("{{ near = {m:?} }}"),
             DoorOpens::RobotNear(m) => format!("{{ robot_near = {m:?} }}"),
             DoorOpens::OnEvent(event) => format!("{{ on_event = {} }}", quoted(event)),

@@ -32,7 +32,10 @@ pub(crate) fn doors(location: &Location) -> String {
         let inside: Vec<String> = door.inside.iter().map(|node| format!("`{node}`")).collect();
         let opens = match &door.opens {
             DoorOpens::Always => "always open".to_owned(),
-            DoorOpens::AtTime(s) => format!("opens after {s} s"),
+            DoorOpens::AtTimes(times) => {
+                let times: Vec<String> = times.iter().map(ToString::to_string).collect();
+                format!("opens after {} s", times.join(", "))
+            }
             DoorOpens::Near(m) => format!("opens when somebody is within {m} m"),
             DoorOpens::RobotNear(m) => format!("opens when the robot is within {m} m"),
             DoorOpens::OnEvent(event) => format!("opens on `{event}`"),

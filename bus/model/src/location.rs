@@ -24,8 +24,8 @@ pub enum DoorKind {
 pub enum DoorOpens {
     /// Stands open for the whole run.
     Always,
-    /// Opens at a time of the run, s.
-    AtTime(f64),
+    /// Opens at these times of the run, s, as an elevator that comes again and again.
+    AtTimes(Vec<f64>),
     /// Opens when anybody comes this near to the middle of the door line, m.
     Near(f64),
     /// Opens when the robot comes this near to the middle of the door line, m.

@@ -81,7 +81,7 @@ fn everybody_agrees(recording: &Recording, seen: &[(f64, bool, f64)]) {
 
 #[test]
 fn a_door_opens_at_its_time_and_closes_when_nobody_is_near() {
-    let (recording, seen) = run(corridor(DoorOpens::AtTime(8.0), vec![]));
+    let (recording, seen) = run(corridor(DoorOpens::AtTimes(vec![8.0]), vec![]));
     everybody_agrees(&recording, &seen);
     let changes = changes(&recording);
     assert_eq!(changes.len(), 2, "{changes:?}");

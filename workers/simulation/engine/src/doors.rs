@@ -88,7 +88,8 @@ pub(crate) struct LiveDoor {
     /// Place of the first door of its gate.
     gate: usize,
     idle_s: f64,
-    fired: bool,
+    /// How many of its times are over.
+    over: usize,
 }
 
 /// All doors of the run.
@@ -105,7 +106,7 @@ impl Doors {
         for (place, door) in location.doors.iter().enumerate() {
             let gate = doors.iter().position(|other| same_gate(&other.door, door)).unwrap_or(place);
             let open = door.opens == DoorOpens::Always;
-            doors.push(LiveDoor { door: door.clone(), open, gate, idle_s: 0.0, fired: false });
+            doors.push(LiveDoor { door: door.clone(), open, gate, idle_s: 0.0, over: 0 });
         }
         let named = |live: &LiveDoor| matches!(&live.door.opens, DoorOpens::OnEvent(name) if name != ENCOUNTER);
         let listening = doors.iter().any(named);
@@ -164,9 +165,10 @@ impl LiveDoor {
         match &self.door.opens {
             DoorOpens::Always => true,
             DoorOpens::Never => false,
-            DoorOpens::AtTime(at_s) => {
-                let due = now_s >= *at_s && !self.fired;
-                self.fired |= due;
+            DoorOpens::AtTimes(times) => {
+                let over = times.iter().filter(|at_s| now_s >= **at_s).count();
+                let due = over > self.over;
+                self.over = over;
                 due
             }
             DoorOpens::Near(reach) => passers.iter().any(|passer| comes(passer, *reach)),
@@ -189,7 +191,7 @@ mod tests {
     fn doors(opens: DoorOpens) -> Doors {
         let (from, to) = (Point::new(0., -0.5), Point::new(0., 0.5));
         let door = Door { id: "d".into(), kind: DoorKind::Room, from, to, opens, hold_s: 2.0, inside: vec![] };
-        Doors { doors: vec![LiveDoor { door, open: false, gate: 0, idle_s: 0.0, fired: false }], listening: false }
+        Doors { doors: vec![LiveDoor { door, open: false, gate: 0, idle_s: 0.0, over: 0 }], listening: false }
     }
 
     fn at(x: f64, vx: f64, robot: bool) -> Passer {
@@ -214,12 +216,14 @@ mod tests {
     }
 
     #[test]
-    fn a_door_opens_at_its_time_once() {
-        let mut doors = doors(DoorOpens::AtTime(1.0));
+    fn a_door_opens_once_at_each_of_its_times() {
+        let mut doors = doors(DoorOpens::AtTimes(vec![1.0, 5.0]));
         assert!(doors.step(0.5, 0.01, &[], &[]).is_empty());
         assert_eq!(doors.step(1.0, 0.01, &[], &[]).len(), 1);
         let closes = (0..300).filter(|_| !doors.step(1.1, 0.01, &[], &[]).is_empty()).count();
-        assert_eq!(closes, 1);
+        assert_eq!((closes, doors.closed().len()), (1, 1));
+        assert_eq!(doors.step(5.0, 0.01, &[], &[]).len(), 1, "opens again");
+        assert!(doors.closed().is_empty() && doors.step(5.01, 0.01, &[], &[]).is_empty());
     }
 
     #[test]

@@ -70,6 +70,6 @@ fn first_door<'a>(route: &Polyline, doors: &'a [Door]) -> Option<(f64, &'a Door)
 const fn opening_reach(door: &Door) -> f64 {
     match door.opens {
         DoorOpens::Near(reach) | DoorOpens::RobotNear(reach) => reach,
-        DoorOpens::Always | DoorOpens::AtTime(_) | DoorOpens::OnEvent(_) | DoorOpens::Never => f64::INFINITY,
+        DoorOpens::Always | DoorOpens::AtTimes(_) | DoorOpens::OnEvent(_) | DoorOpens::Never => f64::INFINITY,
     }
 }
