@@ -123,7 +123,7 @@ impl Turn<'_> {
             return self.send_back(key, failure, &owners, why);
         }
         let same = self.said_before(key, number, &failure.faults);
-        let feedback_tries = self.state.policy.feedback_tries;
+        let (feedback_tries, reseeds) = (self.state.policy.feedback_tries, self.state.policy.reseeds);
         let rung = match self.job_mut(key) {
             Some(job) => {
                 let next = job.tries.semantic.saturating_add(1);
@@ -135,7 +135,7 @@ impl Turn<'_> {
         };
         if rung <= feedback_tries {
             self.ask_again(key, number, failure, why);
-        } else if rung == feedback_tries + 1 {
+        } else if rung <= feedback_tries.saturating_add(reseeds) {
             self.reseed(key, failure, why);
         } else if found_by != Stage::Proposal && self.repropose(key, &failure.faults) {
             // The new revision has superseded this job.

@@ -32,6 +32,8 @@ pub struct Policy {
     pub unparsable_tries: u32,
     /// Wrong answers that are asked again with the reasons before the seed changes. Default 2.
     pub feedback_tries: u32,
+    /// Asks with another seed after that. Default 1.
+    pub reseeds: u32,
     /// Lost workers at which a job is taken for one that kills its worker. Default 3.
     pub lapses: u32,
     /// New revisions that a scenario may have, re-proposals included. Default 3.
@@ -71,6 +73,7 @@ impl Default for Policy {
             overload_tries: 8,
             unparsable_tries: 2,
             feedback_tries: 2,
+            reseeds: 1,
             lapses: 3,
             repairs: 3,
             reproposals: 1,
@@ -87,6 +90,19 @@ impl Default for Policy {
 }
 
 impl Policy {
+    /// The same with so many further asks after an answer that cannot be taken, the last of them with another seed.
+    /// The default is 3; with 0 the first answer counts and nothing is proposed anew.
+    #[must_use]
+    pub fn asking_again(self, times: u32) -> Self {
+        Self {
+            feedback_tries: times.saturating_sub(1),
+            reseeds: times.min(1),
+            unparsable_tries: times.min(self.unparsable_tries),
+            reproposals: times.min(self.reproposals),
+            ..self
+        }
+    }
+
     /// Longest attempt of a stage, ms.
     #[must_use]
     pub const fn deadline_ms(&self, stage: Stage) -> u64 {

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bundles;
+mod evaluations;
 mod live;
 mod originals;
 mod pages;

@@ -17,15 +17,23 @@ pub(crate) struct Cli {
     /// How results are printed; with json the last line of standard output is one object.
     #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
+    /// Configuration.
+    #[command(flatten)]
+    pub(crate) flags: Flags,
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// Where the configuration comes from; child processes get the same.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Flags {
     /// Configuration file; default `socrates.toml` in the current folder, if there is one.
     #[arg(long, global = true, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
     /// One configuration value, such as `--set supervisor.workers=2`; may be repeated.
     #[arg(long, global = true, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// What to do.
-    #[command(subcommand)]
-    pub(crate) verb: Verb,
 }
 
 /// How results are printed.
@@ -135,6 +143,12 @@ pub(crate) enum Verb {
         /// What to do.
         #[command(subcommand)]
         verb: MapVerb,
+    },
+    /// Measure authors: how often scenarios are right at first, after asking again, and in the run.
+    Evaluate {
+        /// What to evaluate.
+        #[command(subcommand)]
+        verb: crate::evaluate::EvaluateVerb,
     },
     /// List, show and rate the canonical scenarios of the catalogue.
     Scenarios {

@@ -93,7 +93,7 @@ async fn hand_overs(talk: &Talk, cli: &Cli, config: &Config, folder: &Path) -> R
     let work = folder.join("series");
     std::fs::create_dir_all(&work).map_err(|why| ours(why.to_string()))?;
     // Each only when the one before it is done: nothing waits for anything else.
-    let made = make(talk, cli, config, &options, &work, &wanted, 1).await?;
+    let made = make(talk, &cli.flags, config, &options, &work, &wanted, 1).await?;
     let mut found: Vec<f64> = wanted
         .iter()
         .skip(WARM_UP)

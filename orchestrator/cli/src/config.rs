@@ -50,6 +50,12 @@ impl Config {
                 values.insert(key, (value, format!("environment {name}")));
             }
         }
+        Self { values }.with(flags)
+    }
+
+    /// The same with these values, written `key=value`, over its own.
+    pub(crate) fn with(mut self, flags: &[String]) -> Result<Self, Complaint> {
+        let values = &mut self.values;
         for flag in flags {
             let (key, text) = flag.split_once('=').ok_or_else(|| {
                 Complaint::input(
@@ -57,11 +63,11 @@ impl Config {
                     "write --set key=value, for example --set supervisor.workers=2",
                 )
             })?;
-            known(&values, key, "--set")?;
-            let value = typed(&values, key, text, "--set")?;
+            known(values, key, "--set")?;
+            let value = typed(values, key, text, "--set")?;
             values.insert(key.to_owned(), (value, "flag --set".to_owned()));
         }
-        Ok(Self { values })
+        Ok(self)
     }
 
     /// A text value.

@@ -23,6 +23,8 @@ pub(crate) struct PastJob {
     pub(crate) sent_back: Vec<Fault>,
     /// Attempts in order.
     pub(crate) attempts: Vec<Attempt>,
+    /// What a scoring job found.
+    pub(crate) verdict: Option<socrates_model::Verdict>,
     /// Outputs of its result.
     pub(crate) artifacts: Vec<Artifact>,
 }
@@ -45,17 +47,18 @@ pub(crate) fn read(path: &Path) -> Result<History, StoreError> {
     for (key, attempt) in snapshot.attempts {
         attempts.entry(key).or_default().push(attempt);
     }
-    let mut results: BTreeMap<JobKey, Vec<Artifact>> =
-        snapshot.results.into_iter().map(|(key, result)| (key, result.artifacts)).collect();
+    let mut results: BTreeMap<JobKey, _> = snapshot.results.into_iter().collect();
     let mut history = History::default();
     for job in snapshot.jobs {
+        let result = results.remove(&job.key);
         let past = PastJob {
             state: format!("{:?}", job.state).to_lowercase(),
             seed: job.spec.seed,
             inputs: job.spec.inputs,
             sent_back: job.sent_back,
             attempts: attempts.remove(&job.key).unwrap_or_default(),
-            artifacts: results.remove(&job.key).unwrap_or_default(),
+            verdict: result.as_ref().and_then(|result| result.verdict),
+            artifacts: result.map(|result| result.artifacts).unwrap_or_default(),
             key: job.key,
         };
         history.0.entry(past.key.scenario.clone()).or_default().push(past);

@@ -21,6 +21,7 @@ mod cite;
 mod cluster;
 mod config;
 mod dev;
+mod evaluate;
 mod exit;
 mod explain;
 mod figure;
@@ -74,7 +75,7 @@ fn main() -> ExitCode {
 }
 
 fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
-    let config = Config::load(cli.config.as_deref(), std::env::vars(), &cli.set)?;
+    let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.set)?;
     let key = std::env::var(config.text("author.key_variable")).ok().filter(|key| !key.is_empty());
     start_log(&config)?;
     let runtime =
@@ -120,6 +121,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),
         Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
+        Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb, key_found).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
             ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),

@@ -103,6 +103,7 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         lease_ms: config.number("orchestrator.lease_ms").clamp(1_000, 600_000),
         beat_ms: config.number("orchestrator.beat_ms").clamp(100, 200_000),
         repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
+        asks_again: u32::try_from(config.number("orchestrator.asks_again")).unwrap_or(3).min(10),
         durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };

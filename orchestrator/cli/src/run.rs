@@ -108,7 +108,7 @@ async fn single(
     claim(&dir, &work, wish)?;
     let id = scenario_id(&prepared.name, options.seed, 0, 1)?;
     let wanted = vec![Wanted { id, seed: options.seed, prepared: &prepared }];
-    let mut made = make(talk, cli, config, options, &work, &wanted, wanted.len()).await?;
+    let mut made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
     let status = made.statuses.pop().ok_or_else(|| {
         Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
     })?;
@@ -234,7 +234,7 @@ async fn batch(
             });
         }
     }
-    let made = make(talk, cli, config, options, &work, &wanted, wanted.len()).await?;
+    let made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
     let mut rows = Vec::new();
     for status in &made.statuses {
         let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };

@@ -9,7 +9,7 @@ use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, Stat
 use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
-use crate::args::{Cli, RunOptions};
+use crate::args::{Flags, RunOptions};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::{self, History};
@@ -62,7 +62,7 @@ const SUBMIT_AT_ONCE: usize = 40;
 /// Makes the scenarios, at most so many `at_once`, resuming what the work folder holds.
 pub(crate) async fn make(
     talk: &Talk,
-    cli: &Cli,
+    flags: &Flags,
     config: &Config,
     options: &RunOptions,
     work: &Path,
@@ -72,7 +72,7 @@ pub(crate) async fn make(
     let blobs = LocalBlobs::new(work.join("blobs"), false);
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
-    let mut supervisor = Supervisor::start(work, config, workers, &passed_on(cli)).await?;
+    let mut supervisor = Supervisor::start(work, config, workers, &passed_on(flags)).await?;
     let followed = follow_all(talk, &mut supervisor, &specs, at_once).await;
     talk.clear();
     supervisor.stop().await;
@@ -101,12 +101,12 @@ async fn follow_all(
 }
 
 /// Global flags that the children need too.
-fn passed_on(cli: &Cli) -> Vec<String> {
+fn passed_on(flags: &Flags) -> Vec<String> {
     let mut args = Vec::new();
-    if let Some(file) = &cli.config {
+    if let Some(file) = &flags.config {
         args.extend(["--config".to_owned(), file.display().to_string()]);
     }
-    for set in &cli.set {
+    for set in &flags.set {
         args.extend(["--set".to_owned(), set.clone()]);
     }
     args

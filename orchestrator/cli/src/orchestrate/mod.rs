@@ -46,6 +46,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) beat_ms: u64,
     /// New revisions that a scenario may have.
     pub(crate) repairs: u32,
+    /// Further asks after an answer that cannot be taken.
+    pub(crate) asks_again: u32,
     /// What a commit of the job store outlives.
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
@@ -70,7 +72,7 @@ pub(crate) async fn serve(
         beat_ms: config.beat_ms,
         repairs: config.repairs,
         code_version: config.code_version,
-        ..Policy::default()
+        ..Policy::default().asking_again(config.asks_again)
     };
     let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
     let (store, state) = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept))

@@ -36,6 +36,7 @@ async fn open(dir: &Path) -> Site {
         lease_ms: 15_000,
         beat_ms: 2_000,
         repairs: 3,
+        asks_again: 3,
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
@@ -226,6 +227,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         lease_ms: 15_000,
         beat_ms: 2_000,
         repairs: 3,
+        asks_again: 3,
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! counts of runs ─► wilson          labels of two raters ─► cohen_kappa
+//! pairs of runs  ─► mcnemar
 //! values of runs ─► quantile, median ─► bootstrap_median (seeded)
 //! ```
 //!
@@ -12,12 +13,14 @@
 
 mod bootstrap;
 mod kappa;
+mod mcnemar;
 mod order;
 mod rank;
 mod wilson;
 
 pub use bootstrap::{Bootstrap, bootstrap_median};
 pub use kappa::{cohen_kappa, krippendorff_alpha};
+pub use mcnemar::mcnemar;
 pub use order::{mean, median, quantile, sample_sd};
 pub use rank::kendall_tau;
 pub use wilson::{Z_95, wilson};
