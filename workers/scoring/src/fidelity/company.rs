@@ -86,7 +86,7 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     let marks: Vec<Mark> = signals
         .of(human)
         .iter()
-        .zip(ways)
+        .filter_map(|moment| Some((moment, *ways.get(moment.index)?)))
         .map(|(moment, arc_m)| {
             let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();
             let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside);
@@ -113,7 +113,8 @@ pub(super) fn parallel(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Fin
     }
     let Some(robot) = &signals.tracks.robot else { return Finding::not_applicable("there is no robot") };
     let moments = signals.of(human);
-    let marks = moments.iter().zip(arcs(&robot.samples)).map(|(moment, arc_m)| {
+    let ways = arcs(&robot.samples);
+    let marks = moments.iter().filter_map(|moment| Some((moment, *ways.get(moment.index)?))).map(|(moment, arc_m)| {
         let margin = (PARALLEL_M - moment.distance_m)
             .min(SAME_WAY_RAD - moment.course_rad)
             .min(moment.human.speed() - WALKING_MPS)

@@ -135,7 +135,7 @@ struct Conflict {
 /// The tracks at every 0.25 m of way, each with its direction.
 fn steps(track: &Track) -> Vec<(Point, socrates_model::Vector)> {
     let mut kept: Vec<Point> = Vec::new();
-    for sample in &track.samples {
+    for sample in track.present() {
         if kept.last().is_none_or(|last| (sample.at - last).norm() >= 0.25) {
             kept.push(sample.at);
         }
@@ -182,7 +182,7 @@ pub(super) fn crosses(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
         return Finding::never(-1.0, vec![], format!("the ways of {human} and the robot never meet{place}"));
     };
     let arrival = |track: &Track| {
-        track.samples.iter().find(|sample| (sample.at - meet.at).norm() <= CONFLICT_M).map(|sample| sample.t)
+        track.present().find(|sample| (sample.at - meet.at).norm() <= CONFLICT_M).map(|sample| sample.t)
     };
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-1.0, vec![], format!("the ways of {human} and the robot never meet{place}"));

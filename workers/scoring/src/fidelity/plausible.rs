@@ -46,8 +46,7 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
         let allowed = OVERLAP_M + location.grid.resolution_m;
         for track in signals.tracks.all() {
             let worst = track
-                .samples
-                .iter()
+                .present()
                 .map(|sample| (track.radius_m - field.clearance(&sample.at), sample.t))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((depth, t)) = worst.filter(|(depth, _)| *depth > allowed) {
@@ -72,10 +71,16 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
 
 fn overlap(a: &Track, b: &Track) -> Option<Flaw> {
     let touch = a.radius_m + b.radius_m;
+    // The smallest squared distance first: roots only where two overlap at all.
+    let mut least = f64::INFINITY;
+    for (p, q) in a.beside(b) {
+        least = least.min((p.at - q.at).norm_squared());
+    }
+    if least > touch * touch {
+        return None;
+    }
     let (depth, t) = a
-        .samples
-        .iter()
-        .zip(&b.samples)
+        .beside(b)
         .map(|(p, q)| (touch - (p.at - q.at).norm(), p.t))
         .max_by(|x, y| x.0.total_cmp(&y.0))
         .filter(|(depth, _)| *depth > OVERLAP_M)?;
@@ -88,6 +93,10 @@ fn too_fast(track: &Track) -> Option<Flaw> {
     let mut top: Option<(f64, f64)> = None;
     for sample in &track.samples {
         let dt = sample.t - from.t;
+        if !(sample.there && from.there) {
+            from = sample;
+            continue;
+        }
         if dt < SPEED_SECS - 1e-9 {
             continue;
         }

@@ -1,11 +1,9 @@
 //! Contacts with people and walls, and who ran into whom.
 
+use crate::metrics::scene::{REARM_M, REARM_SECS};
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
 use crate::series::{Series, Span};
 
-/// A contact is over when the two have been this far apart, m, for this long, s.
-const REARM_M: f64 = 0.05;
-const REARM_SECS: f64 = 0.5;
 /// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
 const WALL_SLACK_M: f64 = 0.05;
 
@@ -76,7 +74,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let contacts = human_contacts(scene);
+    let contacts = &scene.contacts;
     let shares: Vec<f64> = contacts.iter().filter_map(|(index, span)| share(scene, *index, span.from_s)).collect();
     let robots = shares.iter().filter(|share| **share > 0.5).count();
     let mean = if shares.is_empty() {
@@ -95,18 +93,6 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         Ok(count(walls.len())),
         Ok(walls.iter().map(Span::length_s).sum()),
     ]
-}
-
-/// Contacts with humans: index of the human and the stretch.
-pub(crate) fn human_contacts(scene: &Scene<'_>) -> Vec<(usize, Span)> {
-    scene
-        .distances
-        .iter()
-        .enumerate()
-        .flat_map(|(index, distance)| {
-            distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
-        })
-        .collect()
 }
 
 /// Contacts with walls.

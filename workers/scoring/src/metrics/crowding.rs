@@ -32,12 +32,8 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let centers: Vec<Series> = scene
-        .pairs()
-        .map(|(robot, human)| {
-            robot.samples.iter().zip(&human.samples).map(|(r, h)| (r.t, (r.at - h.at).norm())).collect()
-        })
-        .collect();
+    let centers: Vec<Series> =
+        scene.pairs().map(|(robot, human)| robot.between(human, |r, h| (r.at - h.at).norm())).collect();
     let length = scene.length_s();
     let person_seconds: f64 = centers.iter().map(|distance| distance.time_below(5.0)).sum();
     let most = scene

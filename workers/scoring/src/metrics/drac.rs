@@ -36,14 +36,15 @@ pub(super) const FAMILY: Family = Family {
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let mut top: Option<f64> = None;
     for (robot, human) in scene.pairs() {
-        for (r, h) in robot.samples.iter().zip(&human.samples) {
+        for (r, h) in robot.beside(human) {
             let line = h.at - r.at;
+            let nearing = -line.dot(&(h.velocity - r.velocity));
             let length = line.norm();
             let gap = length - robot.radius_m - human.radius_m;
             if gap < TOUCH_M {
                 continue;
             }
-            let closing = (-line.dot(&(h.velocity - r.velocity)) / length).max(0.0);
+            let closing = (nearing / length).max(0.0);
             let drac = closing * closing / (2.0 * gap);
             top = Some(top.map_or(drac, |old: f64| old.max(drac)));
         }

@@ -62,6 +62,14 @@ pub(super) const FAMILY: Family = Family {
     measure,
 };
 
+/// From this exponent on a force is below 1e-19 and not worth an exponential.
+pub(super) const FADED: f64 = 45.0;
+
+/// `e^(-x)`, and nothing where it is too small to count.
+pub(super) fn faded(x: f64) -> f64 {
+    if x > FADED { 0.0 } else { libm::exp(-x) }
+}
+
 /// Social force of another agent on one: with `e` from self to other, `t = lambda (v_self - v_other) + e`,
 /// `B = gamma |t|` and `theta` the angle from `t` to `e`.
 pub(crate) fn social_force(one: &Sample, other: &Sample) -> Vector {
@@ -79,8 +87,11 @@ pub(crate) fn social_force(one: &Sample, other: &Sample) -> Vector {
     let b = GAMMA * size;
     let along = t / size;
     let left = Vector::new(-along.y, along.x);
+    if distance > FADED * b {
+        return Vector::zeros();
+    }
     let theta = libm::atan2(along.perp(&e), along.dot(&e));
-    let decay = |n: f64| libm::exp(-distance / b - (n * b * theta) * (n * b * theta));
+    let decay = |n: f64| faded(distance / b + (n * b * theta) * (n * b * theta));
     let sign = if theta > 0.0 {
         1.0
     } else if theta < 0.0 {
@@ -101,6 +112,9 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         for ((r, h), (people, sum)) in
             robot.samples.iter().zip(&human.samples).zip(on_people.iter_mut().zip(on_robot.iter_mut()))
         {
+            if !h.there {
+                continue;
+            }
             people.1 += social_force(h, r).norm();
             *sum += social_force(r, h);
         }

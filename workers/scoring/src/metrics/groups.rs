@@ -97,7 +97,7 @@ fn members<'s>(scene: &'s Scene<'_>, ids: &[HumanId]) -> Vec<&'s Track> {
 fn outside(robot: &Track, group: &[&Track]) -> Series {
     let mut found = Vec::new();
     for (index, r) in robot.samples.iter().enumerate() {
-        let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).collect();
+        let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).filter(|s| s.there).collect();
         if now.len() < group.len() {
             continue;
         }
@@ -113,7 +113,7 @@ fn crossings(robot: &Track, a: &Track, b: &Track) -> usize {
     let pairs = a.samples.iter().zip(&b.samples);
     steps
         .zip(pairs)
-        .filter(|((_, _), (p, q))| (p.at - q.at).norm() < TOGETHER_M)
+        .filter(|((_, _), (p, q))| p.there && q.there && (p.at - q.at).norm() < TOGETHER_M)
         .filter(|((r, s), (p, q))| {
             // A sample on the line itself belongs to the step that ends there.
             let side = |point: &Point| (q.at - p.at).perp(&(point - p.at));
@@ -130,12 +130,15 @@ fn disturbance(robot: &Track, a: &Track, b: &Track) -> Series {
         .iter()
         .zip(a.samples.iter().zip(&b.samples))
         .map(|(r, (p, q))| {
+            if !(p.there && q.there) {
+                return (r.t, None);
+            }
             let line = q.at - p.at;
             let length = line.norm().max(1e-9);
             let along = (r.at - p.at).dot(&line) / length;
             let beyond = (-along).max(along - length);
             let aside = ((r.at - p.at).perp(&line) / length).abs();
-            (r.t, beyond.max(aside - RELATION_M))
+            (r.t, Some(beyond.max(aside - RELATION_M)))
         })
         .collect()
 }

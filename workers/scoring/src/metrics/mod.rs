@@ -348,6 +348,35 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn who_is_not_there_counts_for_nothing() {
+        let alone = recording(&[Walk::robot(-4., 0., 0.5, 0.), Walk::human(1, 0., 3., 0., 0.)], 16.0, 0.1);
+        // One stands on the robot's way and comes to be when the robot has passed; another is never there.
+        let walks = [
+            Walk::robot(-4., 0., 0.5, 0.),
+            Walk::human(1, 0., 3., 0., 0.),
+            Walk::human(2, -1., 0., 0., 0.),
+            Walk::human(3, 0., 0.1, 0., 0.),
+        ];
+        let mut run = recording(&walks, 16.0, 0.1);
+        crate::fixture::absent(&mut run, 2, 0.0..15.0);
+        crate::fixture::absent(&mut run, 3, 0.0..99.0);
+        let beside = |run: &Recording, id: &str| value(run, id).unwrap();
+        assert_eq!(beside(&run, "human_collisions") + beside(&run, "near_misses"), 0.0);
+        assert!((beside(&run, "human_distance_min") - beside(&alone, "human_distance_min")).abs() < 1e-9);
+        // From 15 s on, two are there: the one left behind 4.5 m away or more.
+        assert!((beside(&run, "personal_entries") - beside(&alone, "personal_entries")).abs() < 1e-9);
+        let tracks = Tracks::read(&run).unwrap();
+        assert_eq!(tracks.humans.len(), 2);
+        let evidence = Evidence::of(&run);
+        let signals = Signals::new(&evidence, &tracks);
+        assert!(crate::fidelity::judge(&signals).flaws.is_empty());
+        crate::fixture::absent(&mut run, 2, 0.0..99.0);
+        for sheet in sheets() {
+            assert_eq!(value(&run, sheet.id), value(&alone, sheet.id), "{}", sheet.id);
+        }
+    }
+
+    #[test]
     fn missing_data_is_a_note_and_never_zero() {
         let run = recording(&[Walk::robot(0., 0., 0.5, 0.)], 4.0, 0.1);
         let evidence = Evidence::of(&run);
