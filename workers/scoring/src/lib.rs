@@ -17,6 +17,7 @@ mod circle;
 mod doubts;
 mod evidence;
 mod series;
+mod skips;
 mod tracks;
 
 pub mod fidelity;

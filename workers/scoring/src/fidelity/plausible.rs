@@ -5,6 +5,7 @@ use socrates_model::{AgentId, EventKind};
 use crate::evidence::REFERENCE;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
+use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
 /// Overlap that contact resolution may leave, m.
@@ -35,9 +36,10 @@ pub struct Flaw {
 pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
     let mut found = Vec::new();
     let agents: Vec<&Track> = signals.full.all().collect();
-    for (index, a) in agents.iter().enumerate() {
-        for b in agents.iter().skip(index + 1) {
-            found.extend(overlap(a, b));
+    let ways: Vec<Vec<f64>> = agents.iter().map(|track| arcs(track.samples.iter().map(|sample| &sample.at))).collect();
+    for (index, (a, way_a)) in agents.iter().zip(&ways).enumerate() {
+        for (b, way_b) in agents.iter().zip(&ways).skip(index + 1) {
+            found.extend(overlap((a, way_a), (b, way_b)));
         }
         found.extend(too_fast(a));
     }
@@ -69,14 +71,22 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
     found
 }
 
-fn overlap(a: &Track, b: &Track) -> Option<Flaw> {
-    let touch = a.radius_m + b.radius_m;
-    // The smallest squared distance first: roots only where two overlap at all.
-    let mut least = f64::INFINITY;
-    for (p, q) in a.beside(b) {
-        least = least.min((p.at - q.at).norm_squared());
+/// Whether two discs ever overlap, given the ways of both.
+fn touches((a, way_a): (&Track, &[f64]), (b, way_b): (&Track, &[f64]), touch: f64) -> bool {
+    let mut index = 0;
+    while let (Some(p), Some(q)) = (a.samples.get(index), b.samples.get(index)) {
+        let apart = (p.at - q.at).norm() - touch;
+        if apart <= 0.0 && p.there && q.there {
+            return true;
+        }
+        index = next([way_a, way_b], index, apart);
     }
-    if least > touch * touch {
+    false
+}
+
+fn overlap((a, way_a): (&Track, &[f64]), (b, way_b): (&Track, &[f64])) -> Option<Flaw> {
+    let touch = a.radius_m + b.radius_m;
+    if !touches((a, way_a), (b, way_b), touch) {
         return None;
     }
     let (depth, t) = a

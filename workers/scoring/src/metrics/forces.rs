@@ -115,8 +115,10 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
             if !h.there {
                 continue;
             }
-            people.1 += social_force(h, r).norm();
-            *sum += social_force(r, h);
+            // Swapped, the line, the velocities and so the force change sign, and nothing else.
+            let push = social_force(h, r);
+            people.1 += push.norm();
+            *sum -= push;
         }
     }
     let on_robot: Series = robot.samples.iter().zip(&on_robot).map(|(r, force)| (r.t, force.norm())).collect();

@@ -3,6 +3,7 @@
 use socrates_model::Point;
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
 /// Spacing of the points at which two ways are compared, m.
@@ -38,23 +39,21 @@ fn gap_s(robot: &Track, way: &[Point], human: &Track) -> Option<f64> {
 
 /// The first of the points of a way that are nearest to another way, with its distance, m.
 fn nearest(way: &[Point], other: &[Point]) -> Option<(f64, Point)> {
+    let ahead = arcs(other.iter());
     let mut best: Option<(f64, Point)> = None;
-    let mut looked: Option<(f64, Point)> = None;
+    let mut hint = 0;
     for at in way {
-        // No point is nearer to the other way than the last one looked at by more than the step between them.
-        if let (Some((apart, from)), Some((least, _))) = (looked, best)
-            && apart - (at - from).norm() > least + 1e-9
-        {
-            continue;
+        let mut least = (at - other.get(hint)?).norm();
+        let mut index = 0;
+        while let Some(point) = other.get(index) {
+            let apart = (at - point).norm();
+            if apart < least {
+                (least, hint) = (apart, index);
+            }
+            index = next([&ahead], index, apart - least);
         }
-        let mut square = f64::INFINITY;
-        for point in other {
-            square = square.min((at - point).norm_squared());
-        }
-        let apart = square.sqrt();
-        looked = Some((apart, *at));
-        if apart < best.map_or(f64::INFINITY, |(least, _)| least) {
-            best = Some((apart, *at));
+        if least < best.map_or(f64::INFINITY, |(apart, _)| apart) {
+            best = Some((least, *at));
         }
     }
     best
