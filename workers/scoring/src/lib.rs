@@ -16,6 +16,7 @@
 mod circle;
 mod doubts;
 mod evidence;
+mod hull;
 mod series;
 mod skips;
 mod tracks;

@@ -98,6 +98,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         ),
         None => Finding::fails(longest - for_s, vec![], text),
     }
+    .shifted(longest - for_s)
 }
 
 /// The human gets away from the robot by its own motion.
@@ -305,11 +306,12 @@ fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Ve
 
 /// Whether a delay is within its limit, late, or too long.
 pub(super) fn timely(delay: f64, limit: f64, times: Vec<f64>, text: String) -> Finding {
-    if delay <= limit {
+    let finding = if delay <= limit {
         Finding::holds(limit - delay, times, text)
     } else if delay <= LATE_FACTOR * limit + 1.0 {
         Finding::late(limit - delay, times, text)
     } else {
         Finding::fails(limit - delay, times, text)
-    }
+    };
+    finding.shifted(limit - delay)
 }

@@ -89,13 +89,14 @@ fn kept(marks: &[Mark], for_s: f64, what: &str, near: bool) -> Finding {
     };
     let spans = stretches(marks.iter().copied(), 0.0);
     let longest = spans.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
-    match found.first_s {
+    let finding = match found.first_s {
         Some(from) => {
             Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s, {longest:.1} s"))
         }
         None if near => Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s")),
         None => Finding::never(found.margin, vec![found.best_s], format!("{what}: never")),
-    }
+    };
+    finding.shifted(longest - for_s)
 }
 
 /// So many people per square metre about the robot for some time.
@@ -193,9 +194,10 @@ pub(super) fn converges(signals: &Signals<'_>, within_m: f64, within_s: f64) -> 
         "all within {within_m:.1} m of the encounter: {early} first at {first:.1} s, {late} last at {last:.1} s (at most {within_s:.1} s apart asked)"
     );
     let times = vec![*last, *first];
-    match spread {
+    let finding = match spread {
         spread if spread <= within_s => Finding::holds(within_s - spread, times, text),
         spread if spread <= LATE_FACTOR * within_s => Finding::late(within_s - spread, times, text),
         spread => Finding::fails(within_s - spread, times, text),
-    }
+    };
+    finding.shifted(within_s - spread)
 }

@@ -119,9 +119,10 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
         "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s (at most {gap_s:.1} s asked)"
     );
     let times = vec![first.max(second), first, second];
-    match gap {
+    let finding = match gap {
         gap if gap <= gap_s => Finding::holds(gap_s - gap, times, text),
         gap if gap <= LATE_FACTOR * gap_s => Finding::late(gap_s - gap, times, text),
         gap => Finding::fails(gap_s - gap, times, text),
-    }
+    };
+    finding.shifted(gap_s - gap)
 }

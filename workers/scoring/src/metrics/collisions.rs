@@ -104,7 +104,7 @@ pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
 }
 
 /// The robot's share of the closing speed just before a time; `None` when nobody closes.
-fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
+pub(super) fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
     let (robot, person) = scene.pairs().nth(human)?;
     let before = (t - 0.1).max(robot.samples.first()?.t);
     let (r, h) = (robot.at(before)?, person.at(before)?);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use socrates_maps::Geodesic;
-use socrates_model::Point;
+use socrates_model::{Missing, Point};
 
 use crate::fidelity::{GOAL_M, Signals};
 use crate::metrics::Need;
@@ -65,9 +65,9 @@ impl<'a> Scene<'a> {
         Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts }
     }
 
-    /// Why metrics with these needs cannot be had; `None` when they can.
+    /// What is missing for metrics with these needs, and why; `None` when nothing is.
     #[must_use]
-    pub fn lacks(&self, needs: &[Need]) -> Option<String> {
+    pub fn lacks(&self, needs: &[Need]) -> Option<(Missing, String)> {
         needs.iter().find_map(|need| {
             let (there, what) = match need {
                 Need::Tracks => (true, ""),
@@ -82,13 +82,16 @@ impl<'a> Scene<'a> {
                 Need::Twin => {
                     (self.signals.evidence.twin.is_some(), "there is no run without the robot to compare with")
                 }
+                Need::PlannerTimes => (false, "recordings hold no computing times of planners"),
+                Need::Commands => (false, "recordings hold no commands"),
+                Need::Solo => (false, "there is no run of the robot alone to compare with"),
                 Need::OtherRobots => (false, "recordings hold one robot"),
                 Need::Events => (
                     self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
                     "nobody makes a gesture",
                 ),
             };
-            (!there).then(|| what.to_owned())
+            (!there).then(|| (need.missing(), what.to_owned()))
         })
     }
 
