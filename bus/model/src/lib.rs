@@ -58,7 +58,7 @@ pub use polyline::Polyline;
 pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
-pub use report::{ClauseResult, MetricValue, Report, Verdict};
+pub use report::{ClauseResult, MetricValue, Missing, Report, Verdict};
 pub use request::Request;
 pub use rule::{Action, RobotRule, Rule, Trigger};
 pub use time::SimTime;

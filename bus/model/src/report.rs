@@ -74,6 +74,10 @@ pub struct ClauseResult {
     pub times_s: Vec<f64>,
     /// What was seen, with numbers.
     pub evidence: String,
+    /// Time robustness, s: by how much the evidence could come sooner, later or be shorter before the standing changes;
+    /// negative: by how much it misses. Absent where time plays no part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shift_s: Option<f64>,
 }
 
 /// Standing of a clause.
@@ -104,9 +108,34 @@ pub struct MetricValue {
     pub value: Option<f64>,
     /// Whether larger is better (1), worse (-1), or neither (0).
     pub direction: i8,
+    /// Version of the metric's formula; figures of different versions are not mixed.
+    #[serde(default = "first", skip_serializing_if = "is_first")]
+    pub version: u32,
+    /// How the value is missing; absent where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub missing: Option<Missing>,
     /// Why there is no value, or the convention used.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
+}
+
+const fn first() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands a reference")]
+const fn is_first(version: &u32) -> bool {
+    *version == 1
+}
+
+/// How a value is missing. Never as 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Missing {
+    /// The evidence lacks what it takes (a map, a run without the robot …); more evidence of the same run would give it.
+    Unavailable,
+    /// The run has no such value (nobody makes a gesture, the robot never arrives …).
+    NotApplicable,
 }
 
 /// A wish of the report: do a stage again with this reason.

@@ -72,10 +72,10 @@ fn holes(track: &Track) -> Option<String> {
 /// Whether the agent is in walls or off the map.
 fn off(track: &Track, location: &Location, field: &DistanceField) -> Option<String> {
     let all = track.samples.len().max(1);
-    let bad = track.samples.iter().filter(|s| field.clearance(&s.at) <= 0.0).count();
+    let bad = track.present().filter(|s| field.clearance(&s.at) <= 0.0).count();
     #[expect(clippy::cast_precision_loss, reason = "samples of a run")]
     let share = bad as f64 / all as f64;
-    let first = track.samples.iter().find(|s| field.clearance(&s.at) <= 0.0)?;
+    let first = track.present().find(|s| field.clearance(&s.at) <= 0.0)?;
     (share > OFF_SHARE).then(|| {
         format!(
             "{} is in a wall or off the map `{}` for {:.0} % of the time, first at ({:.1}, {:.1}): is the map's origin another?",

@@ -125,6 +125,22 @@ pub(crate) fn event(run: &mut Recording, t: f64, kind: EventKind) {
     run.events.push(Event { time: SimTime::from_nanos((t * 1e9) as u64), kind });
 }
 
+/// Takes a human out of the run for a stretch of time, as the simulation writes those who come and go.
+pub(crate) fn absent(run: &mut Recording, number: u32, times: std::ops::Range<f64>) {
+    let known = run.header.leaves.iter().position(|leaf| leaf == "absent");
+    let leaf = known.unwrap_or_else(|| {
+        run.header.leaves.push("absent".into());
+        run.header.leaves.len() - 1
+    });
+    let id = AgentId::Human(HumanId::new(number));
+    for state in run.frames.iter_mut().filter(|state| state.agent == id.number()) {
+        if times.contains(&(state.tick as f64 * run.header.step_s)) {
+            state.flags = AgentState::flags(id, Gesture::None, u16::try_from(leaf).unwrap());
+            (state.vx, state.vy) = (0.0, 0.0);
+        }
+    }
+}
+
 /// An open floor of 40 by 20 m at 0.1 m whose lower left corner is (-20, -10), with walls at the rectangles
 /// `(x0, y0, x1, y1)`.
 pub(crate) fn floor(

@@ -16,7 +16,9 @@
 mod circle;
 mod doubts;
 mod evidence;
+mod hull;
 mod series;
+mod skips;
 mod tracks;
 
 pub mod fidelity;

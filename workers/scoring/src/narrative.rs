@@ -113,7 +113,9 @@ fn near(signals: &Signals<'_>, t: f64) -> String {
     let nearest = signals
         .moments
         .iter()
-        .filter_map(|(human, moments)| Some((human, moments.iter().find(|moment| moment.t >= t)?)))
+        .filter_map(|(human, moments)| {
+            Some((human, moments.iter().find(|moment| moment.t >= t && moment.t < t + 1.0)?))
+        })
         .filter(|(_, moment)| moment.ahead_m > 0.0 && moment.distance_m < 3.0)
         .min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m));
     nearest.map_or_else(String::new, |(human, moment)| format!(", {human} {:.1} m ahead", moment.distance_m))

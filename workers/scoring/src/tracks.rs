@@ -3,7 +3,9 @@
 use socrates_model::geometry::wrap_angle;
 use socrates_model::nalgebra::Vector2;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{AgentId, Gesture, HumanId, Point, Recording, Vector};
+use socrates_model::{AgentId, AgentState, Gesture, HumanId, Point, Recording, Vector};
+
+use crate::series::Series;
 
 /// Why a recording cannot be read as tracks.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -35,12 +37,24 @@ pub enum TrackFault {
         agents: usize,
     },
     /// A state is NaN or infinite.
-    #[error("{agent} has a state that is not finite at {time_s:.2} s")]
+    #[error("{agent} has the {what} `{value}` at {time_s:.2} s: states must be finite numbers")]
     NotFinite {
         /// Who.
         agent: AgentId,
         /// When, s.
         time_s: f64,
+        /// Which part of the state.
+        what: &'static str,
+        /// Its value: NaN or infinite.
+        value: String,
+    },
+    /// The header names an agent twice.
+    #[error("the header names {agent} `{times}` times: each agent has one track")]
+    Twice {
+        /// Who.
+        agent: AgentId,
+        /// How often.
+        times: usize,
     },
     /// Time does not rise.
     #[error("tick `{after}` follows tick `{before}`: ticks must rise")]
@@ -67,6 +81,8 @@ pub struct Sample {
     pub gesture: Gesture,
     /// Index of the running leaf in the header's list, 0 for none.
     pub leaf: u16,
+    /// Whether the agent is there: somebody recorded comes and goes, and its state before and after means nothing.
+    pub there: bool,
 }
 
 impl Sample {
@@ -99,6 +115,9 @@ impl Sample {
 
 /// Faster than this is moving, slower is stopped, m/s (`spec/case_studies`).
 pub const MOVING_MPS: f64 = 0.1;
+
+/// Leaf name of somebody who is not there (yet, or any more), as the simulation writes it.
+const ABSENT_LEAF: &str = "absent";
 
 /// One agent through the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,6 +157,13 @@ impl Tracks {
         if recording.frames.len() != ticks * agents.len() {
             return Err(TrackFault::Torn { states: recording.frames.len(), agents: agents.len() });
         }
+        for info in agents {
+            let times = agents.iter().filter(|other| other.agent == info.agent).count();
+            if times > 1 {
+                return Err(TrackFault::Twice { agent: info.agent, times });
+            }
+        }
+        let absent = recording.header.leaves.iter().position(|leaf| leaf == ABSENT_LEAF);
         let step = recording.header.step_s;
         let step = if step.is_finite() && step > 0.0 { step } else { STEP_SECS };
         let mut tracks: Vec<Track> = Vec::with_capacity(agents.len());
@@ -164,15 +190,17 @@ impl Tracks {
                     return Err(TrackFault::Mixed { tick, found: state.agent, wanted: track.agent });
                 }
                 if ![state.x, state.y, state.yaw, state.vx, state.vy].iter().all(|value| value.is_finite()) {
-                    return Err(TrackFault::NotFinite { agent: track.agent, time_s: t });
+                    return Err(not_finite(track.agent, t, state));
                 }
+                let leaf = state.leaf();
                 track.samples.push(Sample {
                     t,
                     at: state.point(),
                     velocity: Vector2::new(state.vx, state.vy),
                     yaw: state.yaw,
                     gesture: state.gesture(),
-                    leaf: state.leaf(),
+                    leaf,
+                    there: absent != Some(usize::from(leaf)) || leaf == 0,
                 });
             }
         }
@@ -181,6 +209,8 @@ impl Tracks {
         }
         let (robots, mut humans): (Vec<Track>, Vec<Track>) =
             tracks.into_iter().partition(|track| track.agent == AgentId::Robot);
+        // Who never comes is not in the run.
+        humans.retain(|track| track.samples.iter().any(|sample| sample.there));
         humans.sort_by_key(|track| track.agent);
         Ok(Self { robot: robots.into_iter().next(), humans })
     }
@@ -211,7 +241,10 @@ impl Tracks {
     /// The tracks up to a time.
     #[must_use]
     pub fn until(&self, end_s: f64) -> Self {
-        self.map(|track| track.samples.iter().copied().take_while(|sample| sample.t <= end_s + 1e-9).collect())
+        self.map(|track| {
+            let end = track.samples.partition_point(|sample| sample.t <= end_s + 1e-9);
+            track.samples.get(..end).unwrap_or_default().to_vec()
+        })
     }
 
     /// The tracks with samples at least `step_s` apart: as recorded when that is coarser.
@@ -258,8 +291,11 @@ impl Track {
 
     /// Tracks from other tools often come without velocities: then they are taken from the positions.
     fn fill_velocity(&mut self) {
+        if self.samples.iter().any(|sample| sample.velocity != Vector::zeros()) {
+            return;
+        }
         let moves = self.samples.iter().zip(self.samples.iter().skip(1)).any(|(a, b)| (b.at - a.at).norm() > 1e-6);
-        if !moves || self.samples.iter().any(|sample| sample.speed() > 0.0) {
+        if !moves {
             return;
         }
         let points: Vec<(f64, Point)> = self.samples.iter().map(|sample| (sample.t, sample.at)).collect();
@@ -274,15 +310,39 @@ impl Track {
         }
     }
 
-    /// State at a time, straight between samples; `None` outside the recording.
+    /// The states in which the agent is there.
+    pub fn present(&self) -> impl DoubleEndedIterator<Item = &Sample> + Clone {
+        self.samples.iter().filter(|sample| sample.there)
+    }
+
+    /// The states of two agents at the same times, while both are there.
+    pub fn beside<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = (&'a Sample, &'a Sample)> {
+        self.samples.iter().zip(&other.samples).filter(|(mine, theirs)| mine.there && theirs.there)
+    }
+
+    /// A quantity of two agents over time, with holes while one of them is not there.
+    pub fn between(&self, other: &Self, value: impl Fn(&Sample, &Sample) -> f64) -> Series {
+        let each = self.samples.iter().zip(&other.samples);
+        each.map(|(mine, theirs)| (mine.t, (mine.there && theirs.there).then(|| value(mine, theirs)))).collect()
+    }
+
+    /// A quantity of the agent over time, with holes while it is not there.
+    pub fn curve(&self, value: impl Fn(&Sample) -> f64) -> Series {
+        self.samples.iter().map(|sample| (sample.t, sample.there.then(|| value(sample)))).collect()
+    }
+
+    /// State at a time, straight between samples; `None` outside the recording and while the agent is not there.
     #[must_use]
     pub fn at(&self, t: f64) -> Option<Sample> {
         let index = self.samples.partition_point(|sample| sample.t < t);
         let after = self.samples.get(index)?;
         if index == 0 || (after.t - t).abs() < 1e-12 {
-            return ((after.t - t).abs() < 1e-9).then_some(*after);
+            return ((after.t - t).abs() < 1e-9 && after.there).then_some(*after);
         }
         let before = self.samples.get(index - 1)?;
+        if !(before.there && after.there) {
+            return None;
+        }
         let share = (t - before.t) / (after.t - before.t);
         Some(Sample {
             t,
@@ -310,6 +370,13 @@ impl Track {
     }
 }
 
+/// The first part of a state that is not finite.
+fn not_finite(agent: AgentId, time_s: f64, state: &AgentState) -> TrackFault {
+    let parts = [("x", state.x), ("y", state.y), ("yaw", state.yaw), ("vx", state.vx), ("vy", state.vy)];
+    let (what, value) = parts.into_iter().find(|(_, value)| !value.is_finite()).unwrap_or(("state", f64::NAN));
+    TrackFault::NotFinite { agent, time_s, what, value: value.to_string() }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
@@ -319,7 +386,28 @@ pub(crate) mod tests {
     fn a_state_that_is_not_finite_is_named_with_its_time() {
         let mut run = recording(&[Walk::robot(0.0, 0.0, 0.5, 0.0)], 2.0, 0.1);
         run.frames[7].x = f64::NAN;
-        assert!(matches!(Tracks::read(&run), Err(TrackFault::NotFinite { agent: AgentId::Robot, .. })));
+        let fault = Tracks::read(&run).unwrap_err();
+        assert!(matches!(&fault, TrackFault::NotFinite { agent: AgentId::Robot, what: "x", .. }));
+        assert_eq!(fault.to_string(), "robot has the x `NaN` at 0.70 s: states must be finite numbers");
+    }
+
+    #[test]
+    fn an_agent_named_twice_is_refused() {
+        let run = recording(&[Walk::human(1, 0., 0., 1., 0.), Walk::human(1, 3., 0., 1., 0.)], 1.0, 0.1);
+        let fault = Tracks::read(&run).unwrap_err();
+        assert_eq!(fault.to_string(), "the header names human_1 `2` times: each agent has one track");
+    }
+
+    #[test]
+    fn who_is_not_there_has_no_state() {
+        let mut run = recording(&[Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 3., 0., 1., 0.)], 2.0, 0.1);
+        crate::fixture::absent(&mut run, 1, 0.0..0.45);
+        let tracks = Tracks::read(&run).unwrap();
+        let (robot, human) = (tracks.robot.as_ref().unwrap(), &tracks.humans[0]);
+        assert_eq!((human.present().count(), robot.beside(human).count()), (16, 16));
+        assert!(human.at(0.3).is_none() && human.at(0.45).is_none() && human.at(0.5).is_some());
+        crate::fixture::absent(&mut run, 1, 0.0..3.0);
+        assert!(Tracks::read(&run).unwrap().humans.is_empty());
     }
 
     #[test]

@@ -87,8 +87,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
     let Some(track) = signals.tracks.human(human) else {
         return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
     };
-    let marks: Vec<Mark> =
-        track.samples.iter().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())).collect();
+    let marks: Vec<Mark> = track.present().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())).collect();
     let longest = stretches(marks.iter().copied(), 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
     let text = format!("{human} below {MOVING_MPS} m/s for {longest:.1} s at most ({for_s:.1} s asked)");
     match held(marks, for_s, 0.0) {
@@ -99,6 +98,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         ),
         None => Finding::fails(longest - for_s, vec![], text),
     }
+    .shifted(longest - for_s)
 }
 
 /// The human gets away from the robot by its own motion.
@@ -233,7 +233,7 @@ fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>,
     };
     let speeds = |margin: fn(f64) -> f64| -> Vec<Mark> {
         signals.tracks.human(human).map_or_else(Vec::new, |track| {
-            track.samples.iter().map(|sample| Mark::new(sample.t, margin(sample.speed()))).collect()
+            track.present().map(|sample| Mark::new(sample.t, margin(sample.speed()))).collect()
         })
     };
     match action {
@@ -306,11 +306,12 @@ fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Ve
 
 /// Whether a delay is within its limit, late, or too long.
 pub(super) fn timely(delay: f64, limit: f64, times: Vec<f64>, text: String) -> Finding {
-    if delay <= limit {
+    let finding = if delay <= limit {
         Finding::holds(limit - delay, times, text)
     } else if delay <= LATE_FACTOR * limit + 1.0 {
         Finding::late(limit - delay, times, text)
     } else {
         Finding::fails(limit - delay, times, text)
-    }
+    };
+    finding.shifted(limit - delay)
 }

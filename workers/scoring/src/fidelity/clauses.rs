@@ -55,6 +55,7 @@ impl Judged {
                 margin: short(finding.margin),
                 times_s: finding.times_s.iter().copied().map(short).collect(),
                 evidence: finding.evidence.clone(),
+                shift_s: finding.shift_s.map(short),
             })
             .collect()
     }
@@ -239,7 +240,7 @@ fn order(found: &BTreeMap<String, Finding>, first: &str, then: &str) -> Finding 
     match (seen(first), seen(then)) {
         (Ok(before), Ok(after)) => {
             let text = format!("`{first}` at {before:.1} s, `{then}` at {after:.1} s");
-            Finding::by_margin(after - before, vec![after, before], text)
+            Finding::by_margin(after - before, vec![after, before], text).shifted(after - before)
         }
         (Err(finding), _) | (_, Err(finding)) => finding,
     }

@@ -60,9 +60,11 @@ pub(super) fn follows(
         return Finding::never(-1.0, vec![nearest.t], format!("{what}: {leader} does not walk for so long"));
     };
     if let Some(from) = found.first_s {
-        let all: f64 = stretches(marks, for_s).iter().map(|(from, to)| to - from).sum();
+        let spans = stretches(marks, for_s);
+        let all: f64 = spans.iter().map(|(from, to)| to - from).sum();
+        let longest = spans.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
         let text = format!("{what}: from {from:.1} s, {all:.1} s in all, margin {:.2} m", found.margin);
-        return Finding::holds(found.margin, vec![from, from + for_s], text);
+        return Finding::holds(found.margin, vec![from, from + for_s], text).shifted(longest - for_s);
     }
     if nearest.distance_m > high + 1.0 {
         let text = format!("{what}: never near, closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
@@ -73,7 +75,7 @@ pub(super) fn follows(
         Some((length, from)) => format!("{what}: only {length:.1} s from {from:.1} s"),
         None => format!("{what}: not once, short by {:.2} m at {:.1} s", -found.margin, found.best_s),
     };
-    Finding::fails(found.margin, vec![found.best_s], text)
+    Finding::fails(found.margin, vec![found.best_s], text).shifted(longest.map_or(0.0, |(length, _)| length) - for_s)
 }
 
 /// Human and robot go side by side for some time.
@@ -86,7 +88,7 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     let marks: Vec<Mark> = signals
         .of(human)
         .iter()
-        .zip(ways)
+        .filter_map(|moment| Some((moment, *ways.get(moment.index)?)))
         .map(|(moment, arc_m)| {
             let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();
             let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside);
@@ -96,13 +98,16 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     let what = format!("{human} beside the robot at 0.5 to 2.0 m for {for_s:.1} s");
     match held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) {
         None => Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long")),
-        Some(found) => match found.first_s {
-            Some(from) => Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s")),
-            None => {
-                let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
-                Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s"))
-            }
-        },
+        Some(found) => {
+            let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+            let finding = match found.first_s {
+                Some(from) => {
+                    Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s"))
+                }
+                None => Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s")),
+            };
+            finding.shifted(longest - for_s)
+        }
     }
 }
 
@@ -113,7 +118,8 @@ pub(super) fn parallel(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Fin
     }
     let Some(robot) = &signals.tracks.robot else { return Finding::not_applicable("there is no robot") };
     let moments = signals.of(human);
-    let marks = moments.iter().zip(arcs(&robot.samples)).map(|(moment, arc_m)| {
+    let ways = arcs(&robot.samples);
+    let marks = moments.iter().filter_map(|moment| Some((moment, *ways.get(moment.index)?))).map(|(moment, arc_m)| {
         let margin = (PARALLEL_M - moment.distance_m)
             .min(SAME_WAY_RAD - moment.course_rad)
             .min(moment.human.speed() - WALKING_MPS)
@@ -128,14 +134,15 @@ pub(super) fn parallel(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Fin
     let Some(found) = held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) else {
         return Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long"));
     };
+    let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
     if let Some(from) = found.first_s {
         let text = format!("{what}: from {from:.1} s, margin {:.2}", found.margin);
-        return Finding::holds(found.margin, vec![from, from + for_s], text).scaled(0.3);
+        return Finding::holds(found.margin, vec![from, from + for_s], text).scaled(0.3).shifted(longest - for_s);
     }
     if nearest.distance_m > PARALLEL_M {
         let text = format!("{what}: never near, closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
         return Finding::never(found.margin, vec![nearest.t], text);
     }
-    let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
-    Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s")).scaled(0.3)
+    let text = format!("{what}: longest {longest:.1} s");
+    Finding::fails(found.margin, vec![found.best_s], text).scaled(0.3).shifted(longest - for_s)
 }

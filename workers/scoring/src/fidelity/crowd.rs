@@ -70,17 +70,16 @@ pub(super) fn flow(signals: &Signals<'_>, count: u32, within_m: f64, angle_deg: 
 /// The moments of all humans side by side: at each time, the distances from the robot in rising order.
 fn distances(signals: &Signals<'_>) -> Vec<(f64, Vec<f64>)> {
     let Some(robot) = &signals.tracks.robot else { return Vec::new() };
-    robot
-        .samples
-        .iter()
-        .enumerate()
-        .map(|(index, sample)| {
-            let mut all: Vec<f64> =
-                signals.moments.values().filter_map(|list| list.get(index)).map(|moment| moment.distance_m).collect();
-            all.sort_by(f64::total_cmp);
-            (sample.t, all)
-        })
-        .collect()
+    let mut found: Vec<(f64, Vec<f64>)> = robot.samples.iter().map(|sample| (sample.t, Vec::new())).collect();
+    for moment in signals.moments.values().flatten() {
+        if let Some((_, all)) = found.get_mut(moment.index) {
+            all.push(moment.distance_m);
+        }
+    }
+    for (_, all) in &mut found {
+        all.sort_by(f64::total_cmp);
+    }
+    found
 }
 
 /// Finding of a condition on the crowd that must hold for some time.
@@ -90,13 +89,14 @@ fn kept(marks: &[Mark], for_s: f64, what: &str, near: bool) -> Finding {
     };
     let spans = stretches(marks.iter().copied(), 0.0);
     let longest = spans.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
-    match found.first_s {
+    let finding = match found.first_s {
         Some(from) => {
             Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s, {longest:.1} s"))
         }
         None if near => Finding::fails(found.margin, vec![found.best_s], format!("{what}: longest {longest:.1} s")),
         None => Finding::never(found.margin, vec![found.best_s], format!("{what}: never")),
-    }
+    };
+    finding.shifted(longest - for_s)
 }
 
 /// So many people per square metre about the robot for some time.
@@ -160,10 +160,10 @@ pub(super) fn converges(signals: &Signals<'_>, within_m: f64, within_s: f64) -> 
         let Some(at) = goal(signals, id) else {
             return Finding::not_applicable("there is no encounter, or no map to tell where it is");
         };
-        let marks = || track.samples.iter().map(|sample| Mark::new(sample.t, within_m - (sample.at - at).norm()));
+        let marks = || track.present().map(|sample| Mark::new(sample.t, within_m - (sample.at - at).norm()));
         let inside = stretches(marks(), 0.0);
         match inside.first() {
-            Some((from, _)) if track.samples.first().is_some_and(|sample| sample.t >= *from) => there.push(id),
+            Some((from, _)) if track.present().next().is_some_and(|sample| sample.t >= *from) => there.push(id),
             Some((from, _)) => arrivals.push((*from, id)),
             None => {
                 if let Some(top) = best(marks())
@@ -194,9 +194,10 @@ pub(super) fn converges(signals: &Signals<'_>, within_m: f64, within_s: f64) -> 
         "all within {within_m:.1} m of the encounter: {early} first at {first:.1} s, {late} last at {last:.1} s (at most {within_s:.1} s apart asked)"
     );
     let times = vec![*last, *first];
-    match spread {
+    let finding = match spread {
         spread if spread <= within_s => Finding::holds(within_s - spread, times, text),
         spread if spread <= LATE_FACTOR * within_s => Finding::late(within_s - spread, times, text),
         spread => Finding::fails(within_s - spread, times, text),
-    }
+    };
+    finding.shifted(within_s - spread)
 }

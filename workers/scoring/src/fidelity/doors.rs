@@ -119,7 +119,7 @@ pub(super) fn crossings(door: &Door, inside: &Point, samples: &[Sample]) -> Vec<
     samples
         .iter()
         .zip(samples.iter().skip(1))
-        .filter(|(a, b)| segments_cross(&a.at, &b.at, &from, &to))
+        .filter(|(a, b)| a.there && b.there && segments_cross(&a.at, &b.at, &from, &to))
         .filter_map(|(a, b)| {
             let (before, after) = (door.depth_m(&a.at, inside), door.depth_m(&b.at, inside));
             // A sample exactly on the line belongs to the piece that ends there.

@@ -6,13 +6,16 @@ use socrates_model::{AgentId, Door, HumanId, Location, Point, Relation};
 use crate::fidelity::doors::{crossings, inside_point};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
-use crate::fidelity::signals::Signals;
-use crate::tracks::Track;
+use crate::fidelity::signals::{Moment, Signals};
+use crate::temporal::{Signal, Within};
+use crate::tracks::{Sample, Track};
 
 /// Somebody nearer to a door line than this is on the threshold, m.
 const THRESHOLD_M: f64 = 0.15;
 /// Distances from a map's pixels are no better than this, m.
 const SIGHT_SLACK_M: f64 = 0.3;
+/// A door lets through a line of sight so long before its opening is told, s.
+const OPENING_SECS: f64 = 0.1;
 
 /// The door a clause means, with a point behind it, or why there is none.
 fn door_of<'a>(signals: &Signals<'a>, door: &str, human: Option<HumanId>) -> Result<(&'a Door, Point), Finding> {
@@ -160,7 +163,13 @@ pub(super) fn door_opens(signals: &Signals<'_>, door: &str, robot_m: [f64; 2]) -
     let distance = robot.at(t).or_else(|| robot.samples.last().copied()).map_or(f64::NAN, |s| (s.at - middle).norm());
     let text =
         format!("`{}` opens at {t:.1} s with the robot {distance:.1} m away ({low:.1} to {high:.1} m asked)", door.id);
-    Ok(Finding::by_margin((distance - low).min(high - distance), vec![t], text))
+    // For how long around the opening the robot is where it should be.
+    let inside = |s: &&Sample| (low..=high).contains(&(s.at - middle).norm());
+    let before = robot.samples.iter().rev().skip_while(|s| s.t > t).take_while(inside).last();
+    let after = robot.samples.iter().skip_while(|s| s.t < t).take_while(inside).last();
+    let room = before.map_or(0.0, |s| t - s.t).min(after.map_or(0.0, |s| s.t - t));
+    let finding = Finding::by_margin((distance - low).min(high - distance), vec![t], text);
+    Ok(if finding.margin >= 0.0 { finding.shifted(room) } else { finding })
 }
 
 /// No line of sight until they are near, or until the door opens.
@@ -183,15 +192,30 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
         .ok()
         .filter(|(door, _)| !signals.doors.stands_open(&door.id))
         .and_then(|(door, _)| Some((door, signals.doors.first_open_s(&door.id)?)));
-    let text = format!("first line of sight at {:.1} s from {:.1} m", first.t, first.distance_m);
-    if let Some((door, t)) = opened
-        && first.t >= t - 0.1
-    {
-        let text = format!("{text}, after the door `{}` opened at {t:.1} s", door.id);
-        return Ok(Finding::holds((first.t - t).max(0.1), vec![first.t, t], text));
+    // Hidden until seen near by, or through the open door: (not seen) U (seen and (near or open)). Seen or not has no
+    // size of its own, so that the margin is that of the distance, or of the time since the door opened.
+    let moments = signals.of(human);
+    let limit = within_m + SIGHT_SLACK_M;
+    let crisp = |moment: &Moment| if moment.sight == Some(true) { f64::INFINITY } else { f64::NEG_INFINITY };
+    let seen: Signal = moments.iter().map(|moment| (moment.t, crisp(moment))).collect();
+    let near: Signal = moments.iter().map(|moment| (moment.t, limit - moment.distance_m)).collect();
+    let open_s = opened.map_or(f64::INFINITY, |(_, t)| t - OPENING_SECS);
+    let open: Signal = moments.iter().map(|moment| (moment.t, moment.t - open_s)).collect();
+    let margin = seen.not().until(&seen.and(&near.or(&open)), Within::EVER).now().unwrap_or(f64::NEG_INFINITY);
+    let mut text = format!("first line of sight at {:.1} s from {:.1} m", first.t, first.distance_m);
+    let mut times = vec![first.t];
+    match opened.filter(|(_, t)| first.t >= t - OPENING_SECS) {
+        Some((door, t)) => {
+            text.push_str(&format!(", after the door `{}` opened at {t:.1} s", door.id));
+            times.push(t);
+        }
+        None => text.push_str(&format!(" (at most {within_m:.1} m asked)")),
     }
-    let margin = within_m + SIGHT_SLACK_M - first.distance_m;
-    Ok(Finding::by_margin(margin, vec![first.t], format!("{text} (at most {within_m:.1} m asked)")))
+    // How much sooner the sight could come: up to when they were as near, or the door opened.
+    let near_s = moments.iter().rev().skip_while(|m| m.t >= first.t).take_while(|m| m.distance_m <= limit).last();
+    let since = near_s.map_or(first.t, |moment| moment.t).min(open_s);
+    let finding = Finding::by_margin(margin, times, text);
+    Ok(if margin >= 0.0 { finding.shifted(first.t - since) } else { finding })
 }
 
 /// The robot crosses the door line inward only after everybody who leaves is out.

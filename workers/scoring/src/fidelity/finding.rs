@@ -15,6 +15,9 @@ pub struct Finding {
     pub times_s: Vec<f64>,
     /// What was seen, with numbers.
     pub evidence: String,
+    /// Time robustness, s: by how much the evidence could come sooner, later or be shorter before the standing
+    /// changes; negative: by how much it misses. `None` where time plays no part.
+    pub shift_s: Option<f64>,
     /// A reaction that came before its trigger: told apart for the repair.
     pub early: bool,
 }
@@ -52,13 +55,20 @@ impl Finding {
 
     fn new(standing: Standing, margin: f64, times_s: Vec<f64>, evidence: impl Into<String>) -> Self {
         let margin = if margin.is_finite() { margin } else { f64::copysign(1e6, margin) };
-        Self { standing, margin, scale: 1.0, times_s, evidence: evidence.into(), early: false }
+        Self { standing, margin, scale: 1.0, times_s, evidence: evidence.into(), shift_s: None, early: false }
     }
 
     /// Sets the size of a clear margin.
     #[must_use]
     pub const fn scaled(mut self, scale: f64) -> Self {
         self.scale = scale;
+        self
+    }
+
+    /// Sets the time robustness.
+    #[must_use]
+    pub fn shifted(mut self, shift_s: f64) -> Self {
+        self.shift_s = shift_s.is_finite().then_some(shift_s);
         self
     }
 

@@ -27,8 +27,8 @@ pub(super) struct Gap {
 /// Gaps at every sample. The trail is what the leader has walked so far, and straight back from its start.
 #[must_use]
 pub(super) fn gaps(leader: &Track, follower: &Track) -> Vec<Gap> {
-    let Some(first) = leader.samples.first() else { return Vec::new() };
-    let back = leader.samples.iter().find(|sample| sample.speed() > 0.2).unwrap_or(first).course();
+    let Some(first) = leader.present().next() else { return Vec::new() };
+    let back = leader.present().find(|sample| sample.speed() > 0.2).unwrap_or(first).course();
     let mut trail: Vec<(f64, Point)> = Vec::new();
     let steps = (TRAIL_REACH_M / TRAIL_STEP_M) as u32;
     for k in (1..=steps).rev() {
@@ -38,7 +38,7 @@ pub(super) fn gaps(leader: &Track, follower: &Track) -> Vec<Gap> {
     trail.push((0.0, first.at));
     let keep = steps as usize + 2;
     let mut found = Vec::with_capacity(leader.samples.len());
-    for (lead, behind) in leader.samples.iter().zip(&follower.samples) {
+    for (lead, behind) in leader.beside(follower) {
         let (s_last, p_last) = trail.last().copied().unwrap_or((0.0, first.at));
         let step = (lead.at - p_last).norm();
         let arc_m = s_last + step;

@@ -28,7 +28,7 @@ pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
             continue;
         };
         let arrival = |samples: &[crate::tracks::Sample]| {
-            samples.iter().find(|sample| (sample.at - at).norm() <= ARRIVED_M).map(|sample| sample.t)
+            samples.iter().find(|sample| sample.there && (sample.at - at).norm() <= ARRIVED_M).map(|sample| sample.t)
         };
         if let (Some(first), Some(second)) = (arrival(&robot.samples), arrival(&human.samples)) {
             gaps.entry(encounter.human.to_string()).or_insert(second - first);

@@ -24,6 +24,7 @@ const BROKEN_SHARE: f64 = 0.05;
 
 /// A group at one time.
 struct Together {
+    index: usize,
     t: f64,
     center: Point,
     spread_m: f64,
@@ -62,6 +63,10 @@ fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, us
     loop {
         let now: Vec<&Sample> = columns.iter_mut().filter_map(Iterator::next).collect();
         let Some(first) = now.first().filter(|_| now.len() == tracks.len()) else { break };
+        if now.iter().any(|sample| !sample.there) {
+            index += 1;
+            continue;
+        }
         let sum: Vector = now.iter().map(|sample| sample.at - first.at).sum();
         let center = first.at + sum / count;
         let spread_m = now.iter().map(|sample| (sample.at - center).norm()).fold(0.0, f64::max);
@@ -69,6 +74,7 @@ fn over_time(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Together>, us
             now.iter().map(|sample| (sample.at - r.at).norm()).fold(f64::INFINITY, f64::min)
         });
         found.push(Together {
+            index,
             t: first.t,
             center,
             spread_m,
@@ -179,8 +185,8 @@ pub(super) fn queues(signals: &Signals<'_>, group: GroupId, gap_m: [f64; 2]) -> 
         return Ok(Finding::never(-1.0, vec![], text));
     };
     let mut before: Vec<(f64, f64, f64, f64)> = Vec::new();
-    for (index, moment) in moments.iter().enumerate().filter(|(_, m)| m.t <= arrival.t) {
-        let now: Vec<&Sample> = tracks.iter().filter_map(|track| track.samples.get(index)).collect();
+    for moment in moments.iter().filter(|m| m.t <= arrival.t) {
+        let now: Vec<&Sample> = tracks.iter().filter_map(|track| track.samples.get(moment.index)).collect();
         if moment.t < SETTLE_SECS.min(arrival.t) {
             continue;
         }

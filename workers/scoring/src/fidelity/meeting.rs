@@ -61,7 +61,8 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Fin
             "{human} and the robot within {within_m:.1} m{place} at {:.1} s; closest {:.2} m at {:.1} s",
             mark.t, nearest.distance_m, nearest.t
         );
-        return Finding::holds(top.margin, vec![mark.t, nearest.t], text);
+        return Finding::holds(top.margin, vec![mark.t, nearest.t], text)
+            .shifted(room_s(signals, human, within_m, true));
     }
     let missing = near.map_or_else(String::new, |(id, at)| {
         let reach = |samples: Vec<Sample>| {
@@ -82,7 +83,35 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Fin
         "{human} and the robot never came within {within_m:.1} m{place}: closest {:.1} m at {:.1} s{missing}",
         nearest.distance_m, nearest.t
     );
-    Finding::never(top.margin, vec![nearest.t], text)
+    Finding::never(top.margin, vec![nearest.t], text).shifted(-room_s(signals, human, within_m, false))
+}
+
+/// Step and end of the shifts that are tried, s.
+const SHIFT_STEP_SECS: f64 = 0.25;
+const SHIFT_STEPS: u32 = 40;
+
+/// How much sooner or later the human could come, whichever is less, and they would still meet; `meets` false: how much
+/// it takes for them to meet. Infinite beyond 10 s.
+fn room_s(signals: &Signals<'_>, human: HumanId, within_m: f64, meets: bool) -> f64 {
+    let (Some(robot), Some(person)) = (&signals.tracks.robot, signals.tracks.human(human)) else {
+        return f64::INFINITY;
+    };
+    let near = signals.encounter(human).map(|(_, at)| at);
+    let reach = |at: &Point| near.is_none_or(|node| (at - node).norm() <= MEET_NODE_M);
+    let grid = |track: &Track| -> Vec<Option<Point>> {
+        let even = (0..).map(|k| f64::from(k) * SHIFT_STEP_SECS).take_while(|t| *t <= signals.end_s());
+        even.map(|t| track.at(t).map(|sample| sample.at).filter(&reach)).collect()
+    };
+    let (mine, theirs) = (grid(robot), grid(person));
+    let met = |shift: u32, sooner: bool| {
+        let (a, b) = if sooner { (&mine, &theirs) } else { (&theirs, &mine) };
+        let skipped = b.iter().skip(usize::try_from(shift).unwrap_or(usize::MAX));
+        a.iter().zip(skipped).any(|(p, q)| p.zip(*q).is_some_and(|(p, q)| (p - q).norm() <= within_m))
+    };
+    let ends = [false, true].map(|sooner| (1..=SHIFT_STEPS).find(|shift| met(*shift, sooner) != meets));
+    // Meeting ends with the first shift that parts them; the last one before it still holds.
+    let first = ends.into_iter().flatten().min();
+    first.map_or(f64::INFINITY, |shift| f64::from(if meets { shift - 1 } else { shift }) * SHIFT_STEP_SECS)
 }
 
 /// The human comes towards the robot as they approach.
@@ -121,7 +150,8 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
         "{human} at {angle:.0}° to the robot's heading at {at:.1} s (150° to 180° asked), closest {:.2} m at {:.1} s",
         nearest.distance_m, nearest.t
     );
-    Finding::by_margin(found.margin, vec![at, nearest.t], text).scaled(0.3)
+    let longest = stretches(marks, 0.0).into_iter().map(|(from, to)| to - from).fold(0.0, f64::max);
+    Finding::by_margin(found.margin, vec![at, nearest.t], text).scaled(0.3).shifted(longest - KEPT_SECS)
 }
 
 /// Where two tracks meet in space, whenever each is there.
@@ -135,7 +165,7 @@ struct Conflict {
 /// The tracks at every 0.25 m of way, each with its direction.
 fn steps(track: &Track) -> Vec<(Point, socrates_model::Vector)> {
     let mut kept: Vec<Point> = Vec::new();
-    for sample in &track.samples {
+    for sample in track.present() {
         if kept.last().is_none_or(|last| (sample.at - last).norm() >= 0.25) {
             kept.push(sample.at);
         }
@@ -182,7 +212,7 @@ pub(super) fn crosses(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
         return Finding::never(-1.0, vec![], format!("the ways of {human} and the robot never meet{place}"));
     };
     let arrival = |track: &Track| {
-        track.samples.iter().find(|sample| (sample.at - meet.at).norm() <= CONFLICT_M).map(|sample| sample.t)
+        track.present().find(|sample| (sample.at - meet.at).norm() <= CONFLICT_M).map(|sample| sample.t)
     };
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-1.0, vec![], format!("the ways of {human} and the robot never meet{place}"));
@@ -201,11 +231,12 @@ pub(super) fn crosses(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     if square < 0.0 {
         return Finding::fails(square, times, format!("{text}; 45° to 135° asked")).scaled(0.3);
     }
-    match gap.abs() {
+    let finding = match gap.abs() {
         gap if gap <= gap_s => Finding::holds((gap_s - gap).min(square), times, text),
         gap if gap <= LATE_FACTOR * gap_s => Finding::late(gap_s - gap, times, text),
         gap => Finding::fails(gap_s - gap, times, text),
-    }
+    };
+    finding.shifted(gap_s - gap.abs())
 }
 
 /// The human is ahead of the robot on its way for some time.
@@ -239,7 +270,7 @@ pub(super) fn lasting(
     if let Some(at) = found.first_s {
         let longest = stretches(marks, for_s).into_iter().map(|(from, to)| to - from).fold(0.0, f64::max);
         let text = format!("{human} {what}: from {at:.1} s, longest {longest:.1} s, margin {:.2}", found.margin);
-        return Finding::holds(found.margin, vec![at, at + longest], text);
+        return Finding::holds(found.margin, vec![at, at + longest], text).shifted(longest - for_s);
     }
     if nearest.distance_m > near_m + 1.0 {
         let text = format!("{human} {what}: never near, closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
@@ -251,7 +282,7 @@ pub(super) fn lasting(
         Some((length, from)) => format!("{human} {what}: only {length:.1} s from {from:.1} s"),
         None => format!("{human} {what}: not once; best at {:.1} s, short by {:.2}", found.best_s, -found.margin),
     };
-    Finding::fails(found.margin, vec![found.best_s], text)
+    Finding::fails(found.margin, vec![found.best_s], text).shifted(longest.map_or(0.0, |(length, _)| length) - for_s)
 }
 
 /// One goes from behind the other to ahead of it, close by. `overtakes`: the human passes the robot

@@ -5,6 +5,7 @@ use socrates_model::{AgentId, EventKind};
 use crate::evidence::REFERENCE;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
+use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
 /// Overlap that contact resolution may leave, m.
@@ -35,9 +36,10 @@ pub struct Flaw {
 pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
     let mut found = Vec::new();
     let agents: Vec<&Track> = signals.full.all().collect();
-    for (index, a) in agents.iter().enumerate() {
-        for b in agents.iter().skip(index + 1) {
-            found.extend(overlap(a, b));
+    let ways: Vec<Vec<f64>> = agents.iter().map(|track| arcs(track.samples.iter().map(|sample| &sample.at))).collect();
+    for (index, (a, way_a)) in agents.iter().zip(&ways).enumerate() {
+        for (b, way_b) in agents.iter().zip(&ways).skip(index + 1) {
+            found.extend(overlap((a, way_a), (b, way_b)));
         }
         found.extend(too_fast(a));
     }
@@ -46,8 +48,7 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
         let allowed = OVERLAP_M + location.grid.resolution_m;
         for track in signals.tracks.all() {
             let worst = track
-                .samples
-                .iter()
+                .present()
                 .map(|sample| (track.radius_m - field.clearance(&sample.at), sample.t))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((depth, t)) = worst.filter(|(depth, _)| *depth > allowed) {
@@ -70,12 +71,26 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
     found
 }
 
-fn overlap(a: &Track, b: &Track) -> Option<Flaw> {
+/// Whether two discs ever overlap, given the ways of both.
+fn touches((a, way_a): (&Track, &[f64]), (b, way_b): (&Track, &[f64]), touch: f64) -> bool {
+    let mut index = 0;
+    while let (Some(p), Some(q)) = (a.samples.get(index), b.samples.get(index)) {
+        let apart = (p.at - q.at).norm() - touch;
+        if apart <= 0.0 && p.there && q.there {
+            return true;
+        }
+        index = next([way_a, way_b], index, apart);
+    }
+    false
+}
+
+fn overlap((a, way_a): (&Track, &[f64]), (b, way_b): (&Track, &[f64])) -> Option<Flaw> {
     let touch = a.radius_m + b.radius_m;
+    if !touches((a, way_a), (b, way_b), touch) {
+        return None;
+    }
     let (depth, t) = a
-        .samples
-        .iter()
-        .zip(&b.samples)
+        .beside(b)
         .map(|(p, q)| (touch - (p.at - q.at).norm(), p.t))
         .max_by(|x, y| x.0.total_cmp(&y.0))
         .filter(|(depth, _)| *depth > OVERLAP_M)?;
@@ -88,6 +103,10 @@ fn too_fast(track: &Track) -> Option<Flaw> {
     let mut top: Option<(f64, f64)> = None;
     for sample in &track.samples {
         let dt = sample.t - from.t;
+        if !(sample.there && from.there) {
+            from = sample;
+            continue;
+        }
         if dt < SPEED_SECS - 1e-9 {
             continue;
         }

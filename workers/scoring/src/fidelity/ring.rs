@@ -26,7 +26,8 @@ fn beside(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Beside>, f64), F
     let tracks: Vec<&Track> = members(signals, group)?;
     let radius_m = tracks.first().map_or(0.0, |track| track.radius_m);
     let moments = robot.samples.iter().enumerate().filter_map(|(index, sample)| {
-        let now: Vec<&Sample> = tracks.iter().filter_map(|track| track.samples.get(index)).collect();
+        let now: Vec<&Sample> =
+            tracks.iter().filter_map(|track| track.samples.get(index)).filter(|s| s.there).collect();
         Some(Beside { t: sample.t, circle: Circle::of(&now, radius_m)?, robot: *sample })
     });
     Ok((moments.collect(), robot.radius_m))

@@ -42,7 +42,7 @@ pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
     let end = signals.arrived_s.unwrap_or(f64::INFINITY);
     let mut least: Option<(f64, f64, AgentId)> = None;
     for human in &signals.full.humans {
-        for (r, h) in robot.samples.iter().zip(&human.samples).filter(|(r, _)| r.t <= end) {
+        for (r, h) in robot.beside(human).filter(|(r, _)| r.t <= end) {
             let distance = (r.at - h.at).norm() - robot.radius_m - human.radius_m;
             if least.is_none_or(|(old, _, _)| distance < old) {
                 least = Some((distance, r.t, human.agent));

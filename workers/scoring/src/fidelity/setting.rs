@@ -8,9 +8,25 @@ use crate::fidelity::meeting::{LATE_FACTOR, absent};
 use crate::fidelity::signals::Signals;
 use crate::tracks::Track;
 
+/// Role of somebody who walks as recorded, as the simulation writes it.
+const RECORDED: &str = "recorded";
+
 /// Exactly so many humans are there from the first to the last tick.
 pub(super) fn humans(signals: &Signals<'_>, count: u32) -> Finding {
-    let found = signals.full.humans.len();
+    // Who walks as recorded comes with the place and is nobody the scenario tells of.
+    let asked = signals.evidence.proposal.map(|proposal| &proposal.humans);
+    let bystander = |track: &Track| {
+        track.role == RECORDED
+            && asked.is_some_and(|asked| !asked.iter().any(|human| AgentId::from(human.id) == track.agent))
+    };
+    let people: Vec<&Track> = signals.full.humans.iter().filter(|track| !bystander(track)).collect();
+    let found = people.len();
+    if let Some((gone, t)) = people.iter().find_map(|track| {
+        let gone = track.samples.iter().find(|sample| !sample.there)?;
+        Some((track.agent, gone.t))
+    }) {
+        return Finding::fails(-1.0, vec![t], format!("{gone} is not there at {t:.1} s ({count} asked all the time)"));
+    }
     let text = format!("{found} humans from 0.0 s to {:.1} s ({count} asked)", signals.end_s());
     if usize::try_from(count).is_ok_and(|count| count == found) {
         Finding::holds(1.0, vec![0.0], text)
@@ -58,9 +74,9 @@ pub(super) fn reaches(signals: &Signals<'_>, agent: AgentId, node: &NodeId, with
     let Some(track) = signals.track(agent) else {
         return Finding::fails(-1.0, vec![], format!("{agent} is not in the recording"));
     };
-    let nearest = track.samples.iter().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let nearest = track.present().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let (distance, t) = nearest.unwrap_or((f64::INFINITY, 0.0));
-    let first = track.samples.iter().find(|s| (s.at - at).norm() <= within_m).map_or(t, |s| s.t);
+    let first = track.present().find(|s| (s.at - at).norm() <= within_m).map_or(t, |s| s.t);
     let text = format!("{agent} comes within {distance:.2} m of `{node}` at {t:.1} s (at most {within_m:.1} m asked)");
     Finding::by_margin(within_m - distance, vec![first], text)
 }
@@ -76,6 +92,9 @@ pub(super) fn starts_at(signals: &Signals<'_>, agent: AgentId, node: &NodeId, wi
             AgentId::Human(id) => Finding::fails(-1.0, vec![], format!("{id} is not in the recording")),
         };
     };
+    if !start.there {
+        return Finding::fails(-1.0, vec![start.t], format!("{agent} is not there when the run begins"));
+    }
     let distance = (start.at - at).norm();
     let text = format!("{agent} starts {distance:.2} m from `{node}` (at most {within_m:.1} m asked)");
     Finding::by_margin(within_m - distance, vec![start.t], text)
@@ -91,7 +110,7 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     else {
         return Finding::not_applicable("there is no encounter, or no map to tell where it is");
     };
-    let arrival = |track: &Track| track.samples.iter().find(|s| (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
+    let arrival = |track: &Track| track.present().find(|s| (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };
@@ -100,9 +119,10 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
         "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s (at most {gap_s:.1} s asked)"
     );
     let times = vec![first.max(second), first, second];
-    match gap {
+    let finding = match gap {
         gap if gap <= gap_s => Finding::holds(gap_s - gap, times, text),
         gap if gap <= LATE_FACTOR * gap_s => Finding::late(gap_s - gap, times, text),
         gap => Finding::fails(gap_s - gap, times, text),
-    }
+    };
+    finding.shifted(gap_s - gap)
 }

@@ -19,6 +19,8 @@ pub(super) const MOMENT_SECS: f64 = 0.05;
 pub struct Moment {
     /// Time, s.
     pub t: f64,
+    /// Place of this time among the robot's samples: a human who is not there has no moment.
+    pub index: usize,
     /// The robot.
     pub robot: Sample,
     /// The human.
@@ -99,12 +101,13 @@ impl<'a> Signals<'a> {
             for track in &tracks.humans {
                 let Some(id) = track.human() else { continue };
                 let mut list: Vec<Moment> = Vec::with_capacity(track.samples.len());
-                for (index, (r, h)) in robot.samples.iter().zip(&track.samples).enumerate() {
+                let both = robot.samples.iter().zip(&track.samples).enumerate();
+                for (index, (r, h)) in both.filter(|(_, (r, h))| r.there && h.there) {
                     let mine = robot_on_way.get(index).copied().flatten();
                     let theirs = way.as_ref().and_then(|way| way.place(&h.at));
                     let closed = closed.get(index).map_or(&[][..], Vec::as_slice);
                     let seen = sight.as_ref().map(|sight| sight_clear(sight, &r.at, &h.at, closed));
-                    list.push(moment(r, h, mine.zip(theirs).map(|((a, _), (b, off))| (b - a, off)), seen));
+                    list.push(moment(index, r, h, mine.zip(theirs).map(|((a, _), (b, off))| (b - a, off)), seen));
                 }
                 moments.insert(id, list);
             }
@@ -163,7 +166,7 @@ impl<'a> Signals<'a> {
     }
 }
 
-fn moment(r: &Sample, h: &Sample, way: Option<(f64, f64)>, sight: Option<bool>) -> Moment {
+fn moment(index: usize, r: &Sample, h: &Sample, way: Option<(f64, f64)>, sight: Option<bool>) -> Moment {
     let line = h.at - r.at;
     let distance_m = line.norm();
     let facing = r.facing();
@@ -171,6 +174,7 @@ fn moment(r: &Sample, h: &Sample, way: Option<(f64, f64)>, sight: Option<bool>) 
     let closing_mps = if distance_m > 1e-9 { -line.dot(&relative) / distance_m } else { 0.0 };
     Moment {
         t: r.t,
+        index,
         robot: *r,
         human: *h,
         distance_m,

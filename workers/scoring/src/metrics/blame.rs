@@ -3,7 +3,6 @@
 use crate::metrics::collisions::closing_share;
 use crate::metrics::ttc::{EXPOSED_SECS, time_to_collision};
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
-use crate::series::Series;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
@@ -21,13 +20,14 @@ pub(super) const FAMILY: Family = Family {
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let (mut area, mut seconds) = (0.0, 0.0);
     for (robot, human) in scene.pairs() {
-        let (mut shares, mut times) = (Vec::new(), Vec::new());
-        for (r, h) in robot.samples.iter().zip(&human.samples) {
+        let times = robot.between(human, |r, h| {
             let ttc = time_to_collision(r, h, robot.radius_m + human.radius_m).unwrap_or(2.0 * EXPOSED_SECS);
-            shares.push((r.t, closing_share(r, h).unwrap_or(0.0)));
-            times.push((r.t, ttc.min(2.0 * EXPOSED_SECS)));
+            ttc.min(2.0 * EXPOSED_SECS)
+        });
+        if times.least().is_none_or(|(_, least)| least >= EXPOSED_SECS) {
+            continue;
         }
-        let (shares, times): (Series, Series) = (shares.into_iter().collect(), times.into_iter().collect());
+        let shares = robot.between(human, |r, h| closing_share(r, h).unwrap_or(0.0));
         let exposed = times.time_below(EXPOSED_SECS);
         if let Some(mean) = shares.mean_while_below(&times, EXPOSED_SECS) {
             area += mean * exposed;

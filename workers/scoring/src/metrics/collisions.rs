@@ -1,11 +1,9 @@
 //! Contacts with people and walls, and who ran into whom.
 
+use crate::metrics::scene::{REARM_M, REARM_SECS};
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
 use crate::series::{Series, Span};
 
-/// A contact is over when the two have been this far apart, m, for this long, s.
-const REARM_M: f64 = 0.05;
-const REARM_SECS: f64 = 0.5;
 /// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
 const WALL_SLACK_M: f64 = 0.05;
 
@@ -76,7 +74,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let contacts = human_contacts(scene);
+    let contacts = &scene.contacts;
     let shares: Vec<f64> = contacts.iter().filter_map(|(index, span)| share(scene, *index, span.from_s)).collect();
     let robots = shares.iter().filter(|share| **share > 0.5).count();
     let mean = if shares.is_empty() {
@@ -97,18 +95,6 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     ]
 }
 
-/// Contacts with humans: index of the human and the stretch.
-pub(crate) fn human_contacts(scene: &Scene<'_>) -> Vec<(usize, Span)> {
-    scene
-        .distances
-        .iter()
-        .enumerate()
-        .flat_map(|(index, distance)| {
-            distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
-        })
-        .collect()
-}
-
 /// Contacts with walls.
 pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
     let (Some(field), Some(robot)) = (&scene.signals.field, scene.robot()) else { return Vec::new() };
@@ -118,7 +104,7 @@ pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
 }
 
 /// The robot's share of the closing speed just before a time; `None` when nobody closes.
-fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
+pub(super) fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
     let (robot, person) = scene.pairs().nth(human)?;
     let before = (t - 0.1).max(robot.samples.first()?.t);
     let (r, h) = (robot.at(before)?, person.at(before)?);

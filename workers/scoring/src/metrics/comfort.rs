@@ -67,9 +67,13 @@ pub(super) const FAMILY: Family = Family {
 /// The person's Gaussian at a point: 1 at the person.
 fn gaussian(person: &Sample, robot: &Sample) -> f64 {
     let line = robot.at - person.at;
+    let front = (2.0 * person.speed()).max(0.5);
+    // Farther than in any direction the Gaussian reaches; a little more, so that rounding decides nothing.
+    if line.norm_squared() > 62.0 * front * front {
+        return 0.0;
+    }
     let facing = person.course();
     let (ahead, aside) = (facing.dot(&line), facing.perp(&line));
-    let front = (2.0 * person.speed()).max(0.5);
     let along = if ahead >= 0.0 { front } else { front / 2.0 };
     let across = front * 2.0 / 3.0;
     let size = (ahead * ahead) / (2.0 * along * along) + (aside * aside) / (2.0 * across * across);
@@ -85,7 +89,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         .iter()
         .enumerate()
         .map(|(k, r)| {
-            let each = humans.iter().filter_map(|human| human.samples.get(k));
+            let each = humans.iter().filter_map(|human| human.samples.get(k)).filter(|h| h.there);
             (r.t, each.map(|h| gaussian(h, r)).fold(0.0, f64::max))
         })
         .collect();
@@ -94,17 +98,16 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         .flat_map(|(robot, human)| {
             let touch = robot.radius_m + human.radius_m;
             robot
-                .samples
-                .iter()
-                .zip(&human.samples)
+                .beside(human)
                 .filter(move |(r, h)| (r.at - h.at).norm() < touch)
                 .map(|(r, h)| MASS_KG * (r.velocity - h.velocity).norm_squared() / 2.0)
         })
         .fold(0.0, f64::max);
-    let contacts = super::collisions::human_contacts(scene).len() + super::collisions::wall_contacts(scene).len();
+    let contacts = scene.contacts.len() + super::collisions::wall_contacts(scene).len();
     let over = scene.arrived_s.map(|arrived| {
         let last = |samples: &[Sample]| {
-            samples.iter().rev().find(|sample| sample.speed() > crate::tracks::MOVING_MPS).map_or(0.0, |s| s.t)
+            let mut there = samples.iter().rev().filter(|sample| sample.there);
+            there.find(|sample| sample.speed() > crate::tracks::MOVING_MPS).map_or(0.0, |s| s.t)
         };
         let begin = robot.samples.first().map_or(0.0, |sample| sample.t);
         scene.signals.full.humans.iter().map(|human| last(&human.samples)).fold(arrived, f64::max) - begin

@@ -2,6 +2,8 @@
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
 use crate::series::Series;
+use crate::tracks::Sample;
+use socrates_model::Vector;
 
 /// Nearer than this is near people, m (the outer limit of Hall's personal zone).
 const NEAR_M: f64 = 1.2;
@@ -33,19 +35,38 @@ pub(super) const FAMILY: Family = Family {
     measure,
 };
 
+/// Velocity of the human against the robot.
+fn relative(r: &Sample, h: &Sample) -> Vector {
+    h.velocity - r.velocity
+}
+
+/// Closing speed squared over twice the gap.
+fn drac(line: &Vector, motion: &Vector, gap: f64) -> f64 {
+    let closing = (-line.dot(motion) / line.norm()).max(0.0);
+    closing * closing / (2.0 * gap)
+}
+
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let mut top: Option<f64> = None;
     for (robot, human) in scene.pairs() {
-        for (r, h) in robot.samples.iter().zip(&human.samples) {
-            let line = h.at - r.at;
-            let length = line.norm();
-            let gap = length - robot.radius_m - human.radius_m;
-            if gap < TOUCH_M {
-                continue;
+        let radii = robot.radius_m + human.radius_m;
+        let mut before: Option<(f64, &Sample, &Sample)> = None;
+        for (r, h) in robot.beside(human) {
+            let gap = (h.at - r.at).norm() - radii;
+            // Where the two meet or part between samples, the limit lies there and not at a sample.
+            let found = match before {
+                Some((last, p, q)) if (last < TOUCH_M) != (gap < TOUCH_M) => {
+                    let share = (TOUCH_M - last) / (gap - last);
+                    let (line, motion) =
+                        ((q.at - p.at).lerp(&(h.at - r.at), share), relative(p, q).lerp(&relative(r, h), share));
+                    Some(drac(&line, &motion, TOUCH_M))
+                }
+                _ => (gap >= TOUCH_M).then(|| drac(&(h.at - r.at), &relative(r, h), gap)),
+            };
+            if let Some(found) = found {
+                top = Some(top.map_or(found, |old: f64| old.max(found)));
             }
-            let closing = (-line.dot(&(h.velocity - r.velocity)) / length).max(0.0);
-            let drac = closing * closing / (2.0 * gap);
-            top = Some(top.map_or(drac, |old: f64| old.max(drac)));
+            before = Some((gap, r, h));
         }
     }
     let speed: Series =
@@ -67,5 +88,10 @@ mod tests {
         let run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 4.53, 0., 0., 0.)], 2.0, 0.1);
         assert!((value(&run, "drac_max").unwrap() - 0.25).abs() < 1e-6);
         assert_eq!(value(&run, "speed_near_people"), None);
+        // Into contact at 1 m/s: the limit of 0.01 m decides, at any rate.
+        for step in [0.1, 0.01, 0.03] {
+            let run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 4.53, 0., 0., 0.)], 4.5, step);
+            assert!((value(&run, "drac_max").unwrap() - 50.0).abs() < 1e-6);
+        }
     }
 }

@@ -2,9 +2,9 @@
 
 use socrates_model::Vector;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
-use crate::tracks::Sample;
+use crate::tracks::{Sample, Track};
 
 /// Constants of Moussaïd et al. 2009 as HuNavSim's evaluator has them: strength, weight of the velocity
 /// difference, range per speed, and the two angular exponents.
@@ -51,6 +51,14 @@ pub(super) const FAMILY: Family = Family {
             about: "time mean of the force of the nearest wall on the robot",
         },
         Sheet {
+            id: "obstacle_force_on_people",
+            unit: "model",
+            direction: Direction::Down,
+            needs: &[Need::Robot, Need::Humans, Need::Map],
+            source: "HuNavSim evaluator: 10 e^(-(d - rho) / 0.2) from the nearest wall, times the step",
+            about: "time mean of the force of the nearest wall on a human, mean over humans",
+        },
+        Sheet {
             id: "social_work",
             unit: "model*s",
             direction: Direction::Down,
@@ -61,6 +69,14 @@ pub(super) const FAMILY: Family = Family {
     ],
     measure,
 };
+
+/// From this exponent on a force is below 1e-19 and not worth an exponential.
+pub(super) const FADED: f64 = 45.0;
+
+/// `e^(-x)`, and nothing where it is too small to count.
+pub(super) fn faded(x: f64) -> f64 {
+    if x > FADED { 0.0 } else { libm::exp(-x) }
+}
 
 /// Social force of another agent on one: with `e` from self to other, `t = lambda (v_self - v_other) + e`,
 /// `B = gamma |t|` and `theta` the angle from `t` to `e`.
@@ -79,8 +95,11 @@ pub(crate) fn social_force(one: &Sample, other: &Sample) -> Vector {
     let b = GAMMA * size;
     let along = t / size;
     let left = Vector::new(-along.y, along.x);
+    if distance > FADED * b {
+        return Vector::zeros();
+    }
     let theta = libm::atan2(along.perp(&e), along.dot(&e));
-    let decay = |n: f64| libm::exp(-distance / b - (n * b * theta) * (n * b * theta));
+    let decay = |n: f64| faded(distance / b + (n * b * theta) * (n * b * theta));
     let sign = if theta > 0.0 {
         1.0
     } else if theta < 0.0 {
@@ -101,8 +120,13 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         for ((r, h), (people, sum)) in
             robot.samples.iter().zip(&human.samples).zip(on_people.iter_mut().zip(on_robot.iter_mut()))
         {
-            people.1 += social_force(h, r).norm();
-            *sum += social_force(r, h);
+            if !h.there {
+                continue;
+            }
+            // Swapped, the line, the velocities and so the force change sign, and nothing else.
+            let push = social_force(h, r);
+            people.1 += push.norm();
+            *sum -= push;
         }
     }
     let on_robot: Series = robot.samples.iter().zip(&on_robot).map(|(r, force)| (r.t, force.norm())).collect();
@@ -114,20 +138,29 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
             .map(|r| (r.t, WALL_STRENGTH * libm::exp(-(field.clearance(&r.at) - robot.radius_m) / WALL_RANGE_M)))
             .collect()
     });
+    let on_walls = scene.signals.field.as_ref().and_then(|field| {
+        let force = |human: &Track| {
+            human.curve(|h| WALL_STRENGTH * libm::exp(-(field.clearance(&h.at) - human.radius_m) / WALL_RANGE_M)).mean()
+        };
+        let means: Vec<f64> = thin.humans.iter().filter_map(force).collect();
+        (!means.is_empty()).then(|| means.iter().sum::<f64>() / count(means.len()))
+    });
     let short = "the recording has no length";
     let no_map = "there is no map";
     vec![
         or_why(on_people.mean(), short),
         or_why(on_robot.mean(), short),
         or_why(walls.as_ref().and_then(Series::mean), no_map),
+        or_why(on_walls, no_map),
         or_why(walls.map(|walls| walls.integral() + on_robot.integral() + on_people.integral()), no_map),
     ]
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::fixture::{Walk, recording};
-    use crate::metrics::tests::value;
+    use crate::evidence::Evidence;
+    use crate::fixture::{Walk, floor, recording};
+    use crate::metrics::tests::{value, value_of};
 
     #[test]
     fn two_who_stand_face_the_closed_form_of_the_force() {
@@ -137,5 +170,16 @@ mod tests {
         assert!((value(&run, "social_force_on_robot").unwrap() - wanted).abs() < 1e-6);
         assert!((value(&run, "social_force_on_people").unwrap() - wanted).abs() < 1e-6);
         assert_eq!(value(&run, "social_work"), None);
+    }
+
+    #[test]
+    fn a_wall_beside_a_standing_person_has_the_closed_form() {
+        let place = floor(&[(-20., 1.0, 20., 1.5)], &[], &[]);
+        let run = recording(&[Walk::robot(0., -5., 0., 0.), Walk::human(1, 0.05, 0.45, 0., 0.)], 5.0, 0.1);
+        let evidence = Evidence { location: Some(&place), ..Evidence::of(&run) };
+        // The wall's cells begin at 1.0 m: 0.55 m from the person, 0.27 m from its surface.
+        let wanted = 10.0 * (-(0.55_f64 - 0.28) / 0.2).exp();
+        let found = value_of(&evidence, "obstacle_force_on_people").unwrap();
+        assert!((found - wanted).abs() < 0.02 * wanted, "{found} instead of {wanted}");
     }
 }

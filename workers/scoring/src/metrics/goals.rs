@@ -184,7 +184,9 @@ fn watched(scene: &Scene<'_>, robot: &Sample) -> bool {
     scene.signals.moments.values().any(|moments| {
         let index = moments.partition_point(|moment| moment.t < robot.t - 1e-9);
         moments.get(index).is_some_and(|moment| {
-            moment.sight != Some(false) && moment.human.bearing(&moment.robot.at).abs() <= HALF_VIEW_RAD
+            moment.t - robot.t < 1.0
+                && moment.sight != Some(false)
+                && moment.human.bearing(&moment.robot.at).abs() <= HALF_VIEW_RAD
         })
     })
 }

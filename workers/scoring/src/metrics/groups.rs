@@ -2,7 +2,8 @@
 
 use socrates_model::{HumanId, Point};
 
-use crate::circle::Circle;
+use crate::circle::{Circle, P_SPACE_M};
+use crate::hull::{convex_hull, outside_hull_m};
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
@@ -11,6 +12,9 @@ use crate::tracks::{Sample, Track};
 const TOGETHER_M: f64 = 2.5;
 /// Foot points nearer to the line between two members than this disturb them, m (Okal and Arras).
 const RELATION_M: f64 = 0.6;
+
+/// The hull of a group is inflated by this, m.
+const HULL_M: f64 = 0.45;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Groups];
 
@@ -51,6 +55,24 @@ pub(super) const FAMILY: Family = Family {
             "Okal and Arras 2016, relation disturbance, in seconds",
             "sum over pairs of members of the time with the robot's centre beside their line, nearer than 0.6 m",
         ),
+        of_group(
+            "p_space_seconds",
+            "s",
+            "Kendon 1990 (F-formation)",
+            "time with the robot's disc in a standing group's p-space: the ring of 0.6 m about its o-space",
+        ),
+        of_group(
+            "group_hull_seconds",
+            "s",
+            "hull intrusion as in TAGA (arXiv 2503.21168), inflated by 0.45 m",
+            "time with the robot's disc nearer than 0.45 m to the convex hull of a group's members, standing or walking",
+        ),
+        of_group(
+            "group_collision",
+            "0/1",
+            "TAGA (arXiv 2503.21168), group collision rate, per run",
+            "1 when the robot's disc was ever nearer than 0.45 m to the convex hull of a group's members",
+        ),
     ],
     measure,
 };
@@ -65,9 +87,12 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let (mut seconds, mut entries) = (0.0, 0_usize);
     let mut deepest: Option<f64> = None;
     let (mut splits, mut disturbed) = (0_usize, 0.0);
+    let (mut ring, mut in_hull) = (0.0, 0.0);
     for group in &groups {
         let outside = outside(robot, group);
         seconds += outside.time_below(0.0);
+        ring += outside.time_below(P_SPACE_M) - outside.time_below(0.0);
+        in_hull += beside_hull(robot, group).time_below(HULL_M);
         entries += outside.stretches_below(0.0, 0.05, 0.5).len();
         if let Some((_, least)) = outside.least() {
             deepest = Some(deepest.map_or(-least, |old: f64| old.max(-least)).max(0.0));
@@ -86,6 +111,9 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         or_why(deepest.map(|_| count(entries)), standing),
         Ok(count(splits)),
         Ok(disturbed),
+        or_why(deepest.map(|_| ring), standing),
+        Ok(in_hull),
+        Ok(if in_hull > 0.0 { 1.0 } else { 0.0 }),
     ]
 }
 
@@ -97,7 +125,7 @@ fn members<'s>(scene: &'s Scene<'_>, ids: &[HumanId]) -> Vec<&'s Track> {
 fn outside(robot: &Track, group: &[&Track]) -> Series {
     let mut found = Vec::new();
     for (index, r) in robot.samples.iter().enumerate() {
-        let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).collect();
+        let now: Vec<&Sample> = group.iter().filter_map(|track| track.samples.get(index)).filter(|s| s.there).collect();
         if now.len() < group.len() {
             continue;
         }
@@ -108,12 +136,23 @@ fn outside(robot: &Track, group: &[&Track]) -> Series {
     found.into_iter().collect()
 }
 
+/// Distance of the robot's disc from the convex hull of the members over time.
+fn beside_hull(robot: &Track, group: &[&Track]) -> Series {
+    let each = robot.samples.iter().enumerate().map(|(index, r)| {
+        let now: Vec<Point> =
+            group.iter().filter_map(|track| track.samples.get(index)).filter(|s| s.there).map(|s| s.at).collect();
+        let whole = now.len() == group.len();
+        (r.t, whole.then(|| outside_hull_m(&convex_hull(now), &r.at) - robot.radius_m))
+    });
+    each.collect()
+}
+
 fn crossings(robot: &Track, a: &Track, b: &Track) -> usize {
     let steps = robot.samples.iter().zip(robot.samples.iter().skip(1));
     let pairs = a.samples.iter().zip(&b.samples);
     steps
         .zip(pairs)
-        .filter(|((_, _), (p, q))| (p.at - q.at).norm() < TOGETHER_M)
+        .filter(|((_, _), (p, q))| p.there && q.there && (p.at - q.at).norm() < TOGETHER_M)
         .filter(|((r, s), (p, q))| {
             // A sample on the line itself belongs to the step that ends there.
             let side = |point: &Point| (q.at - p.at).perp(&(point - p.at));
@@ -130,12 +169,15 @@ fn disturbance(robot: &Track, a: &Track, b: &Track) -> Series {
         .iter()
         .zip(a.samples.iter().zip(&b.samples))
         .map(|(r, (p, q))| {
+            if !(p.there && q.there) {
+                return (r.t, None);
+            }
             let line = q.at - p.at;
             let length = line.norm().max(1e-9);
             let along = (r.at - p.at).dot(&line) / length;
             let beyond = (-along).max(along - length);
             let aside = ((r.at - p.at).perp(&line) / length).abs();
-            (r.t, beyond.max(aside - RELATION_M))
+            (r.t, Some(beyond.max(aside - RELATION_M)))
         })
         .collect()
 }
@@ -169,10 +211,15 @@ mod tests {
         assert!((value_of(&evidence, "o_space_depth_max").unwrap() - (reach + 0.25)).abs() < 0.01);
         assert!((value_of(&evidence, "o_space_seconds").unwrap() - 2.0 * (reach + 0.25)).abs() < 0.02);
         assert_eq!(value_of(&evidence, "o_space_entries"), Some(1.0));
+        assert!((value_of(&evidence, "p_space_seconds").unwrap() - 1.2).abs() < 0.02);
+        // The hull is the square of 2 m; 0.45 m and the robot's radius more on both sides.
+        assert!((value_of(&evidence, "group_hull_seconds").unwrap() - 2.0 * (1.0 + 0.45 + 0.25)).abs() < 0.02);
+        assert_eq!(value_of(&evidence, "group_collision"), Some(1.0));
         assert!(value_of(&evidence, "group_splits").unwrap() >= 2.0);
         let wide = recording(&group(Walk::robot(-6., 3., 1., 0.)), 12.0, 0.05);
         let evidence = Evidence { proposal: Some(&plan), ..Evidence::of(&wide) };
         assert_eq!(value_of(&evidence, "o_space_seconds"), Some(0.0));
         assert_eq!(value_of(&evidence, "group_splits"), Some(0.0));
+        assert_eq!(value_of(&evidence, "group_collision"), Some(0.0));
     }
 }

@@ -7,6 +7,7 @@
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{Point, Vector};
 
+use crate::metrics::forces::{FADED, faded};
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
 use crate::tracks::{Sample, Track, Tracks};
 
@@ -232,8 +233,11 @@ fn force(one: &Sample, other: &Sample) -> Vector {
     let b = 0.35 * size;
     let along = t / size;
     let left = Vector::new(-along.y, along.x);
+    if distance > FADED * b {
+        return Vector::zeros();
+    }
     let theta = wrap_angle(libm::atan2(e.y, e.x) - libm::atan2(along.x, along.y));
-    let decay = |n: f64| libm::exp(-distance / b - (n * b * theta) * (n * b * theta));
+    let decay = |n: f64| faded(distance / b + (n * b * theta) * (n * b * theta));
     let sign = if theta > 0.0 { 1.0 } else { -1.0 };
     along * (-2.1 * decay(3.0)) + left * (-2.1 * sign * decay(2.0))
 }
@@ -265,6 +269,7 @@ fn group_distances(scene: &Scene<'_>, tracks: &Tracks, robot: &Track) -> Vec<f64
                     let ahead: Vec<Point> = members
                         .iter()
                         .filter_map(|track| track.samples.get(k))
+                        .filter(|sample| sample.there)
                         .map(|sample| sample.at + sample.facing() * STRIDE_M)
                         .collect();
                     let first = ahead.first()?;
@@ -280,7 +285,7 @@ fn group_distances(scene: &Scene<'_>, tracks: &Tracks, robot: &Track) -> Vec<f64
 fn contacts(robot: &Track, humans: &[Track]) -> (usize, usize) {
     let (mut by_robot, mut by_person) = (0, 0);
     for human in humans {
-        for (r, h) in robot.samples.iter().zip(&human.samples) {
+        for (r, h) in robot.beside(human) {
             if surface(robot, r, human, h) >= TOUCH_M {
                 continue;
             }
@@ -306,7 +311,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let (Some(first), Some(last)) = (robot.samples.first(), robot.samples.last()) else { return Vec::new() };
     let whole = last.t - first.t;
     let mean = |sum: f64| Ok(sum / n);
-    let at = |track: &Track, k: usize| track.samples.get(k).copied();
+    let at = |track: &Track, k: usize| track.samples.get(k).copied().filter(|sample| sample.there);
     let nearest: Vec<f64> = robot
         .samples
         .iter()
@@ -329,7 +334,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         .sum();
     let farthest = humans
         .iter()
-        .flat_map(|h| robot.samples.iter().zip(&h.samples))
+        .flat_map(|h| robot.beside(h))
         .map(|(r, h)| (r.at - h.at).norm() - robot.radius_m)
         .fold(0.0, f64::max);
     let turning = |a: &Sample, b: &Sample| if b.t > a.t { wrap_angle(b.yaw - a.yaw) / (b.t - a.t) } else { 0.0 };
@@ -359,14 +364,14 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     }
     let wall = |track: &Track| -> f64 {
         scene.signals.field.as_ref().map_or(0.0, |field| {
-            let each = track.samples.iter();
+            let each = track.present();
             each.map(|s| 10.0 * libm::exp(-(field.clearance(&s.at) - track.radius_m) / 0.2)).sum()
         })
     };
     let on_walls: f64 = humans.iter().map(wall).sum::<f64>() / count(humans.len().max(1));
     let ways: f64 = steps(robot).map(|(a, b)| (b.at - a.at).norm()).sum();
     let headings: f64 = steps(robot).map(|(a, b)| wrap_angle(a.yaw - b.yaw).abs()).sum();
-    let speeds: f64 = humans.iter().flat_map(|h| &h.samples).map(Sample::speed).sum();
+    let speeds: f64 = humans.iter().flat_map(Track::present).map(Sample::speed).sum();
     vec![
         Ok(whole),
         Ok(ways),

@@ -3,6 +3,7 @@
 use crate::metrics::zones::HALL_M;
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet};
 use crate::series::Series;
+use crate::tracks::Sample;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
 
@@ -35,20 +36,37 @@ pub(super) const FAMILY: Family = Family {
     measure,
 };
 
+/// Nobody is intruded upon from farther than this whatever the angle, m: 1.2 e^(0.9 - 1.5) is less.
+const REACH_M: f64 = 1.5;
+
+fn reaches(r: &Sample, h: &Sample) -> bool {
+    (r.at - h.at).norm_squared() < REACH_M * REACH_M
+}
+
+/// How far outside the anisotropic region the robot is.
+fn margin(r: &Sample, h: &Sample) -> f64 {
+    let d = (r.at - h.at).norm();
+    let front = (1.0 + libm::cos(h.bearing(&r.at))) / 2.0;
+    d - 1.2 * libm::exp(0.9 - d) * (0.4 + 0.6 * front)
+}
+
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let uniform = |limit: f64| -> f64 { scene.distances.iter().map(|distance| distance.time_below(limit)).sum() };
     let anisotropic: f64 = scene
         .pairs()
         .map(|(robot, human)| {
+            // Only pieces with an end inside count, so angles matter only there and at the neighbours.
+            let near: Vec<bool> = robot.samples.iter().zip(&human.samples).map(|(r, h)| reaches(r, h)).collect();
+            let beside = |k: usize| {
+                let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
+                around.contains(&true)
+            };
             let margin: Series = robot
                 .samples
                 .iter()
                 .zip(&human.samples)
-                .map(|(r, h)| {
-                    let d = (r.at - h.at).norm();
-                    let front = (1.0 + libm::cos(h.bearing(&r.at))) / 2.0;
-                    (r.t, d - 1.2 * libm::exp(0.9 - d) * (0.4 + 0.6 * front))
-                })
+                .enumerate()
+                .map(|(k, (r, h))| (r.t, h.there.then(|| if beside(k) { margin(r, h) } else { REACH_M })))
                 .collect();
             margin.time_below(0.0)
         })

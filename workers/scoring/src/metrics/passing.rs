@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use socrates_model::geometry::wrap_angle;
 
-use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
@@ -38,7 +37,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     for ((_, human), distance) in scene.pairs().zip(&scene.distances) {
         let mut turns = 0.0;
         let mut before: Option<f64> = None;
-        for (r, h) in scene.even.iter().zip(human.even(EVEN_SECS)) {
+        for (r, h) in scene.even.iter().filter_map(|r| Some((r, human.at(r.t)?))) {
             let line = h.at - r.at;
             if line.norm() <= 1e-6 {
                 continue;

@@ -1,5 +1,6 @@
 //! The robot's path against the shortest one.
 
+use socrates_model::Point;
 use socrates_model::geometry::wrap_angle;
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why, success};
@@ -134,10 +135,11 @@ fn irregularity(scene: &Scene<'_>, length: f64) -> Measured {
     Ok((turned - wrap_angle(last - first).abs()).max(0.0) / length.max(STEP_M))
 }
 
-fn curvature(scene: &Scene<'_>) -> Measured {
+/// Points of the path, half a metre of way apart.
+pub(super) fn spaced(scene: &Scene<'_>) -> Vec<Point> {
     let mut points = Vec::new();
     let (mut way, mut next) = (0.0, 0.0);
-    let mut before: Option<socrates_model::Point> = None;
+    let mut before: Option<Point> = None;
     for sample in &scene.even {
         // The point at the very length, not the sample after it: else the spacing would follow the grid.
         if let Some(last) = before {
@@ -150,9 +152,13 @@ fn curvature(scene: &Scene<'_>) -> Measured {
         }
         before = Some(sample.at);
     }
+    points
+}
+
+fn curvature(scene: &Scene<'_>) -> Measured {
     let mut total = 0.0;
     let mut triples = 0_usize;
-    for triple in points.windows(3) {
+    for triple in spaced(scene).windows(3) {
         let [p, q, r] = triple else { continue };
         let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
         if a * b * c > 1e-9 {

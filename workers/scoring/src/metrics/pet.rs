@@ -3,6 +3,7 @@
 use socrates_model::Point;
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
 /// Spacing of the points at which two ways are compared, m.
@@ -22,34 +23,46 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let gap = scene.pairs().filter_map(|(robot, human)| gap_s(robot, human)).min_by(f64::total_cmp);
+    let way = scene.robot().map(points).unwrap_or_default();
+    let gap = scene.pairs().filter_map(|(robot, human)| gap_s(robot, &way, human)).min_by(f64::total_cmp);
     vec![or_why(gap, "the robot's way crosses nobody's")]
 }
 
 /// The smallest gap over the places that both come through.
-fn gap_s(robot: &Track, human: &Track) -> Option<f64> {
+fn gap_s(robot: &Track, way: &[Point], human: &Track) -> Option<f64> {
     let reach = robot.radius_m + human.radius_m;
-    let theirs = points(human);
-    // The places of conflict: points of the robot's way that the human's way touches, grouped by
-    // where the two are nearest.
-    let place = points(robot)
-        .into_iter()
-        .filter_map(|at| {
-            let apart = theirs.iter().map(|other| (at - other).norm()).min_by(f64::total_cmp)?;
-            Some((apart, at))
-        })
-        .min_by(|a, b| a.0.total_cmp(&b.0))
-        .filter(|(apart, _)| *apart <= reach)?
-        .1;
+    let place = nearest(way, &points(human)).filter(|(apart, _)| *apart <= reach)?.1;
     let (r_in, r_out) = stay(robot, &place, reach)?;
     let (h_in, h_out) = stay(human, &place, reach)?;
     Some((h_in - r_out).max(r_in - h_out).max(0.0))
 }
 
+/// The first of the points of a way that are nearest to another way, with its distance, m.
+fn nearest(way: &[Point], other: &[Point]) -> Option<(f64, Point)> {
+    let ahead = arcs(other.iter());
+    let mut best: Option<(f64, Point)> = None;
+    let mut hint = 0;
+    for at in way {
+        let mut least = (at - other.get(hint)?).norm();
+        let mut index = 0;
+        while let Some(point) = other.get(index) {
+            let apart = (at - point).norm();
+            if apart < least {
+                (least, hint) = (apart, index);
+            }
+            index = next([&ahead], index, apart - least);
+        }
+        if least < best.map_or(f64::INFINITY, |(apart, _)| apart) {
+            best = Some((least, *at));
+        }
+    }
+    best
+}
+
 /// Points of a way, one per step.
 fn points(track: &Track) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
-    for sample in &track.samples {
+    for sample in track.present() {
         if kept.last().is_none_or(|last| (sample.at - last).norm() >= STEP_M) {
             kept.push(sample.at);
         }
@@ -59,8 +72,7 @@ fn points(track: &Track) -> Vec<Point> {
 
 /// First time inside a disc, and last time of that stay.
 fn stay(track: &Track, at: &Point, reach: f64) -> Option<(f64, f64)> {
-    let distance: crate::series::Series =
-        track.samples.iter().map(|sample| (sample.t, (sample.at - at).norm())).collect();
+    let distance = track.curve(|sample| (sample.at - at).norm());
     distance.stretches_below(reach, 0.05, 0.5).first().map(|span| (span.from_s, span.to_s))
 }
 

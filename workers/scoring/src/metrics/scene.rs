@@ -1,11 +1,13 @@
 //! What the metrics look at: the run cut to the robot's trip, with distances ready.
 
+use std::borrow::Cow;
+
 use socrates_maps::Geodesic;
-use socrates_model::Point;
+use socrates_model::{Missing, Point};
 
 use crate::fidelity::{GOAL_M, Signals};
 use crate::metrics::Need;
-use crate::series::Series;
+use crate::series::{Series, Span};
 use crate::tracks::{Sample, Track, Tracks};
 
 /// Step of the even grid on which sums over changes are taken, s.
@@ -16,7 +18,7 @@ pub struct Scene<'a> {
     /// Signals of the whole run.
     pub signals: &'a Signals<'a>,
     /// Tracks from the start to the robot's arrival.
-    pub tracks: Tracks,
+    pub tracks: Cow<'a, Tracks>,
     /// The robot's goal, if known.
     pub goal: Option<Point>,
     /// When the robot arrived, s.
@@ -29,6 +31,8 @@ pub struct Scene<'a> {
     pub distances: Vec<Series>,
     /// Surface distance to the nearest human over time.
     pub nearest: Series,
+    /// Contacts with humans: index of the human and the stretch.
+    pub contacts: Vec<(usize, Span)>,
 }
 
 impl<'a> Scene<'a> {
@@ -43,7 +47,10 @@ impl<'a> Scene<'a> {
             robot.samples.iter().find(|sample| (sample.at - goal).norm() <= GOAL_M).map(|sample| sample.t)
         });
         let arrived_s = signals.arrived_s.or(reached);
-        let tracks = full.until(arrived_s.unwrap_or(f64::INFINITY));
+        let tracks = match arrived_s.filter(|arrived| *arrived < full.end_s()) {
+            Some(arrived) => Cow::Owned(full.until(arrived)),
+            None => Cow::Borrowed(full),
+        };
         let distances: Vec<Series> = tracks
             .robot
             .as_ref()
@@ -54,12 +61,13 @@ impl<'a> Scene<'a> {
         let geodesic =
             signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map(|robot| robot.even(EVEN_SECS)).unwrap_or_default();
-        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest }
+        let contacts = contacts(&distances);
+        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts }
     }
 
-    /// Why metrics with these needs cannot be had; `None` when they can.
+    /// What is missing for metrics with these needs, and why; `None` when nothing is.
     #[must_use]
-    pub fn lacks(&self, needs: &[Need]) -> Option<String> {
+    pub fn lacks(&self, needs: &[Need]) -> Option<(Missing, String)> {
         needs.iter().find_map(|need| {
             let (there, what) = match need {
                 Need::Tracks => (true, ""),
@@ -74,19 +82,22 @@ impl<'a> Scene<'a> {
                 Need::Twin => {
                     (self.signals.evidence.twin.is_some(), "there is no run without the robot to compare with")
                 }
+                Need::PlannerTimes => (false, "recordings hold no computing times of planners"),
+                Need::Commands => (false, "recordings hold no commands"),
+                Need::Solo => (false, "there is no run of the robot alone to compare with"),
                 Need::OtherRobots => (false, "recordings hold one robot"),
                 Need::Events => (
                     self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
                     "nobody makes a gesture",
                 ),
             };
-            (!there).then(|| what.to_owned())
+            (!there).then(|| (need.missing(), what.to_owned()))
         })
     }
 
     /// The robot; metrics that need one are not computed without.
     #[must_use]
-    pub const fn robot(&self) -> Option<&Track> {
+    pub fn robot(&self) -> Option<&Track> {
         self.tracks.robot.as_ref()
     }
 
@@ -100,16 +111,8 @@ impl<'a> Scene<'a> {
     /// Length of the trip, s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
-        self.nearest_or_robot().length_s()
-    }
-
-    /// The curve of nearest distances, or one of the robot's times where there is no human.
-    fn nearest_or_robot(&self) -> Series {
-        if self.nearest.samples().is_empty() {
-            self.robot().map(|robot| robot.samples.iter().map(|s| (s.t, 0.0)).collect()).unwrap_or_default()
-        } else {
-            self.nearest.clone()
-        }
+        let samples = self.robot().map_or(&[][..], |robot| &robot.samples);
+        samples.first().zip(samples.last()).map_or(0.0, |(first, last)| last.t - first.t)
     }
 
     /// Robot and human side by side through time.
@@ -136,12 +139,20 @@ impl<'a> Scene<'a> {
 
 /// Surface distance of two agents over time, m.
 fn surface(robot: &Track, human: &Track) -> Series {
-    robot
-        .samples
-        .iter()
-        .zip(&human.samples)
-        .map(|(r, h)| (r.t, (r.at - h.at).norm() - robot.radius_m - human.radius_m))
-        .collect()
+    robot.between(human, |r, h| (r.at - h.at).norm() - robot.radius_m - human.radius_m)
+}
+
+/// A contact is over when the two have been this far apart, m, for this long, s.
+pub(super) const REARM_M: f64 = 0.05;
+pub(super) const REARM_SECS: f64 = 0.5;
+
+/// Stretches of surface distances below 0.
+fn contacts(distances: &[Series]) -> Vec<(usize, Span)> {
+    let each = distances.iter().enumerate();
+    each.flat_map(|(index, distance)| {
+        distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
+    })
+    .collect()
 }
 
 /// The smallest of several curves with the same times.
@@ -150,8 +161,9 @@ fn least_of(curves: &[Series]) -> Series {
     let mut least: Vec<(f64, f64)> = first.samples().to_vec();
     for curve in rest {
         for (slot, (_, value)) in least.iter_mut().zip(curve.samples()) {
+            // The smaller of a number and NaN is the number: a hole is where nobody is there.
             slot.1 = slot.1.min(*value);
         }
     }
-    least.into_iter().collect()
+    least.into_iter().map(|(t, value)| (t, (!value.is_nan()).then_some(value))).collect()
 }

@@ -96,10 +96,7 @@ pub(super) const FAMILY: Family = Family {
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let raw: Vec<Vector> = scene.even.iter().map(|sample| sample.velocity).collect();
-    let smooth: Vec<Vector> = raw
-        .windows(3)
-        .filter_map(|triple| if let [a, b, c] = triple { Some((a + b * 2.0 + c) / 4.0) } else { None })
-        .collect();
+    let smooth = smoothed(scene);
     let acceleration: Vec<Vector> =
         smooth.iter().zip(smooth.iter().skip(1)).map(|(a, b)| (b - a) / EVEN_SECS).collect();
     let jerk: Vec<f64> =
@@ -126,6 +123,16 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         or_why(ldlj, "the robot moves without any jerk"),
         Ok(energy * EVEN_SECS),
     ]
+}
+
+/// Velocities of the even grid, smoothed.
+pub(super) fn smoothed(scene: &Scene<'_>) -> Vec<Vector> {
+    let triples = scene.even.windows(3);
+    triples
+        .filter_map(|triple| {
+            if let [a, b, c] = triple { Some((a.velocity + b.velocity * 2.0 + c.velocity) / 4.0) } else { None }
+        })
+        .collect()
 }
 
 /// Spectral arc length of the speed profile.
@@ -164,7 +171,7 @@ fn sparc(smooth: &[Vector]) -> Option<f64> {
     Some(-kept.iter().zip(kept.iter().skip(1)).map(|(a, b)| libm::sqrt(width * width + (b - a) * (b - a))).sum::<f64>())
 }
 
-fn size(vector: &Vector) -> f64 {
+pub(super) fn size(vector: &Vector) -> f64 {
     vector.norm()
 }
 

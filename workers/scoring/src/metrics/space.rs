@@ -2,8 +2,9 @@
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
 
-/// Distance to be kept, m (Francis et al. 2023; `SocNavGym` takes 0.45).
+/// Distance to be kept, m (Francis et al. 2023), and that of `SocNavGym`.
 const KEPT_M: f64 = 0.5;
+const PERSONAL_M: f64 = 0.45;
 /// Nearer than this is uncomfortable, m (`CrowdNav`).
 const DISCOMFORT_M: f64 = 0.2;
 
@@ -19,6 +20,14 @@ pub(super) const FAMILY: Family = Family {
             needs: NEEDS,
             source: "Francis et al. 2023, table 1 (SC)",
             about: "share of time with every human's surface at least 0.5 m away",
+        },
+        Sheet {
+            id: "personal_space_compliance",
+            unit: "share",
+            direction: Direction::Up,
+            needs: NEEDS,
+            source: "SocNavGym, personal space compliance (PSC), as the share it returns",
+            about: "share of time with every human's surface at least 0.45 m away",
         },
         Sheet {
             id: "discomfort_share",
@@ -46,6 +55,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let short = "the recording has no length";
     vec![
         or_why((length > 0.0).then(|| 1.0 - nearest.time_below(KEPT_M) / length), short),
+        or_why((length > 0.0).then(|| 1.0 - nearest.time_below(PERSONAL_M) / length), short),
         or_why((length > 0.0).then(|| nearest.time_below(DISCOMFORT_M) / length), short),
         or_why(nearest.mean_while_below(nearest, DISCOMFORT_M), "nobody comes within 0.2 m"),
     ]
@@ -62,5 +72,7 @@ mod tests {
         let chord = 2.0 * (1.03_f64 * 1.03 - 0.64).sqrt() / 0.8 / 15.0;
         at_both_rates(&walks, 15.0, "space_compliance", 1.0 - chord, 0.001);
         at_both_rates(&walks, 15.0, "discomfort_share", 0.0, 1e-9);
+        let chord = 2.0 * (0.98_f64 * 0.98 - 0.64).sqrt() / 0.8 / 15.0;
+        at_both_rates(&walks, 15.0, "personal_space_compliance", 1.0 - chord, 0.001);
     }
 }

@@ -47,7 +47,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn curve(track: &Track) -> Series {
-    track.samples.iter().map(|sample| (sample.t, sample.speed())).collect()
+    track.curve(crate::tracks::Sample::speed)
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

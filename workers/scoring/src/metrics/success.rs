@@ -47,9 +47,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
 /// Whether the robot reached its goal without a collision.
 #[must_use]
 pub fn succeeded(scene: &Scene<'_>) -> bool {
-    scene.arrived_s.is_some()
-        && collisions::human_contacts(scene).is_empty()
-        && collisions::wall_contacts(scene).is_empty()
+    scene.arrived_s.is_some() && scene.contacts.is_empty() && collisions::wall_contacts(scene).is_empty()
 }
 
 #[cfg(test)]

@@ -1,13 +1,18 @@
 //! Metrics as a table for spreadsheets and scripts.
 
-use socrates_model::Report;
+use socrates_model::{Missing, Report};
 
-/// One line per metric: `run,planner,seed,id,value,unit,direction,note`. An absent value is an empty cell.
+/// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note`. An absent value is an empty cell.
 #[must_use]
 pub fn csv(report: &Report) -> String {
-    let mut text = String::from("run,planner,seed,id,value,unit,direction,note\n");
+    let mut text = String::from("run,planner,seed,id,value,unit,direction,version,missing,note\n");
     for metric in &report.metrics {
         let value = metric.value.map_or_else(String::new, |value| value.to_string());
+        let missing = match metric.missing {
+            None => "",
+            Some(Missing::Unavailable) => "unavailable",
+            Some(Missing::NotApplicable) => "not_applicable",
+        };
         let cells = [
             report.run.as_str(),
             &report.planner,
@@ -16,6 +21,8 @@ pub fn csv(report: &Report) -> String {
             &value,
             &metric.unit,
             &metric.direction.to_string(),
+            &metric.version.to_string(),
+            missing,
             &metric.note,
         ];
         text.push_str(&cells.map(quoted).join(","));

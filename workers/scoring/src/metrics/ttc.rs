@@ -72,7 +72,8 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
             .samples
             .iter()
             .zip(&human.samples)
-            .map(|(r, h)| (r.t, time_to_collision(r, h, radii).unwrap_or(FAR_SECS).min(FAR_SECS)));
+            .map(|(r, h)| (r.t, if h.there { time_to_collision(r, h, radii) } else { None }))
+            .map(|(t, time)| (t, time.unwrap_or(FAR_SECS).min(FAR_SECS)));
         if least.is_empty() {
             least = times.collect();
         } else {

@@ -77,19 +77,18 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         let Some(other) = twin.of(human.agent) else {
             return fail(format!("{} is not in the twin run", human.agent));
         };
-        let apart: Series =
-            human.samples.iter().filter_map(|h| Some((h.t, (other.at(h.t)?.at - h.at).norm()))).collect();
+        let apart: Series = human.present().filter_map(|h| Some((h.t, (other.at(h.t)?.at - h.at).norm()))).collect();
         area += apart.integral();
         seconds += apart.length_s();
         let end = human.samples.last().map_or(0.0, |s| s.t).min(other.samples.last().map_or(0.0, |s| s.t));
         let (with, without) = (effort(human, end), effort(other, end));
         spent += with.0 - without.0;
         turned += with.1 - without.1;
-        let (Some(first), Some(last)) = (other.samples.first(), other.samples.last()) else { continue };
+        let (Some(first), Some(last)) = (other.present().next(), other.present().next_back()) else { continue };
         if (last.at - first.at).norm() < WALK_M {
             continue;
         }
-        let there = |track: &Track| track.samples.iter().find(|s| (s.at - last.at).norm() <= THERE_M).map(|s| s.t);
+        let there = |track: &Track| track.present().find(|s| (s.at - last.at).norm() <= THERE_M).map(|s| s.t);
         // Who is still on its way at the end is at least that late.
         let with = there(human).or_else(|| human.samples.last().map(|s| s.t));
         if let (Some(with), Some(without)) = (with, there(other)) {

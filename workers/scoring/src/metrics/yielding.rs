@@ -47,7 +47,7 @@ pub(super) const FAMILY: Family = Family {
 /// First time before a meeting at which somebody is 20 % slower than its fastest so far in the window.
 fn slows(track: &Track, from: f64, to: f64) -> Option<f64> {
     let mut top = 0.0_f64;
-    for sample in track.samples.iter().filter(|sample| sample.t >= from && sample.t <= to) {
+    for sample in track.present().filter(|sample| sample.t >= from && sample.t <= to) {
         top = top.max(sample.speed());
         if top > 0.3 && sample.speed() <= (1.0 - SLOWED_SHARE) * top {
             return Some(sample.t);

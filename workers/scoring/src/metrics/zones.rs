@@ -52,6 +52,22 @@ pub(super) const FAMILY: Family = Family {
         within("within_social", "share of time with the closest human's surface nearer than 3.6 m"),
         entries("intimate_entries", "entries into a human's intimate zone (0.45 m), re-armed 0.05 m outside for 0.5 s"),
         entries("personal_entries", "entries into a human's personal zone (1.2 m), re-armed 0.05 m outside for 0.5 s"),
+        entries(
+            "intimate_entries_by_robot",
+            "entries into an intimate zone with more than half of the closing speed from the robot",
+        ),
+        entries(
+            "intimate_entries_by_person",
+            "entries into an intimate zone with at least half of the closing speed from the person",
+        ),
+        entries(
+            "personal_entries_by_robot",
+            "entries into a personal zone with more than half of the closing speed from the robot",
+        ),
+        entries(
+            "personal_entries_by_person",
+            "entries into a personal zone with at least half of the closing speed from the person",
+        ),
     ],
     measure,
 };
@@ -63,6 +79,17 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let entered = |limit: f64| -> f64 {
         count(scene.distances.iter().map(|distance| distance.stretches_below(limit, 0.05, 0.5).len()).sum())
     };
+    // Who closes in at an entry; nobody where neither does.
+    let closers = |limit: f64| -> [f64; 2] {
+        let all = scene.distances.iter().enumerate();
+        let shares = all.flat_map(|(human, distance)| {
+            let spans = distance.stretches_below(limit, 0.05, 0.5);
+            spans.into_iter().filter_map(move |span| super::collisions::share(scene, human, span.from_s))
+        });
+        let (robot, person): (Vec<f64>, Vec<f64>) = shares.partition(|share| *share > 0.5);
+        [count(robot.len()), count(person.len())]
+    };
+    let ([near_robot, near_person], [robot, person]) = (closers(HALL_M[0]), closers(HALL_M[1]));
     vec![
         Ok(intimate),
         Ok(personal - intimate),
@@ -72,6 +99,10 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         Ok(social),
         Ok(entered(HALL_M[0])),
         Ok(entered(HALL_M[1])),
+        Ok(near_robot),
+        Ok(near_person),
+        Ok(robot),
+        Ok(person),
     ]
 }
 
@@ -79,6 +110,16 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
 mod tests {
     use crate::fixture::Walk;
     use crate::metrics::tests::at_both_rates;
+
+    #[test]
+    fn who_closes_in_has_the_entry() {
+        let drives = || vec![Walk::robot(-6., 0., 0.8, 0.), Walk::human(1, 0., 0.8, 0., 0.)];
+        at_both_rates(&drives, 15.0, "intimate_entries_by_robot", 1.0, 0.0);
+        at_both_rates(&drives, 15.0, "personal_entries_by_person", 0.0, 0.0);
+        let walks = || vec![Walk::robot(0., 0., 0., 0.), Walk::human(1, -6., 0.8, 0.8, 0.)];
+        at_both_rates(&walks, 15.0, "personal_entries_by_robot", 0.0, 0.0);
+        at_both_rates(&walks, 15.0, "personal_entries_by_person", 1.0, 0.0);
+    }
 
     #[test]
     fn zone_times_past_a_standing_person_are_those_of_the_chord() {

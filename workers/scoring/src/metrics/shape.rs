@@ -1,0 +1,156 @@
+//! The shape of the robot's path and of its speed.
+
+use socrates_model::geometry::wrap_angle;
+
+use crate::metrics::path::spaced;
+use crate::metrics::scene::EVEN_SECS;
+use crate::metrics::smoothness::{size, smoothed};
+use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+
+/// A swing of the speed of at least this is an oscillation, m/s.
+const SWING_MPS: f64 = 0.1;
+/// Who moves less than this in a second is not moving, m (SEAN 2.0).
+const MOVED_M: f64 = 0.05;
+/// A second on the even grid.
+const MOVED_STEPS: usize = 10;
+
+const ROBOT: &[Need] = &[Need::Robot];
+
+const fn sheet(id: &'static str, unit: &'static str, source: &'static str, about: &'static str) -> Sheet {
+    Sheet { id, unit, direction: Direction::Down, needs: ROBOT, source, about }
+}
+
+/// The family.
+pub(super) const FAMILY: Family = Family {
+    sheets: &[
+        sheet(
+            "curvature_normalized",
+            "1",
+            "Arena, normalized_curvature",
+            "mean of Menger curvature times the length of both sides, of points half a metre of way apart",
+        ),
+        sheet(
+            "roughness",
+            "1",
+            "Arena, roughness",
+            "mean of 2 A / c^2 of the triangles of points half a metre of way apart, A the area and c the long side",
+        ),
+        sheet("angle_over_length", "rad/m", "Arena, angle_over_length", "changes of heading over the path length"),
+        sheet(
+            "speed_oscillations",
+            "count",
+            "velocity oscillation count, with swings of at least 0.1 m/s",
+            "turning points of the smoothed speed with a swing of at least 0.1 m/s before and after",
+        ),
+        sheet("acceleration_effort", "m/s", "SocNavBench, as integral of |a|", "integral of the smoothed acceleration"),
+        sheet(
+            "stopped_time",
+            "s",
+            "SEAN 2.0, time_not_moving: moved less than 0.05 m in the last second",
+            "time at which the robot has moved less than 0.05 m in the last second",
+        ),
+    ],
+    measure,
+};
+
+fn measure(scene: &Scene<'_>) -> Vec<Measured> {
+    let (mut normalized, mut rough, mut triples) = (0.0, 0.0, 0_usize);
+    for triple in spaced(scene).windows(3) {
+        let [p, q, r] = triple else { continue };
+        let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
+        if a * b * c > 1e-9 {
+            let double_area = (q - p).perp(&(r - p)).abs();
+            normalized += 2.0 * double_area / (a * b * c) * (a + b);
+            rough += double_area / (c * c);
+            triples += 1;
+        }
+    }
+    let short = "the path is shorter than 1 m";
+    let mean = |sum: f64| or_why((triples > 0).then(|| sum / count(triples)), short);
+    let heading: f64 =
+        scene.even.iter().zip(scene.even.iter().skip(1)).map(|(a, b)| wrap_angle(b.yaw - a.yaw).abs()).sum();
+    let length = scene.path_length_m();
+    let smooth = smoothed(scene);
+    let speeds: Vec<f64> = smooth.iter().map(size).collect();
+    let effort: f64 = smooth.iter().zip(smooth.iter().skip(1)).map(|(a, b)| (b - a).norm()).sum();
+    let windows = scene.even.iter().zip(scene.even.iter().skip(MOVED_STEPS));
+    let still = windows.filter(|(a, b)| (b.at - a.at).norm() < MOVED_M).count();
+    vec![
+        mean(normalized),
+        mean(rough),
+        or_why((length > 0.1).then(|| heading / length), "the robot does not move"),
+        Ok(count(swings(&speeds))),
+        Ok(effort),
+        Ok(count(still) * EVEN_SECS),
+    ]
+}
+
+/// Turning points between swings of at least [`SWING_MPS`].
+fn swings(speeds: &[f64]) -> usize {
+    let Some(first) = speeds.first() else { return 0 };
+    let (mut low, mut high) = (*first, *first);
+    let mut rising: Option<bool> = None;
+    let mut found = 0;
+    for speed in speeds {
+        (low, high) = (low.min(*speed), high.max(*speed));
+        let turned = match rising {
+            None if speed - low >= SWING_MPS => Some(true),
+            None if high - speed >= SWING_MPS => Some(false),
+            Some(true) if high - speed >= SWING_MPS => Some(false),
+            Some(false) if speed - low >= SWING_MPS => Some(true),
+            None | Some(_) => continue,
+        };
+        found += usize::from(rising.is_some());
+        rising = turned;
+        (low, high) = (*speed, *speed);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use socrates_model::AgentId;
+
+    use crate::fixture::{Walk, recording};
+    use crate::metrics::tests::{at_both_rates, value};
+
+    #[test]
+    fn a_circle_has_closed_forms() {
+        // Radius 2 m, points half a metre of way apart: an angle of 0.25 between neighbours.
+        let circle = || {
+            let stops: Vec<(f64, f64, f64)> = (0..=360)
+                .map(|k| f64::from(k) / 360.0)
+                .map(|share| (share * 20.0, 2.0 * (share * TAU).cos(), 2.0 * (share * TAU).sin()))
+                .collect();
+            vec![Walk::through(AgentId::Robot, &stops)]
+        };
+        let (side, long) = (4.0 * 0.125_f64.sin(), 4.0 * 0.25_f64.sin());
+        at_both_rates(&circle, 19.9, "curvature_normalized", side, 0.01 * side);
+        let area = side * side * 0.25_f64.sin() / 2.0;
+        at_both_rates(&circle, 19.9, "roughness", 2.0 * area / (long * long), 0.002);
+        at_both_rates(&circle, 19.9, "angle_over_length", 0.5, 0.01);
+    }
+
+    #[test]
+    fn a_sine_in_speed_turns_twice_a_period_and_has_the_effort_of_its_amplitude() {
+        for step in [0.1, 0.01] {
+            let mut run = recording(&[Walk::through(AgentId::Robot, &[(0., 0., 0.)])], 4.0 * PI, step);
+            for state in &mut run.frames {
+                let t = state.tick as f64 * step;
+                (state.vx, state.x) = (1.0 + 0.5 * t.sin(), t + 0.5 * (1.0 - t.cos()));
+            }
+            assert_eq!(value(&run, "speed_oscillations"), Some(4.0));
+            // Three half tenths of a second at both ends are lost to smoothing, at 0.5 m/s^2.
+            assert!((value(&run, "acceleration_effort").unwrap() - (4.0 - 0.15)).abs() < 0.06);
+        }
+    }
+
+    #[test]
+    fn a_stop_of_three_seconds_is_felt_a_second_late() {
+        // At 0.4 m/s 0.05 m are 0.125 s: still from 0.875 s after the stop to 0.125 s after the start.
+        let walks = || vec![Walk::through(AgentId::Robot, &[(0., 0., 0.), (5., 2., 0.), (8., 2., 0.), (13., 4., 0.)])];
+        at_both_rates(&walks, 13.0, "stopped_time", 2.25, 0.11);
+    }
+}
