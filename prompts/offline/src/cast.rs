@@ -29,6 +29,8 @@ pub(crate) struct Person {
     pub(crate) speed_mps: Option<f64>,
     /// Where it comes from, or is.
     pub(crate) start: Option<PlaceClass>,
+    /// Where it goes in.
+    pub(crate) goal: Option<PlaceClass>,
     /// Words for the reading line, in order.
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
@@ -93,6 +95,27 @@ impl Cast {
                 Some(_) | None => self.join(*n, mention, declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
+            Who::ToldApart => self.part_of(1, mention, quote),
+            Who::PartOfNew(n, of) => {
+                let known = self.latest().len() == usize::try_from(*of).unwrap_or(usize::MAX)
+                    && self.latest().iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                if !known {
+                    self.join(*of, mention, declares, quote);
+                }
+                self.part_of(*n, mention, quote)
+            }
+            Who::AllOf(n) => {
+                let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
+                let fitting = |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                let sets = [self.last.clone(), self.latest()];
+                let alike: Vec<usize> = (0..self.people.len())
+                    .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
+                    .collect();
+                sets.into_iter()
+                    .chain([alike])
+                    .find(|set| fitting(set))
+                    .unwrap_or_else(|| self.join(*n, mention, declares, quote))
+            }
             Who::Other(count) => self.others(*count, mention, quote),
             Who::Ordinal(n) => {
                 let set = self.latest();
@@ -137,7 +160,14 @@ impl Cast {
         }
         let singles = matches!(
             mention.who,
-            Who::Bare(_) | Who::PartOf(_) | Who::Other(_) | Who::Ordinal(_) | Who::Number(_) | Who::More(_)
+            Who::Bare(_)
+                | Who::PartOf(_)
+                | Who::PartOfNew(..)
+                | Who::ToldApart
+                | Who::Other(_)
+                | Who::Ordinal(_)
+                | Who::Number(_)
+                | Who::More(_)
         );
         let picked = matches!(mention.who, Who::New { .. } | Who::Definite { .. }) && self.latest().len() > found.len();
         for i in &found {

@@ -2,7 +2,7 @@
 
 use socrates_model::{Gesture, PlaceClass};
 
-use crate::lexicon::{Act, Cue, lexicon};
+use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, mentions};
 use crate::words::{Joint, Stretch, find};
 
@@ -35,6 +35,8 @@ pub(crate) struct Found {
     /// Verbs without a form in the simulation.
     pub(crate) impossible: Vec<usize>,
     pub(crate) distance_m: Option<f64>,
+    /// `at 2 m`: the distance says when, not how far.
+    pub(crate) distance_is_when: bool,
     pub(crate) lasts_s: Option<f64>,
     pub(crate) after_s: Option<f64>,
     pub(crate) pace_mps: Option<f64>,
@@ -55,7 +57,12 @@ impl Found {
 pub(crate) fn read(stretch: &mut Stretch) -> Found {
     let mut found = Found { mentions: mentions(&stretch.words), ..Found::default() };
     for mention in &found.mentions {
-        mark(stretch, mention.from, mention.to);
+        for at in mention.from..=mention.to {
+            // A word between that only describes, and that no table has, is read by nobody.
+            if at == mention.to || at == mention.from || known(stretch, at) {
+                mark(stretch, at, at);
+            }
+        }
     }
     measures(stretch, &mut found);
     let placed = places(stretch, &mut found);
@@ -81,6 +88,16 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     found
 }
 
+fn known(stretch: &Stretch, at: usize) -> bool {
+    let lex = lexicon();
+    stretch.words.get(at).is_some_and(|word| {
+        [&lex.known, &lex.stop, &lex.adjectives]
+            .iter()
+            .any(|table| table.contains(&word.text) || table.contains(&word.stem))
+            || word.number().is_some()
+    })
+}
+
 fn mark(stretch: &mut Stretch, from: usize, to: usize) {
     for word in stretch.words.iter_mut().take(to + 1).skip(from) {
         word.used = true;
@@ -103,6 +120,9 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
         };
         let unit = stretch.words.get(i + 1).map_or("", |word| word.stem.as_str());
         let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
+        if matches!(unit, "meter" | "centimeter") {
+            found.distance_is_when |= matches!(before, "at" | "within" | "from" | "under");
+        }
         match unit {
             "meter" => found.distance_m = Some(number.clamp(0.3, 15.0)),
             "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
@@ -114,6 +134,12 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
         }
         mark(stretch, i, i + 1);
     }
+    if let Some((at, secs)) = span(stretch) {
+        let before = at.checked_sub(1).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
+        if before == "after" { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
+        let to = (at..stretch.words.len()).find(|i| unit_s(stretch, *i).is_some()).unwrap_or(at);
+        mark(stretch, at, to);
+    }
     if found.distance_m.is_none() {
         for phrase in &lexicon().distances {
             let free = |_: usize| true;
@@ -124,6 +150,32 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
             }
         }
     }
+}
+
+/// Seconds that a word of time stands for.
+fn unit_s(stretch: &Stretch, at: usize) -> Option<f64> {
+    match stretch.words.get(at)?.stem.as_str() {
+        "minute" => Some(60.0),
+        "second" => Some(1.0),
+        "moment" | "instant" | "while" => Some(3.0),
+        _ => None,
+    }
+}
+
+/// `half a minute`, `a moment`, `a short while`: from which word on, and how long, s.
+fn span(stretch: &Stretch) -> Option<(usize, f64)> {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    (0..stretch.words.len()).find_map(|at| {
+        let half = text(at) == "half" && matches!(text(at + 1), "a" | "an");
+        let start = at + usize::from(half);
+        if !matches!(text(start), "a" | "an") {
+            return None;
+        }
+        let long = matches!(text(start + 1), "short" | "brief" | "little" | "long" | "full");
+        // `the second nurse` and `a second one` count nothing.
+        let unit = unit_s(stretch, start + 1 + usize::from(long)).filter(|_| half || text(start + 1 + usize::from(long)) != "second")?;
+        Some((at, unit * if half { 0.5 } else if text(start + 1) == "long" { 3.0 } else { 1.0 }))
+    })
 }
 
 /// Finds places; says which words they take, so that `the exit` is no deed.
@@ -172,6 +224,22 @@ fn gesture(stretch: &mut Stretch, found: &mut Found) {
         mark_each(stretch, &verb);
         return;
     }
+    // `waves it on`, `beckons the robot through`, `motions it back`.
+    if stretch.words.get(first).is_some_and(|word| matches!(word.stem.as_str(), "wave" | "beckon" | "motion")) {
+        let robot = |word: &crate::words::Word| word.stem == "robot" || matches!(word.text.as_str(), "the" | "at" | "to");
+        let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)));
+        let says = next.and_then(|i| stretch.words.get(i)).and_then(|word| match word.text.as_str() {
+            "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "closer" | "over" => Some(Gesture::Proceed),
+            "back" | "off" | "away" => Some(Gesture::Wait),
+            _ => None,
+        });
+        if let (Some(says), Some(at)) = (says, next) {
+            found.gesture = Some(says);
+            mark_each(stretch, &verb);
+            mark(stretch, at, at);
+            return;
+        }
+    }
     let noun = stretch.words.get(last).is_some_and(|word| word.stem == "gesture" || word.stem == "signal");
     for (from, to) in [(last + 1, last + 9), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
         for phrase in &lexicon().gestures {
@@ -217,14 +285,28 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
 }
 
 fn negated(stretch: &Stretch, at: usize) -> bool {
+    let before = |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
     (1..=2).any(|back| {
-        at.checked_sub(back)
-            .and_then(|i| stretch.words.get(i))
-            .is_some_and(|word| matches!(word.text.as_str(), "not" | "never" | "without" | "cannot"))
-    })
+        matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
+            || before(back) == "of" && before(back + 1) == "instead"
+            || before(back) == "than" && before(back + 1) == "rather"
+    }) || (0..at).any(|i| stretch.words.get(i).is_some_and(|word| matches!(word.text.as_str(), "neither" | "none")))
 }
 
 fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
+    // The name of a gesture is no deed: `with a WAIT gesture`.
+    for i in 0..stretch.words.len() {
+        let (Some(word), Some(next)) = (stretch.words.get(i), stretch.words.get(i + 1)) else { break };
+        let message = [Item::Word(word.stem.clone())];
+        if matches!(next.stem.as_str(), "gesture" | "signal" | "sign")
+            && lexicon().gestures.iter().any(|phrase| phrase.items == message)
+        {
+            mark(stretch, i, i);
+            if let Some(flag) = taken.get_mut(i) {
+                *flag = true;
+            }
+        }
+    }
     for phrase in &lexicon().actions {
         if phrase.means == Act::Gesture {
             continue;
