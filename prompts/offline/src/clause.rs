@@ -40,6 +40,8 @@ pub(crate) struct Found {
     pub(crate) lasts_s: Option<f64>,
     pub(crate) after_s: Option<f64>,
     pub(crate) pace_mps: Option<f64>,
+    /// The pace was given as a number.
+    pub(crate) pace_said: bool,
     /// `in a group`.
     pub(crate) in_group: bool,
     /// `there are`, `in the scenario`.
@@ -120,6 +122,16 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
         };
         let unit = stretch.words.get(i + 1).map_or("", |word| word.stem.as_str());
         let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
+        // `0.5 m/s`, `2 meters per second`, `3 km/h`: a pace.
+        let next = |k: usize| stretch.words.get(i + k).map_or("", |word| word.stem.as_str());
+        let per_second = unit == "meter" && (next(2) == "second" || next(2) == "per" && next(3) == "second");
+        let per_hour = unit == "km" && (matches!(next(2), "h" | "hour") || next(2) == "per" && next(3) == "hour");
+        if per_second || per_hour {
+            found.pace_mps = Some((if per_hour { number / 3.6 } else { number }).clamp(0.3, 1.8));
+            found.pace_said = true;
+            mark(stretch, i, i + 2 + usize::from(next(2) == "per"));
+            continue;
+        }
         if matches!(unit, "meter" | "centimeter") {
             found.distance_is_when |= matches!(before, "at" | "within" | "from" | "under");
         }
@@ -189,6 +201,14 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             let end = at.last().copied().unwrap_or(0);
             let of = stretch.words.get(end + 1).is_some_and(|word| word.text == "of");
             let opens = stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
+            // `makes room` is no room.
+            let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
+            if at.len() == 1
+                && phrase.means == PlaceClass::Room
+                && made.is_some_and(|word| matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give"))
+            {
+                continue;
+            }
             for i in &at {
                 if let Some(flag) = taken.get_mut(*i) {
                     *flag = true;
@@ -370,12 +390,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
 
 fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
     let lex = lexicon();
-    let mut used = Vec::new();
+    let (mut used, mut seated) = (Vec::new(), Vec::new());
     for (i, word) in stretch.words.iter().enumerate() {
         let text = word.text.as_str();
         let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
         if let Some(mps) = lex.pace.get(text).or_else(|| lex.pace.get(&word.stem)) {
-            found.pace_mps = Some(*mps);
+            found.pace_mps = found.pace_mps.filter(|_| found.pace_said).or(Some(*mps));
             used.push(i);
         }
         if word.stem == "robot" {
@@ -399,7 +419,12 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         found.declares |= exists || text == "scenario" || text == "exactly";
         if lex.impossible.contains(&word.stem) && !word.used {
             found.impossible.push(i);
+            // Who sits is at least somewhere: it stands there.
+            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") && found.deeds.is_empty() {
+                seated.push(Deed { act: Act::Stand, at: i, to: i, negated: false });
+            }
         }
     }
+    found.deeds.extend(seated);
     mark_each(stretch, &used);
 }

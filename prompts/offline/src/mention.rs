@@ -49,6 +49,10 @@ pub(crate) enum Who {
     },
     /// `he`, `she`, `who`.
     Same,
+    /// `him`, `her`: somebody spoken of before, as the object.
+    Object,
+    /// `a third`, `a fourth one`.
+    Further(u32),
     /// `human 2`.
     Number(u32),
     /// `nobody`, `no people`.
@@ -63,6 +67,8 @@ pub(crate) struct Mention {
     pub(crate) role: Option<String>,
     /// `a group of four`.
     pub(crate) group: bool,
+    /// `two groups of three`: into how many; else 1.
+    pub(crate) parts: u32,
     /// First word.
     pub(crate) from: usize,
     /// Last word.
@@ -140,7 +146,7 @@ fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
 /// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
 fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
     let word = words.get(at).filter(|_| introduced)?;
-    let unknown = word.text.len() >= 4
+    let unknown = word.text.len() >= if word.capital { 2 } else { 4 }
         && word.text.chars().all(char::is_alphabetic)
         && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives]
             .iter()
@@ -182,7 +188,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
         }
     };
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let of_them = |k: usize| {
         if stem(k) != "of" {
             return None;
@@ -250,6 +256,18 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             };
         }
         "he" | "she" => return made(Who::Same, None, at),
+        "him" => return made(Who::Object, None, at),
+        // `her` before a word of its own is whose, not whom.
+        "her" if words.get(at + 1).is_none_or(|word| matches!(word.stem.as_str(), "to" | "at" | "in" | "into" | "on" | "through" | "along" | "and" | "from" | "by" | "until" | "for" | "past" | "robot")) => {
+            return made(Who::Object, None, at);
+        }
+        "a" | "an" if lex.ordinals.get(text(at + 1)).is_some_and(|n| *n > 1) => {
+            let number = lex.ordinals.get(text(at + 1)).copied()?;
+            let start = at + 2 + usize::from(text(at + 2) == "one");
+            let end = noun(words, start, lex).unwrap_or(start - 1);
+            let time = matches!(text(at + 2), "time" | "later" | "after");
+            return if time { None } else { made(Who::Further(number), role(end), end) };
+        }
         "someone" | "somebody" => return made(Who::New { count: Some(1), article: true }, None, at),
         _ => {}
     }
@@ -271,8 +289,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
 /// `another …`, `the other …`, `the rest`, `the first …`.
 fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let the = usize::from(matches!(text(at), "the" | "each"));
+    // `each other` and `one after the other` are nobody new.
+    let before = if at == 0 { "" } else { text(at - 1) };
+    let manner = text(at) == "each" && text(at + 1) == "other"
+        || text(at) == "other" && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
+        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
+    if manner {
+        return None;
+    }
     let count = |k: usize| words.get(k).and_then(Word::count);
     match text(at + the) {
         // `one after another` is a manner, nobody new.
@@ -337,7 +363,7 @@ fn counted(
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
     let made =
-        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, from: at, to });
+        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, parts: 1, from: at, to });
     let article = matches!(text(at), "a" | "an");
     let the = matches!(text(at), "the" | "these" | "those" | "this");
     let mut next = at + usize::from(article || the);
@@ -376,10 +402,10 @@ fn counted(
         return made(who, of.role, false, of.end);
     }
     // `one after another`, `one by one` say how, not who.
-    if text(at) == "one" && matches!(text(at + 1), "after" | "by") && text(at + 2) != "the" {
-        return None;
-    }
-    if text(at) == "one" && text(at + 1) == "after" && text(at + 3) == "other" {
+    if text(at) == "one"
+        && matches!(text(at + 1), "after" | "by" | "behind")
+        && (text(at + 2) != "the" || text(at + 3) == "other")
+    {
         return None;
     }
     // `the taller one`, `the one on the left`.
@@ -401,6 +427,15 @@ fn counted(
     {
         let many = words.get(end).is_some_and(plural);
         return made(Who::Definite { plural: many, count: None }, role(end), false, end);
+    }
+    // `Maria follows the robot`: somebody by name, whoever is called so later is the same.
+    if next == at
+        && count.is_none()
+        && words.get(at).is_some_and(|word| word.capital)
+        && noun(words, at, lex).is_none()
+        && stranger(words, at, true, lex).is_some()
+    {
+        return made(Who::Definite { plural: false, count: None }, role(at), false, at);
     }
     if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
         let many = words.get(end).is_some_and(plural);
@@ -467,7 +502,13 @@ fn group(
     } else {
         Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
     };
-    Some(Mention { who, role, group: pair.is_none(), from: at, to: end })
+    // `two groups of three` are six people.
+    let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
+    let who = match who {
+        Who::New { count: Some(n), article } => Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 },
+        other => other,
+    };
+    Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })
 }
 
 /// Whether a noun is in the plural.

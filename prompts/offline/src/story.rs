@@ -35,6 +35,8 @@ struct Thread {
     subject: Subject,
     pending: Vec<usize>,
     waiting: Option<Trigger>,
+    /// Words of the trigger that waits, until a deed takes it.
+    untaken: Option<String>,
     /// Whether the trigger that waits names no distance.
     vague: bool,
     /// Rules of the clause before, by person and index, that a later `when` may still time.
@@ -52,6 +54,7 @@ pub(crate) fn read(text: &str) -> Story {
         subject: Subject::Nobody,
         pending: Vec::new(),
         waiting: None,
+        untaken: None,
         vague: false,
         made: Vec::new(),
         doer: None,
@@ -67,6 +70,14 @@ pub(crate) fn read(text: &str) -> Story {
             if let Some(stretch) = sentence.get_mut(i) {
                 clause_of(&mut story, &mut thread, stretch, text, next);
             }
+        }
+        // A trigger without a deed is a wish that nothing was made of.
+        if let Some(quote) = thread.untaken.take() {
+            story.problems.push(Fault::new(
+                FaultCode::PRead,
+                "rough_scenario",
+                format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
+            ));
         }
         for word in sentence.iter().flat_map(|stretch| &stretch.words) {
             let known =
@@ -114,6 +125,7 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     }
     // Whom the mentions mean, in order.
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
+    let spoken_of = story.cast.last.clone();
     for mention in &found.mentions {
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
         let from = words.first().map_or(0, |word| word.from);
@@ -121,7 +133,15 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        let mut people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        if mention.who == Who::Object {
+            // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
+            let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
+            let own = meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
+            people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
+            meant.push((mention.from, mention.to, people));
+            continue;
+        }
         if !people.is_empty() {
             story.cast.last.clone_from(&people);
         }
@@ -168,6 +188,7 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
             (subject, _) => subject,
         };
         let quote = quote.as_str();
+        thread.untaken = None;
         match &subject {
             Subject::Robot => {
                 robot_deed(story, act, &found, &meant, at, quote);
@@ -188,6 +209,9 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
             }
             Subject::People(people) => {
                 people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote)
+            }
+            Subject::Nobody if found.mentions.iter().any(|mention| mention.who == Who::Nobody) => {
+                story.cast.notes.push(format!("`{quote}` rules something out for everybody; no reaction is added"));
             }
             Subject::Nobody => story.problems.push(Fault::new(
                 FaultCode::PRead,
@@ -317,6 +341,8 @@ fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Fou
         }
     } else {
         thread.waiting = Some(when);
+        // Who comes out waits for the door anyway.
+        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open"));
         thread.vague = found.distance_m.is_none();
     }
 }
@@ -591,6 +617,10 @@ fn robot_deed(
         | Act::Ignore
         | Act::Pass
         | Act::Walk => {}
+    }
+    let its_own = matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
+    if its_own {
+        story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
     }
 }
 

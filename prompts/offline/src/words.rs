@@ -15,6 +15,8 @@ pub(crate) struct Word {
     pub(crate) to: usize,
     /// Whether something was read from it.
     pub(crate) used: bool,
+    /// Whether it is written with a capital letter.
+    pub(crate) capital: bool,
 }
 
 impl Word {
@@ -130,7 +132,11 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
             && word.text == "left"
-            && matches!(before, "the" | "on" | "to" | "its" | "his" | "her" | "their" | "from" | "far")
+            && matches!(
+                before,
+                "the" | "on" | "to" | "its" | "his" | "her" | "their" | "from" | "far" | "turn" | "turns" | "turned"
+                    | "turning" | "keep" | "keeps" | "look" | "looks" | "bear" | "veers"
+            )
         {
             // The side, nobody who leaves.
             word.stem = "left".to_owned();
@@ -175,7 +181,12 @@ fn pieces(text: &str) -> Vec<Piece> {
             }
             let lower: String =
                 chars.get(start..i).unwrap_or_default().iter().flat_map(|(_, c)| c.to_lowercase()).collect();
+            let capital = at(start).is_some_and(char::is_uppercase);
+            let first = out.len();
             i += apostrophe(&lower, &at, i, &mut out, byte(start), &byte);
+            if let Some(Piece::Word(word)) = out.get_mut(first) {
+                word.capital = capital;
+            }
         } else {
             // The tail of a possessive after a number (`human_2's`) is no word.
             let owns = matches!(c, '\'' | '’') && at(i + 1) == Some('s') && !at(i + 2).is_some_and(char::is_alphabetic);
@@ -229,7 +240,7 @@ const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother"
 fn mended(text: &str) -> Option<&'static str> {
     let lex = lexicon();
     let long = text.chars().count() >= 6;
-    if !long || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
+    if !long || lex.telling.contains(text) || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
         return None;
     }
     let near = |word: &&String| {
@@ -246,7 +257,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
         "robot" | "robots" | "robot's" | "it" | "its" | "amr" | "agv" | "cobot" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false }
+    Word { text, stem, from, to, used: false, capital: false }
 }
 
 /// Cuts a sentence (`None` is a comma) at its joints.
@@ -293,7 +304,11 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     match text(i) {
         "and" => (Some(Joint::And), 1),
         "but" if before == "all" => (None, 1),
-        "except" if text(i + 1) == "for" => (Some(Joint::Except), 2),
+        "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
+        "besides" => (Some(Joint::Except), 1),
+        "other" | "rather" if text(i + 1) == "than" && text(i.wrapping_sub(1)) != "each" && text(i) == "other" => {
+            (Some(Joint::Except), 2)
+        }
         "except" => (Some(Joint::Except), 1),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" => (Some(Joint::Comma), 1),
         "then" | "afterwards" => (Some(Joint::Then), 1),
