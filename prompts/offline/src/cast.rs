@@ -29,6 +29,8 @@ pub(crate) struct Person {
     pub(crate) speed_mps: Option<f64>,
     /// Where it comes from, or is.
     pub(crate) start: Option<PlaceClass>,
+    /// Where it goes in.
+    pub(crate) goal: Option<PlaceClass>,
     /// Words for the reading line, in order.
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
@@ -44,6 +46,8 @@ struct Together {
     /// `there are 3 people`: this is everybody.
     total: bool,
     quote: String,
+    /// Who was told apart by a bare number since: `four get out: two turn left, two turn right`.
+    counted: Vec<usize>,
 }
 
 /// Everybody so far.
@@ -66,6 +70,11 @@ pub(crate) struct Cast {
 /// More people than are kept while reading; the request is refused anyway.
 const READ_AT_MOST: usize = 40;
 
+/// Words for people that only say man or woman, old or young: another word may have named them before.
+fn plain(role: &str) -> bool {
+    matches!(role, "man" | "woman" | "guy" | "lady" | "gentleman" | "boy" | "girl" | "adult")
+}
+
 impl Cast {
     /// The people whom a mention means; new ones join.
     pub(crate) fn resolve(&mut self, mention: &Mention, declares: bool, quote: &str) -> Vec<usize> {
@@ -79,20 +88,49 @@ impl Cast {
                 self.notes.push(format!("`{quote}` names no number; it was read as {n} humans"));
                 self.join(n, mention, declares, quote)
             }
+            Who::New { count: Some(n), .. }
+                if mention.parts > 1 && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) =>
+            {
+                self.latest()
+            }
             Who::New { count: Some(n), article } => {
-                let pick = if !*article || mention.role.is_none() && self.declared_open() {
+                let pick = if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)
                 } else {
                     None
                 };
                 pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
-            Who::Bare(n) => self.pick(*n, mention, quote).unwrap_or_else(|| self.join(*n, mention, declares, quote)),
+            Who::Bare(n) => self
+                .pick(*n, mention, quote)
+                .or_else(|| self.counted(*n))
+                .unwrap_or_else(|| self.join(*n, mention, declares, quote)),
             Who::More(n) => match self.pick_open(*n, mention) {
                 Some(found) if *n == 1 => found,
                 Some(_) | None => self.join(*n, mention, declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
+            Who::ToldApart => self.part_of(1, mention, quote),
+            Who::PartOfNew(n, of) => {
+                let known = self.latest().len() == usize::try_from(*of).unwrap_or(usize::MAX)
+                    && self.latest().iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                if !known {
+                    self.join(*of, mention, declares, quote);
+                }
+                self.part_of(*n, mention, quote)
+            }
+            Who::AllOf(n) => {
+                let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
+                let fitting = |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                let sets = [self.last.clone(), self.latest()];
+                let alike: Vec<usize> = (0..self.people.len())
+                    .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
+                    .collect();
+                sets.into_iter()
+                    .chain([alike])
+                    .find(|set| fitting(set))
+                    .unwrap_or_else(|| self.join(*n, mention, declares, quote))
+            }
             Who::Other(count) => self.others(*count, mention, quote),
             Who::Ordinal(n) => {
                 let set = self.latest();
@@ -115,7 +153,12 @@ impl Cast {
                     self.latest()
                 }
             }
-            Who::Same => self.last.clone(),
+            Who::Same | Who::Object => self.last.clone(),
+            Who::Further(n) => {
+                let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
+                let open = if there { self.pick_open(1, mention) } else { None };
+                open.unwrap_or_else(|| self.join(1, mention, declares, quote))
+            }
             Who::AllBut(n) => {
                 let set = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
                 let kept = set.len().saturating_sub(usize::try_from(*n).unwrap_or(usize::MAX));
@@ -137,7 +180,15 @@ impl Cast {
         }
         let singles = matches!(
             mention.who,
-            Who::Bare(_) | Who::PartOf(_) | Who::Other(_) | Who::Ordinal(_) | Who::Number(_) | Who::More(_)
+            Who::Bare(_)
+                | Who::PartOf(_)
+                | Who::PartOfNew(..)
+                | Who::ToldApart
+                | Who::Further(_)
+                | Who::Other(_)
+                | Who::Ordinal(_)
+                | Who::Number(_)
+                | Who::More(_)
         );
         let picked = matches!(mention.who, Who::New { .. } | Who::Definite { .. }) && self.latest().len() > found.len();
         for i in &found {
@@ -145,8 +196,13 @@ impl Cast {
                 person.bound |= singles || picked;
             }
         }
-        if mention.group && found.len() > 1 {
-            self.group(&found, quote);
+        // `the groups` are those that are there.
+        let grouped = found.iter().all(|i| self.people.get(*i).is_some_and(|person| person.group.is_some()));
+        if mention.group && found.len() > 1 && !(grouped && matches!(mention.who, Who::Definite { .. })) {
+            let parts = usize::try_from(mention.parts).unwrap_or(1).clamp(1, found.len());
+            for members in found.chunks(found.len().div_ceil(parts)) {
+                self.group(members, quote);
+            }
         }
         found
     }
@@ -168,7 +224,7 @@ impl Cast {
     /// Takes `a nurse and two visitors` as one set.
     pub(crate) fn together(&mut self, members: &[usize], quote: &str) {
         if members.len() > 1 && !self.sets.iter().any(|set| set.members == members) {
-            self.sets.push(Together { members: members.to_vec(), total: false, quote: quote.to_owned() });
+            self.sets.push(Together { members: members.to_vec(), total: false, quote: quote.to_owned(), counted: Vec::new() });
         }
     }
 
@@ -227,6 +283,18 @@ impl Cast {
         Some(open)
     }
 
+    /// So many of the newest set who were not counted apart yet, though all of them did something already.
+    fn counted(&mut self, n: u32) -> Option<Vec<usize>> {
+        let wanted = usize::try_from(n).ok()?;
+        let set = self.sets.last_mut().filter(|set| set.members.len() > wanted)?;
+        let open: Vec<usize> = set.members.iter().copied().filter(|i| !set.counted.contains(i)).take(wanted).collect();
+        if open.len() < wanted {
+            return None;
+        }
+        set.counted.extend(&open);
+        Some(open)
+    }
+
     fn part_of(&mut self, n: u32, mention: &Mention, quote: &str) -> Vec<usize> {
         let wanted = usize::try_from(n).unwrap_or(usize::MAX);
         if let Some(found) = self.pick_open(n, mention) {
@@ -276,6 +344,14 @@ impl Cast {
             }
             if !plural && let Some(first) = same.first() {
                 return vec![self.last.iter().copied().find(|i| same.contains(i)).unwrap_or(*first)];
+            }
+            // `the man` may be the visitor of whom was spoken; he is not the woman.
+            if !plural && plain(role) {
+                let may = |i: &usize| self.people.get(*i).is_some_and(|person| !plain(&person.role));
+                let who = self.last.iter().chain(&self.latest()).copied().find(may);
+                if let Some(who) = who {
+                    return vec![who];
+                }
             }
         } else if !self.people.is_empty() {
             if plural {
@@ -338,6 +414,7 @@ impl Cast {
                 members: members.clone(),
                 total: declares && members.len() > 1,
                 quote: quote.to_owned(),
+                counted: Vec::new(),
             });
         }
         if self.count_quote.is_none() && !members.is_empty() {

@@ -2,7 +2,7 @@
 
 use socrates_model::{Gesture, PlaceClass};
 
-use crate::lexicon::{Act, Cue, lexicon};
+use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, mentions};
 use crate::words::{Joint, Stretch, find};
 
@@ -35,9 +35,13 @@ pub(crate) struct Found {
     /// Verbs without a form in the simulation.
     pub(crate) impossible: Vec<usize>,
     pub(crate) distance_m: Option<f64>,
+    /// `at 2 m`: the distance says when, not how far.
+    pub(crate) distance_is_when: bool,
     pub(crate) lasts_s: Option<f64>,
     pub(crate) after_s: Option<f64>,
     pub(crate) pace_mps: Option<f64>,
+    /// The pace was given as a number.
+    pub(crate) pace_said: bool,
     /// `in a group`.
     pub(crate) in_group: bool,
     /// `there are`, `in the scenario`.
@@ -55,7 +59,12 @@ impl Found {
 pub(crate) fn read(stretch: &mut Stretch) -> Found {
     let mut found = Found { mentions: mentions(&stretch.words), ..Found::default() };
     for mention in &found.mentions {
-        mark(stretch, mention.from, mention.to);
+        for at in mention.from..=mention.to {
+            // A word between that only describes, and that no table has, is read by nobody.
+            if at == mention.to || at == mention.from || known(stretch, at) {
+                mark(stretch, at, at);
+            }
+        }
     }
     measures(stretch, &mut found);
     let placed = places(stretch, &mut found);
@@ -81,6 +90,16 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     found
 }
 
+fn known(stretch: &Stretch, at: usize) -> bool {
+    let lex = lexicon();
+    stretch.words.get(at).is_some_and(|word| {
+        [&lex.known, &lex.stop, &lex.adjectives]
+            .iter()
+            .any(|table| table.contains(&word.text) || table.contains(&word.stem))
+            || word.number().is_some()
+    })
+}
+
 fn mark(stretch: &mut Stretch, from: usize, to: usize) {
     for word in stretch.words.iter_mut().take(to + 1).skip(from) {
         word.used = true;
@@ -103,6 +122,19 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
         };
         let unit = stretch.words.get(i + 1).map_or("", |word| word.stem.as_str());
         let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
+        // `0.5 m/s`, `2 meters per second`, `3 km/h`: a pace.
+        let next = |k: usize| stretch.words.get(i + k).map_or("", |word| word.stem.as_str());
+        let per_second = unit == "meter" && (next(2) == "second" || next(2) == "per" && next(3) == "second");
+        let per_hour = unit == "km" && (matches!(next(2), "h" | "hour") || next(2) == "per" && next(3) == "hour");
+        if per_second || per_hour {
+            found.pace_mps = Some((if per_hour { number / 3.6 } else { number }).clamp(0.3, 1.8));
+            found.pace_said = true;
+            mark(stretch, i, i + 2 + usize::from(next(2) == "per"));
+            continue;
+        }
+        if matches!(unit, "meter" | "centimeter") {
+            found.distance_is_when |= matches!(before, "at" | "within" | "from" | "under");
+        }
         match unit {
             "meter" => found.distance_m = Some(number.clamp(0.3, 15.0)),
             "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
@@ -113,6 +145,12 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
             _ => continue,
         }
         mark(stretch, i, i + 1);
+    }
+    if let Some((at, secs)) = span(stretch) {
+        let before = at.checked_sub(1).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
+        if before == "after" { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
+        let to = (at..stretch.words.len()).find(|i| unit_s(stretch, *i).is_some()).unwrap_or(at);
+        mark(stretch, at, to);
     }
     if found.distance_m.is_none() {
         for phrase in &lexicon().distances {
@@ -126,6 +164,32 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
     }
 }
 
+/// Seconds that a word of time stands for.
+fn unit_s(stretch: &Stretch, at: usize) -> Option<f64> {
+    match stretch.words.get(at)?.stem.as_str() {
+        "minute" => Some(60.0),
+        "second" => Some(1.0),
+        "moment" | "instant" | "while" => Some(3.0),
+        _ => None,
+    }
+}
+
+/// `half a minute`, `a moment`, `a short while`: from which word on, and how long, s.
+fn span(stretch: &Stretch) -> Option<(usize, f64)> {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    (0..stretch.words.len()).find_map(|at| {
+        let half = text(at) == "half" && matches!(text(at + 1), "a" | "an");
+        let start = at + usize::from(half);
+        if !matches!(text(start), "a" | "an") {
+            return None;
+        }
+        let long = matches!(text(start + 1), "short" | "brief" | "little" | "long" | "full");
+        // `the second nurse` and `a second one` count nothing.
+        let unit = unit_s(stretch, start + 1 + usize::from(long)).filter(|_| half || text(start + 1 + usize::from(long)) != "second")?;
+        Some((at, unit * if half { 0.5 } else if text(start + 1) == "long" { 3.0 } else { 1.0 }))
+    })
+}
+
 /// Finds places; says which words they take, so that `the exit` is no deed.
 fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
     let mut taken = vec![false; stretch.words.len()];
@@ -137,6 +201,14 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             let end = at.last().copied().unwrap_or(0);
             let of = stretch.words.get(end + 1).is_some_and(|word| word.text == "of");
             let opens = stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
+            // `makes room` is no room.
+            let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
+            if at.len() == 1
+                && phrase.means == PlaceClass::Room
+                && made.is_some_and(|word| matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give"))
+            {
+                continue;
+            }
             for i in &at {
                 if let Some(flag) = taken.get_mut(*i) {
                     *flag = true;
@@ -171,6 +243,22 @@ fn gesture(stretch: &mut Stretch, found: &mut Found) {
         found.gesture = Some(Gesture::Acknowledged);
         mark_each(stretch, &verb);
         return;
+    }
+    // `waves it on`, `beckons the robot through`, `motions it back`.
+    if stretch.words.get(first).is_some_and(|word| matches!(word.stem.as_str(), "wave" | "beckon" | "motion")) {
+        let robot = |word: &crate::words::Word| word.stem == "robot" || matches!(word.text.as_str(), "the" | "at" | "to");
+        let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)));
+        let says = next.and_then(|i| stretch.words.get(i)).and_then(|word| match word.text.as_str() {
+            "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "closer" | "over" => Some(Gesture::Proceed),
+            "back" | "off" | "away" => Some(Gesture::Wait),
+            _ => None,
+        });
+        if let (Some(says), Some(at)) = (says, next) {
+            found.gesture = Some(says);
+            mark_each(stretch, &verb);
+            mark(stretch, at, at);
+            return;
+        }
     }
     let noun = stretch.words.get(last).is_some_and(|word| word.stem == "gesture" || word.stem == "signal");
     for (from, to) in [(last + 1, last + 9), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
@@ -217,14 +305,28 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
 }
 
 fn negated(stretch: &Stretch, at: usize) -> bool {
+    let before = |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
     (1..=2).any(|back| {
-        at.checked_sub(back)
-            .and_then(|i| stretch.words.get(i))
-            .is_some_and(|word| matches!(word.text.as_str(), "not" | "never" | "without" | "cannot"))
-    })
+        matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
+            || before(back) == "of" && before(back + 1) == "instead"
+            || before(back) == "than" && before(back + 1) == "rather"
+    }) || (0..at).any(|i| stretch.words.get(i).is_some_and(|word| matches!(word.text.as_str(), "neither" | "none")))
 }
 
 fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
+    // The name of a gesture is no deed: `with a WAIT gesture`.
+    for i in 0..stretch.words.len() {
+        let (Some(word), Some(next)) = (stretch.words.get(i), stretch.words.get(i + 1)) else { break };
+        let message = [Item::Word(word.stem.clone())];
+        if matches!(next.stem.as_str(), "gesture" | "signal" | "sign")
+            && lexicon().gestures.iter().any(|phrase| phrase.items == message)
+        {
+            mark(stretch, i, i);
+            if let Some(flag) = taken.get_mut(i) {
+                *flag = true;
+            }
+        }
+    }
     for phrase in &lexicon().actions {
         if phrase.means == Act::Gesture {
             continue;
@@ -288,12 +390,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
 
 fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
     let lex = lexicon();
-    let mut used = Vec::new();
+    let (mut used, mut seated) = (Vec::new(), Vec::new());
     for (i, word) in stretch.words.iter().enumerate() {
         let text = word.text.as_str();
         let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
         if let Some(mps) = lex.pace.get(text).or_else(|| lex.pace.get(&word.stem)) {
-            found.pace_mps = Some(*mps);
+            found.pace_mps = found.pace_mps.filter(|_| found.pace_said).or(Some(*mps));
             used.push(i);
         }
         if word.stem == "robot" {
@@ -317,7 +419,12 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         found.declares |= exists || text == "scenario" || text == "exactly";
         if lex.impossible.contains(&word.stem) && !word.used {
             found.impossible.push(i);
+            // Who sits is at least somewhere: it stands there.
+            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") && found.deeds.is_empty() {
+                seated.push(Deed { act: Act::Stand, at: i, to: i, negated: false });
+            }
         }
     }
+    found.deeds.extend(seated);
     mark_each(stretch, &used);
 }

@@ -143,6 +143,9 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     if matches!(act, Act::ComeOut | Act::Stay) && around.place.is_some() {
         person.start = around.place;
     }
+    if act == Act::Enter {
+        person.goal = around.place.filter(|class| matches!(class, PlaceClass::Room | PlaceClass::Elevator));
+    }
     let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::WalkTogether);
     person.bound |= moves;
     if act == Act::Gesture {
@@ -206,6 +209,21 @@ pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
     if !person.rules.contains(&read) {
         person.rules.insert(0, read);
     }
+}
+
+/// Takes back what the clause before said of somebody who is excepted from it.
+pub(crate) fn except(cast: &mut Cast, who: usize, rules: &[usize]) {
+    let Some(person) = cast.people.get_mut(who) else { return };
+    let mut at = 0;
+    person.rules.retain(|_| {
+        at += 1;
+        !rules.contains(&(at - 1))
+    });
+    person.doings.pop();
+    if rules.is_empty() {
+        person.relation = None;
+    }
+    person.bound = true;
 }
 
 /// `never follows it`: remembered, and held against what was said before.

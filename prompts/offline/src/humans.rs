@@ -15,6 +15,9 @@ const APART_M: f64 = 0.8;
 /// Somebody goes on at least so far after the meeting, m.
 const ONWARD_M: f64 = 4.0;
 
+/// Two who end nearer to each other than this are in each other's way, m.
+const ENDS_APART_M: f64 = 1.5;
+
 /// Who overtakes comes level with the robot after so much of its way, m.
 const EARLY_M: f64 = 4.0;
 
@@ -42,6 +45,11 @@ pub(crate) struct Taken<'a> {
     pub(crate) place: PlaceClass,
 }
 
+/// Cost of a way that ends in a doorway or where others end: any other way is better.
+const BAD_END: f64 = 8.0;
+/// Cost of a way that ends right after the meeting.
+const SHORT_TAIL: f64 = 3.0;
+
 /// No node: somebody with whom the robot starts is met nowhere.
 const NOWHERE: usize = usize::MAX;
 
@@ -50,9 +58,16 @@ impl Taken<'_> {
         self.crowded || self.starts.iter().all(|other| (self.net.at(*other) - self.net.at(node)).norm() >= APART_M)
     }
 
-    /// Whether somebody may end there: nobody else does, and nobody has to get through.
+    /// Whether somebody may end there: nobody else does near by, and nobody has to get through.
     fn can_end(&self, node: usize) -> bool {
-        !self.goals.contains(&node) && self.net.kind(node) != PlaceClass::Doorway
+        let at = self.net.at(node);
+        self.net.kind(node) != PlaceClass::Doorway
+            && self.goals.iter().all(|other| (self.net.at(*other) - at).norm() >= ENDS_APART_M)
+    }
+
+    /// What it costs to end a way there.
+    fn end_cost(&self, nodes: &[usize]) -> f64 {
+        if nodes.last().is_some_and(|last| self.can_end(*last)) { 0.0 } else { BAD_END }
     }
 }
 
@@ -114,10 +129,12 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
     nodes.extend(back);
+    let mut cost = best.0 * 0.2;
     if human.goal.is_none() {
         onward(&mut nodes, taken);
+        cost += taken.end_cost(&nodes);
     }
-    Some(Way { nodes, meet, cost: best.0 * 0.2 })
+    Some(Way { nodes, meet, cost })
 }
 
 /// Into the room or car at the end of a way: to a place of it where nobody else goes.
@@ -180,13 +197,22 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
         let tree = net.tree(*entry, &|node| route.nodes.contains(&node));
         let step = onward_m(net, meet, &[*entry]);
         // Out by a free way if there is one, else along the robot's own; where it came from before where it goes to.
-        let exits: Vec<usize> =
-            free.iter().copied().filter(|exit| exit != entry).chain(used.iter().copied().flatten()).collect();
+        let exits = free.iter().copied().filter(|exit| exit != entry).chain(used.iter().copied().flatten());
+        let tails: Vec<(usize, Vec<usize>, f64)> = exits
+            .flat_map(|exit| {
+                let mut tail = vec![*entry, meet, exit];
+                let short = (exit, vec![meet, exit], taken.end_cost(&tail) + SHORT_TAIL);
+                extend(net, &mut tail, meet, &|node| route.nodes.contains(&node) && node != exit);
+                onward(&mut tail, taken);
+                let cost = taken.end_cost(&tail);
+                [(exit, tail.split_off(1), cost), short]
+            })
+            .collect();
         for start in (0..net.len()).filter(|start| tree.length_m(*start).is_finite() && taken.free(*start)) {
             let length = tree.length_m(start) + step;
-            for exit in &exits {
-                let way = tree.way(start);
-                if way.contains(exit) {
+            let way = tree.way(start);
+            for (exit, tail, end_cost) in &tails {
+                if way.iter().any(|node| tail.contains(node)) {
                     continue;
                 }
                 let side = net.straight(into, meet, *entry).abs();
@@ -198,13 +224,11 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let cost = 0.2 * (length - ideal).abs() + if length < 3.0 { 10.0 } else { 0.0 } + 2.0 * side
                     - 0.5 * turn
                     + own
-                    + inside;
+                    + inside
+                    + end_cost;
                 if best.as_ref().is_none_or(|best| cost < best.cost - 1e-9) {
-                    let mut nodes: Vec<usize> = way.into_iter().rev().collect();
-                    nodes.push(meet);
-                    nodes.push(*exit);
-                    extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && node != *exit);
-                    onward(&mut nodes, taken);
+                    let mut nodes: Vec<usize> = way.iter().rev().copied().collect();
+                    nodes.extend(tail);
                     best = Some(Way { nodes, meet, cost });
                 }
             }

@@ -243,7 +243,11 @@ impl Lexicon {
         let mut telling: BTreeSet<String> = self.roles.keys().cloned().collect();
         for text in actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)) {
             for word in text.split_whitespace().filter(|word| *word != "..") {
-                telling.extend(["", "s", "es", "ed", "ing"].map(|end| format!("{word}{end}")));
+                // `pace` gives `pacing`, and no `paceing`.
+                let cut = word.strip_suffix('e');
+                let ends = if cut.is_some() { ["", "s", "d"].as_slice() } else { &["", "s", "es", "ed", "ing"] };
+                telling.extend(ends.iter().map(|end| format!("{word}{end}")));
+                telling.extend(cut.map(|cut| format!("{cut}ing")));
             }
         }
         self.telling.extend(telling);
@@ -253,6 +257,10 @@ impl Lexicon {
     pub(crate) fn stem(&self, word: &str) -> String {
         if let Some(base) = self.forms.get(word) {
             return base.clone();
+        }
+        // `gets`, `makes` and `takes` are words of their own only as far as they carry no wish.
+        if let Some(cut) = word.strip_suffix('s').filter(|cut| cut.len() > 2 && self.known.contains(*cut)) {
+            return cut.to_owned();
         }
         if self.known.contains(word) || word.len() < 4 {
             return word.to_owned();

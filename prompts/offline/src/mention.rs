@@ -17,6 +17,12 @@ pub(crate) enum Who {
     More(u32),
     /// `one of them`.
     PartOf(u32),
+    /// `one of three visitors`: so many, of how many.
+    PartOfNew(u32, u32),
+    /// `both visitors`, `neither of the two nurses`: all of so many.
+    AllOf(u32),
+    /// `the taller one`: somebody told from the others by a word.
+    ToldApart,
     /// `one`, `two` without a noun.
     Bare(u32),
     /// `the other`, `the rest`; `None` for all the others.
@@ -43,6 +49,10 @@ pub(crate) enum Who {
     },
     /// `he`, `she`, `who`.
     Same,
+    /// `him`, `her`: somebody spoken of before, as the object.
+    Object,
+    /// `a third`, `a fourth one`.
+    Further(u32),
     /// `human 2`.
     Number(u32),
     /// `nobody`, `no people`.
@@ -57,6 +67,8 @@ pub(crate) struct Mention {
     pub(crate) role: Option<String>,
     /// `a group of four`.
     pub(crate) group: bool,
+    /// `two groups of three`: into how many; else 1.
+    pub(crate) parts: u32,
     /// First word.
     pub(crate) from: usize,
     /// Last word.
@@ -134,7 +146,7 @@ fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
 /// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
 fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
     let word = words.get(at).filter(|_| introduced)?;
-    let unknown = word.text.len() >= 4
+    let unknown = word.text.len() >= if word.capital { 2 } else { 4 }
         && word.text.chars().all(char::is_alphabetic)
         && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives]
             .iter()
@@ -142,7 +154,11 @@ fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Optio
         && !thing(words, at)
         && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())));
     let acts = words.get(at + 1).is_some_and(|next| DOES.contains(&next.stem.as_str()));
-    if unknown && acts { Some(at) } else { None }
+    // Whoever is led, followed or accompanied is somebody too.
+    let taken_along = (1..=3)
+        .filter_map(|back| at.checked_sub(back))
+        .any(|k| matches!(stem(words, k), "lead" | "guide" | "escort" | "accompany" | "help"));
+    if unknown && (acts || taken_along) { Some(at) } else { None }
 }
 
 /// What only people (and the robot) do, as the first word after who does it.
@@ -151,6 +167,13 @@ const DOES: &[&str] = &[
     "approach", "block", "stay", "flee", "overtake", "hurry", "gesture", "wave", "who", "give", "go", "ignore",
     "enter", "exit", "watch",
 ];
+
+/// Of whom some are meant: `of the three visitors`.
+struct Whole {
+    end: usize,
+    role: Option<String>,
+    count: Option<u32>,
+}
 
 fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
@@ -165,16 +188,20 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
         }
     };
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let of_them = |k: usize| {
         if stem(k) != "of" {
             return None;
         }
-        if matches!(text(k + 1), "them" | "these" | "those") {
-            return Some((k + 1, None));
+        if matches!(text(k + 1), "them" | "these" | "those" | "us") {
+            return Some(Whole { end: k + 1, role: None, count: None });
         }
-        let skip = if text(k + 1) == "the" { k + 2 } else { k + 1 };
-        noun(words, skip, lex).map(|end| (end, role(end)))
+        let skip = if matches!(text(k + 1), "the" | "these" | "those" | "all") { k + 2 } else { k + 1 };
+        let count = words.get(skip).and_then(Word::count).filter(|n| *n > 1);
+        let start = skip + usize::from(count.is_some());
+        noun(words, start, lex)
+            .or_else(|| stranger(words, start, count.is_some(), lex))
+            .map(|end| Whole { end, role: role(end), count })
     };
     match text(at) {
         "nobody" | "noone" => return made(Who::Nobody, None, at),
@@ -184,17 +211,41 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
             return noun(words, at + 1, lex).and_then(|end| made(Who::Nobody, None, end));
         }
-        "they" | "them" | "both" | "everyone" | "everybody" => {
-            let end = of_them(at + 1)
-                .map_or_else(|| noun(words, at + 1, lex).filter(|_| text(at) == "both").unwrap_or(at), |(end, _)| end);
+        "both" | "neither" => {
+            let of = of_them(at + 1);
+            let named = of.as_ref().map(|of| of.end).or_else(|| noun(words, at + 1, lex));
+            // `both the manager and the visitor` are two mentions of their own.
+            let listed = of.is_none() && named.is_none() && matches!(text(at + 1), "the" | "a" | "an");
+            if listed {
+                return None;
+            }
+            return match (named, of.and_then(|of| of.count)) {
+                (Some(end), count) => made(Who::AllOf(count.unwrap_or(2)), role(end), end),
+                (None, _) => made(Who::All, None, at),
+            };
+        }
+        "none" | "each" | "all" | "everyone" | "everybody"
+            if of_them(at + 1).as_ref().is_some_and(|of| of.count.is_some()) =>
+        {
+            let of = of_them(at + 1)?;
+            return made(Who::AllOf(of.count?), of.role, of.end);
+        }
+        "they" | "them" | "everyone" | "everybody" | "none" => {
+            let end = of_them(at + 1).map_or(at, |of| of.end);
             return made(Who::All, None, end);
         }
         "all" if text(at + 1) == "but" && words.get(at + 2).is_some_and(|word| word.count().is_some()) => {
             return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, at + 2);
         }
         "all" | "each" => {
-            if let Some((end, _)) = of_them(at + 1) {
-                return made(Who::All, None, end);
+            if let Some(of) = of_them(at + 1) {
+                return made(Who::All, None, of.end);
+            }
+            // `all three nurses` are those three, or three new ones.
+            if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
+                && let Some(end) = noun(words, at + 2, lex)
+            {
+                return made(Who::AllOf(count), role(end), end);
             }
             let start = at + 1 + usize::from(matches!(text(at + 1), "the"));
             let start = start + usize::from(words.get(start).is_some_and(|word| word.count().is_some()));
@@ -205,6 +256,18 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             };
         }
         "he" | "she" => return made(Who::Same, None, at),
+        "him" => return made(Who::Object, None, at),
+        // `her` before a word of its own is whose, not whom.
+        "her" if words.get(at + 1).is_none_or(|word| matches!(word.stem.as_str(), "to" | "at" | "in" | "into" | "on" | "through" | "along" | "and" | "from" | "by" | "until" | "for" | "past" | "robot")) => {
+            return made(Who::Object, None, at);
+        }
+        "a" | "an" if lex.ordinals.get(text(at + 1)).is_some_and(|n| *n > 1) => {
+            let number = lex.ordinals.get(text(at + 1)).copied()?;
+            let start = at + 2 + usize::from(text(at + 2) == "one");
+            let end = noun(words, start, lex).unwrap_or(start - 1);
+            let time = matches!(text(at + 2), "time" | "later" | "after");
+            return if time { None } else { made(Who::Further(number), role(end), end) };
+        }
         "someone" | "somebody" => return made(Who::New { count: Some(1), article: true }, None, at),
         _ => {}
     }
@@ -226,8 +289,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
 /// `another …`, `the other …`, `the rest`, `the first …`.
 fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let the = usize::from(matches!(text(at), "the" | "each"));
+    // `each other` and `one after the other` are nobody new.
+    let before = if at == 0 { "" } else { text(at - 1) };
+    let manner = text(at) == "each" && text(at + 1) == "other"
+        || text(at) == "other" && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
+        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
+    if manner {
+        return None;
+    }
     let count = |k: usize| words.get(k).and_then(Word::count);
     match text(at + the) {
         // `one after another` is a manner, nobody new.
@@ -277,18 +348,22 @@ fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Opti
     }
 }
 
+fn stem(words: &[Word], at: usize) -> &str {
+    words.get(at).map_or("", |word| word.stem.as_str())
+}
+
 /// Counts and articles: `two nurses`, `a group of 4 employees`, `one of them`, `the nurse`, `people`.
 fn counted(
     words: &[Word],
     at: usize,
     lex: &Lexicon,
     role: &dyn Fn(usize) -> Option<String>,
-    of_them: &dyn Fn(usize) -> Option<(usize, Option<String>)>,
+    of_them: &dyn Fn(usize) -> Option<Whole>,
 ) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
     let made =
-        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, from: at, to });
+        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, parts: 1, from: at, to });
     let article = matches!(text(at), "a" | "an");
     let the = matches!(text(at), "the" | "these" | "those" | "this");
     let mut next = at + usize::from(article || the);
@@ -313,13 +388,54 @@ fn counted(
     let more = matches!(text(next), "more" | "additional" | "further");
     next += usize::from(more);
     let linked = count.is_some() && text(next) == "of";
-    if linked && let Some((end, role)) = of_them(next) {
+    if linked && let Some(of) = of_them(next) {
         let listed =
             matches!(text(next - 1), "couple" | "pair" | "crowd" | "dozen" | "handful" | "trio" | "group" | "bunch")
                 && text(next + 1) != "the"
                 && text(next + 1) != "them";
-        let who = if listed { Who::New { count, article: true } } else { Who::PartOf(count.unwrap_or(1)) };
-        return made(who, role, false, end);
+        let part = count.unwrap_or(1);
+        let who = match of.count {
+            _ if listed => Who::New { count, article: true },
+            Some(whole) if whole > part => Who::PartOfNew(part, whole),
+            Some(_) | None => Who::PartOf(part),
+        };
+        return made(who, of.role, false, of.end);
+    }
+    // `one after another`, `one by one` say how, not who.
+    if text(at) == "one"
+        && matches!(text(at + 1), "after" | "by" | "behind")
+        && (text(at + 2) != "the" || text(at + 3) == "other")
+    {
+        return None;
+    }
+    // `the taller one`, `the one on the left`.
+    if the && !text(at).starts_with("thi") && !text(at).starts_with("tho") {
+        let plain = |k: usize| {
+            let word = text(k);
+            !lex.stop.contains(word) && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.to_owned())))
+        };
+        if text(at + 1) == "one" {
+            return made(Who::ToldApart, None, false, at + 1);
+        }
+        if text(at + 2) == "one" && plain(at + 1) && stem(words, at + 1) != "robot" {
+            return made(Who::ToldApart, None, false, at + 2);
+        }
+    }
+    // `his mother`, `her colleague`: known or new.
+    if matches!(text(at), "his" | "her" | "their")
+        && let Some(end) = noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
+    {
+        let many = words.get(end).is_some_and(plural);
+        return made(Who::Definite { plural: many, count: None }, role(end), false, end);
+    }
+    // `Maria follows the robot`: somebody by name, whoever is called so later is the same.
+    if next == at
+        && count.is_none()
+        && words.get(at).is_some_and(|word| word.capital)
+        && noun(words, at, lex).is_none()
+        && stranger(words, at, true, lex).is_some()
+    {
+        return made(Who::Definite { plural: false, count: None }, role(at), false, at);
     }
     if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
         let many = words.get(end).is_some_and(plural);
@@ -386,7 +502,13 @@ fn group(
     } else {
         Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
     };
-    Some(Mention { who, role, group: pair.is_none(), from: at, to: end })
+    // `two groups of three` are six people.
+    let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
+    let who = match who {
+        Who::New { count: Some(n), article } => Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 },
+        other => other,
+    };
+    Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })
 }
 
 /// Whether a noun is in the plural.

@@ -268,8 +268,8 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
             Some(class) if net.is(*end, class) => score += 4.0,
             Some(_) => {}
             None if net.inside(*end) => score -= 4.0,
-            // Nobody stays in a doorway.
-            None if net.kind(*end) == PlaceClass::Doorway => score -= 3.0,
+            // Nobody stays in a doorway, where others have to get through.
+            None if net.kind(*end) == PlaceClass::Doorway => score -= 12.0,
             None => {}
         }
     }

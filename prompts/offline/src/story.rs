@@ -35,12 +35,16 @@ struct Thread {
     subject: Subject,
     pending: Vec<usize>,
     waiting: Option<Trigger>,
+    /// Words of the trigger that waits, until a deed takes it.
+    untaken: Option<String>,
     /// Whether the trigger that waits names no distance.
     vague: bool,
     /// Rules of the clause before, by person and index, that a later `when` may still time.
     made: Vec<(usize, usize)>,
     /// The subject of the deed before in this sentence, for `stops and gestures`.
     doer: Option<Vec<usize>>,
+    /// Whom somebody leads, and who: `A mother leads two children across`.
+    led: Option<(Vec<usize>, Vec<usize>)>,
 }
 
 /// Reads the text.
@@ -50,9 +54,11 @@ pub(crate) fn read(text: &str) -> Story {
         subject: Subject::Nobody,
         pending: Vec::new(),
         waiting: None,
+        untaken: None,
         vague: false,
         made: Vec::new(),
         doer: None,
+        led: None,
     };
     for mut sentence in sentences(text) {
         (thread.waiting, thread.doer) = (None, None);
@@ -64,6 +70,14 @@ pub(crate) fn read(text: &str) -> Story {
             if let Some(stretch) = sentence.get_mut(i) {
                 clause_of(&mut story, &mut thread, stretch, text, next);
             }
+        }
+        // A trigger without a deed is a wish that nothing was made of.
+        if let Some(quote) = thread.untaken.take() {
+            story.problems.push(Fault::new(
+                FaultCode::PRead,
+                "rough_scenario",
+                format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
+            ));
         }
         for word in sentence.iter().flat_map(|stretch| &stretch.words) {
             let known =
@@ -106,8 +120,12 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         mark(stretch, &at);
     }
     place_of(story, &found, &quote);
+    if stretch.joint == Joint::Except && excepted(story, thread, &found) {
+        return;
+    }
     // Whom the mentions mean, in order.
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
+    let spoken_of = story.cast.last.clone();
     for mention in &found.mentions {
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
         let from = words.first().map_or(0, |word| word.from);
@@ -115,7 +133,15 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        let mut people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        if mention.who == Who::Object {
+            // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
+            let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
+            let own = meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
+            people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
+            meant.push((mention.from, mention.to, people));
+            continue;
+        }
         if !people.is_empty() {
             story.cast.last.clone_from(&people);
         }
@@ -129,9 +155,20 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     } else if let Some((cue, _)) = found.cue {
         thread.waiting = Some(trigger(cue, &found));
         thread.vague = found.distance_m.is_none();
+    } else if found.distance_is_when
+        && let (Some(waiting), Some(m)) = (&thread.waiting, found.distance_m)
+    {
+        // `When it sees the robot …, and at 1.5 m it stops`: the nearer distance is that of this deed.
+        thread.waiting = Some(deed::with_distance(waiting.clone(), Some(m)));
+        thread.vague = false;
     }
     let previous = thread.subject.clone();
-    let joined = std::mem::take(&mut thread.pending);
+    let mut joined = std::mem::take(&mut thread.pending);
+    // `Five people: two follow the robot`: some of those who wait for a deed, not others beside them.
+    if meant.iter().any(|(_, _, some)| !some.is_empty() && some.iter().all(|i| joined.contains(i))) {
+        joined.clear();
+    }
+    thread.led = None;
     thread.made.clear();
     let mut acts: Vec<(Act, usize, usize, bool)> =
         found.deeds.iter().map(|deed| (deed.act, deed.at, deed.to, deed.negated)).collect();
@@ -142,8 +179,16 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     for (act, at, to, negated) in acts {
         let passive = stretch.words.get(to + 1).is_some_and(|word| word.text == "by")
             && meant.iter().any(|(from, _, _)| *from > to);
-        let subject = subject_of(act, at, passive, &found, &meant, &previous, &joined, &story.cast);
+        let subject = subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast);
+        // Whoever is led goes where the one who leads goes.
+        let subject = match (subject, &thread.led) {
+            (Subject::People(people), Some((leaders, followers))) if people == *followers => {
+                Subject::People(leaders.clone())
+            }
+            (subject, _) => subject,
+        };
         let quote = quote.as_str();
+        thread.untaken = None;
         match &subject {
             Subject::Robot => {
                 robot_deed(story, act, &found, &meant, at, quote);
@@ -164,6 +209,9 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
             }
             Subject::People(people) => {
                 people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote)
+            }
+            Subject::Nobody if found.mentions.iter().any(|mention| mention.who == Who::Nobody) => {
+                story.cast.notes.push(format!("`{quote}` rules something out for everybody; no reaction is added"));
             }
             Subject::Nobody => story.problems.push(Fault::new(
                 FaultCode::PRead,
@@ -190,6 +238,29 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     {
         thread.subject = Subject::People(people.clone());
     }
+}
+
+/// `except for one who …`: takes the clause before back for so many of its people, who are spoken of next.
+fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) -> bool {
+    let Some(doers) = thread.doer.clone().filter(|doers| doers.len() > 1) else { return false };
+    let count = match found.mentions.first().map(|mention| &mention.who) {
+        Some(Who::Bare(n) | Who::PartOf(n)) => usize::try_from(*n).unwrap_or(usize::MAX),
+        Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => usize::try_from(*n).unwrap_or(usize::MAX),
+        _ => return false,
+    };
+    if count == 0 || count >= doers.len() {
+        return false;
+    }
+    let out: Vec<usize> = doers.iter().rev().take(count).rev().copied().collect();
+    for who in &out {
+        let rules: Vec<usize> = thread.made.iter().filter(|(of, _)| of == who).map(|(_, rule)| *rule).collect();
+        deed::except(&mut story.cast, *who, &rules);
+    }
+    thread.made.retain(|(who, _)| !out.contains(who));
+    story.cast.last.clone_from(&out);
+    thread.subject = Subject::People(out);
+    thread.doer = None;
+    true
 }
 
 fn mark(stretch: &mut Stretch, at: &[usize]) {
@@ -270,6 +341,8 @@ fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Fou
         }
     } else {
         thread.waiting = Some(when);
+        // Who comes out waits for the door anyway.
+        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open"));
         thread.vague = found.distance_m.is_none();
     }
 }
@@ -300,7 +373,7 @@ fn quiet(
             people.clone_from(last);
         }
     }
-    if !thread.pending.is_empty() && stretch.joint == Joint::And {
+    if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
         let mut all = std::mem::take(&mut thread.pending);
         all.extend(people.iter().filter(|i| !all.contains(i)).copied().collect::<Vec<_>>());
         story.cast.together(&all, quote);
@@ -338,8 +411,7 @@ fn quiet(
 
 #[expect(clippy::too_many_arguments, reason = "all that surrounds a deed decides who does it")]
 fn subject_of(
-    act: Act,
-    at: usize,
+    (act, at, to): (Act, usize, usize),
     passive: bool,
     found: &Found,
     meant: &[(usize, usize, Vec<usize>)],
@@ -359,6 +431,14 @@ fn subject_of(
         return people(agent);
     }
     let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty());
+    // `Behind the robot comes a doctor`: who does it stands after the verb.
+    let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
+    if before.is_none()
+        && turned
+        && let Some((_, _, some)) = meant.iter().find(|(from, _, some)| *from == to + 1 && !some.is_empty())
+    {
+        return people(some);
+    }
     let robot = found.robots.iter().rev().find(|robot| **robot < at);
     let robotic = matches!(
         act,
@@ -421,6 +501,16 @@ fn people_deed(
         .iter()
         .find(|(from, _, some)| *from > to && some.iter().all(|i| !people.contains(i)))
         .and_then(|(_, _, some)| some.first());
+    if act == Act::Lead {
+        let followers: Vec<usize> =
+            meant.iter().find(|(from, _, _)| *from > to).map(|(_, _, some)| some.clone()).unwrap_or_default();
+        let leader = people.first().and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new);
+        for who in followers.iter().filter(|who| !people.contains(who)) {
+            let around = Around { object: leader, quote: quote.to_owned(), ..Around::default() };
+            let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
+        }
+        thread.led = Some((people.to_vec(), followers));
+    }
     let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at) { object } else { None };
     let startled = (at..=to).any(|i| {
         stretch
@@ -528,12 +618,20 @@ fn robot_deed(
         | Act::Pass
         | Act::Walk => {}
     }
+    let its_own = matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
+    if its_own {
+        story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
+    }
 }
 
 fn place_of(story: &mut Story, found: &Found, quote: &str) {
     let comes_out =
         found.deeds.iter().find(|deed| matches!(deed.act, Act::ComeOut | Act::Enter | Act::Stay)).map(|deed| deed.at);
-    let leads = found.deeds.iter().find(|deed| deed.act == Act::Lead).map(|deed| deed.at);
+    // Where the robot leads somebody to is where it goes.
+    let robot = |at: usize| {
+        found.robots.iter().any(|robot| *robot < at) && found.mentions.iter().all(|mention| mention.from > at)
+    };
+    let leads = found.deeds.iter().find(|deed| deed.act == Act::Lead && robot(deed.at)).map(|deed| deed.at);
     for (class, at) in &found.places {
         // Where somebody is led to is where the robot goes.
         if leads.is_some_and(|deed| *at > deed) {

@@ -69,7 +69,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         .map(|person| Extra {
             speed_mps: person.speed_mps,
             start: person.start,
-            goal: None,
+            goal: person.goal,
             stated: person.rules.iter().map(|read| read.stated).collect(),
         })
         .collect();

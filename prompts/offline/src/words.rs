@@ -15,6 +15,8 @@ pub(crate) struct Word {
     pub(crate) to: usize,
     /// Whether something was read from it.
     pub(crate) used: bool,
+    /// Whether it is written with a capital letter.
+    pub(crate) capital: bool,
 }
 
 impl Word {
@@ -60,6 +62,8 @@ pub(crate) enum Joint {
     Until,
     /// `who`, `that`, `which`.
     Who,
+    /// `except`: of those just spoken of, not these.
+    Except,
 }
 
 /// A clause: a stretch of words between two joints.
@@ -94,12 +98,53 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
         match piece {
             Piece::Word(word) => words.push(Some(word)),
             Piece::Comma => words.push(None),
-            Piece::Stop => found.push(stretches(std::mem::take(&mut words))),
+            Piece::Stop => found.push(stretches(settled(std::mem::take(&mut words)))),
         }
     }
-    found.push(stretches(words));
+    found.push(stretches(settled(words)));
     found.retain(|sentence| !sentence.is_empty());
     found
+}
+
+/// Words with which people take back a number that they have just given.
+const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
+
+/// A sentence with its corrections made (`three, no, two people` are two), and with `left` told from `left`.
+fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let count = |item: &Option<Word>| item.as_ref().is_some_and(|word| word.count().is_some());
+    let mut out: Vec<Option<Word>> = Vec::with_capacity(words.len());
+    let mut i = 0;
+    while let Some(item) = words.get(i) {
+        // A number, at most two words, then a correction and another number.
+        let taken_back = count(item).then(|| {
+            let corrects = |k: &usize| {
+                words.get(*k).and_then(Option::as_ref).is_some_and(|word| CORRECTS.contains(&word.text.as_str()))
+            };
+            let at = (i + 2..i + 6).find(corrects)?;
+            let paused = words.get(i + 1..at)?.iter().any(|item| item.as_ref().is_none_or(|word| word.text == "or"));
+            (at + 1..at + 4).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
+        });
+        if let Some(next) = taken_back.flatten() {
+            i = next;
+            continue;
+        }
+        let mut item = item.clone();
+        let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        if let Some(word) = &mut item
+            && word.text == "left"
+            && matches!(
+                before,
+                "the" | "on" | "to" | "its" | "his" | "her" | "their" | "from" | "far" | "turn" | "turns" | "turned"
+                    | "turning" | "keep" | "keeps" | "look" | "looks" | "bear" | "veers"
+            )
+        {
+            // The side, nobody who leaves.
+            word.stem = "left".to_owned();
+        }
+        out.push(item);
+        i += 1;
+    }
+    out
 }
 
 fn pieces(text: &str) -> Vec<Piece> {
@@ -136,7 +181,12 @@ fn pieces(text: &str) -> Vec<Piece> {
             }
             let lower: String =
                 chars.get(start..i).unwrap_or_default().iter().flat_map(|(_, c)| c.to_lowercase()).collect();
+            let capital = at(start).is_some_and(char::is_uppercase);
+            let first = out.len();
             i += apostrophe(&lower, &at, i, &mut out, byte(start), &byte);
+            if let Some(Piece::Word(word)) = out.get_mut(first) {
+                word.capital = capital;
+            }
         } else {
             // The tail of a possessive after a number (`human_2's`) is no word.
             let owns = matches!(c, '\'' | '’') && at(i + 1) == Some('s') && !at(i + 2).is_some_and(char::is_alphabetic);
@@ -190,7 +240,7 @@ const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother"
 fn mended(text: &str) -> Option<&'static str> {
     let lex = lexicon();
     let long = text.chars().count() >= 6;
-    if !long || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
+    if !long || lex.telling.contains(text) || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
         return None;
     }
     let near = |word: &&String| {
@@ -207,7 +257,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
         "robot" | "robots" | "robot's" | "it" | "its" | "amr" | "agv" | "cobot" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false }
+    Word { text, stem, from, to, used: false, capital: false }
 }
 
 /// Cuts a sentence (`None` is a comma) at its joints.
@@ -254,7 +304,13 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     match text(i) {
         "and" => (Some(Joint::And), 1),
         "but" if before == "all" => (None, 1),
-        "but" | "so" | "because" | "since" | "although" | "though" | "however" | "except" => (Some(Joint::Comma), 1),
+        "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
+        "besides" => (Some(Joint::Except), 1),
+        "other" | "rather" if text(i + 1) == "than" && text(i.wrapping_sub(1)) != "each" && text(i) == "other" => {
+            (Some(Joint::Except), 2)
+        }
+        "except" => (Some(Joint::Except), 1),
+        "but" | "so" | "because" | "since" | "although" | "though" | "however" => (Some(Joint::Comma), 1),
         "then" | "afterwards" => (Some(Joint::Then), 1),
         "while" | "whereas" if before != "a" => (Some(Joint::While), 1),
         "as" if text(i + 1) == "soon" => (Some(Joint::When), 3),
@@ -267,7 +323,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "when" | "whenever" | "upon" | "if" => (Some(Joint::When), 1),
         "once" if i == 0 || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) => (Some(Joint::When), 1),
-        "after" | "before" if !digit && text(i + 1) != "a" => (Some(Joint::When), 1),
+        // `one after another`, `one after the other` is a manner.
+        "after" if before == "one" && (text(i + 1) == "another" || text(i + 2) == "other") => (None, 1),
+        "after" | "before" if !digit && !matches!(text(i + 1), "a" | "half") => (Some(Joint::When), 1),
         "until" | "till" => (Some(Joint::Until), 1),
         "who" | "whom" | "which" => (Some(Joint::Who), 1),
         "that" if person => (Some(Joint::Who), 1),

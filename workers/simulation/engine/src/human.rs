@@ -3,6 +3,7 @@
 use socrates_bt::{Tree, TreeState};
 use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
 
+use crate::make_room::Facing;
 use crate::models::Walks;
 use crate::near::Notice;
 
@@ -76,6 +77,8 @@ pub(crate) struct Human {
     pub(crate) jammed_s: f64,
     /// Until when it lets the robot through, s.
     pub(crate) yields_until_s: f64,
+    /// Who is in its way, face to face.
+    pub(crate) facing: Facing,
     /// Whether it ever walked.
     pub(crate) started: bool,
     /// Where it walked, a point every decimetre.

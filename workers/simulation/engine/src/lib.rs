@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, walk, [`gait`], lanes, [`models`], advance, [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, make_room, walk, [`gait`], lanes, [`models`], advance, [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!
@@ -30,6 +30,7 @@ mod ending;
 mod gathering;
 mod human;
 mod lanes;
+mod make_room;
 mod motion;
 mod near;
 mod placing;
@@ -41,9 +42,13 @@ mod view;
 mod walk;
 
 #[cfg(test)]
+mod aisle_runs;
+#[cfg(test)]
 mod door_runs;
 #[cfg(test)]
 mod fixture;
+#[cfg(test)]
+mod meeting_runs;
 #[cfg(test)]
 mod model_runs;
 #[cfg(test)]

@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, SceneGraph, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
+use crate::make_room::make_room;
 use crate::near::Other;
 use crate::robot::Robot;
 
@@ -56,7 +58,7 @@ impl Want {
         Self { face: Some(point), ..Self::STAND }
     }
 
-    fn go(target: Point, speed_mps: f64) -> Self {
+    pub(crate) fn go(target: Point, speed_mps: f64) -> Self {
         Self { target: Some(target), speed_mps, face: None, drawn: false }
     }
 }
@@ -110,6 +112,9 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     }
     if human.at_goal() || pace <= 0.0 {
         return Want::STAND;
+    }
+    if let Some(want) = make_room(human, scene) {
+        return want;
     }
     let left = human.route.length_m() - human.s;
     let speed = pace.min(0.25 + libm::sqrt(2.0 * left.max(0.0)));
@@ -166,9 +171,17 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
     }
     let stands = way.norm() < 1.6 && robot.velocity.norm() < 0.1;
     let in_line = human.at_goal() && -way.dot(&robot.intent()) > 0.5 * way.norm();
-    let facing = stands && (in_line || way.dot(&human.travel()) > 0.5 * way.norm());
-    human.jammed_s =
-        if facing && human.velocity.norm() < 0.3 && robot.arrived_s.is_none() { human.jammed_s + 0.01 } else { 0.0 };
+    // Whoever shuffles to and fro before the robot turns a little: its way still leads through the robot.
+    let ahead = if human.at_goal() { Vector::zeros() } else { human.route.direction(human.s + 0.3) };
+    let facing = stands && (in_line || way.dot(&human.travel()).max(way.dot(&ahead)) > 0.5 * way.norm());
+    let still = facing && human.velocity.dot(&way).abs() < 0.3 * way.norm() && robot.arrived_s.is_none();
+    human.jammed_s = if still {
+        human.jammed_s + 0.01
+    } else if stands {
+        (human.jammed_s - 0.02).max(0.0)
+    } else {
+        0.0
+    };
     if human.jammed_s > patience_s {
         human.jammed_s = 0.0;
         human.yields_until_s = now_s + 8.0;
@@ -237,7 +250,7 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
 }
 
 /// The next point of a way round walls to `goal`; planned anew when the goal moves away from it.
-fn round(human: &mut Human, scene: &Scene<'_>, goal: &Point) -> Option<Point> {
+pub(crate) fn round(human: &mut Human, scene: &Scene<'_>, goal: &Point) -> Option<Point> {
     if scene.floor.straight(&human.at, goal, 0.2) {
         human.errand.way = None;
         return Some(*goal);
@@ -385,7 +398,7 @@ fn bay(human: &Human, scene: &Scene<'_>, line: &Polyline) -> Option<Point> {
 }
 
 /// The nearest free spot off the robot's line that can be reached straight; the farthest off where none is far enough.
-fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> Point {
+pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> Point {
     let mut best = (off(&human.at), human.at);
     let toward = scene.robot.map_or_else(Vector::zeros, |robot| {
         let way = robot.at() - human.at;
@@ -402,7 +415,12 @@ fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) -> f64) -> 
                     && other.id != Some(human.id)
                     && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
             });
+            // Nor through the robot to behind it.
+            let through = scene.robot.is_some_and(|robot| {
+                nearest_on_segment(&robot.at(), &human.at, &spot).0 < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m) - 0.01
+            });
             if crowded
+                || through
                 || !scene.floor.straight(&human.at, &spot, room)
                 || scene.floor.shut_between(&human.at, &spot)
                 || scene.floor.clearance_m(&spot) < human.radius_m + 0.04

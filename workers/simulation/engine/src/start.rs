@@ -16,6 +16,7 @@ use socrates_model::{
 
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
+use crate::make_room::Facing;
 use crate::models::Walks;
 use crate::near::Notice;
 use crate::placing;
@@ -270,6 +271,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         aside_m: 0.0,
         jammed_s: 0.0,
         yields_until_s: 0.0,
+        facing: Facing::default(),
         started: false,
         trail: Polyline::default(),
         notice: Notice::default(),
