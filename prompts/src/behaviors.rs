@@ -8,11 +8,13 @@ use socrates_model::{Behaviors, FORMAT, Fault, FaultCode, HumanBehavior, HumanId
 use crate::answer::{prepared, schema_faults};
 use crate::question::Question;
 use crate::schema::derived;
+use crate::trees;
 
 /// Longest behavior answer of one human that is read, rules.
 const MOST_RULES: usize = 12;
 
-/// Reads `{"humans": {"human_1": {"description": "…", "rules": […]}}}`; `tree` with XML may stand in place of `rules`.
+/// Reads `{"humans": {"human_1": {"description": "…", "rules": […]}}}`; `tree`, as XML or as objects, may stand in place of
+/// `rules`.
 ///
 /// # Errors
 /// Syntax faults with their position, E-SCHEMA faults with JSON path, expected and found, or the faults of lowering the rules;
@@ -71,6 +73,10 @@ fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBeha
         }
         (None, Some(Value::String(tree))) => {
             Ok(HumanBehavior { tree: tree.clone(), description: description.to_owned() })
+        }
+        (None, Some(tree @ Value::Object(_))) => {
+            let tree = trees::xml(id, tree, &format!("{path}.tree"))?;
+            Ok(HumanBehavior { tree, description: description.to_owned() })
         }
         (None, Some(_)) => Err(fault(format!("{path}.tree"), "expected a text with the XML of the tree")),
         (Some(_), Some(_)) => Err(fault(path, "expected either `rules` or `tree`, found both")),

@@ -1,42 +1,94 @@
 //! Tables of the prompts, made from the types that the readers take.
 
 use serde::Serialize;
+use serde_json::{Value, json};
 use socrates_model::proposal::Relation;
+use socrates_model::reading::FactKind;
 use socrates_model::rule::{RobotDo, RobotWhen};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, PlaceClass, Predicate, Trigger};
+use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, PlaceClass, Predicate, RobotRule, Trigger};
 
-/// Everything a proposal may say.
+use crate::terse;
+
+/// Everything a proposal may say, in its short form.
 pub(crate) fn proposal_tables() -> String {
     let place = PlaceClass::ALL.map(|class| class.name()).join(", ");
+    let (setup, outcome): (Vec<_>, Vec<_>) =
+        predicates().into_iter().partition(|(_, meaning)| meaning.ends_with(" (setup)"));
+    let plain = |rows: Vec<(Value, String)>| {
+        let rows: Vec<(Value, String)> = rows
+            .into_iter()
+            .map(|(form, meaning)| {
+                let end = meaning.rfind(" (").unwrap_or(meaning.len());
+                let meaning = meaning.get(..end).unwrap_or_default().to_owned();
+                (form, meaning)
+            })
+            .collect();
+        short(&rows)
+    };
     format!(
-        "{}\n## Relations of a human to the robot's way\n{}\n## Robot script, `when`\n{}\n## Robot script, `act`\n{}\n\
-         ## Predicates of clauses (distances in m from centre to centre, times in s)\n{}\n## Place classes\n{place}\n",
-        rule_tables(),
-        lines(&relations()),
-        lines(&robot_when()),
-        lines(&robot_do()),
-        lines(&predicates()),
+        "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; of the part after the action \
+         take what is needed. `latched` goes on when the triggers no longer hold.\nA line of the script: \
+         `blocked:3 -> say:EXCUSE_ME`. A `test`: `meets human=human_1 within_m=2.5`. Distances in m, times in s.\n\
+         ## Triggers\n{}## Actions\n{}## Gestures\n{}\n## Relations to the robot's way\n{}## Script, when\n{}## Script, act\n{}\
+         ## Tests of setup clauses\n{}## Tests of outcome clauses\n{}## Place classes\n{place}\n",
+        short(&triggers().iter().map(|trigger| (json!(trigger), trigger.phrase())).collect::<Vec<_>>()),
+        short(&actions().iter().map(|action| (json!(action), action.phrase())).collect::<Vec<_>>()),
+        gestures(),
+        short(&relations()),
+        short(&robot_when()),
+        short(&robot_do()),
+        plain(setup),
+        plain(outcome),
     )
 }
 
-/// Triggers, actions and gestures of rules.
+/// Triggers, actions and gestures of rules, in their full form.
 pub(crate) fn rule_tables() -> String {
-    let gestures: Vec<String> =
-        Gesture::ALL.iter().map(|gesture| format!("{} = {}", gesture.code(), gesture.name())).collect();
     let triggers: Vec<(String, String)> =
         triggers().iter().map(|trigger| (spelled(trigger), trigger.phrase())).collect();
     let actions: Vec<(String, String)> = actions().iter().map(|action| (spelled(action), action.phrase())).collect();
     format!(
-        "## Triggers (`when`; all of a rule's triggers must hold)\n{}\n## Actions (`act`)\n{}\n## Gestures, the same for everybody\n{}\n",
+        "# Triggers (`when`; all of a rule's triggers must hold)\n{}# Actions (`act`)\n{}# Gestures, the same for everybody\n{}\n",
         lines(&triggers),
         lines(&actions),
-        gestures.join(", ")
+        gestures()
     )
 }
 
-/// The node library of behavior trees, one line per node.
-pub(crate) fn nodes() -> String {
-    socrates_bt::CATALOG.iter().map(|sheet| format!("- {}\n", sheet.line())).collect()
+/// Codes and names of gestures.
+pub(crate) fn gestures() -> String {
+    let names: Vec<String> =
+        Gesture::ALL.iter().map(|gesture| format!("{} {}", gesture.code(), gesture.name())).collect();
+    names.join(", ")
+}
+
+/// What a fact says, in few words.
+pub(crate) fn fact(kind: &FactKind) -> String {
+    match kind {
+        FactKind::Humans(count) => format!("humans {count}"),
+        FactKind::Group { group, members } => {
+            let members: Vec<String> = members.iter().map(ToString::to_string).collect();
+            format!("group {}: {}", group.0, members.join(", "))
+        }
+        FactKind::Reacts { human, rule } => format!("{human}: {}", terse::rule_line(rule)),
+        FactKind::Relates { human, relation } => format!("{human}: relation {}", terse::line(&json!(relation))),
+        FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
+        FactKind::Place(class) => format!("place {}", class.name()),
+        FactKind::RobotTask(task) => format!("task: {task}"),
+        FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
+        FactKind::RobotStart(class) => format!("the robot starts at {}", class.name()),
+        FactKind::RobotGoal(class) => format!("the robot ends at {}", class.name()),
+        FactKind::Pattern(card) => format!("pattern {card}"),
+    }
+}
+
+/// A line of the robot's script.
+pub(crate) fn script_line(rule: &RobotRule) -> String {
+    format!("{} -> {}", terse::line(&json!(rule.when)), terse::line(&json!(rule.act)))
+}
+
+fn short(rows: &[(Value, String)]) -> String {
+    rows.iter().map(|(form, meaning)| format!("- `{}`: {meaning}\n", terse::line(form))).collect()
 }
 
 fn lines(rows: &[(String, String)]) -> String {
@@ -47,8 +99,8 @@ fn spelled<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).unwrap_or_default()
 }
 
-fn row<T: Serialize>(value: &T, meaning: &str) -> (String, String) {
-    (spelled(value), meaning.to_owned())
+fn row<T: Serialize>(value: &T, meaning: &str) -> (Value, String) {
+    (json!(value), meaning.to_owned())
 }
 
 fn other() -> HumanId {
@@ -85,7 +137,7 @@ fn actions() -> Vec<Action> {
     ]
 }
 
-fn relations() -> Vec<(String, String)> {
+fn relations() -> Vec<(Value, String)> {
     vec![
         row(&Relation::Frontal, "comes towards the robot on the same way"),
         row(&Relation::Behind, "comes from behind; follows or overtakes"),
@@ -98,7 +150,7 @@ fn relations() -> Vec<(String, String)> {
     ]
 }
 
-fn robot_when() -> Vec<(String, String)> {
+fn robot_when() -> Vec<(Value, String)> {
     vec![
         row(&RobotWhen::Start, "from the start"),
         row(&RobotWhen::Blocked(3.0), "a human has stood in its way for so many seconds"),
@@ -109,7 +161,7 @@ fn robot_when() -> Vec<(String, String)> {
     ]
 }
 
-fn robot_do() -> Vec<(String, String)> {
+fn robot_do() -> Vec<(Value, String)> {
     vec![
         row(&RobotDo::Say(Gesture::ExcuseMe), "makes the gesture"),
         row(&RobotDo::Hold(3.0), "stands for so many seconds"),
@@ -120,7 +172,7 @@ fn robot_do() -> Vec<(String, String)> {
     ]
 }
 
-fn predicates() -> Vec<(String, String)> {
+fn predicates() -> Vec<(Value, String)> {
     let human = HumanId::new(1);
     let group = GroupId(1);
     vec![
@@ -227,16 +279,20 @@ mod tests {
             assert!(!found.is_empty(), "{name}");
             // A proposal names kinds of places, so authors are not told of the predicates that name a node.
             for alternative in found.into_iter().filter(|name| name != "reaches" && name != "starts_at") {
-                assert!(text.contains(&format!("\"{alternative}\"")), "{name} `{alternative}` is not in the tables");
+                let found = [" ", "`", ":"].iter().any(|end| text.contains(&format!("- `{alternative}{end}")));
+                assert!(found, "{name} `{alternative}` is not in the tables");
             }
         }
     }
 
     #[test]
-    fn the_node_list_comes_from_the_catalogue() {
-        let text = nodes();
-        for tag in ["Sequence", "FollowRobot", "IsRobotVisible"] {
-            assert!(text.contains(&format!("- {tag} ")), "{tag}");
+    fn every_test_of_the_table_is_read_back_as_it_was_meant() {
+        for (form, _) in predicates() {
+            let mut proposal = json!({"expected_events": [{"test": terse::line(&form)}]});
+            terse::expand(&mut proposal);
+            let read: Predicate = serde_json::from_value(proposal["expected_events"][0]["predicate"].clone()).unwrap();
+            let meant: Predicate = serde_json::from_value(form).unwrap();
+            assert_eq!(read, meant);
         }
     }
 }

@@ -11,6 +11,7 @@ mod again;
 mod agents;
 mod agreement;
 mod args;
+mod authors;
 mod batch;
 mod bench;
 mod bt;
@@ -20,6 +21,7 @@ mod case_studies;
 mod cite;
 mod cluster;
 mod config;
+mod cost;
 mod dev;
 mod exit;
 mod explain;
@@ -75,20 +77,19 @@ fn main() -> ExitCode {
 
 fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
     let config = Config::load(cli.config.as_deref(), std::env::vars(), &cli.set)?;
-    let key = std::env::var(config.text("author.key_variable")).ok().filter(|key| !key.is_empty());
+    let key_found = authors::key_found(&config)?;
     start_log(&config)?;
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
             Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
         })?;
-    let code = runtime.block_on(act(talk, cli, &config, key));
+    let code = runtime.block_on(act(talk, cli, &config, key_found));
     // A blocked reader of a child's pipe must not hold the exit.
     runtime.shutdown_background();
     code
 }
 
-async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Result<Code, Complaint> {
-    let key_found = key.is_some();
+async fn act(talk: &Talk, cli: &Cli, config: &Config, key_found: bool) -> Result<Code, Complaint> {
     let done = |outcome: Result<(), Complaint>| outcome.map(|()| Code::Ok);
     match &cli.verb {
         Verb::Demo(options) => run::demo(talk, cli, config, options, key_found).await,
@@ -104,6 +105,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Report { what } => done(report::report(talk, what)),
         Verb::Video(options) => done(video::video(talk, options)),
         Verb::Figure(options) => done(figure::figure(talk, options)),
+        Verb::Cost { what, prices } => done(cost::cost(talk, config, what, prices.as_deref())),
         Verb::Cite { bundle } => done(cite::cite(talk, bundle)),
         Verb::Labels { verb } => done(labels::labels(talk, verb)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
@@ -122,13 +124,13 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
-            ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),
+            ClusterVerb::Worker(options) => done(process::worker(config, options).await),
             ClusterVerb::Submit { requests, connect, namespace, seed } => {
                 done(cluster::submit(talk, config, requests, connect, namespace, *seed, key_found).await)
             }
         },
         Verb::Dev { verb } => done(dev::dev(talk, cli, config, verb).await),
-        Verb::Worker(options) => done(process::worker(config, options, key).await),
+        Verb::Worker(options) => done(process::worker(config, options).await),
         Verb::Orchestrator(options) => done(process::orchestrator(config, options).await),
     }
 }
