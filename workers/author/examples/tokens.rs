@@ -1,7 +1,7 @@
 //! How many tokens a scenario of two people costs, by stage and style, counted with the o200k tokenizer on a shipped
 //! location and request.
 //!
-//! `cargo run --release -p socrates-author --example tokens`
+//! `cargo run --release -p socrates-author --example tokens`; with a word after it (`-- show`), the questions themselves
 #![expect(clippy::print_stdout, reason = "the figures are what it is for")]
 #![expect(clippy::expect_used, reason = "without its inputs there are no figures")]
 
@@ -69,6 +69,16 @@ async fn main() {
             let within = if words + form + picture <= limit { "within" } else { "NOT within" };
             let estimate = sum(|c| c.estimated);
             println!("{:24} {within} the limit of {limit}; estimated without a tokenizer: {estimate}", "");
+        }
+    }
+    if std::env::args().nth(1).is_some() {
+        for question in &questions {
+            let prompt = question.prompt(&off);
+            for message in &prompt.messages {
+                let tokens = tiktoken_rs::o200k_base_singleton().encode_ordinary(&message.text).len();
+                println!("--- {:?}, {tokens} tokens\n{}", message.role, message.text);
+            }
+            println!("--- form\n{}", prompt.schema.unwrap_or_default());
         }
     }
     println!("serial calls: 2 (the proposal; then paths and the behaviors of everybody side by side)");
