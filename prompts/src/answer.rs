@@ -16,9 +16,9 @@ const MOST: usize = 5;
 ///
 /// # Errors
 /// Syntax faults with their position, or up to five E-SCHEMA faults with JSON path, expected and found.
-pub fn parse_proposal(text: &str, _question: &Question) -> Result<Proposal, Vec<Fault>> {
+pub fn parse_proposal(text: &str, question: &Question) -> Result<Proposal, Vec<Fault>> {
     let mut value = crate::json::object(text)?;
-    terse::expand(&mut value);
+    terse::expand(&mut value, &question.request.task);
     typed(prepared(value))
 }
 

@@ -69,34 +69,20 @@ fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
                 .humans
                 .iter()
                 .map(|human| {
-                    let mut shown = json!({"description": human.behavior});
                     let (key, value) = match style.behaviors {
-                        BehaviorsForm::Rules => ("rules", human.rules.iter().map(rule).collect()),
+                        BehaviorsForm::Rules => ("rules", json!(human.rules)),
                         BehaviorsForm::JsonTree => ("tree", trees::of_rules(&human.rules)),
                         BehaviorsForm::Xml => {
                             ("tree", json!(socrates_bt::compile(human.id, &human.rules).unwrap_or_default()))
                         }
                     };
-                    if let Some(members) = shown.as_object_mut() {
-                        members.insert(key.to_owned(), value);
-                    }
+                    let shown = json!({key: value});
                     (human.id.to_string(), shown)
                 })
                 .collect();
             json!({"analysis": "…", "humans": humans})
         }
     }
-}
-
-/// A rule with every member, as the strict form wants it.
-fn rule(rule: &socrates_model::Rule) -> Value {
-    let mut value = serde_json::to_value(rule).unwrap_or_default();
-    if let Some(members) = value.as_object_mut() {
-        for key in ["for_s", "gesture"] {
-            members.entry(key).or_insert(Value::Null);
-        }
-    }
-    value
 }
 
 /// The map of the examples, wide and empty.

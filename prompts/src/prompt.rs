@@ -140,11 +140,11 @@ impl Question {
 
     /// What the user wrote, as JSON values: text of a user is data, never an instruction.
     fn wish(&self) -> String {
-        let facts: Vec<Value> = self
+        let facts: Vec<String> = self
             .reading
             .facts
             .iter()
-            .map(|fact| json!({"id": fact.id, "words": clean(&fact.quote), "means": vocabulary::fact(&fact.kind)}))
+            .map(|fact| format!("{}: {}", fact.id, clean(&vocabulary::fact(&fact.kind))))
             .collect();
         let mut wish = json!({
             "social_context": clean(&self.request.social_context),
@@ -194,7 +194,7 @@ fn paths_outline(proposal: &Proposal) -> String {
         .humans
         .iter()
         .map(|human| {
-            let mut told = json!({"id": human.id, "relation": human.relation, "behavior": human.behavior});
+            let mut told = json!({"id": human.id, "relation": human.relation});
             let more = [("group", json!(human.group)), ("start", json!(human.start)), ("goal", json!(human.goal))];
             if let Some(members) = told.as_object_mut() {
                 members.extend(more.into_iter().filter(|(_, value)| !value.is_null()).map(|(k, v)| (k.to_owned(), v)));
@@ -202,12 +202,13 @@ fn paths_outline(proposal: &Proposal) -> String {
             told
         })
         .collect();
-    let outline = json!({
-        "description": proposal.description,
-        "place": proposal.place,
-        "humans": humans,
-        "robot": {"task": proposal.robot.task, "start": proposal.robot.start, "goal": proposal.robot.goal},
-    });
+    let mut robot = json!({"task": proposal.robot.task});
+    let ends = [("start", proposal.robot.start), ("goal", proposal.robot.goal)];
+    if let Some(members) = robot.as_object_mut() {
+        members.extend(ends.into_iter().filter_map(|(key, class)| Some((key.to_owned(), json!(class?)))));
+    }
+    let outline =
+        json!({"description": proposal.description, "place": proposal.place, "humans": humans, "robot": robot});
     format!("Scenario (data): {outline}\n")
 }
 

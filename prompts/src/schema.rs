@@ -89,24 +89,18 @@ fn proposal(question: &Question) -> Value {
         ("members", list(&text())),
         ("standing", json!({"type": "boolean"})),
     ]);
-    let event = object(&[
-        ("must", json!({"type": "boolean"})),
-        ("role", json!({"type": "string", "enum": ["setup", "outcome"]})),
-        ("source", or_null(&text())),
-        ("test", text()),
-        ("text", text()),
-    ]);
+    let setup = object(&[("source", or_null(&text())), ("test", text())]);
+    let events = object(&[("outcome", list(&text())), ("setup", list(&setup))]);
     let robot = object(&[
         ("expected_behavior", text()),
         ("goal", or_null(&place)),
         ("script", list(&text())),
         ("start", or_null(&place)),
-        ("task", text()),
     ]);
     let mut schema = object(&[
         (THINKING, thinking()),
         ("description", text()),
-        ("expected_events", list(&event)),
+        ("expected_events", events),
         ("groups", list(&group)),
         ("humans", humans),
         ("not_understood", list(&text())),
@@ -198,7 +192,7 @@ fn behaviors(question: &Question, form: BehaviorsForm) -> Value {
         }
         BehaviorsForm::Xml => ("tree", text(), json!({})),
     };
-    let behavior = object(&[("description", text()), (key, written)]);
+    let behavior = object(&[(key, written)]);
     let names = human_names(question);
     let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), behavior.clone())).collect();
     let mut schema = object(&[(THINKING, thinking()), ("humans", object(&each))]);

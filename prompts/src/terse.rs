@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 const LISTS: &str = "when";
 const ACTIONS: &str = "act";
 
-/// Brings a short proposal into the full form; a full one passes unchanged.
-pub(crate) fn expand(value: &mut Value) {
+/// Brings a short proposal into the full form; a full one passes unchanged. The robot's task is the request's.
+pub(crate) fn expand(value: &mut Value, task: &str) {
     let Some(members) = value.as_object_mut() else { return };
     if let Some(humans) = members.get_mut("humans") {
         keyed_to_list(humans);
@@ -26,16 +26,41 @@ pub(crate) fn expand(value: &mut Value) {
     }
     if let Some(robot) = members.get_mut("robot") {
         each_line(robot.get_mut("script"), script);
+        if let Some(robot) = robot.as_object_mut() {
+            robot.entry("task").or_insert_with(|| json!(task));
+        }
     }
-    for (index, clause) in
-        members.get_mut("expected_events").and_then(Value::as_array_mut).into_iter().flatten().enumerate()
-    {
+    if let Some(events) = members.get_mut("expected_events") {
+        clauses(events);
+    }
+}
+
+/// `{"setup": [{"test": …, "source": …}], "outcome": ["…"]}` becomes a list of clauses; so does every clause with a `test`.
+fn clauses(events: &mut Value) {
+    if let Some(parts) = events.as_object_mut() {
+        let mut list = Vec::new();
+        for role in ["setup", "outcome"] {
+            for clause in parts.remove(role).and_then(|part| part.as_array().cloned()).unwrap_or_default() {
+                let mut clause = if clause.is_object() { clause } else { json!({"test": clause}) };
+                if let Some(clause) = clause.as_object_mut() {
+                    clause.insert("role".to_owned(), json!(role));
+                    clause.entry("must").or_insert(json!(true));
+                }
+                list.push(clause);
+            }
+        }
+        // What else stands there is nothing that can be read.
+        list.extend(std::mem::take(parts).into_iter().map(|(name, value)| json!({name: value})));
+        *events = Value::Array(list);
+    }
+    for (index, clause) in events.as_array_mut().into_iter().flatten().enumerate() {
         let Some(clause) = clause.as_object_mut() else { continue };
         let Some(line) = clause.remove("test") else { continue };
         let read = line.as_str().and_then(test).unwrap_or_else(|| line.clone());
+        let text = crate::vocabulary::test_in_words(&read).map_or(line, Value::String);
         clause.insert("predicate".to_owned(), read);
         clause.entry("id").or_insert_with(|| json!(format!("c{}", index + 1)));
-        clause.entry("text").or_insert(line);
+        clause.entry("text").or_insert(text);
     }
 }
 
@@ -201,16 +226,11 @@ pub(crate) fn shorten(proposal: &Value) -> Value {
         let rules = human.get("rules").cloned().and_then(|rules| serde_json::from_value(rules).ok());
         let rules: Vec<socrates_model::Rule> = rules.unwrap_or_default();
         human.insert("rules".to_owned(), rules.iter().map(rule_line).collect());
-        for key in ["goal", "group", "speed_mps", "start"] {
-            human.entry(key).or_insert(Value::Null);
-        }
         humans.insert(name, Value::Object(human));
     }
     members.insert("humans".to_owned(), Value::Object(humans));
     if let Some(robot) = members.get_mut("robot").and_then(Value::as_object_mut) {
-        for key in ["goal", "start"] {
-            robot.entry(key).or_insert(Value::Null);
-        }
+        robot.remove("task");
         let lines: Value = robot
             .get("script")
             .and_then(Value::as_array)
@@ -223,14 +243,21 @@ pub(crate) fn shorten(proposal: &Value) -> Value {
             .collect();
         robot.insert("script".to_owned(), lines);
     }
-    for clause in members.get_mut("expected_events").and_then(Value::as_array_mut).into_iter().flatten() {
-        let Some(clause) = clause.as_object_mut() else { continue };
-        clause.remove("id");
-        clause.entry("source").or_insert(Value::Null);
-        if let Some(predicate) = clause.remove("predicate") {
-            clause.insert("test".to_owned(), json!(line(&predicate)));
+    let mut events = json!({"setup": [], "outcome": []});
+    for clause in members.remove("expected_events").as_ref().and_then(Value::as_array).into_iter().flatten() {
+        let test = clause.get("predicate").map(line).unwrap_or_default();
+        let role = clause.get("role").and_then(Value::as_str).unwrap_or("setup");
+        let entry = match clause.get("source") {
+            Some(source) => json!({"source": source, "test": test}),
+            None if role == "setup" => json!({"test": test}),
+            None => json!(test),
+        };
+        if let Some(list) = events.get_mut(role).and_then(Value::as_array_mut) {
+            list.push(entry);
         }
     }
+    members.insert("expected_events".to_owned(), events);
+    members.retain(|_, member| member.as_array().is_none_or(|list| !list.is_empty()));
     short
 }
 
@@ -261,10 +288,13 @@ mod tests {
     fn a_short_proposal_is_the_full_one() {
         let full = serde_json::to_value(proposal()).unwrap();
         let mut short = shorten(&full);
-        expand(&mut short);
+        expand(&mut short, "deliver");
         let read = crate::answer::prepared(short);
         let read: socrates_model::Proposal = crate::answer::typed(read).unwrap();
-        assert_eq!(socrates_model::Proposal { format: 1, author: "test".into(), ..read }, proposal());
+        let mut full = proposal();
+        // The text for people is made from the test.
+        full.expected_events[0].text = "so many are there all the time (count=2)".into();
+        assert_eq!(socrates_model::Proposal { format: 1, author: "test".into(), ..read }, full);
     }
 
     #[test]

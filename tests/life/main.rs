@@ -4,6 +4,7 @@
 mod bad_input;
 mod bundles;
 mod live;
+mod models;
 mod originals;
 mod pages;
 mod repairs;

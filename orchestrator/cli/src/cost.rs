@@ -85,10 +85,14 @@ pub(crate) fn cost(talk: &Talk, config: &Config, what: &[PathBuf], prices: Optio
         rows.push(json!({"bundle": bundle.display().to_string(), "models": lines(&models, &prices)}));
     }
     let width = total.keys().map(String::len).max().unwrap_or(0).max(7);
-    talk.line(&format!("{:width$}  {:>6}  {:>10}  {:>10}  {:>10}  cost", "author", "calls", "tokens in", "of cache", "tokens out"));
+    talk.line(&format!(
+        "{:width$}  {:>6}  {:>10}  {:>10}  {:>10}  cost",
+        "author", "calls", "tokens in", "of cache", "tokens out"
+    ));
     for (model, sum) in &total {
         let mark = if sum.estimated { "~" } else { "" };
-        let cost = money(model, sum, &prices).map_or_else(|| "unknown price".to_owned(), |(cost, of)| format!("{cost:.4} {of}"));
+        let cost = money(model, sum, &prices)
+            .map_or_else(|| "unknown price".to_owned(), |(cost, of)| format!("{cost:.4} {of}"));
         talk.line(&format!(
             "{model:width$}  {:>6}  {:>10}  {:>10}  {:>10}  {cost}",
             sum.calls,
@@ -204,10 +208,9 @@ mod tests {
 
     #[test]
     fn every_exchange_counts_once() {
-        let exchange = |model: &str, answer: &str, tokens: [u64; 2]| {
-            json!({"model": model, "answer": answer, "tokens": tokens, "how": {"cached": 10, "estimated": false}})
-        };
-        let (bad, good) = (exchange("openai:gpt-4o-2024", "a", [100, 20]), exchange("openai:gpt-4o-2024", "b", [120, 30]));
+        let exchange = |model: &str, answer: &str, tokens: [u64; 2]| json!({"model": model, "answer": answer, "tokens": tokens, "how": {"cached": 10, "estimated": false}});
+        let (bad, good) =
+            (exchange("openai:gpt-4o-2024", "a", [100, 20]), exchange("openai:gpt-4o-2024", "b", [120, 30]));
         let provenance = json!({"jobs": [
             {"attempts": [{"exchanges": [bad, "refused text"]}, {"exchanges": [good]}], "exchanges": [good]},
             {"attempts": [], "exchanges": [exchange("offline/1", "c", [0, 0])]},
@@ -215,8 +218,10 @@ mod tests {
         let found = sums(&provenance);
         let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false };
         assert_eq!(found["openai:gpt-4o-2024"], sum);
-        let price = |input, cached_input| Price { input, cached_input, output: 10.0, currency: dollars(), _valid_from: None };
-        let prices = BTreeMap::from([("gpt-4o".to_owned(), price(2.5, Some(1.0))), ("gpt-4".to_owned(), price(9.0, None))]);
+        let price =
+            |input, cached_input| Price { input, cached_input, output: 10.0, currency: dollars(), _valid_from: None };
+        let prices =
+            BTreeMap::from([("gpt-4o".to_owned(), price(2.5, Some(1.0))), ("gpt-4".to_owned(), price(9.0, None))]);
         let (cost, _) = money("openai:gpt-4o-2024", &sum, &prices).unwrap();
         assert!((cost - (200.0 * 2.5 + 20.0 + 500.0) / 1e6).abs() < 1e-12);
         assert_eq!(money("anthropic:other", &sum, &prices), None);
@@ -227,7 +232,9 @@ mod tests {
     fn a_table_of_prices_that_cannot_be_used_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("prices.toml");
-        for (text, word) in [("[m]\ninput = -1\noutput = 1", "negative"), ("[m]\nprice = 1", "no table"), ("x", "no table")] {
+        for (text, word) in
+            [("[m]\ninput = -1\noutput = 1", "negative"), ("[m]\nprice = 1", "no table"), ("x", "no table")]
+        {
             std::fs::write(&file, text).unwrap();
             assert!(read_prices(&file).unwrap_err().to_string().contains(word), "{text}");
         }

@@ -45,7 +45,9 @@ async fn an_example_means_the_same_in_every_form() {
     let mut actions = Vec::new();
     for style in styles() {
         let (question, answer) = examples::worked(Stage::Paths, &style).remove(0);
-        let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else { panic!() };
+        let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
+            panic!()
+        };
         paths.push((read.robot, read.humans, read.encounters));
         let (question, answer) = examples::worked(Stage::Behaviors, &style).remove(0);
         let Written::Behaviors(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
