@@ -7,28 +7,35 @@ use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal};
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
 use crate::validate::differences;
+use crate::{terse, ways};
 
 /// Most differences named at once.
 const MOST: usize = 5;
 
-/// Reads a proposal. `format` and `author` may be left out.
+/// Reads a proposal, short or full. `format` and `author` may be left out.
 ///
 /// # Errors
 /// Syntax faults with their position, or up to five E-SCHEMA faults with JSON path, expected and found.
-pub fn parse_proposal(text: &str, _question: &Question) -> Result<Proposal, Vec<Fault>> {
-    read(text)
+pub fn parse_proposal(text: &str, question: &Question) -> Result<Proposal, Vec<Fault>> {
+    let mut value = crate::json::object(text)?;
+    terse::expand(&mut value, &question.request.task);
+    typed(prepared(value))
 }
 
-/// Reads paths. `format` and `author` may be left out.
+/// Reads paths in any of the forms; see [`crate::style::PathsForm`]. `format` and `author` may be left out.
 ///
 /// # Errors
 /// As [`parse_proposal`].
-pub fn parse_paths(text: &str, _question: &Question) -> Result<Paths, Vec<Fault>> {
-    read(text)
-}
-
-fn read<T: DeserializeOwned + schemars::JsonSchema>(text: &str) -> Result<T, Vec<Fault>> {
-    typed(prepared(crate::json::object(text)?))
+pub fn parse_paths(text: &str, question: &Question) -> Result<Paths, Vec<Fault>> {
+    let mut value = crate::json::object(text)?;
+    ways::expand(&mut value, &question.location.graph);
+    // What was thought is the reason, where none is given apart.
+    let thought = value.get(THINKING).and_then(Value::as_str).map(str::to_owned);
+    let mut value = prepared(value);
+    if let Some((members, thought)) = value.as_object_mut().zip(thought) {
+        members.entry("reasoning").or_insert_with(|| json!(thought));
+    }
+    typed(value)
 }
 
 /// The answer without its thinking, without nulls, with the members that we know better than the author.

@@ -8,11 +8,13 @@ use socrates_model::{Behaviors, FORMAT, Fault, FaultCode, HumanBehavior, HumanId
 use crate::answer::{prepared, schema_faults};
 use crate::question::Question;
 use crate::schema::derived;
+use crate::trees;
 
 /// Longest behavior answer of one human that is read, rules.
 const MOST_RULES: usize = 12;
 
-/// Reads `{"humans": {"human_1": {"description": "…", "rules": […]}}}`; `tree` with XML may stand in place of `rules`.
+/// Reads `{"humans": {"human_1": {"description": "…", "rules": […]}}}`; `tree`, as XML or as objects, may stand in place of
+/// `rules`.
 ///
 /// # Errors
 /// Syntax faults with their position, E-SCHEMA faults with JSON path, expected and found, or the faults of lowering the rules;
@@ -65,12 +67,14 @@ fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBeha
             let rules = rules_of(rules, &path)?;
             let tree = socrates_bt::compile(id, &rules)
                 .map_err(|faults| faults.into_iter().map(|f| named(id, f)).collect::<Vec<_>>())?;
-            let description =
-                if description.is_empty() { in_words(&rules, id, question) } else { description.to_owned() };
-            Ok(HumanBehavior { tree, description })
+            Ok(HumanBehavior { tree, description: told(description, &rules, id, question) })
         }
         (None, Some(Value::String(tree))) => {
-            Ok(HumanBehavior { tree: tree.clone(), description: description.to_owned() })
+            Ok(HumanBehavior { tree: tree.clone(), description: told(description, &[], id, question) })
+        }
+        (None, Some(tree @ Value::Object(_))) => {
+            let tree = trees::xml(id, tree, &format!("{path}.tree"))?;
+            Ok(HumanBehavior { tree, description: told(description, &[], id, question) })
         }
         (None, Some(_)) => Err(fault(format!("{path}.tree"), "expected a text with the XML of the tree")),
         (Some(_), Some(_)) => Err(fault(path, "expected either `rules` or `tree`, found both")),
@@ -100,6 +104,10 @@ fn rules_of(value: &Value, path: &str) -> Result<Vec<Rule>, Vec<Fault>> {
         }
     }
     if faults.is_empty() { Ok(rules) } else { Err(faults) }
+}
+
+fn told(description: &str, rules: &[Rule], id: HumanId, question: &Question) -> String {
+    if description.is_empty() { in_words(rules, id, question) } else { description.to_owned() }
 }
 
 /// The rules in a sentence, where the author gave none; the proposal's own words come first.

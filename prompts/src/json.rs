@@ -1,7 +1,11 @@
 //! From text to JSON: E-EMPTY, E-TRUNC, E-JSON, E-EXTRA, T-OVERSIZE.
 
-use serde_json::Value;
+use std::fmt;
+
+use serde::de::{Error as _, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use serde_json::error::Category;
+use serde_json::{Map, Value};
 use socrates_model::{Fault, FaultCode};
 
 /// Longest answer that is read, bytes.
@@ -25,7 +29,7 @@ pub fn object(text: &str) -> Result<Value, Vec<Fault>> {
         let start: String = text.trim().chars().take(AROUND).collect();
         return fault(FaultCode::EJson, format!("has no JSON object; it starts with `{start}`"));
     };
-    match serde_json::from_str::<Value>(core) {
+    match serde_json::from_str::<Once>(core).map(|Once(value)| value) {
         Ok(value @ Value::Object(_)) => Ok(value),
         Ok(other) => fault(FaultCode::EJson, format!("is {}, not a JSON object", kind(&other))),
         Err(error) if error.classify() == Category::Eof => fault(
@@ -49,6 +53,68 @@ pub fn repairs(text: &str) -> Vec<Fault> {
     }
     let message = format!("has {extra} bytes around the JSON object; they were dropped. Answer with the object alone");
     vec![Fault::new(FaultCode::EExtra, "answer", message)]
+}
+
+/// A JSON value in which no object names a member twice: which of the two is meant nobody can say.
+struct Once(Value);
+
+impl<'de> Deserialize<'de> for Once {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(OnceVisitor).map(Self)
+    }
+}
+
+struct OnceVisitor;
+
+impl<'de> Visitor<'de> for OnceVisitor {
+    type Value = Value;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E>(self, value: bool) -> Result<Value, E> {
+        Ok(Value::Bool(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_str<E>(self, value: &str) -> Result<Value, E> {
+        Ok(value.into())
+    }
+
+    fn visit_unit<E>(self) -> Result<Value, E> {
+        Ok(Value::Null)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(Once(item)) = items.next_element()? {
+            list.push(item);
+        }
+        Ok(Value::Array(list))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<Value, A::Error> {
+        let mut object = Map::new();
+        while let Some((name, Once(value))) = members.next_entry::<String, Once>()? {
+            if object.contains_key(&name) {
+                return Err(A::Error::custom(format!("the member `{name}` is there twice; write it once")));
+            }
+            object.insert(name, value);
+        }
+        Ok(Value::Object(object))
+    }
 }
 
 /// From the first brace to the one that closes it; to the end where none does.
@@ -117,6 +183,19 @@ mod tests {
         assert_eq!(code("{\"a\": [1, 2"), FaultCode::ETrunc);
         assert_eq!(code("{\"a\": 'x'}"), FaultCode::EJson);
         assert_eq!(code(&format!("{{\"a\": \"{}\"}}", "x".repeat(MAX_ANSWER_BYTES))), FaultCode::TOversize);
+    }
+
+    #[test]
+    fn what_only_looks_like_json_is_refused() {
+        let deep = format!("{{\"a\": {}{}}}", "[".repeat(10_000), "]".repeat(10_000));
+        assert_eq!(code(&deep), FaultCode::EJson);
+        assert_eq!(code("{\"a\": NaN}"), FaultCode::EJson);
+        assert_eq!(code("{\"a\": 1e999}"), FaultCode::EJson);
+        let twice = &object("{\"a\": {\"b\": 1, \"b\": 2}}").unwrap_err()[0];
+        assert!(twice.code == FaultCode::EJson && twice.message.contains("`b` is there twice"), "{twice}");
+        // Another language is another text, not another form.
+        assert_eq!(object("{\"a\": \"Ein Mensch kommt näher\"}").unwrap()["a"], "Ein Mensch kommt näher");
+        assert_eq!(code("Es tut mir leid, das kann ich nicht."), FaultCode::EJson);
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! Questions to an author, and how its answers are read.
 //!
 //! ```text
-//! Question ──messages()──► system and user texts, picture of the map ──► author
-//!    │                                                                     │
-//!    └──answer_schema()──► JSON schema                parse_*() ◄── text ◄─┘
+//! Question ──prompt(Style)──► system and user texts, picture of the map, JSON schema ──► author
+//!                                                                                        │
+//!                            proposal, paths, behaviors, or faults ◄── parse_*() ◄── text ┘
 //! ```
 //!
-//! Each authoring stage has a template in `templates/`, an answer schema made from the model's own
-//! types, and a reader that turns text into a typed artifact or into faults that name the position.
+//! Each authoring stage has a template in `templates/`, worked examples in `examples/`, an answer schema with
+//! the names of the question in it, and a reader that turns text into a typed artifact or into faults that name the
+//! position. A style chooses how much is explained and in which form is answered; the reader takes every form.
 //! Tables in the prompts (triggers, actions, gestures, nodes) are made from the types and the node
 //! catalogue, so that they cannot drift from what the readers take.
 //!
@@ -15,8 +16,10 @@
 
 pub mod question;
 
-pub mod ask;
+pub mod examples;
 pub mod message;
+pub mod prompt;
+pub mod style;
 
 pub mod answer;
 pub mod json;
@@ -25,8 +28,11 @@ pub mod schema;
 mod behaviors;
 mod feedback;
 mod place_text;
+mod terse;
+mod trees;
 mod validate;
 mod vocabulary;
+mod ways;
 
 #[cfg(test)]
 mod testing;
@@ -34,5 +40,7 @@ mod testing;
 pub use answer::{parse_paths, parse_proposal};
 pub use behaviors::parse_behaviors;
 pub use message::{Message, Picture, Role};
+pub use prompt::{Prompt, Template};
 pub use question::Question;
 pub use schema::answer_schema;
+pub use style::{BehaviorsForm, Image, Mode, PathsForm, Style};

@@ -1,23 +1,31 @@
 //! JSON schemas of the answers, in the strict subset that servers enforce.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Map, Value, json};
 use socrates_model::job::Stage;
-use socrates_model::{Proposal, Rule};
+use socrates_model::proposal::Relation;
+use socrates_model::reading::FactKind;
+use socrates_model::{HumanId, PlaceClass, Rule};
 
 use crate::question::Question;
+use crate::style::{BehaviorsForm, PathsForm, Style};
 
 /// With more nodes than this, ids are checked after the answer instead of by the server.
 const MOST_IDS: usize = 250;
+/// With more humans than this they are listed instead of keyed.
+const MOST_KEYED: u32 = 12;
 /// Room to think before the answer proper; its name sorts first in every schema. Not read.
 pub(crate) const THINKING: &str = "analysis";
 
-/// The schema that the answer to this question has to keep. Closed objects, every member required, `null` for nothing.
+/// The schema that the answer to this question has to keep. Closed objects, every member required, `null` for nothing;
+/// humans, nodes and place classes are those of the question.
 #[must_use]
-pub fn answer_schema(question: &Question) -> Value {
+pub fn answer_schema(question: &Question, style: &Style) -> Value {
     match question.stage {
-        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => proposal(),
-        Stage::Paths => paths(question),
-        Stage::Behaviors => behaviors(question),
+        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => proposal(question),
+        Stage::Paths => paths(question, style.paths),
+        Stage::Behaviors => behaviors(question, style.behaviors),
     }
 }
 
@@ -26,72 +34,177 @@ pub(crate) fn derived<T: schemars::JsonSchema>() -> Value {
     schemars::schema_for!(T).to_value()
 }
 
-fn proposal() -> Value {
-    let mut schema = derived::<Proposal>();
-    if let Some(members) = schema.get_mut("properties").and_then(Value::as_object_mut) {
-        members.remove("format");
-        members.remove("author");
-        members.insert(THINKING.to_owned(), thinking());
-    }
-    if let Some(required) = schema.get_mut("required").and_then(Value::as_array_mut) {
-        required.push(json!(THINKING));
-    }
-    strict(&mut schema);
-    schema
+/// A closed object of these members.
+fn object(members: &[(&str, Value)]) -> Value {
+    let members: Map<String, Value> =
+        members.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())).collect();
+    json!({"type": "object", "properties": members})
 }
 
-fn paths(question: &Question) -> Value {
+fn list(items: &Value) -> Value {
+    json!({"type": "array", "items": items})
+}
+
+fn or_null(schema: &Value) -> Value {
+    json!({"anyOf": [schema, {"type": "null"}]})
+}
+
+fn text() -> Value {
+    json!({"type": "string"})
+}
+
+/// The short form of a proposal. Humans are keyed by name where their number is known.
+fn proposal(question: &Question) -> Value {
     let graph = &question.location.graph;
-    let node = if graph.nodes.len() <= MOST_IDS {
-        let mut ids: Vec<&str> = graph.nodes.iter().map(|node| node.id.as_str()).collect();
-        ids.sort_unstable();
-        json!({"type": "string", "enum": ids})
-    } else {
-        json!({"type": "string"})
-    };
-    let names = human_names(question);
-    let walk = json!({"type": "array", "items": {"$ref": "#/$defs/node"}});
-    let each: Map<String, Value> = names.iter().map(|name| (name.clone(), walk.clone())).collect();
-    let mut schema = json!({
-        "type": "object",
-        "properties": {
-            THINKING: thinking(),
-            "encounters": {"type": "array", "items": {"type": "object", "properties": {
-                "human": {"type": "string", "enum": names},
-                "node": {"$ref": "#/$defs/node"},
-            }}},
-            "humans": {"type": "object", "properties": each},
-            "reasoning": {"type": "string"},
-            "robot": walk,
-        },
-        "$defs": {"node": node},
+    let found: BTreeSet<PlaceClass> = graph.nodes.iter().flat_map(|node| graph.classes(&node.id)).collect();
+    let place = json!({"$ref": "#/$defs/place"});
+    let count = question.reading.facts.iter().find_map(|fact| match fact.kind {
+        FactKind::Humans(count) if count <= MOST_KEYED => Some(count),
+        _ => None,
     });
+    let mut human = vec![
+        ("behavior", text()),
+        ("goal", or_null(&place)),
+        ("group", or_null(&json!({"type": "integer"}))),
+        ("relation", json!({"type": "string", "enum": alternatives(&derived::<Relation>())})),
+        ("role", text()),
+        ("rules", list(&text())),
+        ("speed_mps", or_null(&json!({"type": "number"}))),
+        ("start", or_null(&place)),
+    ];
+    let humans = match count {
+        Some(count) => {
+            let names: Vec<String> = (1..=count).map(|k| HumanId::new(k).to_string()).collect();
+            let each: Vec<(&str, Value)> =
+                names.iter().map(|name| (name.as_str(), json!({"$ref": "#/$defs/human"}))).collect();
+            object(&each)
+        }
+        None => {
+            human.push(("id", text()));
+            list(&json!({"$ref": "#/$defs/human"}))
+        }
+    };
+    let group = object(&[
+        ("id", json!({"type": "integer"})),
+        ("members", list(&text())),
+        ("standing", json!({"type": "boolean"})),
+    ]);
+    let setup = object(&[("source", or_null(&text())), ("test", text())]);
+    let events = object(&[("outcome", list(&text())), ("setup", list(&setup))]);
+    let robot = object(&[
+        ("expected_behavior", text()),
+        ("goal", or_null(&place)),
+        ("script", list(&text())),
+        ("start", or_null(&place)),
+    ]);
+    let mut schema = object(&[
+        (THINKING, thinking()),
+        ("description", text()),
+        ("expected_events", events),
+        ("groups", list(&group)),
+        ("humans", humans),
+        ("not_understood", list(&text())),
+        ("notes", list(&text())),
+        ("pattern", text()),
+        ("place", place.clone()),
+        ("robot", robot),
+        ("title", text()),
+    ]);
+    let places: Vec<&str> = found.iter().map(|class| class.name()).collect();
+    let place = json!({"type": "string", "enum": places});
+    define(&mut schema, &[("human", object(&human)), ("place", place)]);
     strict(&mut schema);
     schema
 }
 
-fn behaviors(question: &Question) -> Value {
-    let mut rule = derived::<Rule>();
-    let mut defs = rule.as_object_mut().and_then(|rule| rule.remove("$defs")).unwrap_or_else(|| json!({}));
-    if let Some(defs) = defs.as_object_mut() {
-        defs.insert("Rule".to_owned(), rule);
+fn define(schema: &mut Value, defs: &[(&str, Value)]) {
+    let defs: Map<String, Value> = defs.iter().map(|(name, schema)| ((*name).to_owned(), schema.clone())).collect();
+    if let Some(members) = schema.as_object_mut() {
+        members.insert("$defs".to_owned(), Value::Object(defs));
     }
-    let behavior = json!({"type": "object", "properties": {
-        "description": {"type": "string"},
-        "rules": {"type": "array", "items": {"$ref": "#/$defs/Rule"}},
-    }, "required": ["description", "rules"]});
-    let each: Map<String, Value> = human_names(question).into_iter().map(|name| (name, behavior.clone())).collect();
-    let mut schema = json!({
-        "type": "object",
-        "properties": {THINKING: thinking(), "humans": {"type": "object", "properties": each}},
-        "$defs": defs,
-    });
+}
+
+fn paths(question: &Question, form: PathsForm) -> Value {
+    let graph = &question.location.graph;
+    let mut ids: Vec<&str> = graph.nodes.iter().map(|node| node.id.as_str()).collect();
+    ids.sort_unstable();
+    let few = ids.len() <= MOST_IDS;
+    let node = if few { json!({"type": "string", "enum": ids}) } else { text() };
+    let names = human_names(question);
+    let one = json!({"$ref": "#/$defs/node"});
+    let mut defs = vec![("node".to_owned(), node)];
+    let way = |more: Option<(&str, Value)>| {
+        let stops = [("goal", one.clone()), ("start", one.clone()), ("via", list(&one))];
+        object(&stops.into_iter().chain(more).collect::<Vec<_>>())
+    };
+    let (robot, human) = match form {
+        PathsForm::Anchors => (way(None), way(Some(("meet", or_null(&one))))),
+        // A map too large for a chain of its own is walked by name.
+        PathsForm::Walk if few => {
+            defs.extend(graph.nodes.iter().map(|node| {
+                let mut next: Vec<Value> = graph.neighbors(&node.id).iter().map(|id| walk_from(id)).collect();
+                next.push(json!({"type": "null"}));
+                let step = object(&[("at", json!({"const": node.id})), ("next", json!({"anyOf": next}))]);
+                (format!("from_{}", node.id), step)
+            }));
+            let walk: Vec<Value> = graph.nodes.iter().map(|node| walk_from(&node.id)).collect();
+            defs.push(("walk".to_owned(), json!({"anyOf": walk})));
+            let walk = json!({"$ref": "#/$defs/walk"});
+            (walk.clone(), object(&[("meet", or_null(&one)), ("walk", walk)]))
+        }
+        PathsForm::Walk | PathsForm::Nodes => (list(&one), list(&one)),
+    };
+    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), human.clone())).collect();
+    let mut members = vec![(THINKING, thinking()), ("humans", object(&each)), ("robot", robot)];
+    if form == PathsForm::Nodes {
+        let human = json!({"type": "string", "enum": names});
+        members.push(("encounters", list(&object(&[("human", human), ("node", one)]))));
+    }
+    let mut schema = object(&members);
+    let defs: Vec<(&str, Value)> = defs.iter().map(|(name, schema)| (name.as_str(), schema.clone())).collect();
+    define(&mut schema, &defs);
+    strict(&mut schema);
+    schema
+}
+
+fn walk_from(id: &socrates_model::NodeId) -> Value {
+    json!({"$ref": format!("#/$defs/from_{id}")})
+}
+
+fn behaviors(question: &Question, form: BehaviorsForm) -> Value {
+    let (key, written, defs) = match form {
+        BehaviorsForm::Rules => {
+            let mut rule = derived::<Rule>();
+            let defs = rule.as_object_mut().and_then(|rule| rule.remove("$defs"));
+            let mut defs: Map<String, Value> = defs.and_then(|defs| defs.as_object().cloned()).unwrap_or_default();
+            defs.insert("Rule".to_owned(), rule);
+            ("rules", list(&json!({"$ref": "#/$defs/Rule"})), Value::Object(defs))
+        }
+        BehaviorsForm::JsonTree => {
+            let tags: Vec<&str> = crate::trees::TAGS.into_iter().chain([crate::trees::WALK]).collect();
+            let node = json!({"$ref": "#/$defs/node"});
+            let each = object(&[
+                ("children", list(&node)),
+                ("node", json!({"type": "string", "enum": tags})),
+                ("ports", list(&text())),
+            ]);
+            ("tree", node, json!({"node": each}))
+        }
+        BehaviorsForm::Xml => ("tree", text(), json!({})),
+    };
+    let behavior = object(&[(key, written)]);
+    let names = human_names(question);
+    let each: Vec<(&str, Value)> = names.iter().map(|name| (name.as_str(), behavior.clone())).collect();
+    let mut schema = object(&[(THINKING, thinking()), ("humans", object(&each))]);
+    if let Some(members) = schema.as_object_mut() {
+        members.insert("$defs".to_owned(), defs);
+    }
     strict(&mut schema);
     schema
 }
 
 fn thinking() -> Value {
-    json!({"type": "string", "description": "your plan in at most 400 characters; it is not read"})
+    json!({"type": "string", "description": "your plan, at most 400 characters"})
 }
 
 fn human_names(question: &Question) -> Vec<String> {
@@ -107,7 +220,13 @@ fn strict(schema: &mut Value) {
     match schema {
         Value::Array(items) => items.iter_mut().for_each(strict),
         Value::Object(object) => {
-            for key in ["$schema", "title", "format", "default"] {
+            // What things mean stands in the prompt, once.
+            let thinking =
+                object.get("description").and_then(Value::as_str).is_some_and(|text| text.starts_with("your plan"));
+            for key in ["$schema", "title", "format", "default", "description", "minimum", "maximum"] {
+                if thinking && key == "description" {
+                    continue;
+                }
                 // A member may be called `title`; only the keyword itself is a text.
                 if object.get(key).is_some_and(|value| !value.is_object()) {
                     object.remove(key);
@@ -136,11 +255,10 @@ fn close(object: &mut Map<String, Value>) {
     let Some(members) = object.get_mut("properties").and_then(Value::as_object_mut) else { return };
     let names: Vec<Value> = members.keys().map(|name| json!(name)).collect();
     if let Some(given) = given {
-        for (name, member) in members.iter_mut().filter(|(name, _)| !given.contains(&json!(name))) {
+        for (_, member) in members.iter_mut().filter(|(name, _)| !given.contains(&json!(name))) {
             if !allows_null(member) {
                 let inner = std::mem::take(member);
-                *member =
-                    json!({"anyOf": [inner, {"type": "null"}], "description": format!("{name}, or null for none")});
+                *member = or_null(&inner);
             }
         }
     }
@@ -184,13 +302,20 @@ mod tests {
         }
     }
 
+    fn styles() -> Vec<Style> {
+        let forms = PathsForm::ALL.iter().zip(BehaviorsForm::ALL);
+        forms.map(|(paths, behaviors)| Style { paths: *paths, behaviors: *behaviors, ..Style::default() }).collect()
+    }
+
     #[test]
     fn every_object_is_closed_and_requires_all_its_members() {
-        for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
-            let schema = answer_schema(&question(stage));
+        for (stage, style) in [Stage::Proposal, Stage::Paths, Stage::Behaviors].into_iter().zip(styles().repeat(3)) {
+            let schema = answer_schema(&question(stage), &style);
             let mut objects = 0;
             walk(&schema, &mut |object| {
-                assert!(!object.contains_key("oneOf") && !object.contains_key("prefixItems"), "{object:?}");
+                for refused in ["oneOf", "prefixItems", "default", "format", "minimum"] {
+                    assert!(object.get(refused).is_none_or(Value::is_object), "{refused} in {object:?}");
+                }
                 if object.get("type") == Some(&json!("object")) && object.contains_key("properties") {
                     objects += 1;
                     assert_eq!(object["additionalProperties"], json!(false));
@@ -205,15 +330,43 @@ mod tests {
     #[test]
     fn thinking_comes_before_the_answer() {
         for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
-            let schema = answer_schema(&question(stage));
-            assert_eq!(schema["properties"].as_object().unwrap().keys().next().unwrap(), THINKING);
+            for style in styles() {
+                let schema = answer_schema(&question(stage), &style);
+                assert_eq!(schema["properties"].as_object().unwrap().keys().next().unwrap(), THINKING);
+            }
         }
     }
 
     #[test]
-    fn node_ids_and_humans_are_those_of_the_question() {
-        let schema = answer_schema(&question(Stage::Paths));
-        assert_eq!(schema["$defs"]["node"]["enum"], json!(["c", "e", "n", "w"]));
-        assert_eq!(schema["properties"]["humans"]["required"], json!(["human_1", "human_2"]));
+    fn node_ids_humans_and_places_are_those_of_the_question() {
+        for style in styles() {
+            let schema = answer_schema(&question(Stage::Paths), &style);
+            assert_eq!(schema["$defs"]["node"]["enum"], json!(["c", "e", "n", "w"]));
+            assert_eq!(schema["properties"]["humans"]["required"], json!(["human_1", "human_2"]));
+        }
+        let schema = answer_schema(&question(Stage::Proposal), &Style::default());
+        assert_eq!(schema["$defs"]["place"]["enum"], json!(["corridor", "intersection"]));
+        let mut counted = question(Stage::Proposal);
+        counted.reading.facts =
+            vec![serde_json::from_value(json!({"id": "f1", "quote": "", "kind": {"humans": 3}})).unwrap()];
+        let schema = answer_schema(&counted, &Style::default());
+        assert_eq!(schema["properties"]["humans"]["required"], json!(["human_1", "human_2", "human_3"]));
+    }
+
+    #[test]
+    fn in_a_walk_only_a_neighbor_can_come_next() {
+        let style = Style { paths: PathsForm::Walk, ..Style::default() };
+        let schema = answer_schema(&question(Stage::Paths), &style);
+        let next = &schema["$defs"]["from_e"]["properties"]["next"]["anyOf"];
+        assert_eq!(*next, json!([{"$ref": "#/$defs/from_c"}, {"type": "null"}]));
+        let jump = json!({"at": "e", "next": {"at": "n", "next": null}});
+        let step = json!({"at": "e", "next": {"at": "c", "next": null}});
+        let wrong = |walk: &Value| {
+            let humans = json!({"human_1": {"meet": "c", "walk": step}, "human_2": {"meet": "c", "walk": step}});
+            let answer = json!({"analysis": "", "robot": walk, "humans": humans});
+            crate::validate::differences(&schema, &answer).len()
+        };
+        assert_eq!(wrong(&step), 0);
+        assert!(wrong(&jump) > 0);
     }
 }

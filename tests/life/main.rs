@@ -5,6 +5,7 @@ mod bad_input;
 mod bundles;
 mod evaluations;
 mod live;
+mod models;
 mod originals;
 mod pages;
 mod repairs;

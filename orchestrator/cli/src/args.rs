@@ -91,6 +91,15 @@ pub(crate) enum Verb {
         /// Bundle folder.
         bundle: PathBuf,
     },
+    /// Add up what the authors of bundles were asked, in calls, tokens and money.
+    Cost {
+        /// Bundle folders, or folders that hold bundles.
+        #[arg(required = true)]
+        what: Vec<PathBuf>,
+        /// Table of prices (TOML, a table per model); default: `author.prices` of the configuration.
+        #[arg(long, value_name = "FILE")]
+        prices: Option<PathBuf>,
+    },
     /// Let people label runs by hand.
     Labels {
         /// What to do.
@@ -220,7 +229,8 @@ pub(crate) struct RunOptions {
     /// Scenarios to make from each request; wins over the request.
     #[arg(long)]
     pub(crate) variants: Option<u32>,
-    /// Author: `auto`, `offline`, `openai:MODEL`, `cassette:FOLDER`; wins over the request.
+    /// Author: `auto`, `offline`, `openai:MODEL`, `anthropic:MODEL`, `gemini:MODEL`, `vllm:`, `ollama:`, `llamacpp:` or
+    /// `lmstudio:MODEL`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
     #[arg(long)]
     pub(crate) author: Option<String>,
     /// Pace of the simulation: `max`, or simulated seconds per second.

@@ -79,10 +79,13 @@ pub(crate) struct Bundle {
 
 /// The digest of a wish: request, location, reading, pins, seed, author.
 pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
-    let text = json!({
+    let mut text = json!({
         "request": prepared.request, "location": prepared.location, "pins": prepared.pins, "seed": seed,
         "author": prepared.author, "injected": prepared.injected, "version": env!("CARGO_PKG_VERSION"),
     });
+    if let Some(members) = text.as_object_mut().filter(|_| !prepared.style.is_empty()) {
+        members.insert("style".to_owned(), json!(prepared.style));
+    }
     Digest::of(text.to_string().as_bytes())
 }
 

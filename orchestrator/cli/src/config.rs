@@ -75,6 +75,11 @@ impl Config {
         self.values.get(key).and_then(|(value, _)| value.as_str()).unwrap_or_default().to_owned()
     }
 
+    /// A truth value.
+    pub(crate) fn truth(&self, key: &str) -> bool {
+        self.values.get(key).and_then(|(value, _)| value.as_bool()).unwrap_or_default()
+    }
+
     /// A whole number.
     pub(crate) fn number(&self, key: &str) -> u64 {
         self.values

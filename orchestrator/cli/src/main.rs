@@ -11,6 +11,7 @@ mod again;
 mod agents;
 mod agreement;
 mod args;
+mod authors;
 mod batch;
 mod bench;
 mod bt;
@@ -20,6 +21,7 @@ mod case_studies;
 mod cite;
 mod cluster;
 mod config;
+mod cost;
 mod dev;
 mod evaluate;
 mod exit;
@@ -76,20 +78,19 @@ fn main() -> ExitCode {
 
 fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
     let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.set)?;
-    let key = std::env::var(config.text("author.key_variable")).ok().filter(|key| !key.is_empty());
+    let key_found = authors::key_found(&config)?;
     start_log(&config)?;
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
             Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
         })?;
-    let code = runtime.block_on(act(talk, cli, &config, key));
+    let code = runtime.block_on(act(talk, cli, &config, key_found));
     // A blocked reader of a child's pipe must not hold the exit.
     runtime.shutdown_background();
     code
 }
 
-async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Result<Code, Complaint> {
-    let key_found = key.is_some();
+async fn act(talk: &Talk, cli: &Cli, config: &Config, key_found: bool) -> Result<Code, Complaint> {
     let done = |outcome: Result<(), Complaint>| outcome.map(|()| Code::Ok);
     match &cli.verb {
         Verb::Demo(options) => run::demo(talk, cli, config, options, key_found).await,
@@ -105,6 +106,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Report { what } => done(report::report(talk, what)),
         Verb::Video(options) => done(video::video(talk, options)),
         Verb::Figure(options) => done(figure::figure(talk, options)),
+        Verb::Cost { what, prices } => done(cost::cost(talk, config, what, prices.as_deref())),
         Verb::Cite { bundle } => done(cite::cite(talk, bundle)),
         Verb::Labels { verb } => done(labels::labels(talk, verb)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
@@ -124,13 +126,13 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key: Option<String>) -> Re
         Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb, key_found).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
-            ClusterVerb::Worker(options) => done(process::worker(config, options, key).await),
+            ClusterVerb::Worker(options) => done(process::worker(config, options).await),
             ClusterVerb::Submit { requests, connect, namespace, seed } => {
                 done(cluster::submit(talk, config, requests, connect, namespace, *seed, key_found).await)
             }
         },
         Verb::Dev { verb } => done(dev::dev(talk, cli, config, verb).await),
-        Verb::Worker(options) => done(process::worker(config, options, key).await),
+        Verb::Worker(options) => done(process::worker(config, options).await),
         Verb::Orchestrator(options) => done(process::orchestrator(config, options).await),
     }
 }

@@ -32,6 +32,8 @@ pub(crate) struct Prepared {
     pub(crate) pins: BTreeMap<String, String>,
     /// Faults to be put into the author's answers, as settings of its jobs; empty for none.
     pub(crate) injected: BTreeMap<String, String>,
+    /// Style of the questions, as settings of the author's jobs; empty for the default.
+    pub(crate) style: BTreeMap<String, String>,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
@@ -146,7 +148,10 @@ pub(crate) fn prepare_text(
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
     }
-    Ok(Prepared { name: slug(name), request, location, location_files, reading, pins, injected, author, author_note })
+    // Rules have no style of being asked: the offline author's results stay the same results.
+    let style = if author == "offline" { BTreeMap::new() } else { crate::authors::style(config)? };
+    let name = slug(name);
+    Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })
 }
 
 /// The settings of `--inject`.

@@ -3,10 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use socrates_author::Keys;
 use socrates_kit::{Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
-use socrates_llm::ApiKey;
 use socrates_model::job::Stage;
 use socrates_store::Durability;
 use tokio::sync::watch;
@@ -20,7 +18,7 @@ use crate::orchestrate::{self, OrchestratorConfig};
 const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Serves one stage until told to leave.
-pub(crate) async fn worker(config: &Config, options: &WorkerOptions, key: Option<String>) -> Result<(), Complaint> {
+pub(crate) async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Complaint> {
     let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
         Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
     })?;
@@ -37,13 +35,7 @@ pub(crate) async fn worker(config: &Config, options: &WorkerOptions, key: Option
         // Control and stream never share a session, so that a frozen viewer stalls no job.
         settings.live = Some(client(&options.connect, &options.namespace, "stream").await?);
     }
-    let text = |name: &str| Some(config.text(name)).filter(|text| !text.is_empty());
-    let keys = Keys {
-        openai: key.as_deref().map(ApiKey::new),
-        openai_base_url: text("author.url"),
-        openai_model: text("author.model"),
-        ..Keys::default()
-    };
+    let keys = crate::authors::keys(config)?;
     let live = settings.live.clone();
     let served = match stage {
         Stage::Proposal => {

@@ -131,6 +131,7 @@ pub(crate) fn spec(
         ("pace".to_owned(), options.pace.clone()),
     ]);
     settings.extend(prepared.injected.clone());
+    settings.extend(prepared.style.clone());
     if config.text("stream.live") != "off" {
         settings.insert("live".to_owned(), "on".to_owned());
     }

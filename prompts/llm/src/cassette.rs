@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::chat::{ChatAnswer, ChatRequest};
+use crate::key::strike_shapes;
 
 /// Format of the files.
 const FORMAT: u32 = 1;
@@ -99,6 +100,8 @@ impl Cassette {
             Exchange { format: FORMAT, key: key.clone(), request: canonical(request), answer: answer.clone() };
         let text = serde_json::to_string_pretty(&exchange)
             .map_err(|error| CassetteError::Broken { path: path.clone(), why: error.to_string() })?;
+        // Neither a request nor an answer should hold a key; a person's text or a server's echo may.
+        let text = strike_shapes(&text);
         let folder = path.parent().map_or_else(|| self.folder.clone(), Path::to_path_buf);
         fs::create_dir_all(&folder).map_err(at)?;
         let draft = folder.join(format!(".{key}.{}", std::process::id()));
@@ -106,22 +109,49 @@ impl Cassette {
         fs::rename(&draft, &path).map_err(at)
     }
 
+    /// The recorded request that is most like this one: its key, and what differs. For messages about a miss.
+    #[must_use]
+    pub fn nearest(&self, request: &ChatRequest) -> Option<(String, Vec<String>)> {
+        let wanted = canonical(request);
+        let mut best: Option<(String, Vec<String>)> = None;
+        for path in self.files() {
+            let Some(exchange) = fs::read(path).ok().and_then(|bytes| serde_json::from_slice::<Exchange>(&bytes).ok())
+            else {
+                continue;
+            };
+            let differs = differing(&exchange.request, &wanted);
+            if best.as_ref().is_none_or(|(_, fewest)| differs.len() < fewest.len()) {
+                best = Some((exchange.key, differs));
+            }
+        }
+        best
+    }
+
     /// Number of recorded exchanges; 0 where the folder is missing.
     #[must_use]
     pub fn len(&self) -> usize {
-        let files =
-            |folder: &Path| fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok).collect::<Vec<_>>();
-        files(&self.folder)
-            .iter()
-            .flat_map(|entry| files(&entry.path()))
-            .filter(|entry| entry.path().extension().is_some_and(|ending| ending == "json"))
-            .count()
+        self.files().len()
     }
 
     /// Whether nothing is recorded.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Every recording, in order of the keys.
+    fn files(&self) -> Vec<PathBuf> {
+        let inside = |folder: &Path| -> Vec<PathBuf> {
+            let entries = fs::read_dir(folder).into_iter().flatten().filter_map(Result::ok);
+            entries.map(|entry| entry.path()).collect()
+        };
+        let mut files: Vec<PathBuf> = inside(&self.folder)
+            .iter()
+            .flat_map(|folder| inside(folder))
+            .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+            .collect();
+        files.sort();
+        files
     }
 
     fn place(&self, key: &str) -> PathBuf {
@@ -144,10 +174,28 @@ fn canonical(request: &ChatRequest) -> Value {
         "turns": turns,
         "form": request.form,
         "schema": request.schema,
+        "grammar": request.grammar,
+        "detail": request.detail,
         "seed": request.seed,
         "temperature": request.temperature,
         "max_tokens": request.max_tokens,
     })
+}
+
+/// Names of the members in which two requests differ; turns by their number.
+fn differing(one: &Value, other: &Value) -> Vec<String> {
+    let mut names = Vec::new();
+    let Some(members) = other.as_object() else { return names };
+    for (name, member) in members.iter().filter(|(name, member)| one.get(name.as_str()) != Some(member)) {
+        match (one.get(name).and_then(Value::as_array), member.as_array()) {
+            (Some(before), Some(now)) if before.len() == now.len() => {
+                let turns = before.iter().zip(now).enumerate().filter(|(_, (a, b))| a != b);
+                names.extend(turns.map(|(index, _)| format!("{name}[{index}]")));
+            }
+            _ => names.push(name.clone()),
+        }
+    }
+    names
 }
 
 #[cfg(test)]
@@ -161,6 +209,8 @@ mod tests {
             turns: vec![turn],
             form: "f".into(),
             schema: None,
+            grammar: None,
+            detail: crate::chat::Detail::High,
             seed: Some(3),
             temperature: Some(0.5),
             max_tokens: 9,
@@ -173,7 +223,11 @@ mod tests {
             finish: Finish::Stop,
             model: "m".into(),
             tokens: (1, 2),
+            cached: 0,
             estimated: false,
+            rung: None,
+            steps: Vec::new(),
+            limits: None,
         }
     }
 
@@ -186,6 +240,30 @@ mod tests {
         assert_eq!(cassette.find(&request("a")).unwrap(), Some(answer()));
         assert_eq!(cassette.find(&request("b")).unwrap(), None);
         assert_eq!(cassette.len(), 1);
+    }
+
+    #[test]
+    fn a_miss_is_told_what_differs_from_the_nearest_recording() {
+        let folder = tempfile::tempdir().unwrap();
+        let cassette = Cassette::at(folder.path());
+        assert_eq!(cassette.nearest(&request("a")), None);
+        cassette.keep(&request("a"), &answer()).unwrap();
+        let other = ChatRequest { seed: Some(9), ..request("b") };
+        let (key, differs) = cassette.nearest(&other).unwrap();
+        assert_eq!((key, differs), (Cassette::key(&request("a")), vec!["seed".to_owned(), "turns[0]".to_owned()]));
+    }
+
+    #[test]
+    fn no_key_is_recorded() {
+        let folder = tempfile::tempdir().unwrap();
+        let cassette = Cassette::at(folder.path());
+        let secret = "sk-ant-REDACTED";
+        let told = ChatAnswer { text: format!("{{\"a\": \"{secret}\"}}"), ..answer() };
+        cassette.keep(&request(&format!("my key is {secret}")), &told).unwrap();
+        let text = fs::read_to_string(&cassette.files()[0]).unwrap();
+        assert!(!text.contains("abc123DEF"), "{text}");
+        // The key of the exchange is that of the request as it was asked.
+        assert!(cassette.find(&request(&format!("my key is {secret}"))).unwrap().is_some());
     }
 
     #[test]

@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::dialect::Rung;
+use crate::limits::Limits;
+
 /// Who speaks a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -27,6 +30,17 @@ pub struct Turn {
     pub png: Option<Vec<u8>>,
 }
 
+/// How closely pictures are looked at, where the server offers a choice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Detail {
+    /// Coarsely, for few tokens.
+    Low,
+    /// Closely.
+    #[default]
+    High,
+}
+
 /// One request.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ChatRequest {
@@ -37,6 +51,9 @@ pub struct ChatRequest {
     /// JSON schema that the answer should keep; without one, any text.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub schema: Option<Value>,
+    /// The same form as a GBNF grammar, where a grammar says more than a schema can.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub grammar: Option<String>,
     /// Seed for servers that take one; best effort everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
@@ -45,6 +62,9 @@ pub struct ChatRequest {
     pub temperature: Option<f64>,
     /// Most tokens of the answer.
     pub max_tokens: u32,
+    /// How closely pictures are looked at.
+    #[serde(default)]
+    pub detail: Detail,
 }
 
 /// How an answer ended.
@@ -66,9 +86,21 @@ pub struct ChatAnswer {
     pub finish: Finish,
     /// Model as the server names it.
     pub model: String,
-    /// Tokens in and out; estimated (bytes / 4) where the server does not say.
+    /// Tokens in and out; estimated (see [`crate::estimate`]) where the server does not say.
     pub tokens: (u64, u64),
+    /// Tokens of the input that came from the server's cache.
+    #[serde(default)]
+    pub cached: u64,
     /// Whether the tokens are an estimate.
     #[serde(default)]
     pub estimated: bool,
+    /// How far the server enforced the form; nothing where it was not asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rung: Option<Rung>,
+    /// What was stepped down from on the way, in words.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<String>,
+    /// What the server says is left of its rates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Limits>,
 }

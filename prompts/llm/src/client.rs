@@ -1,31 +1,26 @@
-//! The client: one request, one answer.
+//! The client: one question, one answer.
 
 use std::time::Duration;
 
-use reqwest::header::{AUTHORIZATION, CONTENT_TYPE, HeaderValue};
+use reqwest::header::{CONTENT_TYPE, HeaderValue};
 use reqwest::{Response, Url};
 
 use crate::chat::{ChatAnswer, ChatRequest};
+use crate::dialect::{Dialect, Learnt, Rung};
 use crate::error::ChatError;
 use crate::key::ApiKey;
-use crate::{waits, wire};
+use crate::limits;
+use crate::wire::{self, Call};
 
-/// How far a server enforces the form of an answer.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Structured {
-    /// `json_schema`: the server keeps to the schema.
-    #[default]
-    Schema,
-    /// `json_object`: some JSON object.
-    Object,
-    /// Nothing; the prompt has to say it.
-    Plain,
-}
+/// Version of the Messages format that is spoken.
+const ANTHROPIC_VERSION: &str = "2023-06-01";
 
 /// Where and how to ask.
 #[derive(Debug, Clone)]
 pub struct ClientConfig {
-    /// Address up to and with the version, such as `https://api.openai.com/v1`. Plain HTTP only to this machine.
+    /// Kind of server.
+    pub dialect: Dialect,
+    /// Base address, such as `https://api.openai.com/v1`; see [`Dialect::default_url`]. Plain HTTP only to this machine.
     pub base_url: String,
     /// The key; empty for servers without one.
     pub key: ApiKey,
@@ -33,32 +28,39 @@ pub struct ClientConfig {
     pub model: String,
     /// Longest time to connect. Default 5 s.
     pub connect_timeout: Duration,
-    /// Longest time for the whole call. Default 90 s.
+    /// Longest time for the whole call, the body included. Default 90 s.
     pub timeout: Duration,
     /// Largest body that is read, bytes. Default 2 MiB.
     pub max_bytes: usize,
-    /// Enforcement of the form. Default by schema.
-    pub structured: Structured,
+    /// The one rung to use; without one, the dialect's ladder from the top, or from where it was left.
+    pub rung: Option<Rung>,
+    /// Where rungs are remembered.
+    pub learnt: Learnt,
     /// Whether the server knows `max_tokens` only. Default false for api.openai.com, true elsewhere.
     pub old_token_limit: bool,
     /// Whether the proxy of the environment is used. Default false.
     pub proxy: bool,
+    /// Whether plain HTTP may go to other machines. Default false.
+    pub plain_http: bool,
 }
 
 impl ClientConfig {
     /// A server with everything else at its default.
     #[must_use]
-    pub fn new(base_url: &str, key: ApiKey, model: &str) -> Self {
+    pub fn new(dialect: Dialect, base_url: &str, key: ApiKey, model: &str) -> Self {
         Self {
+            dialect,
             base_url: base_url.trim_end_matches('/').to_owned(),
             key,
             model: model.to_owned(),
             connect_timeout: Duration::from_secs(5),
             timeout: Duration::from_secs(90),
             max_bytes: 2 * 1024 * 1024,
-            structured: Structured::Schema,
+            rung: None,
+            learnt: Learnt::default(),
             old_token_limit: !base_url.contains("api.openai.com"),
             proxy: false,
+            plain_http: false,
         }
     }
 }
@@ -67,7 +69,7 @@ impl ClientConfig {
 #[derive(Debug, Clone)]
 pub struct ChatClient {
     http: reqwest::Client,
-    url: Url,
+    base: Url,
     config: ClientConfig,
 }
 
@@ -75,15 +77,22 @@ impl ChatClient {
     /// A client.
     ///
     /// # Errors
-    /// [`ChatError::Setup`] when the address is none, or is plain HTTP to another machine.
+    /// [`ChatError::Setup`] when the address is none, holds a password or a query, or is plain HTTP to another machine, or
+    /// when the model's name cannot stand in an address.
     pub fn new(config: ClientConfig) -> Result<Self, ChatError> {
         let setup = |why: String| ChatError::Setup { why };
-        let url = Url::parse(&format!("{}/chat/completions", config.base_url))
+        let base = Url::parse(&config.base_url)
             .map_err(|error| setup(format!("`{}` is no address: {error}", config.base_url)))?;
-        let host = url.host_str().unwrap_or_default();
+        if base.password().is_some() || !base.username().is_empty() || base.query().is_some() {
+            return Err(setup("an address holds no key, name or query; the key has its own place".to_owned()));
+        }
+        let host = base.host_str().unwrap_or_default();
         let here = matches!(host, "localhost" | "127.0.0.1" | "[::1]");
-        if url.scheme() != "https" && !(url.scheme() == "http" && here) {
+        if base.scheme() != "https" && !(base.scheme() == "http" && (here || config.plain_http)) {
             return Err(setup(format!("`{}` is neither https nor on this machine", config.base_url)));
+        }
+        if config.model.is_empty() || config.model.chars().any(|c| c.is_whitespace() || "?#%".contains(c)) {
+            return Err(setup(format!("`{}` is no name of a model", config.model)));
         }
         // Somebody else of the process may have chosen a provider first; then that one serves.
         if rustls::crypto::CryptoProvider::get_default().is_none() {
@@ -98,7 +107,7 @@ impl ChatClient {
             builder = builder.no_proxy();
         }
         let http = builder.build().map_err(|error| setup(error.without_url().to_string()))?;
-        Ok(Self { http, url, config })
+        Ok(Self { http, base, config })
     }
 
     /// Model that is asked.
@@ -107,30 +116,121 @@ impl ChatClient {
         &self.config.model
     }
 
-    /// Asks once.
+    /// Asks once. A server that refuses the form of the question is asked in the next simpler form: what it refused it
+    /// has not answered. The rung on which it answers is remembered.
     ///
     /// # Errors
     /// [`ChatError`]; nothing is tried again here.
     pub async fn ask(&self, request: &ChatRequest) -> Result<ChatAnswer, ChatError> {
-        let body = wire::body(request, &self.config).to_string();
-        let mut call = self.http.post(self.url.clone()).header(CONTENT_TYPE, "application/json").body(body);
-        if !self.config.key.is_empty() {
-            let mut value =
-                HeaderValue::try_from(format!("Bearer {}", self.config.key.secret())).map_err(|_bytes| {
-                    ChatError::Setup { why: "the key holds characters that no header can carry".to_owned() }
-                })?;
-            value.set_sensitive(true);
-            call = call.header(AUTHORIZATION, value);
+        let server = format!("{} {}", self.base, self.config.model);
+        let mut steps = Vec::new();
+        let mut rungs = self.rungs(request, &server).into_iter().peekable();
+        while let Some(rung) = rungs.next() {
+            match self.call(request, rung).await {
+                Ok(mut answer) => {
+                    if request.schema.is_some() {
+                        self.config.learnt.keep(&server, rung);
+                    }
+                    answer.steps = steps;
+                    return Ok(answer);
+                }
+                Err(error) => match rungs.peek() {
+                    Some(next) if self.refuses_form(&error, request) => {
+                        tracing::info!(%rung, %next, %error, "the server refuses the form of the question");
+                        steps.push(format!("asked as `{next}`, as `{rung}` was refused: {error}"));
+                    }
+                    Some(_) | None => return Err(error),
+                },
+            }
         }
-        let response = call.send().await.map_err(|error| self.broken(error))?;
+        Err(ChatError::Setup { why: "there is no way to ask".to_owned() })
+    }
+
+    /// The rungs to try, best first.
+    fn rungs(&self, request: &ChatRequest, server: &str) -> Vec<Rung> {
+        if request.schema.is_none() {
+            return vec![Rung::Plain];
+        }
+        if let Some(rung) = self.config.rung {
+            return vec![rung];
+        }
+        let mut ladder = self.config.dialect.ladder().to_vec();
+        if request.grammar.is_some() && self.config.dialect.takes_grammar() {
+            // Who brings a grammar brings it because no schema says as much.
+            ladder.retain(|rung| *rung != Rung::Grammar);
+            ladder.insert(0, Rung::Grammar);
+        }
+        let known = self.config.learnt.rung(server).and_then(|rung| ladder.iter().position(|step| *step == rung));
+        ladder.split_off(known.unwrap_or(0))
+    }
+
+    /// Whether the server would have taken the question in a simpler form. Vendors name what they refuse; other servers
+    /// answer anything, up to 500, to a form that they do not know.
+    fn refuses_form(&self, error: &ChatError, request: &ChatRequest) -> bool {
+        const WORDS: [&str; 9] = [
+            "schema",
+            "response_format",
+            "json",
+            "grammar",
+            "output_config",
+            "structured",
+            "generationconfig",
+            "tool",
+            "response format",
+        ];
+        let local = !matches!(self.config.dialect, Dialect::OpenAi | Dialect::Anthropic | Dialect::Gemini)
+            || !self.base.domain().is_some_and(|host| host.contains('.'));
+        match error {
+            ChatError::Rejected { status: 400 | 422 | 501, why } => {
+                let why = why.to_lowercase();
+                let of_model = why.contains("model") && why.contains(&self.config.model.to_lowercase());
+                request.schema.is_some() && (WORDS.iter().any(|word| why.contains(word)) || local && !of_model)
+            }
+            ChatError::Server { status: 500 | 501, retry_after_ms: None, .. } => request.schema.is_some() && local,
+            ChatError::Rejected { .. }
+            | ChatError::Server { .. }
+            | ChatError::Unreachable { .. }
+            | ChatError::Timeout { .. }
+            | ChatError::SlowDown { .. }
+            | ChatError::Key { .. }
+            | ChatError::TooLarge { .. }
+            | ChatError::Refused { .. }
+            | ChatError::Unreadable { .. }
+            | ChatError::Setup { .. } => false,
+        }
+    }
+
+    /// One HTTP request.
+    async fn call(&self, request: &ChatRequest, rung: Rung) -> Result<ChatAnswer, ChatError> {
+        let call = Call { request, config: &self.config, rung };
+        let url = Url::parse(&format!("{}{}", self.config.base_url, call.path()))
+            .map_err(|error| ChatError::Setup { why: error.to_string() })?;
+        let mut http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(call.body().to_string());
+        if self.config.dialect == Dialect::Anthropic {
+            http = http.header("anthropic-version", ANTHROPIC_VERSION);
+        }
+        if !self.config.key.is_empty() {
+            let (name, text) = call.key_header();
+            let mut value = HeaderValue::try_from(text).map_err(|_bytes| ChatError::Setup {
+                why: "the key holds characters that no header can carry".to_owned(),
+            })?;
+            value.set_sensitive(true);
+            http = http.header(name, value);
+        }
+        let response = http.send().await.map_err(|error| self.broken(error))?;
         let status = response.status();
-        let wait = waits::retry_after_ms(response.headers());
+        let headers = response.headers().clone();
         tracing::debug!(status = status.as_u16(), model = %self.config.model, "language model answered");
         let bytes = self.read(response).await?;
         if status.is_success() {
-            wire::answer(&bytes, request, &self.config)
+            let mut answer = call.answer(&bytes)?;
+            answer.limits = limits::limits(&headers);
+            // A server may repeat what it was sent; the key is not for keeping.
+            answer.text = self.config.key.strike_from(&answer.text);
+            answer.model = self.config.key.strike_from(&answer.model);
+            Ok(answer)
         } else {
-            Err(wire::complaint(status.as_u16(), &bytes, wait, &self.config))
+            Err(wire::complaint(status.as_u16(), &bytes, &headers, &self.config))
         }
     }
 
@@ -159,97 +259,5 @@ impl ChatClient {
             cause = inner.source();
         }
         ChatError::Unreachable { why: self.config.key.strike_from(&why) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::chat::{Finish, Speaker, Turn};
-    use crate::server::Served;
-    use serde_json::{Value, json};
-
-    fn request() -> ChatRequest {
-        ChatRequest {
-            turns: vec![Turn { speaker: Speaker::User, text: "Say yes.".into(), png: Some(vec![1, 2, 3]) }],
-            form: "answer".into(),
-            schema: Some(json!({"type": "object"})),
-            seed: Some(u64::MAX),
-            temperature: None,
-            max_tokens: 100,
-        }
-    }
-
-    async fn ask(served: &Served, change: impl FnOnce(&mut ClientConfig)) -> Result<ChatAnswer, ChatError> {
-        let mut config = ClientConfig::new(&served.url, ApiKey::new("sk-very-secret"), "small");
-        change(&mut config);
-        ChatClient::new(config).unwrap().ask(&request()).await
-    }
-
-    fn completion(content: &str, finish: &str) -> String {
-        json!({"model": "small-1", "choices": [{"message": {"content": content}, "finish_reason": finish}],
-            "usage": {"prompt_tokens": 12, "completion_tokens": 3}})
-        .to_string()
-    }
-
-    #[tokio::test]
-    async fn one_call_asks_in_the_agreed_form_and_reads_the_answer() {
-        let served = Served::once(200, &[], &completion("{\"yes\": true}", "stop")).await;
-        let answer = ask(&served, |_| {}).await.unwrap();
-        assert_eq!((answer.text.as_str(), answer.finish, answer.tokens), ("{\"yes\": true}", Finish::Stop, (12, 3)));
-        let seen = served.seen().await;
-        assert!(seen.head.starts_with("POST /v1/chat/completions"), "{}", seen.head);
-        assert!(seen.head.to_lowercase().contains("authorization: bearer sk-very-secret"), "{}", seen.head);
-        let body: Value = serde_json::from_str(&seen.body).unwrap();
-        assert_eq!(body["response_format"]["json_schema"]["strict"], true);
-        assert_eq!(body["messages"][0]["content"][1]["image_url"]["url"], "data:image/png;base64,AQID");
-        assert_eq!((&body["max_tokens"], &body["seed"]), (&json!(100), &json!(0x7fff_ffff)));
-    }
-
-    #[tokio::test]
-    async fn a_cut_answer_and_a_refusal_are_told_apart() {
-        let served = Served::once(200, &[], &completion("{\"ye", "length")).await;
-        assert_eq!(ask(&served, |_| {}).await.unwrap().finish, Finish::Cut);
-        let refusal = json!({"choices": [{"message": {"refusal": "I will not"}}]}).to_string();
-        let served = Served::once(200, &[], &refusal).await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::Refused { .. })));
-    }
-
-    #[tokio::test]
-    async fn every_status_has_its_error_and_its_wait() {
-        let error = |code: &str| json!({"error": {"message": "no sk-very-secret", "code": code}}).to_string();
-        let served = Served::once(429, &[("retry-after", "2")], &error("rate_limit_exceeded")).await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::SlowDown { retry_after_ms: Some(2000), .. })));
-        let served = Served::once(429, &[], &error("insufficient_quota")).await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::Key { .. })));
-        let served = Served::once(503, &[], "busy").await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::Server { status: 503, .. })));
-        let served = Served::once(404, &[], &error("model_not_found")).await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::Rejected { status: 404, .. })));
-        let served = Served::once(401, &[], &error("")).await;
-        let told = ask(&served, |_| {}).await.unwrap_err().to_string();
-        assert!(told.contains("no ***") && !told.contains("secret"), "{told}");
-    }
-
-    #[tokio::test]
-    async fn large_slow_and_missing_servers_are_no_trap() {
-        let served = Served::once(200, &[], &completion(&"x".repeat(5000), "stop")).await;
-        let small = ask(&served, |config| config.max_bytes = 1000).await;
-        assert_eq!(small, Err(ChatError::TooLarge { most: 1000 }));
-        let silent = Served::silent().await;
-        let slow = ask(&silent, |config| config.timeout = Duration::from_millis(200)).await;
-        assert_eq!(slow, Err(ChatError::Timeout { limit_ms: 200 }));
-        let gone = Served::gone().await;
-        assert!(matches!(ask(&gone, |_| {}).await, Err(ChatError::Unreachable { .. })));
-        let served = Served::once(200, &[], "<html>").await;
-        assert!(matches!(ask(&served, |_| {}).await, Err(ChatError::Unreadable { .. })));
-    }
-
-    #[test]
-    fn plain_http_goes_to_this_machine_only() {
-        let client = |url: &str| ChatClient::new(ClientConfig::new(url, ApiKey::new(""), "m")).map(|_| ());
-        assert!(client("http://127.0.0.1:8080/v1").is_ok());
-        assert!(matches!(client("http://example.org/v1"), Err(ChatError::Setup { .. })));
-        assert!(matches!(client("not an address"), Err(ChatError::Setup { .. })));
     }
 }

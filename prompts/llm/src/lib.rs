@@ -1,29 +1,41 @@
-//! A thin client for language models that speak the Chat Completions wire format, and recordings of them.
+//! A thin client for language models, and recordings of them.
 //!
 //! ```text
 //! ChatRequest ──► ChatClient ──HTTP──► server        (errors: ChatError, each with what to wait for)
+//!      │            │ Dialect: whose server it is · Wire: Chat Completions, Messages, generateContent
+//!      │            └ Rung: how far it enforces the form of the answer, learnt by what it refuses
 //!      └────────► Cassette (one file per exchange, found by the BLAKE3 of the request)
 //! ```
 //!
-//! One call is one HTTP request: no retry here, as the caller's caller owns patience and budgets.
+//! One ask is one answer: no retry here, as the caller's caller owns patience and budgets. Only a question whose form was
+//! refused is put again, in a simpler form.
 //!
 //! *Never here:* a word of what is asked about, a prompt, a retry, an environment variable, a key in a
 //! message, a log line or a file.
 
-mod base64;
 pub mod cassette;
 pub mod chat;
 pub mod client;
+pub mod dialect;
 pub mod error;
+pub mod estimate;
+pub mod form;
 pub mod key;
+pub mod limits;
+
+mod base64;
 mod waits;
 mod wire;
 
 #[cfg(test)]
+mod client_tests;
+#[cfg(test)]
 mod server;
 
 pub use cassette::{Cassette, CassetteError};
-pub use chat::{ChatAnswer, ChatRequest, Finish, Speaker, Turn};
-pub use client::{ChatClient, ClientConfig, Structured};
+pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
+pub use client::{ChatClient, ClientConfig};
+pub use dialect::{Dialect, Learnt, Rung, UnknownName, Wire};
 pub use error::ChatError;
 pub use key::ApiKey;
+pub use limits::{Limits, Rate};

@@ -1,7 +1,7 @@
-//! A server of one answer on this machine, for the tests of this crate.
+//! A server of scripted answers on this machine, for the tests of this crate.
 
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpStream};
 use tokio::task::JoinHandle;
 
 /// What the client sent.
@@ -10,40 +10,49 @@ pub(crate) struct Seen {
     pub(crate) body: String,
 }
 
+/// What the server does with one request.
+pub(crate) enum Reply {
+    /// A whole answer: status, headers, body.
+    Whole(u16, Vec<(&'static str, &'static str)>, String),
+    /// An answer that claims more bytes than come before the connection closes.
+    Torn(String),
+    /// So many bytes, without a length.
+    Flood(usize),
+    /// One byte after the other, for ever.
+    Drip,
+}
+
+impl Reply {
+    pub(crate) fn new(status: u16, body: &str) -> Self {
+        Self::Whole(status, Vec::new(), body.to_owned())
+    }
+}
+
 /// A running server.
 pub(crate) struct Served {
     pub(crate) url: String,
-    task: Option<JoinHandle<Seen>>,
+    task: Option<JoinHandle<Vec<Seen>>>,
     _held: Option<TcpListener>,
 }
 
 impl Served {
     /// Answers one request like this.
-    pub(crate) async fn once(status: u16, headers: &[(&str, &str)], body: &str) -> Self {
+    pub(crate) async fn once(status: u16, headers: &[(&'static str, &'static str)], body: &str) -> Self {
+        Self::replies(vec![Reply::Whole(status, headers.to_vec(), body.to_owned())]).await
+    }
+
+    /// Answers one request after the other.
+    pub(crate) async fn replies(replies: Vec<Reply>) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}/v1", listener.local_addr().unwrap());
-        let more: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
-        let answer =
-            format!("HTTP/1.1 {status} X\r\ncontent-length: {}\r\nconnection: close\r\n{more}\r\n{body}", body.len());
         let task = tokio::spawn(async move {
-            let (mut socket, _) = listener.accept().await.unwrap();
-            let mut bytes = Vec::new();
-            let mut part = [0_u8; 4096];
-            loop {
-                let count = socket.read(&mut part).await.unwrap();
-                bytes.extend_from_slice(&part[..count]);
-                let text = String::from_utf8_lossy(&bytes).into_owned();
-                let Some((head, body)) = text.split_once("\r\n\r\n") else { continue };
-                let length = head
-                    .to_lowercase()
-                    .lines()
-                    .find_map(|line| line.strip_prefix("content-length: ").map(str::to_owned));
-                if count == 0 || body.len() >= length.and_then(|n| n.parse().ok()).unwrap_or(0) {
-                    // The client may have hung up already when the body is too large for it.
-                    let _sent = socket.write_all(answer.as_bytes()).await.is_ok();
-                    return Seen { head: head.to_owned(), body: body.to_owned() };
-                }
+            let mut seen = Vec::new();
+            for reply in replies {
+                let (mut socket, _) = listener.accept().await.unwrap();
+                seen.push(read(&mut socket).await);
+                answer(&mut socket, reply).await;
             }
+            seen
         });
         Self { url, task: Some(task), _held: None }
     }
@@ -60,8 +69,61 @@ impl Served {
         Self { url: format!("http://{}/v1", listener.local_addr().unwrap()), task: None, _held: None }
     }
 
-    /// What was sent.
+    /// What was sent first.
     pub(crate) async fn seen(self) -> Seen {
+        self.all_seen().await.remove(0)
+    }
+
+    /// Everything that was sent.
+    pub(crate) async fn all_seen(self) -> Vec<Seen> {
         self.task.unwrap().await.unwrap()
+    }
+}
+
+async fn read(socket: &mut TcpStream) -> Seen {
+    let mut bytes = Vec::new();
+    let mut part = [0_u8; 4096];
+    loop {
+        let count = socket.read(&mut part).await.unwrap();
+        bytes.extend_from_slice(&part[..count]);
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let Some((head, body)) = text.split_once("\r\n\r\n") else { continue };
+        let length =
+            head.to_lowercase().lines().find_map(|line| line.strip_prefix("content-length: ").map(str::to_owned));
+        if count == 0 || body.len() >= length.and_then(|n| n.parse().ok()).unwrap_or(0) {
+            return Seen { head: head.to_owned(), body: body.to_owned() };
+        }
+    }
+}
+
+/// The client may hang up before the end of an answer that it does not want.
+async fn answer(socket: &mut TcpStream, reply: Reply) {
+    match reply {
+        Reply::Whole(status, headers, body) => {
+            let more: String = headers.iter().map(|(name, value)| format!("{name}: {value}\r\n")).collect();
+            let head =
+                format!("HTTP/1.1 {status} X\r\ncontent-length: {}\r\nconnection: close\r\n{more}\r\n", body.len());
+            let _sent = socket.write_all((head + &body).as_bytes()).await.is_ok();
+        }
+        Reply::Torn(body) => {
+            let head = format!("HTTP/1.1 200 X\r\ncontent-length: {}\r\n\r\n", body.len() + 1000);
+            let _sent = socket.write_all((head + &body).as_bytes()).await.is_ok();
+        }
+        Reply::Flood(count) => {
+            let part = vec![b'x'; 1 << 20];
+            let mut open = socket.write_all(b"HTTP/1.1 200 X\r\nconnection: close\r\n\r\n{\"x\": \"").await.is_ok();
+            let mut sent = 0;
+            while open && sent < count {
+                open = socket.write_all(&part).await.is_ok();
+                sent += part.len();
+            }
+        }
+        Reply::Drip => {
+            let mut open = socket.write_all(b"HTTP/1.1 200 X\r\nconnection: close\r\n\r\n").await.is_ok();
+            while open {
+                open = socket.write_all(b" ").await.is_ok();
+                tokio::time::sleep(std::time::Duration::from_millis(5)).await;
+            }
+        }
     }
 }

@@ -137,7 +137,8 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
-            let own = meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
+            let own =
+                meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
             people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
             meant.push((mention.from, mention.to, people));
             continue;
@@ -618,7 +619,8 @@ fn robot_deed(
         | Act::Pass
         | Act::Walk => {}
     }
-    let its_own = matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
+    let its_own =
+        matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
     if its_own {
         story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
     }

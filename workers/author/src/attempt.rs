@@ -7,7 +7,7 @@ use socrates_model::job::Stage;
 use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, Paths, Proposal};
 use socrates_prompts::{Message, Question, json, parse_behaviors, parse_paths, parse_proposal};
 
-use crate::author::{Answer, AskError, Author};
+use crate::author::{Answer, AskError, Author, How};
 
 /// What an author wrote, typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -71,6 +71,9 @@ pub struct Exchange {
     pub answer: String,
     /// Tokens in and out.
     pub tokens: (u64, u64),
+    /// How it was asked and answered.
+    #[serde(default)]
+    pub how: How,
     /// What was repaired to read it; such an answer is not counted as right at first pass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repairs: Vec<Fault>,
@@ -124,6 +127,7 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
         messages: Vec::new(),
         answer: String::new(),
         tokens: (0, 0),
+        how: How::default(),
         repairs: Vec::new(),
         injected: Vec::new(),
         faults: Vec::new(),
@@ -138,6 +142,7 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
     exchange.model = answer.model;
     exchange.messages = answer.sent;
     exchange.tokens = answer.tokens;
+    exchange.how = answer.how;
     exchange.injected = answer.injected;
     exchange.answer = answer.text;
     let (written, faults) = match outcome {

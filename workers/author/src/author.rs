@@ -1,8 +1,10 @@
 //! The trait, and what passes through it.
 
 use async_trait::async_trait;
+use serde::{Deserialize, Serialize};
+use socrates_llm::Limits;
 use socrates_model::{Fault, FaultCode};
-use socrates_prompts::{Message, Question};
+use socrates_prompts::{Message, Question, Style, Template};
 
 /// What an author said.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -19,6 +21,36 @@ pub struct Answer {
     pub sent: Vec<Message>,
     /// Faults put in on purpose; empty outside of experiments.
     pub injected: Vec<String>,
+    /// How it was asked and answered.
+    pub how: How,
+}
+
+/// How a question was put and what the server did with it; everything empty for authors that read no messages.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct How {
+    /// Words of the question.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub template: Option<Template>,
+    /// Style of the question.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<Style>,
+    /// How far the server enforced the form: `schema`, `tool`, `object`, `grammar`, `plain`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rung: Option<String>,
+    /// What was changed on the way, in words: forms that the server refused.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<String>,
+    /// Tokens of the input that came from the server's cache.
+    pub cached: u64,
+    /// Whether the tokens are our estimate.
+    pub estimated: bool,
+    /// Width and height of the picture that was sent, pixels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture: Option<(u32, u32)>,
+    /// What the server said is left of its rates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Limits>,
 }
 
 /// Why there is no answer.

@@ -1,40 +1,64 @@
 //! Recorded exchanges as author, and the recorder that makes them.
 
 use async_trait::async_trait;
-use socrates_llm::{Cassette, ChatAnswer, Finish};
+use socrates_llm::{Cassette, ChatAnswer, ChatRequest, Finish};
 use socrates_model::FaultCode;
-use socrates_prompts::Question;
+use socrates_prompts::{Image, Prompt, Question, Style};
 
 use crate::author::{Answer, AskError, Author};
-use crate::llm::{chat_request, said};
+use crate::llm::{MAX_TOKENS, chat_request, said};
+
+/// The request that stands for a question in a folder: without picture, as it is drawn from the map that the text describes,
+/// and without anything that depends on the server.
+fn recorded_as(question: &Question, style: Style) -> Result<(ChatRequest, Prompt), AskError> {
+    let prompt = question.prompt(&style);
+    let request = chat_request(question, &prompt, Image::Off, MAX_TOKENS)?;
+    Ok((request, prompt))
+}
+
+fn unusable(error: &dyn std::error::Error) -> AskError {
+    AskError::new(FaultCode::JRequest, error.to_string())
+}
 
 /// Replays a folder of recorded exchanges byte for byte.
-#[derive(Debug, Clone)]
 pub struct Replay {
     cassette: Cassette,
     folder: String,
+    style: Style,
+    other: Option<Box<dyn Author>>,
 }
 
 impl Replay {
     /// The recordings of this folder.
     #[must_use]
-    pub fn from(folder: &str) -> Self {
-        Self { cassette: Cassette::at(folder), folder: folder.to_owned() }
+    pub fn new(folder: &str, style: Style) -> Self {
+        Self { cassette: Cassette::at(folder), folder: folder.to_owned(), style, other: None }
+    }
+
+    /// Asks somebody else what is not recorded, and records it; the offline author's answers need no recording.
+    #[must_use]
+    pub fn or_else(mut self, author: Box<dyn Author>) -> Self {
+        self.other = Some(author);
+        self
     }
 }
 
 #[async_trait]
 impl Author for Replay {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
-        let sent = question.messages();
-        // Pictures are drawn from the same map that the text describes, so the text alone is the key.
-        let request = chat_request(question, &sent, false)?;
-        match self.cassette.find(&request) {
-            Ok(Some(answer)) => Ok(said(answer, sent)),
-            Ok(None) => Err(AskError::new(
+        let (request, prompt) = recorded_as(question, self.style)?;
+        if let Some(answer) = self.cassette.find(&request).map_err(|error| unusable(&error))? {
+            return Ok(said(answer, prompt, self.style));
+        }
+        let Some(other) = &self.other else {
+            let near = self.cassette.nearest(&request).map_or_else(String::new, |(key, differs)| {
+                let key: String = key.chars().take(12).collect();
+                format!("; the nearest, {key}, differs in {}", differs.join(", "))
+            });
+            return Err(AskError::new(
                 FaultCode::JRequest,
                 format!(
-                    "`{}` has no recorded answer to this {} question (key {}); it holds {} exchanges. Record it with \
+                    "`{}` has no recorded answer to this {} question (key {}); it holds {} exchanges{near}. Record it with \
                      `record:{}=<author>`",
                     self.folder,
                     question.stage,
@@ -42,13 +66,20 @@ impl Author for Replay {
                     self.cassette.len(),
                     self.folder
                 ),
-            )),
-            Err(error) => Err(AskError::new(FaultCode::JRequest, error.to_string())),
+            ));
+        };
+        let answer = other.ask(question).await?;
+        if other.name() != socrates_offline::NAME {
+            keep(&self.cassette, &request, &answer)?;
         }
+        Ok(answer)
     }
 
     fn name(&self) -> String {
-        format!("cassette:{}", self.folder)
+        match &self.other {
+            None => format!("cassette:{}", self.folder),
+            Some(other) => format!("replay:{}={}", self.folder, other.name()),
+        }
     }
 }
 
@@ -56,13 +87,14 @@ impl Author for Replay {
 pub struct Recorder<A> {
     inner: A,
     cassette: Cassette,
+    style: Style,
 }
 
 impl<A: Author> Recorder<A> {
     /// Keeps the exchanges of `inner` in this folder.
     #[must_use]
-    pub fn new(inner: A, folder: &str) -> Self {
-        Self { inner, cassette: Cassette::at(folder) }
+    pub fn new(inner: A, folder: &str, style: Style) -> Self {
+        Self { inner, cassette: Cassette::at(folder), style }
     }
 }
 
@@ -70,21 +102,29 @@ impl<A: Author> Recorder<A> {
 impl<A: Author> Author for Recorder<A> {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let answer = self.inner.ask(question).await?;
-        let request = chat_request(question, &question.messages(), false)?;
-        let kept = ChatAnswer {
-            text: answer.text.clone(),
-            finish: if answer.cut { Finish::Cut } else { Finish::Stop },
-            model: answer.model.clone(),
-            tokens: answer.tokens,
-            estimated: false,
-        };
-        self.cassette.keep(&request, &kept).map_err(|error| AskError::new(FaultCode::JRequest, error.to_string()))?;
+        let (request, _) = recorded_as(question, self.style)?;
+        keep(&self.cassette, &request, &answer)?;
         Ok(answer)
     }
 
     fn name(&self) -> String {
         self.inner.name()
     }
+}
+
+fn keep(cassette: &Cassette, request: &ChatRequest, answer: &Answer) -> Result<(), AskError> {
+    let kept = ChatAnswer {
+        text: answer.text.clone(),
+        finish: if answer.cut { Finish::Cut } else { Finish::Stop },
+        model: answer.model.clone(),
+        tokens: answer.tokens,
+        cached: answer.how.cached,
+        estimated: answer.how.estimated,
+        rung: answer.how.rung.as_deref().and_then(|name| name.parse().ok()),
+        steps: answer.how.steps.clone(),
+        limits: answer.how.limits,
+    };
+    cassette.keep(request, &kept).map_err(|error| unusable(&error))
 }
 
 #[cfg(test)]
@@ -97,15 +137,34 @@ mod tests {
     async fn a_recorded_answer_is_replayed_and_an_unknown_question_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().to_str().unwrap();
+        let style = Style::default();
         let asked = question(Stage::Proposal);
-        let answer = Recorder::new(Scripted::says("{\"a\": 1}"), folder).ask(&asked).await.unwrap();
-        let replay = Replay::from(folder);
+        let answer = Recorder::new(Scripted::says("{\"a\": 1}"), folder, style).ask(&asked).await.unwrap();
+        let replay = Replay::new(folder, style);
         let again = replay.ask(&asked).await.unwrap();
         assert_eq!((again.text, again.model), (answer.text, answer.model));
         let mut other = asked;
         other.seed += 1;
         let missing = replay.ask(&other).await.unwrap_err();
         assert_eq!(missing.code, FaultCode::JRequest);
-        assert!(missing.message.contains("holds 1 exchanges"), "{}", missing.message);
+        assert!(missing.message.contains("holds 1 exchanges; the nearest, "), "{}", missing.message);
+        assert!(missing.message.contains("differs in seed."), "{}", missing.message);
+    }
+
+    #[tokio::test]
+    async fn what_is_not_recorded_may_be_asked_of_somebody_else_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().to_str().unwrap();
+        let style = Style::default();
+        let asked = question(Stage::Proposal);
+        let first = Replay::new(folder, style).or_else(Box::new(Scripted::says("{\"a\": 1}")));
+        assert_eq!(first.ask(&asked).await.unwrap().text, "{\"a\": 1}");
+        let second = Replay::new(folder, style).or_else(Box::new(Scripted::says("{\"a\": 2}")));
+        assert_eq!(second.ask(&asked).await.unwrap().text, "{\"a\": 1}");
+        // The offline author answers the same for ever; nothing of it is kept.
+        let mut other = asked;
+        other.seed += 1;
+        Replay::new(folder, style).or_else(Box::new(crate::offline::Offline)).ask(&other).await.unwrap();
+        assert_eq!(Cassette::at(folder).len(), 1);
     }
 }

@@ -1,93 +1,129 @@
 //! Which author a setting means.
 
 use std::collections::BTreeMap;
+use std::time::Duration;
 
-use socrates_llm::{ApiKey, ClientConfig};
+use socrates_llm::{ApiKey, ClientConfig, Dialect, Learnt, Rung};
 use socrates_model::FaultCode;
+use socrates_prompts::Style;
 
 use crate::author::{AskError, Author};
 use crate::cassette::{Recorder, Replay};
 use crate::faulty::{FaultRates, FaultyAuthor};
-use crate::llm::Llm;
+use crate::llm::{Llm, MAX_TOKENS};
 use crate::offline::Offline;
+
+/// What a process knows of one kind of server.
+#[derive(Debug, Clone, Default)]
+pub struct Server {
+    /// The key, where there is one.
+    pub key: Option<ApiKey>,
+    /// The address; without one, the vendor's, or this machine with the server's own port.
+    pub url: Option<String>,
+}
 
 /// What a process knows beside the job: keys and addresses. The command line reads them from its environment; they never
 /// travel with a job.
 #[derive(Debug, Clone, Default)]
 pub struct Keys {
-    /// Key for Chat Completions servers.
-    pub openai: Option<ApiKey>,
-    /// Address of the server; default `https://api.openai.com/v1`.
-    pub openai_base_url: Option<String>,
-    /// Model that `auto` means when there is a key; default [`DEFAULT_MODEL`].
-    pub openai_model: Option<String>,
-    /// Enforcement of the answer's form: `schema` (default), `object`, `plain`.
-    pub structured: Option<String>,
-    /// Whether the model is shown the map as a picture. Default true.
-    pub pictures: Option<bool>,
+    /// Servers by kind.
+    pub servers: BTreeMap<Dialect, Server>,
+    /// Model that `auto` means when there is a key for Chat Completions; default [`DEFAULT_MODEL`].
+    pub auto_model: Option<String>,
+    /// The only rung of enforcement to use; without one, what the server takes.
+    pub rung: Option<Rung>,
+    /// Longest time of a call; default 90 s.
+    pub timeout: Option<Duration>,
+    /// Most tokens of an answer; default 16 000.
+    pub max_tokens: Option<u32>,
+    /// Whether plain HTTP may go to other machines.
+    pub plain_http: bool,
+    /// What was learnt of servers; clones share it.
+    pub learnt: Learnt,
+}
+
+impl Keys {
+    fn of(&self, dialect: Dialect) -> Option<&ApiKey> {
+        self.servers.get(&dialect).and_then(|server| server.key.as_ref()).filter(|key| !key.is_empty())
+    }
 }
 
 /// Model of `auto` with a key where none is named.
 pub const DEFAULT_MODEL: &str = "gpt-4o";
 /// Settings that are taken, for messages.
-pub const ALLOWED: &str = "auto, offline, openai:<model>, cassette:<folder>, record:<folder>=<author>";
+pub const ALLOWED: &str = "auto, offline, openai:<model>, anthropic:<model>, gemini:<model>, vllm:<model>, ollama:<model>, \
+                           llamacpp:<model>, lmstudio:<model>, cassette:<folder>, record:<folder>=<author>, \
+                           replay:<folder>=<author>";
 
-/// The author of a setting. `auto` is the offline author unless there is a key.
+/// The author of a setting, asked in a style. `auto` is the offline author unless there is a key.
 ///
 /// # Errors
 /// [`AskError`]: `J-REQUEST` for a setting that means nobody, `T-AUTH` for a server of others without a key.
-pub fn author_for(setting: &str, keys: &Keys) -> Result<Box<dyn Author>, AskError> {
+pub fn author_for(setting: &str, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
     let setting = setting.trim();
-    match setting.split_once(':') {
-        None => match setting {
+    let Some((kind, rest)) = setting.split_once(':').filter(|(_, rest)| !rest.is_empty()) else {
+        return match setting {
             "offline" => Ok(Box::new(Offline)),
-            "auto" | "" if keys.openai.as_ref().is_none_or(ApiKey::is_empty) => Ok(Box::new(Offline)),
-            "auto" | "" => openai(keys.openai_model.as_deref().unwrap_or(DEFAULT_MODEL), keys),
+            "auto" | "" if keys.of(Dialect::OpenAi).is_none() => Ok(Box::new(Offline)),
+            "auto" | "" => server(Dialect::OpenAi, keys.auto_model.as_deref().unwrap_or(DEFAULT_MODEL), keys, style),
             _ => Err(unknown(setting)),
+        };
+    };
+    let inner = || rest.split_once('=').filter(|(folder, _)| !folder.is_empty()).ok_or_else(|| unknown(setting));
+    match kind {
+        "cassette" => Ok(Box::new(Replay::new(rest, style))),
+        "record" => {
+            let (folder, inner) = inner()?;
+            Ok(Box::new(Recorder::new(author_for(inner, keys, style)?, folder, style)))
+        }
+        "replay" => {
+            let (folder, inner) = inner()?;
+            let author = author_for(inner, keys, style)?;
+            Ok(Box::new(Replay::new(folder, style).or_else(author)))
+        }
+        _ => match kind.parse::<Dialect>() {
+            Ok(dialect) => server(dialect, rest, keys, style),
+            Err(_no_dialect) => Err(unknown(setting)),
         },
-        Some(("openai", model)) if !model.is_empty() => openai(model, keys),
-        Some(("cassette", folder)) if !folder.is_empty() => Ok(Box::new(Replay::from(folder))),
-        Some(("record", rest)) => match rest.split_once('=') {
-            Some((folder, inner)) if !folder.is_empty() => {
-                Ok(Box::new(Recorder::new(author_for(inner, keys)?, folder)))
-            }
-            Some(_) | None => Err(unknown(setting)),
-        },
-        Some(_) => Err(unknown(setting)),
     }
 }
 
-/// The author that a job's settings ask for: `author`, and `fault.…` rates for this attempt.
+/// The author that a job's settings ask for: `author`, `prompt.…` for the style, and `fault.…` rates for this attempt.
 ///
 /// # Errors
-/// As [`author_for`] and [`FaultRates::from_settings`].
+/// As [`author_for`], [`Style::from_settings`] and [`FaultRates::from_settings`].
 pub fn author_of_job(
     settings: &BTreeMap<String, String>,
     keys: &Keys,
     attempt: u32,
 ) -> Result<Box<dyn Author>, AskError> {
-    let author = author_for(settings.get("author").map_or("auto", String::as_str), keys)?;
+    let style = Style::from_settings(settings)
+        .map_err(|fault| AskError::new(fault.code, format!("{}: {}", fault.at, fault.message)))?;
+    let author = author_for(settings.get("author").map_or("auto", String::as_str), keys, style)?;
     let rates = FaultRates::from_settings(settings)?;
     if rates.is_clean() { Ok(author) } else { Ok(Box::new(FaultyAuthor::new(author, rates, attempt))) }
 }
 
-fn openai(model: &str, keys: &Keys) -> Result<Box<dyn Author>, AskError> {
-    let base = keys.openai_base_url.as_deref().unwrap_or("https://api.openai.com/v1");
-    let key = keys.openai.clone().unwrap_or_else(|| ApiKey::new(""));
-    if key.is_empty() && base.contains("api.openai.com") {
-        let message = format!("`openai:{model}` needs a key; set OPENAI_API_KEY, or use `offline`");
+fn server(dialect: Dialect, model: &str, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
+    let url = keys.servers.get(&dialect).and_then(|server| server.url.as_deref());
+    let url = url.filter(|url| !url.is_empty()).unwrap_or_else(|| dialect.default_url());
+    let key = keys.of(dialect).cloned().unwrap_or_else(|| ApiKey::new(""));
+    // The vendors' own servers answer nobody without a key; a server of one's own may.
+    if key.is_empty() && url == dialect.default_url() && url.starts_with("https:") {
+        let message = format!(
+            "`{dialect}:{model}` needs a key: put it into the environment variable or the file that `socrates config \
+             author` names, or use `offline`"
+        );
         return Err(AskError::new(FaultCode::TAuth, message));
     }
-    let mut config = ClientConfig::new(base, key, model);
-    if let Some(name) = &keys.structured {
-        config.structured = Llm::structured(name).ok_or_else(|| {
-            AskError::new(
-                FaultCode::JRequest,
-                format!("structured output `{name}` is unknown; allowed: schema, object, plain"),
-            )
-        })?;
+    let mut config = ClientConfig::new(dialect, url, key, model);
+    config.rung = keys.rung;
+    config.learnt = keys.learnt.clone();
+    config.plain_http = keys.plain_http;
+    if let Some(timeout) = keys.timeout {
+        config.timeout = timeout;
     }
-    Ok(Box::new(Llm::new(config, keys.pictures.unwrap_or(true))?))
+    Ok(Box::new(Llm::new(config, style, keys.max_tokens.unwrap_or(MAX_TOKENS))?))
 }
 
 fn unknown(setting: &str) -> AskError {
@@ -99,29 +135,45 @@ mod tests {
     use super::*;
 
     fn name(setting: &str, keys: &Keys) -> Result<String, FaultCode> {
-        author_for(setting, keys).map(|author| author.name()).map_err(|error| error.code)
+        author_for(setting, keys, Style::default()).map(|author| author.name()).map_err(|error| error.code)
+    }
+
+    fn keyed(dialect: Dialect) -> Keys {
+        let server = Server { key: Some(ApiKey::new("k")), url: None };
+        Keys { servers: BTreeMap::from([(dialect, server)]), ..Keys::default() }
     }
 
     #[test]
     fn auto_is_offline_without_a_key_and_a_model_with_one() {
-        let keyed = Keys { openai: Some(ApiKey::new("k")), ..Keys::default() };
         assert_eq!(name("auto", &Keys::default()), Ok(socrates_offline::NAME.to_owned()));
-        assert_eq!(name("auto", &keyed), Ok(format!("openai:{DEFAULT_MODEL}")));
-        assert_eq!(name("openai:tiny", &keyed), Ok("openai:tiny".to_owned()));
+        assert_eq!(name("auto", &keyed(Dialect::OpenAi)), Ok(format!("openai:{DEFAULT_MODEL}")));
+        assert_eq!(name("openai:tiny", &keyed(Dialect::OpenAi)), Ok("openai:tiny".to_owned()));
     }
 
     #[test]
-    fn a_setting_that_means_nobody_says_who_there_is() {
-        for setting in ["gpt", "openai:", "record:x", "cassette:"] {
-            assert_eq!(name(setting, &Keys::default()), Err(FaultCode::JRequest), "{setting}");
+    fn each_vendor_wants_its_own_key_and_local_servers_none() {
+        for dialect in [Dialect::OpenAi, Dialect::Anthropic, Dialect::Gemini] {
+            let setting = format!("{dialect}:m");
+            assert_eq!(name(&setting, &Keys::default()), Err(FaultCode::TAuth));
+            assert_eq!(name(&setting, &keyed(dialect)), Ok(setting.clone()));
         }
-        assert_eq!(name("openai:tiny", &Keys::default()), Err(FaultCode::TAuth));
-        let local = Keys { openai_base_url: Some("http://127.0.0.1:1/v1".into()), ..Keys::default() };
+        for setting in ["vllm:org/model-7b", "ollama:model:7b", "llamacpp:m", "lmstudio:m"] {
+            assert_eq!(name(setting, &Keys::default()), Ok(setting.to_owned()));
+        }
+        let server = Server { key: None, url: Some("http://127.0.0.1:1/v1".into()) };
+        let local = Keys { servers: BTreeMap::from([(Dialect::OpenAi, server)]), ..Keys::default() };
         assert_eq!(name("openai:tiny", &local), Ok("openai:tiny".to_owned()));
     }
 
     #[test]
-    fn rates_are_read_from_settings_and_wrong_ones_are_named() {
+    fn a_setting_that_means_nobody_says_who_there_is() {
+        for setting in ["gpt", "openai:", "record:x", "cassette:", "replay:=offline", "azure:m", "record:x=nobody"] {
+            assert_eq!(name(setting, &Keys::default()), Err(FaultCode::JRequest), "{setting}");
+        }
+    }
+
+    #[test]
+    fn rates_and_styles_are_read_from_settings_and_wrong_ones_are_named() {
         let settings = |pairs: &[(&str, &str)]| {
             pairs.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect::<BTreeMap<_, _>>()
         };
@@ -132,8 +184,8 @@ mod tests {
         ]))
         .unwrap();
         assert!(rates.first_only && rates.rates.len() == 1 && !rates.is_clean());
-        for wrong in [("fault.gdisc", "3"), ("fault.typo", "0.1"), ("fault_rate.json", "x")] {
-            assert!(FaultRates::from_settings(&settings(&[wrong])).is_err(), "{wrong:?}");
+        for wrong in [("fault.gdisc", "3"), ("fault.typo", "0.1"), ("prompt.paths", "edges")] {
+            assert!(author_of_job(&settings(&[wrong]), &Keys::default(), 1).is_err(), "{wrong:?}");
         }
     }
 }

@@ -5,6 +5,7 @@ use socrates_model::{Action, AgentId, HumanId, Point, Relation, SimTime};
 
 use crate::contacts::{self, Body};
 use crate::human::Human;
+use crate::make_room::is_held_up;
 use crate::motion::{self, Scene, Want};
 use crate::near::{Near, Other};
 use crate::recorder::Recorder;
@@ -64,9 +65,10 @@ impl Engine {
                 if looks {
                     self.near.look(human, &self.floor);
                 }
-                // On its way and between looks somebody goes by what it made of them at its last look.
+                // Who gets on goes by what it made of the others at its last look.
+                let gets_on = human.action == Action::Navigate && now_s >= human.yields_until_s && !is_held_up(human);
                 around.clear();
-                if looks || human.action != Action::Navigate || now_s < human.yields_until_s {
+                if looks || !gets_on {
                     self.near.noticed(&human.notice, around);
                 }
                 let scene = Scene {

@@ -32,10 +32,23 @@ pub(crate) struct Facing {
     aside: Option<(Point, f64)>,
 }
 
+/// Whether somebody on its way has to see who is before it: it does not get on, or makes room already.
+pub(crate) fn is_held_up(human: &Human) -> bool {
+    human.facing.aside.is_some() || human.started && human.velocity.dot(&travel(human)) < STILL_MPS
+}
+
+fn travel(human: &Human) -> Vector {
+    human.route.direction(human.s + 0.3)
+}
+
 /// What somebody on its way wants who makes room; `None` where it just walks on.
 pub(crate) fn make_room(human: &mut Human, scene: &Scene<'_>) -> Option<Want> {
+    if !is_held_up(human) {
+        human.facing.still_s = 0.0;
+        return None;
+    }
     if let Some((spot, until_s)) = human.facing.aside {
-        let ahead = human.route.direction(human.s + 0.3);
+        let ahead = travel(human);
         let waits = scene.others.iter().filter(|other| of_people(human, other)).find(|other| {
             let way = other.at - human.at;
             way.norm() < 2.5 && way.dot(&ahead) > -0.3 && other.velocity.dot(&ahead) < STILL_MPS
@@ -52,13 +65,13 @@ pub(crate) fn make_room(human: &mut Human, scene: &Scene<'_>) -> Option<Want> {
         let target = if left > 0.8 { round(human, scene, &spot).unwrap_or(spot) } else { spot };
         return Some(Want::go(target, (2.0 * left + 0.1).min(human.speed_mps.max(0.8))));
     }
-    let travel = human.route.direction(human.s + 0.3);
+    let travel = travel(human);
     let face = scene.others.iter().filter(|other| of_people(human, other)).find(|other| {
         let way = other.at - human.at;
         way.norm() < FACE_M && way.dot(&travel) > 0.6 * way.norm() && other.velocity.norm() < STILL_MPS
     });
     // To and fro before the other is no getting on.
-    let Some(other) = face.filter(|_| human.velocity.dot(&travel) < STILL_MPS && human.started) else {
+    let Some(other) = face else {
         human.facing.still_s = 0.0;
         return None;
     };
@@ -100,10 +113,9 @@ fn back(human: &Human, scene: &Scene<'_>) -> Option<Point> {
         let (at, along) = (human.route.point(s), human.route.direction(s));
         let left = Vector::new(-along.y, along.x) * (ASIDE_M + 0.15);
         [-left, left].into_iter().map(|aside| at + aside).find(|spot| {
-            let crowded = scene
-                .others
-                .iter()
-                .any(|other| of_people(human, other) && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1);
+            let crowded = scene.others.iter().any(|other| {
+                of_people(human, other) && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
+            });
             !crowded
                 && scene.floor.clearance_m(spot) >= human.radius_m + 0.04
                 && scene.floor.straight(&at, spot, human.radius_m - 0.05)

@@ -1,0 +1,126 @@
+//! What the configuration and the environment say of authors: keys, addresses, the style of questions.
+//!
+//! A key comes from an environment variable or a file that the configuration names; it is held in memory and goes into the
+//! header of a request, nowhere else.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use socrates_author::{Keys, Server};
+use socrates_llm::{ApiKey, Dialect, Rung};
+use socrates_prompts::Style;
+
+use crate::config::Config;
+use crate::exit::Complaint;
+
+/// Largest key file that is read, bytes.
+const MAX_KEY_BYTES: u64 = 16 * 1024;
+
+/// Keys and addresses of this process.
+pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
+    let mut servers = BTreeMap::new();
+    for dialect in Dialect::ALL {
+        let part = part(dialect);
+        let url = Some(config.text(&format!("{part}url"))).filter(|url| !url.is_empty());
+        servers.insert(dialect, Server { key: key(config, &part)?, url });
+    }
+    let form = config.text("author.form");
+    let rung = if form == "auto" { None } else { Some(word::<Rung>("author.form", &form, "auto, ")?) };
+    Ok(Keys {
+        servers,
+        auto_model: Some(config.text("author.model")).filter(|model| !model.is_empty()),
+        rung,
+        timeout: Some(Duration::from_secs(config.number("author.timeout_s").clamp(1, 3_600))),
+        max_tokens: u32::try_from(config.number("author.max_tokens")).ok().filter(|most| *most > 0),
+        plain_http: config.truth("author.plain_http"),
+        ..Keys::default()
+    })
+}
+
+/// Whether a key for Chat Completions is there, which `auto` looks for.
+pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
+    Ok(key(config, &part(Dialect::OpenAi))?.is_some())
+}
+
+/// The style of questions, as settings of jobs; empty for the default.
+pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complaint> {
+    let asked: BTreeMap<String, String> = ["mode", "paths", "behaviors", "image"]
+        .into_iter()
+        .map(|name| (format!("prompt.{name}"), config.text(&format!("author.{name}"))))
+        .collect();
+    Style::from_settings(&asked).map(|style| style.settings()).map_err(|fault| {
+        let key = fault.at.replacen("prompt.", "author.", 1);
+        Complaint::input(format!("`{key}`: {}", fault.message), "`socrates config author` prints the manual")
+    })
+}
+
+/// Where the settings of a kind of server stand.
+fn part(dialect: Dialect) -> String {
+    if dialect == Dialect::OpenAi { "author.".to_owned() } else { format!("author.{dialect}.") }
+}
+
+/// The key of a kind of server: of its variable, else of its file.
+fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Complaint> {
+    let variable = config.text(&format!("{part}key_variable"));
+    let found = Some(variable).filter(|name| !name.is_empty()).and_then(|name| std::env::var(name).ok());
+    if let Some(key) = found.filter(|key| !key.trim().is_empty()) {
+        return Ok(Some(ApiKey::new(&key)));
+    }
+    let file = config.text(&format!("{part}key_file"));
+    if file.is_empty() {
+        return Ok(None);
+    }
+    let path = Path::new(&file);
+    let unusable = |why: String| {
+        Complaint::input(
+            format!("the key file `{file}` cannot be used: {why}"),
+            format!("`{part}key_file` names a file that holds the key alone"),
+        )
+    };
+    let size = std::fs::metadata(path).map_err(|why| unusable(why.to_string()))?.len();
+    if size > MAX_KEY_BYTES {
+        return Err(unusable(format!("it has {size} bytes")));
+    }
+    let text = std::fs::read_to_string(path).map_err(|why| unusable(why.to_string()))?;
+    Ok(Some(ApiKey::new(&text)).filter(|key| !key.is_empty()))
+}
+
+fn word<T: std::str::FromStr<Err: std::fmt::Display>>(key: &str, text: &str, more: &str) -> Result<T, Complaint> {
+    text.parse::<T>().map_err(|why| {
+        Complaint::input(format!("`{key}`: {why}"), format!("it also takes {}", more.trim_end_matches(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config(flags: &[&str]) -> Config {
+        let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+        Config::load(None, std::iter::empty(), &flags).unwrap()
+    }
+
+    #[test]
+    fn a_key_comes_from_its_file_and_prints_nowhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("key");
+        std::fs::write(&file, "sk-of-the-file\n").unwrap();
+        let config = config(&["author.key_variable=", &format!("author.key_file={}", file.display())]);
+        assert!(key_found(&config).unwrap());
+        let keys = keys(&config).unwrap();
+        assert!(!format!("{keys:?} {:?}", config.lines(None)).contains("sk-of-the-file"));
+        assert!(keys.servers[&Dialect::OpenAi].key.is_some() && keys.servers[&Dialect::Ollama].key.is_none());
+    }
+
+    #[test]
+    fn settings_that_cannot_be_used_are_named() {
+        let told = |flags: &[&str]| keys(&config(flags)).unwrap_err().to_string();
+        assert!(told(&["author.key_variable=", "author.key_file=/no/such/key"]).contains("/no/such/key"));
+        assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
+        let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
+        assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");
+        assert!(style(&config(&[])).unwrap().is_empty());
+        assert_eq!(style(&config(&["author.image=off"])).unwrap()["prompt.image"], "off");
+    }
+}

@@ -1,0 +1,244 @@
+//! `cost`: what the authors of bundles were asked, in calls, tokens and money.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+use crate::config::Config;
+use crate::exit::Complaint;
+use crate::talk::Talk;
+
+/// Prices of one model, per million tokens.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Price {
+    input: f64,
+    /// Of input that came from the server's cache; without one, as other input.
+    #[serde(default)]
+    cached_input: Option<f64>,
+    output: f64,
+    #[serde(default = "dollars")]
+    currency: String,
+    /// Since when they hold; for people.
+    #[serde(default, rename = "valid_from")]
+    _valid_from: Option<String>,
+}
+
+fn dollars() -> String {
+    "USD".to_owned()
+}
+
+/// What one model was asked.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Sum {
+    calls: u64,
+    input: u64,
+    cached: u64,
+    output: u64,
+    estimated: bool,
+}
+
+impl Sum {
+    fn add(&mut self, other: &Self) {
+        self.calls += other.calls;
+        self.input += other.input;
+        self.cached += other.cached;
+        self.output += other.output;
+        self.estimated |= other.estimated;
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "sums of tokens stay far below 2^53")]
+    fn cost(&self, price: &Price) -> f64 {
+        let cached = price.cached_input.unwrap_or(price.input);
+        ((self.input.saturating_sub(self.cached)) as f64 * price.input
+            + self.cached as f64 * cached
+            + self.output as f64 * price.output)
+            / 1e6
+    }
+}
+
+/// Adds up the exchanges of bundles, or of folders that hold bundles.
+pub(crate) fn cost(talk: &Talk, config: &Config, what: &[PathBuf], prices: Option<&Path>) -> Result<(), Complaint> {
+    let named = config.text("author.prices");
+    let file = prices.map(Path::to_path_buf).or_else(|| (!named.is_empty()).then(|| PathBuf::from(named)));
+    let prices = file.as_deref().map_or_else(|| Ok(BTreeMap::new()), read_prices)?;
+    let mut bundles = Vec::new();
+    for path in what {
+        let found = bundles_in(path);
+        if found.is_empty() {
+            return Err(Complaint::input(
+                format!("`{}` is neither a bundle nor a folder of bundles", path.display()),
+                "name what `socrates run` wrote, such as runs/NAME",
+            ));
+        }
+        bundles.extend(found);
+    }
+    let mut total: BTreeMap<String, Sum> = BTreeMap::new();
+    let mut rows = Vec::new();
+    for bundle in &bundles {
+        let models = exchanges(bundle)?;
+        for (model, sum) in &models {
+            total.entry(model.clone()).or_default().add(sum);
+        }
+        rows.push(json!({"bundle": bundle.display().to_string(), "models": lines(&models, &prices)}));
+    }
+    let width = total.keys().map(String::len).max().unwrap_or(0).max(7);
+    talk.line(&format!(
+        "{:width$}  {:>6}  {:>10}  {:>10}  {:>10}  cost",
+        "author", "calls", "tokens in", "of cache", "tokens out"
+    ));
+    for (model, sum) in &total {
+        let mark = if sum.estimated { "~" } else { "" };
+        let cost = money(model, sum, &prices)
+            .map_or_else(|| "unknown price".to_owned(), |(cost, of)| format!("{cost:.4} {of}"));
+        talk.line(&format!(
+            "{model:width$}  {:>6}  {:>10}  {:>10}  {:>10}  {cost}",
+            sum.calls,
+            format!("{mark}{}", sum.input),
+            sum.cached,
+            format!("{mark}{}", sum.output)
+        ));
+    }
+    talk.line(&format!("{} bundles; `~` marks figures that hold estimates (bytes / 4)", bundles.len()));
+    if total.keys().any(|model| money(model, &Sum::default(), &prices).is_none()) {
+        talk.line("hint: --prices FILE takes a table such as [\"gpt-4o\"] input = 2.5, cached_input = 1.25, output = 10.0 (per million)");
+    }
+    talk.result(&json!({"bundles": rows, "total": lines(&total, &prices)}));
+    Ok(())
+}
+
+fn lines(models: &BTreeMap<String, Sum>, prices: &BTreeMap<String, Price>) -> Vec<Value> {
+    models
+        .iter()
+        .map(|(model, sum)| {
+            let cost = money(model, sum, prices);
+            json!({"author": model, "calls": sum.calls, "tokens_in": sum.input, "cached": sum.cached,
+                "tokens_out": sum.output, "estimated": sum.estimated,
+                "cost": cost.as_ref().map(|(cost, _)| cost), "currency": cost.as_ref().map(|(_, currency)| currency)})
+        })
+        .collect()
+}
+
+/// The cost and its currency; nothing where the price is not known. The offline author costs nothing.
+fn money(model: &str, sum: &Sum, prices: &BTreeMap<String, Price>) -> Option<(f64, String)> {
+    if model.starts_with("offline") {
+        return Some((0.0, dollars()));
+    }
+    // Servers add a date to the name that was asked for: the longest name in the table that begins it wins.
+    let name = model.split_once(':').map_or(model, |(_, name)| name);
+    let found = prices.iter().filter(|(known, _)| name == known.as_str() || name.starts_with(&format!("{known}-")));
+    let (_, price) = found.max_by_key(|(known, _)| known.len())?;
+    Some((sum.cost(price), price.currency.clone()))
+}
+
+fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
+    let hint = "each table is a model: [\"gpt-4o\"] with input, output, perhaps cached_input, currency, valid_from";
+    let text = std::fs::read_to_string(file)
+        .map_err(|why| Complaint::input(format!("cannot read the prices `{}`: {why}", file.display()), hint))?;
+    let prices: BTreeMap<String, Price> = toml::from_str(&text)
+        .map_err(|why| Complaint::input(format!("`{}` is no table of prices: {why}", file.display()), hint))?;
+    for (model, price) in &prices {
+        let all = [price.input, price.output, price.cached_input.unwrap_or(0.0)];
+        if all.iter().any(|value| !value.is_finite() || *value < 0.0) {
+            let what = format!("`{}`: a price of `{model}` is negative or no number", file.display());
+            return Err(Complaint::input(what, hint));
+        }
+    }
+    Ok(prices)
+}
+
+/// The folder itself where it is a bundle, else the bundles inside, in order of their names.
+fn bundles_in(path: &Path) -> Vec<PathBuf> {
+    let is_bundle = |dir: &Path| dir.join("details/provenance.json").is_file();
+    if is_bundle(path) {
+        return vec![path.to_path_buf()];
+    }
+    let entries = std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok);
+    let mut found: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|dir| is_bundle(dir)).collect();
+    found.sort();
+    found
+}
+
+/// What each model was asked for a bundle: every attempt of every revision, refused ones included.
+fn exchanges(bundle: &Path) -> Result<BTreeMap<String, Sum>, Complaint> {
+    let path = bundle.join("details/provenance.json");
+    let broken = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), "make the bundle again");
+    let text = std::fs::read_to_string(&path).map_err(|why| broken(why.to_string()))?;
+    let provenance: Value = serde_json::from_str(&text).map_err(|why| broken(why.to_string()))?;
+    Ok(sums(&provenance))
+}
+
+fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
+    let list = |value: &Value, key: &str| value.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
+    let mut models: BTreeMap<String, Sum> = BTreeMap::new();
+    for job in list(provenance, "jobs") {
+        // The exchange of the attempt that was taken stands with the job as well.
+        let mut seen = BTreeSet::new();
+        let all = list(&job, "attempts").iter().flat_map(|attempt| list(attempt, "exchanges")).collect::<Vec<_>>();
+        for exchange in all.into_iter().chain(list(&job, "exchanges")).filter(Value::is_object) {
+            let Some([input, output]) = tokens(&exchange) else { continue };
+            if !seen.insert(exchange.to_string()) {
+                continue;
+            }
+            let name = |key: &str| exchange.get(key).and_then(Value::as_str).filter(|name| !name.is_empty());
+            let model = name("model").or_else(|| name("author")).unwrap_or("unknown");
+            let how = exchange.get("how").cloned().unwrap_or_default();
+            models.entry(model.to_owned()).or_default().add(&Sum {
+                calls: 1,
+                input,
+                output,
+                cached: how.get("cached").and_then(Value::as_u64).unwrap_or(0),
+                estimated: how.get("estimated").and_then(Value::as_bool).unwrap_or(false),
+            });
+        }
+    }
+    models
+}
+
+fn tokens(exchange: &Value) -> Option<[u64; 2]> {
+    let pair = exchange.get("tokens")?.as_array()?;
+    Some([pair.first()?.as_u64()?, pair.get(1)?.as_u64()?])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_exchange_counts_once() {
+        let exchange = |model: &str, answer: &str, tokens: [u64; 2]| json!({"model": model, "answer": answer, "tokens": tokens, "how": {"cached": 10, "estimated": false}});
+        let (bad, good) =
+            (exchange("openai:gpt-4o-2024", "a", [100, 20]), exchange("openai:gpt-4o-2024", "b", [120, 30]));
+        let provenance = json!({"jobs": [
+            {"attempts": [{"exchanges": [bad, "refused text"]}, {"exchanges": [good]}], "exchanges": [good]},
+            {"attempts": [], "exchanges": [exchange("offline/1", "c", [0, 0])]},
+        ]});
+        let found = sums(&provenance);
+        let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false };
+        assert_eq!(found["openai:gpt-4o-2024"], sum);
+        let price =
+            |input, cached_input| Price { input, cached_input, output: 10.0, currency: dollars(), _valid_from: None };
+        let prices =
+            BTreeMap::from([("gpt-4o".to_owned(), price(2.5, Some(1.0))), ("gpt-4".to_owned(), price(9.0, None))]);
+        let (cost, _) = money("openai:gpt-4o-2024", &sum, &prices).unwrap();
+        assert!((cost - (200.0 * 2.5 + 20.0 + 500.0) / 1e6).abs() < 1e-12);
+        assert_eq!(money("anthropic:other", &sum, &prices), None);
+        assert_eq!(money("offline/1", &sum, &prices).unwrap().0.to_bits(), 0.0_f64.to_bits());
+    }
+
+    #[test]
+    fn a_table_of_prices_that_cannot_be_used_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("prices.toml");
+        for (text, word) in
+            [("[m]\ninput = -1\noutput = 1", "negative"), ("[m]\nprice = 1", "no table"), ("x", "no table")]
+        {
+            std::fs::write(&file, text).unwrap();
+            assert!(read_prices(&file).unwrap_err().to_string().contains(word), "{text}");
+        }
+        std::fs::write(&file, "[\"gpt-4o\"]\ninput = 2.5\noutput = 10\nvalid_from = \"2026-01\"").unwrap();
+        assert_eq!(read_prices(&file).unwrap()["gpt-4o"].currency, "USD");
+    }
+}

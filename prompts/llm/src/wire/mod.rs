@@ -1,0 +1,144 @@
+//! Wire formats: one file each, the same three questions to each of them.
+
+mod anthropic;
+mod chat;
+mod gemini;
+
+use reqwest::header::HeaderMap;
+use serde_json::{Value, json};
+
+use crate::chat::{ChatAnswer, ChatRequest, Speaker};
+use crate::client::ClientConfig;
+use crate::dialect::{Rung, Wire};
+use crate::error::ChatError;
+use crate::{estimate, waits};
+
+/// Longest piece of a server's own words that is passed on, characters.
+const WORDS: usize = 300;
+
+/// A request in the words of one format.
+pub(crate) struct Call<'a> {
+    pub(crate) request: &'a ChatRequest,
+    pub(crate) config: &'a ClientConfig,
+    pub(crate) rung: Rung,
+}
+
+impl Call<'_> {
+    /// Where it goes, after the base address.
+    pub(crate) fn path(&self) -> String {
+        match self.config.dialect.wire() {
+            Wire::Chat => "/chat/completions".to_owned(),
+            Wire::Messages => "/v1/messages".to_owned(),
+            Wire::Generate => format!("/v1beta/models/{}:generateContent", self.config.model),
+        }
+    }
+
+    /// Name and value of the header that carries the key.
+    pub(crate) fn key_header(&self) -> (&'static str, String) {
+        let key = self.config.key.secret();
+        match self.config.dialect.wire() {
+            Wire::Chat => ("authorization", format!("Bearer {key}")),
+            Wire::Messages => ("x-api-key", key.to_owned()),
+            Wire::Generate => ("x-goog-api-key", key.to_owned()),
+        }
+    }
+
+    /// The body of the request.
+    pub(crate) fn body(&self) -> Value {
+        match self.config.dialect.wire() {
+            Wire::Chat => chat::body(self),
+            Wire::Messages => anthropic::body(self),
+            Wire::Generate => gemini::body(self),
+        }
+    }
+
+    /// The answer in a successful body.
+    pub(crate) fn answer(&self, bytes: &[u8]) -> Result<ChatAnswer, ChatError> {
+        match self.config.dialect.wire() {
+            Wire::Chat => chat::answer(bytes, self),
+            Wire::Messages => anthropic::answer(bytes, self),
+            Wire::Generate => gemini::answer(bytes, self),
+        }
+    }
+
+    /// What is said in turn `index`; the form is put where a server does not know it.
+    fn text(&self, index: usize) -> String {
+        let Some(turn) = self.request.turns.get(index) else { return String::new() };
+        let first = self.request.turns.iter().position(|turn| turn.speaker == Speaker::User);
+        match &self.request.schema {
+            Some(schema) if !self.rung.knows_form() && first == Some(index) => {
+                format!(
+                    "{}\n\n# Form of the answer\nAnswer with one JSON object that keeps to this JSON schema:\n{schema}\n",
+                    turn.text
+                )
+            }
+            Some(_) | None => turn.text.clone(),
+        }
+    }
+
+    /// The answer with what the server said of itself, or with our estimates.
+    fn told(&self, text: String, cut: bool, model: Option<String>, usage: Option<Usage>) -> ChatAnswer {
+        let estimated = usage.is_none();
+        let usage = usage.unwrap_or_else(|| Usage {
+            input: estimate::request_tokens(self.request, self.config.dialect),
+            output: estimate::text_tokens(&text),
+            ..Usage::default()
+        });
+        ChatAnswer {
+            text,
+            finish: if cut { crate::chat::Finish::Cut } else { crate::chat::Finish::Stop },
+            model: model.filter(|name| !name.is_empty()).unwrap_or_else(|| self.config.model.clone()),
+            tokens: (usage.input, usage.output),
+            cached: usage.cached,
+            estimated,
+            rung: Some(self.rung),
+            steps: Vec::new(),
+            limits: None,
+        }
+    }
+}
+
+/// Tokens as a server counts them.
+#[derive(Debug, Clone, Copy, Default)]
+struct Usage {
+    /// All of the input, cached or not.
+    input: u64,
+    /// Part of the input that came from the server's cache.
+    cached: u64,
+    output: u64,
+}
+
+fn unreadable(why: impl Into<String>) -> ChatError {
+    ChatError::Unreadable { why: why.into() }
+}
+
+fn refused(why: &str) -> ChatError {
+    ChatError::Refused { why: why.chars().take(WORDS).collect() }
+}
+
+/// The error in an unsuccessful body. All formats have `error` with `message` and some kind of code.
+pub(crate) fn complaint(status: u16, bytes: &[u8], headers: &HeaderMap, config: &ClientConfig) -> ChatError {
+    let body: Value = serde_json::from_slice(bytes).unwrap_or_default();
+    let error = body.get("error").cloned().unwrap_or_else(|| json!({}));
+    let word = |key: &str| error.get(key).and_then(Value::as_str).unwrap_or_default();
+    let words = error.get("message").and_then(Value::as_str).or_else(|| error.as_str()).map(str::to_owned);
+    let words = words.unwrap_or_else(|| String::from_utf8_lossy(bytes.get(..4 * WORDS).unwrap_or(bytes)).into_owned());
+    let why: String = config.key.strike_from(&words).chars().take(WORDS).collect();
+    let retry_after_ms = waits::retry_after_ms(headers).or_else(|| waits::retry_delay_ms(&error));
+    // The server knows best whether asking again can help.
+    let should_retry = headers.get("x-should-retry").and_then(|value| value.to_str().ok());
+    match status {
+        401 | 403 => ChatError::Key { status, why },
+        // No waiting fills an empty purse.
+        429 if word("code") == "insufficient_quota" || word("type") == "billing_error" => {
+            ChatError::Key { status, why }
+        }
+        402 => ChatError::Key { status, why },
+        429 | 529 if should_retry != Some("false") => ChatError::SlowDown { status, retry_after_ms, why },
+        408 | 409 | 425 | 500..=599 if should_retry != Some("false") => {
+            ChatError::Server { status, retry_after_ms, why }
+        }
+        _ if should_retry == Some("true") => ChatError::Server { status, retry_after_ms, why },
+        _ => ChatError::Rejected { status, why },
+    }
+}

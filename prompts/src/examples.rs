@@ -1,0 +1,121 @@
+//! Worked examples: two scenarios on a small map, shown in each question in the form in which it is to be answered.
+//!
+//! They are data, in full form; a test holds every answer that is shown against the checks of the stages.
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+use socrates_model::job::Stage;
+use socrates_model::reading::Fact;
+use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, Reading, Request, SceneGraph};
+
+use crate::question::Question;
+use crate::style::{BehaviorsForm, Style};
+use crate::{terse, trees, ways};
+
+/// The map of the examples.
+pub(crate) const MAP: &str = include_str!("../examples/map.json");
+/// The examples, in the order in which they are shown.
+pub(crate) const ALL: [&str; 2] =
+    [include_str!("../examples/crossing.json"), include_str!("../examples/overtaking.json")];
+
+/// One worked example.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Example {
+    request: Request,
+    facts: Vec<Fact>,
+    proposal: Proposal,
+    paths: Paths,
+}
+
+/// Every worked example of a stage: its question, and the answer as it is shown in this style.
+///
+/// Empty where the data cannot be read, which a test keeps from happening.
+#[must_use]
+pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
+    ALL.iter()
+        .filter_map(|text| serde_json::from_str::<Example>(text).ok())
+        .map(|example| {
+            let answer = answer(&example, stage, style);
+            let question = Question {
+                stage,
+                request: example.request,
+                reading: Reading { facts: example.facts, ..Reading::default() },
+                location: location(),
+                proposal: (stage != Stage::Proposal).then_some(example.proposal),
+                only: Vec::new(),
+                feedback: Vec::new(),
+                refused: None,
+                seed: 1,
+            };
+            (question, answer)
+        })
+        .collect()
+}
+
+fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
+    match stage {
+        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
+            let mut short = terse::shorten(&serde_json::to_value(&example.proposal).unwrap_or_default());
+            if let Some(members) = short.as_object_mut() {
+                members.insert("analysis".to_owned(), json!("…"));
+            }
+            short
+        }
+        Stage::Paths => ways::written(&example.paths, style.paths, &location().graph),
+        Stage::Behaviors => {
+            let humans: serde_json::Map<String, Value> = example
+                .proposal
+                .humans
+                .iter()
+                .map(|human| {
+                    let (key, value) = match style.behaviors {
+                        BehaviorsForm::Rules => ("rules", json!(human.rules)),
+                        BehaviorsForm::JsonTree => ("tree", trees::of_rules(&human.rules)),
+                        BehaviorsForm::Xml => {
+                            ("tree", json!(socrates_bt::compile(human.id, &human.rules).unwrap_or_default()))
+                        }
+                    };
+                    let shown = json!({key: value});
+                    (human.id.to_string(), shown)
+                })
+                .collect();
+            json!({"analysis": "…", "humans": humans})
+        }
+    }
+}
+
+/// The map of the examples, wide and empty.
+#[must_use]
+pub fn location() -> Location {
+    const SIDE: usize = 48;
+    let graph: SceneGraph = serde_json::from_str(MAP).unwrap_or_default();
+    Location {
+        format: FORMAT,
+        name: "example".to_owned(),
+        description: String::new(),
+        grid: Grid {
+            width: SIDE,
+            height: SIDE,
+            resolution_m: 0.5,
+            origin: Pose::new(-12.0, -12.0, 0.0),
+            cells: vec![Cell::Free; SIDE * SIDE],
+        },
+        graph,
+        doors: Vec::new(),
+        warnings: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_data_of_the_examples_can_be_read() {
+        for text in ALL {
+            serde_json::from_str::<Example>(text).unwrap();
+        }
+        assert_eq!(location().graph.parts().len(), 1);
+    }
+}

@@ -1,0 +1,61 @@
+//! Every worked example that a prompt shows would itself be accepted: read and checked like an answer of a model.
+
+use socrates_author::{Written, attempt};
+use socrates_model::job::Stage;
+use socrates_prompts::{BehaviorsForm, PathsForm, Question, Style, examples};
+
+/// Says one text.
+struct Says(String);
+
+#[async_trait::async_trait]
+impl socrates_author::Author for Says {
+    async fn ask(&self, _question: &Question) -> Result<socrates_author::Answer, socrates_author::AskError> {
+        Ok(socrates_author::Answer { text: self.0.clone(), model: "example".into(), ..Default::default() })
+    }
+
+    fn name(&self) -> String {
+        "example".into()
+    }
+}
+
+fn styles() -> Vec<Style> {
+    let forms = PathsForm::ALL.iter().zip(BehaviorsForm::ALL);
+    forms.map(|(paths, behaviors)| Style { paths: *paths, behaviors: *behaviors, ..Style::default() }).collect()
+}
+
+#[tokio::test]
+async fn every_example_of_every_stage_and_form_passes_the_checks_without_a_warning() {
+    for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
+        for style in styles() {
+            let shown = examples::worked(stage, &style);
+            assert_eq!(shown.len(), 2);
+            for (question, answer) in shown {
+                // The form that servers are told to enforce takes it as well.
+                let made = attempt(&Says(answer.to_string()), &question).await;
+                let made = made.unwrap_or_else(|refused| panic!("{stage} {style:?}: {:?}\n{answer}", refused.faults));
+                assert!(made.exchange.faults.is_empty(), "{stage} {style:?}: {:?}", made.exchange.faults);
+            }
+        }
+    }
+}
+
+#[tokio::test]
+async fn an_example_means_the_same_in_every_form() {
+    let mut paths = Vec::new();
+    let mut actions = Vec::new();
+    for style in styles() {
+        let (question, answer) = examples::worked(Stage::Paths, &style).remove(0);
+        let Written::Paths(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
+            panic!()
+        };
+        paths.push((read.robot, read.humans, read.encounters));
+        let (question, answer) = examples::worked(Stage::Behaviors, &style).remove(0);
+        let Written::Behaviors(read) = attempt(&Says(answer.to_string()), &question).await.unwrap().written else {
+            panic!()
+        };
+        let trees = read.humans.values().map(|human| socrates_bt::Tree::parse(&human.tree).unwrap());
+        actions.push(trees.map(|tree| (tree.conditions(), tree.actions())).collect::<Vec<_>>());
+    }
+    assert!(paths.windows(2).all(|pair| pair[0] == pair[1]), "{paths:?}");
+    assert!(actions.windows(2).all(|pair| pair[0] == pair[1]), "{actions:?}");
+}
