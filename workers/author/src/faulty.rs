@@ -194,7 +194,9 @@ impl<A: Author> Author for FaultyAuthor<A> {
         // Faults of the text come last: after them the answer can no longer be changed as JSON.
         let textual =
             |kind: &FaultKind| matches!(kind, FaultKind::Empty | FaultKind::Trunc | FaultKind::Json | FaultKind::Fence);
-        let (last, first): (Vec<FaultKind>, Vec<FaultKind>) = struck.into_iter().partition(textual);
+        let (last, mut first): (Vec<FaultKind>, Vec<FaultKind>) = struck.into_iter().partition(textual);
+        // What takes a rule away goes before what puts one in, or one fault would undo the other.
+        first.sort_by_key(|kind| *kind != FaultKind::Bmatch);
         for kind in first.into_iter().chain(last) {
             let draw = self.draw(question, kind, "where");
             if let Some(text) = mutate::apply(kind, question.stage, &answer.text, draw) {

@@ -65,7 +65,9 @@ fn proposal(kind: FaultKind, answer: &mut Value, draw: u64) -> Option<()> {
                 .map(|(index, _)| index)
                 .collect();
             let index = *carriers.get(pick(draw, carriers.len())?)?;
-            clauses.remove(index);
+            // A wish is lost when every clause that carries it is.
+            let wish = clauses.get(index)?["source"].clone();
+            clauses.retain(|clause| clause["source"] != wish);
         }
         FaultKind::Pcap => {
             let humans = list(answer, "humans")?;
