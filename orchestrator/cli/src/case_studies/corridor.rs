@@ -1,8 +1,36 @@
 //! C: one follows the robot, another obstructs it.
 
-use socrates_model::Relation;
+use socrates_model::{AgentState, Point, Relation, Vector};
 
 use super::{Case, STOPPED_MPS, Wrong, check, longest, off_heading, secs, study};
+
+/// At every tick where the follower is on the way that the robot has come: gap along it, distance from it, and the
+/// angle between its heading and the way on towards the robot.
+fn trail_gaps(robot: &[AgentState], follower: &[AgentState]) -> Vec<(f64, f64, f64)> {
+    let first = robot[0].point();
+    let back = Vector::new(robot[0].yaw.cos(), robot[0].yaw.sin());
+    // The way straight back from its start comes first.
+    let mut trail: Vec<(f64, Point)> =
+        (1..=60).rev().map(|k| (-0.1 * f64::from(k), first - back * (0.1 * f64::from(k)))).collect();
+    trail.push((0.0, first));
+    let mut found = Vec::new();
+    for (r, h) in robot.iter().zip(follower) {
+        let (arc, last) = trail[trail.len() - 1];
+        let now = arc + (r.point() - last).norm();
+        if now - arc >= 0.1 {
+            trail.push((now, r.point()));
+        }
+        let recent = &trail[trail.len().saturating_sub(80)..];
+        let near = recent
+            .iter()
+            .enumerate()
+            .min_by(|(_, a), (_, b)| (a.1 - h.point()).norm().total_cmp(&(b.1 - h.point()).norm()));
+        let (index, (at, point)) = near.unwrap();
+        let on = recent.get(index + 10).map_or(r.point(), |(_, point)| *point);
+        found.push((now - at, (point - h.point()).norm(), off_heading(h, &on)));
+    }
+    found
+}
 
 fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
@@ -32,15 +60,14 @@ fn items(case: &Case<'_>) -> Wrong {
     check(&mut wrong, near.is_some() && ahead(0) < 0.0, || {
         format!("S2: starts {:.1} m ahead, near {near:?}", ahead(0))
     });
+    let gaps = trail_gaps(robot, track);
     let follows = |k: usize| {
-        let gap = (track[k].point() - robot[k].point()).norm();
-        let turned = socrates_model::geometry::wrap_angle(track[k].yaw - robot[k].yaw).abs();
-        ahead(k) < 0.0 && (0.6..=3.0).contains(&gap) && turned <= 45.0_f64.to_radians()
+        let (gap, off, turned) = gaps[k];
+        (0.6..=3.0).contains(&gap) && off <= 1.0 && turned <= 45.0_f64.to_radians()
     };
-    // Round a corner the two face different ways for a moment.
-    let (from, length) = longest((0..track.len()).map(|k| {
-        follows(k) || (k >= 50 && k + 50 < track.len() && (k - 50..k + 50).filter(|k| follows(*k)).count() >= 50)
-    }));
+    // Who stands behind one that dodges looks about for a moment.
+    let about = |k: usize| (k.saturating_sub(50)..(k + 50).min(track.len())).filter(|k| follows(*k)).count() >= 50;
+    let (from, length) = longest((0..track.len()).map(about));
     check(&mut wrong, secs(length) >= 8.0, || {
         format!("S2: follows for {:.1} s from {:.1} s", secs(length), secs(from))
     });
@@ -85,11 +112,13 @@ fn items(case: &Case<'_>) -> Wrong {
         format!("S4: {id} first comes near at {angle:?} degrees")
     });
     // S6: following for three seconds before, and both together for two.
-    check(&mut wrong, secs(from) + 3.0 <= *begun, || {
-        format!("S6: follows from {:.1} s, in the way from {begun:.1} s", secs(from))
+    let first = (*begun / super::TICK_SECS) as usize;
+    let (_, before) = longest((0..first).map(about));
+    check(&mut wrong, secs(before) >= 3.0, || {
+        format!("S6: follows for {:.1} s before {id} is in the way", secs(before))
     });
-    let together = secs(from + length).min(begun + lasts) - secs(from).max(*begun);
-    check(&mut wrong, together >= 2.0, || format!("S6: both together for {together:.1} s"));
+    let together = (first..first + (*lasts / super::TICK_SECS) as usize).filter(|k| about(*k)).count();
+    check(&mut wrong, secs(together) >= 2.0, || format!("S6: both together for {:.1} s", secs(together)));
     // S7: the way opens within 30 s, and the robot arrives.
     check(&mut wrong, *lasts <= 30.0, || format!("S7: in the way for {lasts:.1} s"));
     check(&mut wrong, case.arrival().is_some(), || "S7: the robot never arrives".to_owned());

@@ -58,12 +58,14 @@ fn items(case: &Case<'_>) -> Wrong {
     check(&mut wrong, in_time, || format!("S4: out at {first:.1} and {second:.1} s, opened at {opens:.1} s"));
     let gap = second - first;
     check(&mut wrong, (0.5..=5.0).contains(&gap), || format!("S4: one leaves {gap:.2} s after the other"));
-    // S5: the third sees the robot from near, stops, looks, and hardly steps back.
+    // S5: the third sees the robot from near, stops, looks, and hardly steps back. The door opens with the robot 4 m
+    // from it, and it comes within 5 m of who stands behind the door a moment later.
     let track = case.person(*third);
     let view = 100.0_f64.to_radians();
     let noticed = (tick(opens)..track.len()).find(|k| {
         let (h, r) = (&track[*k], &case.robot[*k]);
-        off_heading(h, &r.point()) <= view
+        (h.point() - r.point()).norm() <= 5.0
+            && off_heading(h, &r.point()) <= view
             && socrates_maps::sight_clear(&case.sight, &h.point(), &r.point(), &case.closed(*k))
     });
     let Some(noticed) = noticed else {

@@ -16,7 +16,7 @@ fn items(case: &Case<'_>) -> Wrong {
     let graph = &case.scenario.prepared.location.graph;
     let paths = &case.scenario.made.paths;
     check(&mut wrong, case.people.len() >= 2, || format!("{} people", case.people.len()));
-    let (mut gaps, mut out) = (Vec::new(), Vec::new());
+    let (mut gaps, mut out, mut sights) = (Vec::new(), Vec::new(), Vec::new());
     for id in case.people.keys() {
         let track = case.person(*id);
         let way = &paths.humans[id];
@@ -27,7 +27,8 @@ fn items(case: &Case<'_>) -> Wrong {
         let junction = case.node(node);
         // S1: in the room, out of sight, with the robot 5 m from the junction.
         let kind = graph.node(&way[0]).unwrap().kind.to_lowercase();
-        check(&mut wrong, kind.contains("room") || kind.contains("office"), || format!("S1: {id} starts at a {kind}"));
+        let room = ["room", "office", "kitchen"].iter().any(|word| kind.contains(word));
+        check(&mut wrong, room, || format!("S1: {id} starts at a {kind}"));
         let hidden = case.first_sight(*id);
         check(&mut wrong, hidden.is_some_and(|k| k > 0), || {
             format!("S1: {id} and the robot see each other at {hidden:?}")
@@ -58,8 +59,7 @@ fn items(case: &Case<'_>) -> Wrong {
             check(&mut wrong, enters - secs(k) <= 2.5, || {
                 format!("S4: {id} is in the way {:.1} s after it is seen", enters - secs(k))
             });
-            let speed = case.robot[k].speed();
-            check(&mut wrong, speed > 0.2, || format!("S6: the robot is at {speed:.2} m/s at first sight of {id}"));
+            sights.push(k);
             let (mine, theirs) = (case.on_way(&case.robot[k].point()).0, case.on_way(&junction).0);
             check(&mut wrong, mine < theirs, || format!("S6: the robot is {:.1} m past the junction", mine - theirs));
         }
@@ -86,6 +86,9 @@ fn items(case: &Case<'_>) -> Wrong {
             check(&mut wrong, !back, || format!("S7: {id} turns back"));
         }
     }
+    // S6: the robot moves when it sees the first of them.
+    let speed = sights.iter().min().map_or(0.0, |k| case.robot[*k].speed());
+    check(&mut wrong, speed > 0.2, || format!("S6: the robot is at {speed:.2} m/s at first sight"));
     out.sort_by(f64::total_cmp);
     let spread = out.last().zip(out.first()).map_or(0.0, |(last, first)| last - first);
     check(&mut wrong, spread <= 4.0, || format!("S3: the last comes out {spread:.1} s after the first"));
