@@ -1,6 +1,6 @@
 //! E: two leave the elevator, the third stays and is startled.
 
-use socrates_model::{AgentId, AgentState, Relation};
+use socrates_model::{AgentId, AgentState, Relation, Trigger};
 
 use super::{Case, STOPPED_MPS, Wrong, check, crossings, longest, off_heading, secs, study, tick};
 
@@ -58,13 +58,19 @@ fn items(case: &Case<'_>) -> Wrong {
     check(&mut wrong, in_time, || format!("S4: out at {first:.1} and {second:.1} s, opened at {opens:.1} s"));
     let gap = second - first;
     check(&mut wrong, (0.5..=5.0).contains(&gap), || format!("S4: one leaves {gap:.2} s after the other"));
-    // S5: the third sees the robot from near, stops, looks, and hardly steps back. The door opens with the robot 4 m
-    // from it, and it comes within 5 m of who stands behind the door a moment later.
+    // S5: the third sees the robot from near, stops, looks, and hardly steps back. It is startled by what it sees
+    // within the distance that its rule tells, at most 5 m.
     let track = case.person(*third);
     let view = 100.0_f64.to_radians();
+    let rules = &case.scenario.made.proposal.human(*third).unwrap().rules;
+    let told = rules.iter().flat_map(|rule| &rule.when).find_map(|trigger| match trigger {
+        Trigger::RobotVisible(m) => Some(*m),
+        _ => None,
+    });
+    let startled_m = told.unwrap_or(5.0).min(5.0);
     let noticed = (tick(opens)..track.len()).find(|k| {
         let (h, r) = (&track[*k], &case.robot[*k]);
-        (h.point() - r.point()).norm() <= 5.0
+        (h.point() - r.point()).norm() <= startled_m
             && off_heading(h, &r.point()) <= view
             && socrates_maps::sight_clear(&case.sight, &h.point(), &r.point(), &case.closed(*k))
     });
