@@ -274,7 +274,8 @@ fn presence(moments: &[f64], there: impl Fn(f64) -> bool) -> Option<Vec<(f64, f6
         }
     }
     spans.extend(since.map(|from| (from, f64::INFINITY)));
-    (spans != [(f64::NEG_INFINITY, f64::INFINITY)]).then_some(spans)
+    let always = spans.iter().any(|(from, to)| from.is_infinite() && to.is_infinite());
+    (!always).then_some(spans)
 }
 
 #[cfg(test)]

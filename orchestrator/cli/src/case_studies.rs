@@ -147,9 +147,9 @@ impl<'a> Case<'a> {
         let open = |id: &str| {
             let changes = self.scenario.run.events.iter().filter(|event| event.time.secs() <= secs(tick) + 1e-9);
             let last = changes
-                .filter_map(|event| match &event.kind {
-                    EventKind::Door { door, open } if door == id => Some(*open),
-                    _ => None,
+                .filter_map(|event| {
+                    let EventKind::Door { door, open } = &event.kind else { return None };
+                    (door == id).then_some(*open)
                 })
                 .next_back();
             let door = self.scenario.prepared.location.door(id).unwrap();
@@ -226,7 +226,7 @@ fn longest(holds: impl Iterator<Item = bool>) -> (usize, usize) {
                 }
                 from = None;
             }
-            _ => {}
+            (true, Some(_)) | (false, None) => {}
         }
     }
     best

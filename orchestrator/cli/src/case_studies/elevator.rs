@@ -63,9 +63,9 @@ fn items(case: &Case<'_>) -> Wrong {
     let track = case.person(*third);
     let view = 100.0_f64.to_radians();
     let rules = &case.scenario.made.proposal.human(*third).unwrap().rules;
-    let told = rules.iter().flat_map(|rule| &rule.when).find_map(|trigger| match trigger {
-        Trigger::RobotVisible(m) => Some(*m),
-        _ => None,
+    let told = rules.iter().flat_map(|rule| &rule.when).find_map(|trigger| {
+        let Trigger::RobotVisible(m) = trigger else { return None };
+        Some(*m)
     });
     let startled_m = told.unwrap_or(5.0).min(5.0);
     let noticed = (tick(opens)..track.len()).find(|k| {

@@ -66,7 +66,7 @@ fn items(case: &Case<'_>) -> Wrong {
         // S5: there together.
         match (there(&case.robot, &junction, 1.5), there(track, &junction, 1.5)) {
             (Some(r), Some(h)) => gaps.push((secs(h) - secs(r)).abs()),
-            _ => wrong.push(format!("S5: not both of {id} and the robot get to {node}")),
+            (None, _) | (_, None) => wrong.push(format!("S5: not both of {id} and the robot get to {node}")),
         }
         let course = |track: &[AgentState]| {
             let k = there(track, &junction, 1.5)?;

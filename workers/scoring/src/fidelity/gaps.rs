@@ -23,7 +23,7 @@ pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
         if let EventKind::Encounter { human, gap_s, .. } = &event.kind
             && gap_s.is_finite()
         {
-            gaps.entry(human.to_string()).or_insert(to_millis(*gap_s));
+            gaps.entry(human.to_string()).or_insert_with(|| to_millis(*gap_s));
         }
     }
     let Some(paths) = signals.evidence.paths else { return gaps };
@@ -37,7 +37,7 @@ pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
             samples.iter().find(|sample| sample.there && (sample.at - at).norm() <= ARRIVED_M).map(|sample| sample.t)
         };
         if let (Some(first), Some(second)) = (arrival(&robot.samples), arrival(&human.samples)) {
-            gaps.entry(encounter.human.to_string()).or_insert(to_millis(second - first));
+            gaps.entry(encounter.human.to_string()).or_insert_with(|| to_millis(second - first));
         }
     }
     gaps
