@@ -26,7 +26,7 @@ fn trail_gaps(robot: &[AgentState], follower: &[AgentState]) -> Vec<(f64, f64, f
             .enumerate()
             .min_by(|(_, a), (_, b)| (a.1 - h.point()).norm().total_cmp(&(b.1 - h.point()).norm()));
         let (index, (at, point)) = near.unwrap();
-        let on = recent.get(index + 10).map_or(r.point(), |(_, point)| *point);
+        let on = recent.get(index + 10).map_or_else(|| r.point(), |(_, point)| *point);
         found.push((now - at, (point - h.point()).norm(), off_heading(h, &on)));
     }
     found
