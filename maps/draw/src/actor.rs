@@ -5,6 +5,7 @@ use socrates_model::{AgentState, EventKind, Gesture, Location, Recording};
 use crate::label::text_width;
 use crate::map_layer::Frame;
 use crate::palette;
+use crate::presence::There;
 use crate::svg::Svg;
 
 /// Above this many agents names would hide the crowd.
@@ -88,11 +89,8 @@ pub(crate) fn draw_everybody(
     now_s: f64,
     look: &Look,
 ) {
-    let states: Vec<AgentState> = moment(recording, now_s)
-        .iter()
-        .filter(|s| s.x.is_finite() && s.y.is_finite() && s.yaw.is_finite())
-        .copied()
-        .collect();
+    let there = There::of(recording);
+    let states: Vec<AgentState> = moment(recording, now_s).iter().filter(|state| there.is(state)).copied().collect();
     let radius = |state: &AgentState| {
         let info = recording.header.agents.iter().find(|info| info.agent == state.agent_id());
         look.radius_px(info.map_or(0.28, |info| info.radius_m))
@@ -128,6 +126,7 @@ fn draw_trail(
 ) {
     let (secs, pieces) = if look.crowd && state.agent != 0 { (TRAIL_SECS / 2.0, 2) } else { (TRAIL_SECS, PIECES) };
     let width = (look.least_px * 0.5).max(2.0);
+    let there = There::of(recording);
     let place = recording.header.agents.iter().position(|info| info.agent == state.agent_id()).unwrap_or(usize::MAX);
     for piece in 0..pieces {
         let part = |index: u8| now_s - secs * (1.0 - f64::from(index) / f64::from(pieces));
@@ -139,8 +138,8 @@ fn draw_trail(
         let mut line = Vec::new();
         let mut t = from.max(0.0);
         loop {
-            let there = moment(recording, t).get(place);
-            line.extend(there.filter(|s| s.x.is_finite() && s.y.is_finite()).map(|s| frame.px(location, &s.point())));
+            let now = moment(recording, t).get(place);
+            line.extend(now.filter(|state| there.is(state)).map(|s| frame.px(location, &s.point())));
             if t >= to {
                 break;
             }

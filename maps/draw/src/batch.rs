@@ -6,6 +6,7 @@ use socrates_model::{ClauseRole, Location, Paths, Proposal, Recording, Report, R
 
 use crate::palette;
 use crate::play::{self, Places};
+use crate::presence::There;
 use crate::template::{self, template};
 
 const TEMPLATE: &str = template!("web/batch.html");
@@ -118,10 +119,11 @@ fn picture(location: &Location, paths: &Paths, recording: &Recording, place: usi
     let frame = play::frame(location);
     let way = location.graph.polyline(&paths.robot);
     let mut tracks: Vec<Value> = Vec::new();
+    let there = There::of(recording);
     for info in recording.header.agents.iter().take(TRACKS) {
         let mut line: Vec<(f64, f64)> = Vec::new();
         let mut last = None;
-        for state in recording.track(info.agent).filter(|state| state.x.is_finite() && state.y.is_finite()) {
+        for state in recording.track(info.agent).filter(|state| there.is(state)) {
             let at = frame.px(location, &state.point());
             if line.last().is_none_or(|before| (before.0 - at.0).hypot(before.1 - at.1) >= STEP) {
                 line.push(at);

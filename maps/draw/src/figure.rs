@@ -8,6 +8,7 @@ use crate::film::camera;
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{draw_doors, draw_floor, wall_areas};
 use crate::palette;
+use crate::presence::There;
 use crate::svg::Svg;
 
 /// Points of a printer in a millimetre.
@@ -157,7 +158,8 @@ struct Mark {
 impl Track<'_> {
     fn line(&self, px: &dyn Fn(f64, f64) -> (f64, f64)) -> Vec<(f64, f64)> {
         let mut line: Vec<(f64, f64)> = Vec::new();
-        for state in self.run.track(self.agent).filter(|state| state.x.is_finite() && state.y.is_finite()) {
+        let there = There::of(self.run);
+        for state in self.run.track(self.agent).filter(|state| there.is(state)) {
             let at = px(state.x, state.y);
             if line.last().is_none_or(|last| (last.0 - at.0).hypot(last.1 - at.1) > 0.7) {
                 line.push(at);
@@ -172,11 +174,12 @@ impl Track<'_> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number of ticks")]
         let ticks = (every / self.run.header.step_s.max(1e-4)).round().max(1.0) as usize;
         let mut marks = Vec::new();
+        let there = There::of(self.run);
         let line = self.line(px);
         let (Some(mut last), Some(end)) = (line.first().copied(), line.last().copied()) else { return marks };
         let near = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0).hypot(a.1 - b.1) < 4.5;
         for (index, state) in self.run.track(self.agent).step_by(ticks).enumerate().skip(1) {
-            if !(state.x.is_finite() && state.y.is_finite()) {
+            if !there.is(state) {
                 continue;
             }
             let at = px(state.x, state.y);
@@ -194,7 +197,8 @@ impl Track<'_> {
     }
 
     fn draw_ends(&self, svg: &mut Svg, px: &dyn Fn(f64, f64) -> (f64, f64), labels: &mut Labels) {
-        let mut track = self.run.track(self.agent).filter(|state| state.x.is_finite() && state.y.is_finite());
+        let there = There::of(self.run);
+        let mut track = self.run.track(self.agent).filter(|state| there.is(state));
         let Some(first) = track.next() else { return };
         let last = track.last().unwrap_or(first);
         let r = if self.named { 2.6 } else { 1.2 };

@@ -7,6 +7,7 @@ use crate::film::{Film, Panel};
 use crate::label::text_width;
 use crate::map_layer::draw_floor;
 use crate::palette;
+use crate::presence::There;
 use crate::svg::Svg;
 
 /// Samples of a way per second of the film; between them it goes straight.
@@ -88,9 +89,12 @@ impl Film<'_> {
             let color = palette::agent(info.agent.number());
             let mut spots: Vec<(f64, f64)> = Vec::new();
             let mut turns: Vec<f64> = Vec::new();
+            let there = There::of(panel.recording);
+            let state_at = |now: f64| moment(panel.recording, now).get(*place).filter(|state| there.is(state));
+            // Before it comes somebody waits, unseen, where it will be.
+            let coming = moments.iter().find_map(|now| state_at(*now));
             for now in &moments {
-                let state = moment(panel.recording, *now).get(*place);
-                let state = state.filter(|s| s.x.is_finite() && s.y.is_finite() && s.yaw.is_finite());
+                let state = state_at(*now).or(if spots.is_empty() { coming } else { None });
                 let spot = state.map(|state| panel.frame.px(panel.location, &state.point()));
                 let turn = state.map(|state| -state.yaw.to_degrees());
                 let before = (spots.last().copied(), turns.last().copied());
@@ -102,6 +106,10 @@ impl Film<'_> {
                 turns.push(last + (turn - last) - 360.0 * ((turn - last) / 360.0).round());
             }
             let (Some(first), Some(turn)) = (spots.first().copied(), turns.first().copied()) else { continue };
+            let seen = presence(&moments, |now| state_at(now).is_some());
+            if let Some(seen) = &seen {
+                svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(seen)));
+            }
             self.animate_trail(svg, &spots, color);
             let r = panel.look.radius_px(info.radius_m);
             let list: Vec<String> = spots.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
@@ -123,6 +131,9 @@ impl Film<'_> {
             }
             self.animate_gestures(svg, panel, *place, r, size);
             svg.raw("</g>");
+            if seen.is_some() {
+                svg.raw("</g>");
+            }
         }
     }
 
@@ -248,6 +259,25 @@ impl Film<'_> {
     }
 }
 
+/// From when to when somebody is there, s; `None` for one who always is. What begins or ends with the film is open.
+fn presence(moments: &[f64], there: impl Fn(f64) -> bool) -> Option<Vec<(f64, f64)>> {
+    let mut spans: Vec<(f64, f64)> = Vec::new();
+    let mut since: Option<f64> = None;
+    for (index, now) in moments.iter().enumerate() {
+        match (there(*now), since) {
+            (true, None) => since = Some(if index == 0 { f64::NEG_INFINITY } else { *now }),
+            (false, Some(from)) => {
+                spans.push((from, *now));
+                since = None;
+            }
+            (true, Some(_)) | (false, None) => {}
+        }
+    }
+    spans.extend(since.map(|from| (from, f64::INFINITY)));
+    let always = spans.iter().any(|(from, to)| from.is_infinite() && to.is_infinite());
+    (!always).then_some(spans)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::film::{Film, FilmOptions};
@@ -266,6 +296,12 @@ mod tests {
         assert!(!film(false).contains("reference") && !film(false).contains(">h3<"));
         assert!(!svg.replace("http://www.w3.org/2000/svg", "").contains("://") && !svg.contains("<script"));
         assert_eq!(svg, film(true));
+        // Who comes later is hidden until then.
+        let late = crate::fixture::away(walk(3), 2, 0..300);
+        let options = FilmOptions { size: (640, 360), fps: 30, labels: true, speed: None };
+        let shown = Film::new(&location, None, &[&late], &[&late], options).unwrap().animated_svg();
+        assert_eq!(shown.matches("<g opacity=\"0\">").count(), svg.matches("<g opacity=\"0\">").count() + 1);
+        assert!(shown.contains("values=\"0;1\""));
         // It is a drawing too: what does not play it shows its beginning.
         crate::png::png_from_svg(&svg, 1.0).unwrap();
     }

@@ -53,6 +53,16 @@ pub(crate) fn recording(ticks: &[&[AgentState]]) -> Recording {
     Recording { header, frames, events: Vec::new() }
 }
 
+/// The recording with a human who is not there for some of its ticks, as the simulation writes it.
+pub(crate) fn away(mut run: Recording, number: u32, ticks: std::ops::Range<u64>) -> Recording {
+    run.header.leaves = vec!["none".to_owned(), "track".to_owned(), "absent".to_owned()];
+    for state in run.frames.iter_mut().filter(|state| state.agent == number) {
+        let leaf = if ticks.contains(&state.tick) { 2 } else { 1 };
+        state.flags = AgentState::flags(AgentId::from_number(number), Gesture::None, leaf);
+    }
+    run
+}
+
 /// The robot goes 6 m along x in 6 s; so many humans come towards it, each on its own line.
 pub(crate) fn walk(humans: u32) -> Recording {
     let ticks: Vec<Vec<AgentState>> = (0..=600)

@@ -26,6 +26,7 @@ mod page_data;
 pub mod palette;
 mod play;
 pub mod png;
+mod presence;
 pub mod run;
 pub mod series;
 pub mod svg;

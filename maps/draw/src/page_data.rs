@@ -31,12 +31,24 @@ fn run_data(location: &Location, way: &[Point], recording: &Recording, report: &
         "verdict_text": report.verdict_text, "robot_text": report.robot_text,
         "events": marks(recording), "clauses": clauses(report), "metrics": report.metrics, "story": report.story,
         "series": series(recording, hz), "simulated": report.simulated_s, "planner": report.planner,
-        "seed": report.seed, "gaps": report.encounter_gaps_s, "success": report.success,
+        "seed": report.seed, "gap": gap_words(report), "gaps": gap_list(report), "success": report.success,
     });
     if let Value::Object(more) = more {
         members.extend(more);
     }
     run
+}
+
+/// The largest gap of all encounters, in the words of the verdict.
+fn gap_words(report: &Report) -> String {
+    let all = report.encounter_gaps_s.values().map(|gap| gap.abs()).max_by(f64::total_cmp);
+    let more = if report.encounter_gaps_s.len() > 1 { " at most" } else { "" };
+    all.map_or_else(|| "none".to_owned(), |gap| format!("{gap:.1} s{more}"))
+}
+
+/// The gap of each encounter; behind the human's name who came later is told by the sign.
+fn gap_list(report: &Report) -> String {
+    report.encounter_gaps_s.iter().map(|(who, gap)| format!("{who} {gap:.1} s")).collect::<Vec<_>>().join(", ")
 }
 
 /// Clauses with their evidence.
@@ -48,6 +60,7 @@ fn clauses(report: &Report) -> Vec<Value> {
             json!({
                 "id": clause.id, "text": clause.text, "setup": clause.role == ClauseRole::Setup, "must": clause.must,
                 "standing": clause.standing, "times": clause.times_s, "evidence": clause.evidence, "source": clause.source,
+                "shift": clause.shift_s,
             })
         })
         .collect()
@@ -82,6 +95,8 @@ fn mark(secs: f64, kind: &EventKind) -> Option<Value> {
             mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
         }
         EventKind::Encounter { human, gap_s, .. } => {
+            // To a millisecond first, as the report has it: else two roundings would tell two figures.
+            let gap_s = ((gap_s * 1e3).round() / 1e3).abs();
             mark(human.number(), "encounter", format!("encounter of {human} and the robot, gap {gap_s:.1} s"))
         }
         EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
@@ -112,6 +127,16 @@ fn spoken(tag: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_gap_is_that_of_the_verdict_text() {
+        let mut report = crate::fixture::report(&crate::fixture::walk(1), "a hall");
+        for (gap, words) in [(2.85, "2.9 s"), (-2.849, "2.8 s"), (0.25, "0.2 s")] {
+            report.encounter_gaps_s = [("human_1".to_owned(), gap)].into();
+            assert_eq!(gap_words(&report), words);
+            assert_eq!(words, format!("{:.1} s", f64::abs(gap)));
+        }
+    }
 
     #[test]
     fn a_leaf_is_told_in_words() {

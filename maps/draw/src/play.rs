@@ -5,6 +5,7 @@ use socrates_model::{EventKind, Location, Point, Recording};
 
 use crate::map_layer::{Frame, draw_floor, draw_graph};
 use crate::palette;
+use crate::presence::There;
 use crate::svg::Svg;
 
 /// Size of a place's drawing units; pages scale them.
@@ -77,13 +78,10 @@ pub(crate) fn focus(location: &Location, way: &[Point], runs: &[&Recording]) -> 
     [place(cells.0, frame.cells.0), place(cells.1, frame.cells.1), place(cells.2, 0), place(cells.3, 0)]
 }
 
-/// Every finite position of a recording.
+/// Every position of a recording at which somebody is.
 pub(crate) fn spread(recording: &Recording) -> impl Iterator<Item = Point> + '_ {
-    recording
-        .frames
-        .iter()
-        .map(socrates_model::AgentState::point)
-        .filter(|point| point.x.is_finite() && point.y.is_finite())
+    let there = There::of(recording);
+    recording.frames.iter().filter(move |state| there.is(state)).map(socrates_model::AgentState::point)
 }
 
 /// The finest rate at which these recordings together stay small enough for a page, Hz.
@@ -103,10 +101,11 @@ pub(crate) fn ticks_per_sample(recording: &Recording, hz: u32) -> usize {
 }
 
 /// A recording as the player plays it. Tracks are flat lists of x, y (tenths of a drawing unit), heading (hundredths of
-/// a radian) and gesture code.
+/// a radian) and gesture code, -1 while the agent is not there.
 pub(crate) fn run(location: &Location, way: &[Point], recording: &Recording, hz: u32) -> Value {
     let frame = frame(location);
     let every = ticks_per_sample(recording, hz);
+    let there = There::of(recording);
     let agents: Vec<Value> = recording
         .header
         .agents
@@ -115,8 +114,9 @@ pub(crate) fn run(location: &Location, way: &[Point], recording: &Recording, hz:
             let mut track: Vec<i64> = Vec::new();
             let mut last = [0_i64; 4];
             for state in recording.track(info.agent).step_by(every) {
-                // A sample that is not finite repeats the one before it: nobody jumps to a corner.
-                if state.x.is_finite() && state.y.is_finite() && state.yaw.is_finite() {
+                // Who is not there stays where it was, out of sight: nobody jumps to a corner.
+                last[3] = -1;
+                if there.is(state) {
                     let (x, y) = frame.px(location, &state.point());
                     last =
                         [whole(x * 10.0), whole(y * 10.0), whole(state.yaw * 100.0), i64::from(state.gesture().code())];
@@ -167,7 +167,7 @@ mod tests {
     use crate::fixture::{hall, human, recording, robot, walk};
 
     #[test]
-    fn a_sample_that_is_not_finite_repeats_the_one_before() {
+    fn a_sample_that_is_not_finite_repeats_the_one_before_out_of_sight() {
         let run_of = |x: f64| {
             let tick = [robot(1.0, 1.0, 0.0, 0.0)];
             let odd = [robot(x, 1.0, 0.0, 0.0)];
@@ -176,7 +176,7 @@ mod tests {
             run(&hall("hall"), &[], &recording(&ticks), 10)["agents"][0]["track"].clone()
         };
         let track = run_of(f64::NAN);
-        assert_eq!(track[0], track[4]);
+        assert_eq!((&track[0], track[3].as_i64(), track[7].as_i64()), (&track[4], Some(0), Some(-1)));
         assert_ne!(run_of(2.0)[0], run_of(2.0)[4]);
     }
 

@@ -5,6 +5,7 @@ use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Repo
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
 use crate::palette;
+use crate::presence::There;
 use crate::svg::Svg;
 
 /// Seconds between two time marks on a track.
@@ -25,11 +26,12 @@ pub fn run_picture(
     title: &str,
 ) -> String {
     let way = paths.map(|paths| location.graph.polyline(&paths.robot)).unwrap_or_default();
+    let there = There::of(recording);
     let seen: Vec<Point> = recording
         .header
         .agents
         .iter()
-        .flat_map(|info| recording.track(info.agent).map(|state| state.point()))
+        .flat_map(|info| recording.track(info.agent).filter(|state| there.is(state)).map(|state| state.point()))
         .chain(way.iter().copied())
         .collect();
     let head = 118.0;
@@ -71,7 +73,7 @@ pub fn run_picture(
     draw_encounters(&mut svg, location, recording, &frame, &mut labels);
     // Names come last: by now it is known what they must not hide.
     for agent in &agents {
-        if let Some(first) = recording.track(*agent).next() {
+        if let Some(first) = recording.track(*agent).find(|state| there.is(state)) {
             let gap = radius_px(location, recording, &frame, *agent) + 3.0;
             let color = palette::agent_words(agent.number());
             label(&mut svg, &mut labels, frame.px(location, &first.point()), &agent.to_string(), color, gap);
@@ -138,7 +140,8 @@ fn draw_track(
     let mut marks: Vec<((f64, f64), f64)> = Vec::new();
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive constant")]
     let mark_ticks = (MARK_SECS / recording.header.step_s.max(1e-3)).round() as usize;
-    for (tick, state) in recording.track(agent).enumerate() {
+    let there = There::of(recording);
+    for (tick, state) in recording.track(agent).enumerate().filter(|(_, state)| there.is(state)) {
         let at = frame.px(location, &state.point());
         let moved = line.last().is_none_or(|last: &(f64, f64)| (last.0 - at.0).hypot(last.1 - at.1) > 1.0);
         if moved {
@@ -178,7 +181,8 @@ fn draw_ends(
 ) {
     let color = palette::agent(agent.number());
     let radius = radius_px(location, recording, frame, agent);
-    let mut track = recording.track(agent);
+    let there = There::of(recording);
+    let mut track = recording.track(agent).filter(|state| there.is(state));
     let Some(first) = track.next() else { return };
     let last = track.last().unwrap_or(first);
     let (start, end) = (frame.px(location, &first.point()), frame.px(location, &last.point()));

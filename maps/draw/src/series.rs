@@ -2,6 +2,8 @@
 
 use socrates_model::{AgentState, Recording};
 
+use crate::presence::There;
+
 /// Quantities of one run at fixed steps. `None`: there is nothing to measure at that moment.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Curves {
@@ -21,6 +23,7 @@ pub struct Curves {
 #[must_use]
 pub fn curves(recording: &Recording, every: usize) -> Curves {
     let mut curves = Curves::default();
+    let there = There::of(recording);
     let radius: Vec<f64> = recording.header.agents.iter().map(|info| info.radius_m).collect();
     for tick in (0..recording.ticks()).step_by(every.max(1)) {
         let states = recording.tick(tick);
@@ -28,7 +31,7 @@ pub fn curves(recording: &Recording, every: usize) -> Curves {
         let mut near: Option<(f64, u32)> = None;
         let mut soon: Option<(f64, u32)> = None;
         if let Some((robot, robot_radius)) = robot {
-            for (human, human_radius) in states.iter().zip(&radius).filter(|(state, _)| state.agent != 0) {
+            for (human, human_radius) in states.iter().zip(&radius).filter(|(s, _)| s.agent != 0 && there.is(s)) {
                 let radii = robot_radius + human_radius;
                 let gap = (human.x - robot.x).hypot(human.y - robot.y) - radii;
                 if gap.is_finite() && near.is_none_or(|(least, _)| gap < least) {

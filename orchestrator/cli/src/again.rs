@@ -1,5 +1,7 @@
 //! `simulate` and `score`: a bundle again, or tracks of one's own.
 
+mod lines;
+
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
@@ -8,7 +10,6 @@ use socrates_scoring::Evidence;
 
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
-use crate::files;
 use crate::play::{self, Made};
 use crate::prepare::load_location;
 use crate::talk::Talk;
@@ -94,13 +95,14 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
             "name a bundle folder, a CSV or an MCAP file",
         )
     })?;
-    let bad = |why: String| {
-        Complaint::input(
-            format!("`{}`: {why}", what.display()),
-            "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …",
-        )
+    let mcap = bytes.starts_with(b"\x89MCAP");
+    let hint = if mcap {
+        "the file is damaged or was cut off: copy it again, or make the run again with `socrates simulate BUNDLE --out FOLDER`"
+    } else {
+        "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …"
     };
-    let recording = if bytes.starts_with(b"\x89MCAP") {
+    let bad = |why: String| Complaint::input(format!("`{}`: {why}", what.display()), hint);
+    let recording = if mcap {
         socrates_stream::mcap::read(&bytes).map_err(|why| bad(why.to_string()))?
     } else {
         let text = std::str::from_utf8(&bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
@@ -110,9 +112,18 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
     for doubt in socrates_scoring::doubts(&recording, location.as_ref()) {
         talk.warn(&doubt);
     }
-    if let Some((agent, from, length)) = hole(&bytes) {
-        talk.warn(&format!("`{agent}` has no line for {length:.1} s from {from:.1} s on: taken as a straight line"));
+    if !mcap {
+        for doubt in lines::doubts(&bytes)? {
+            talk.warn(&doubt);
+        }
     }
+    let unreadable = |why: String| {
+        Complaint::input(
+            format!("`{}`: {why}", what.display()),
+            "a recording has at least two moments, finite numbers, rising times and one track for each agent",
+        )
+    };
+    socrates_scoring::Tracks::read(&recording).map_err(|why| unreadable(why.to_string()))?;
     let report = socrates_scoring::score(&Evidence { location: location.as_ref(), ..Evidence::of(&recording) });
     for metric in &report.metrics {
         let value = metric
@@ -123,32 +134,6 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
     talk.line(&format!("verdict    {} · {}", report.verdict, report.verdict_text));
     talk.result(&json!({ "verdict": report.verdict, "metrics": values(&report), "recording_hash": recording.hash() }));
     Ok(())
-}
-
-/// The longest hole between two lines of one agent in a CSV of tracks, if it is longer than a second: reading brings
-/// tracks to an even step and fills holes with straight lines.
-fn hole(bytes: &[u8]) -> Option<(String, f64, f64)> {
-    let text = std::str::from_utf8(bytes).ok().filter(|_| !bytes.starts_with(b"\x89MCAP"))?;
-    let mut lines = text.trim_start_matches('\u{feff}').lines().filter(|line| !line.trim().is_empty());
-    let head = files::cells(&lines.next()?.to_lowercase());
-    let (t, id) = (head.iter().position(|name| name == "t")?, head.iter().position(|name| name == "id")?);
-    let mut times: std::collections::BTreeMap<String, Vec<f64>> = std::collections::BTreeMap::new();
-    for line in lines {
-        let cells = files::cells(line);
-        if let (Some(Ok(t)), Some(id)) = (cells.get(t).map(|text| text.parse::<f64>()), cells.get(id)) {
-            times.entry(id.clone()).or_default().push(t);
-        }
-    }
-    let mut longest: Option<(String, f64, f64)> = None;
-    for (id, mut times) in times {
-        times.sort_by(f64::total_cmp);
-        for (a, b) in times.iter().zip(times.iter().skip(1)) {
-            if b - a > 1.0 && longest.as_ref().is_none_or(|(.., length)| b - a > *length) {
-                longest = Some((id.clone(), *a, b - a));
-            }
-        }
-    }
-    longest
 }
 
 fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
@@ -202,17 +187,4 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
 /// Metric values by id.
 pub(crate) fn values(report: &socrates_model::Report) -> serde_json::Value {
     serde_json::Value::Object(report.metrics.iter().map(|metric| (metric.id.clone(), json!(metric.value))).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_hole_in_somebodys_tracks_is_found() {
-        let csv = "t,id,x,y\n0,robot,0,0\n0.5,robot,1,0\n1,robot,1,0\n0,human_1,5,0\n4.5,human_1,5,1\n";
-        assert_eq!(hole(csv.as_bytes()), Some(("human_1".to_owned(), 0.0, 4.5)));
-        assert_eq!(hole(b"t,id,x,y\n0,robot,0,0\n0.5,robot,1,0\n"), None);
-        assert_eq!(hole(b"\x89MCAP0\r\n"), None);
-    }
 }

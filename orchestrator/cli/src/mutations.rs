@@ -27,8 +27,10 @@ const MOVED_M: f64 = 6.0;
 
 /// The change that puts an encounter elsewhere.
 const MOVED: &str = "encounter moved";
-/// Two meetings at one time nearer to each other than this are one, m.
+/// Two meetings nearer to each other than this are one, m.
 const SAME_M: f64 = 3.0;
+/// The same for their times, s.
+const SAME_SECS: f64 = 2.0;
 
 /// A request with its artifacts, its run with the reference robot, and what the judge says of it.
 pub(crate) struct Scenario {
@@ -242,8 +244,8 @@ pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
     }
 }
 
-/// Whether a human is where it was, and the robot too, when they were nearest in the first run. `about` begins with
-/// the human's id.
+/// Whether a human and the robot are once both where they were when they were nearest in the first run, at about that
+/// time. `about` begins with the human's id.
 fn same_meeting(first: &Recording, second: &Recording, about: &str) -> bool {
     let human = first
         .header
@@ -257,10 +259,14 @@ fn same_meeting(first: &Recording, second: &Recording, about: &str) -> bool {
             (a.point() - b.point()).norm().total_cmp(&(c.point() - d.point()).norm())
         });
     let Some((tick, (person, robot))) = nearest else { return false };
-    let near = |agent: AgentId, at: socrates_model::Point| {
-        second.track(agent).nth(tick).is_some_and(|state| (state.point() - at).norm() <= SAME_M)
+    let step = second.header.step_s.max(1e-3);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number of ticks")]
+    let slack = (SAME_SECS / step).round() as usize;
+    let (from, count) = (tick.saturating_sub(slack), 2 * slack + 1);
+    let near = |agent: AgentId, at: socrates_model::Point| -> Vec<bool> {
+        second.track(agent).skip(from).take(count).map(|state| (state.point() - at).norm() <= SAME_M).collect()
     };
-    near(human, person.point()) && near(AgentId::Robot, robot.point())
+    near(human, person.point()).into_iter().zip(near(AgentId::Robot, robot.point())).any(|(a, b)| a && b)
 }
 
 fn musts(proposal: &Proposal) -> impl Iterator<Item = &Clause> {

@@ -3,7 +3,7 @@
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, ClauseRole, EventKind, Gesture};
 
-use crate::fidelity::{Judged, Signals, does};
+use crate::fidelity::{Judged, Signals, does, to_millis};
 use crate::metrics::Scene;
 use crate::tracks::MOVING_MPS;
 
@@ -57,7 +57,7 @@ fn told(kind: &EventKind) -> Option<String> {
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
         EventKind::Encounter { human, node, gap_s } => {
-            format!("{human} and the robot meet at {node}, gap {:.1} s", gap_s.abs())
+            format!("{human} and the robot meet at {node}, gap {:.1} s", to_millis(*gap_s).abs())
         }
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
         EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {:.0} mm deep", depth_m * 1e3),

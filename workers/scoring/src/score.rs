@@ -57,7 +57,7 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
     report.verdict = ruling.verdict;
     report.verdict_text = ruling.text;
     report.score = ruling.score;
-    report.encounter_gaps_s = gaps.into_iter().map(|(human, gap)| (human, (gap * 1e3).round() / 1e3)).collect();
+    report.encounter_gaps_s = gaps;
     report.simulated_s = (tracks.end_s() * 1e3).round() / 1e3;
     report
 }

@@ -144,6 +144,21 @@ mod tests {
     }
 
     #[tokio::test]
+    async fn a_twin_among_the_inputs_tells_what_the_robot_costs_people() {
+        let walks = || Walk::human(1, 9., 1., -1., 0.);
+        let run = recording(&[Walk::robot(0., 0., 0.5, 0.), walks()], 8.0, 0.01);
+        let bytes = |run: &socrates_model::Recording| socrates_stream::mcap::write(run, None).unwrap();
+        let inputs = [("recording", bytes(&run)), ("twin", bytes(&recording(&[walks()], 8.0, 0.01)))];
+        let inputs = inputs.map(|(role, bytes)| (role.to_owned(), bytes)).into();
+        let done = ScoringStage.run(&job(inputs)).await.unwrap();
+        let report: Report = serde_json::from_slice(&done.artifacts[0].bytes).unwrap();
+        let of = |id: &str| report.metrics.iter().find(|metric| metric.id == id).unwrap().value;
+        assert_eq!((of("people_deviation"), of("flow_delay_mean")), (Some(0.0), Some(0.0)));
+        // The person walks past just as near where the robot had stopped: not the robot's doing.
+        assert_eq!(of("blame_counterfactual"), Some(0.0));
+    }
+
+    #[tokio::test]
     async fn bytes_that_are_no_recording_are_poison_with_a_reason() {
         let failure = ScoringStage.run(&job([("recording".to_owned(), vec![1, 2, 3])].into())).await.unwrap_err();
         assert_eq!(failure.class, FailureClass::Poison);

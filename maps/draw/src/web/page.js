@@ -59,8 +59,8 @@
     [...at("runs").querySelectorAll("tbody tr")].forEach((row, i) => row.setAttribute("aria-current", String(i === index)));
     at("verdict").textContent = plain(run.verdict);
     at("verdict").className = "verdict" + (hold(run) ? " good" : "");
-    at("gap").textContent = gap(run);
-    at("gap").title = Object.entries(run.gaps).map(([who, s]) => who + " " + secs(s)).join(", ");
+    at("gap").textContent = run.gap;
+    at("gap").title = run.gaps;
     at("robot").textContent = run.planner === "none" ? "no robot" : run.success ? "arrived, no collision" : "no success";
     at("planner").textContent = run.planner; at("seed").textContent = run.seed; at("simulated").textContent = secs(run.simulated);
     at("verdict-text").textContent = run.verdict_text;
@@ -84,10 +84,6 @@
     clock.end = Math.max(seconds(run), other ? seconds(other) : 0);
     at("time").max = clock.end;
     pace();
-  }
-  function gap(r) {
-    const all = Object.values(r.gaps).map(Math.abs);
-    return all.length ? secs(Math.max(...all)) + (all.length > 1 ? " at most" : "") : "none";
   }
 
   function lay() {
@@ -279,7 +275,8 @@
         if (state) word("span", state, item, "tag state");
         if (!c.must) word("span", "optional", item, "tag");
         for (const t of times(c)) timeButton(t, item);
-        const proof = words("small", c.evidence, item);
+        const spare = c.shift === null || c.shift === undefined ? "" : c.shift < 0 ? ` · ${secs(-c.shift)} too much` : ` · ${secs(c.shift)} to spare`;
+        const proof = words("small", c.evidence + spare, item);
         word("code", c.id, proof, "id");
       }
       if (!clauses.length) { const none = word("li", "nothing to judge", list, "na"); word("b", "–", none); }
@@ -334,7 +331,7 @@
       b.type = "button";
       b.addEventListener("click", () => { clock.play(false); choose(i); });
       word("td", plain(r.verdict), row, hold(r) ? "" : "bad");
-      for (const text of [gap(r), r.planner === "none" ? "–" : r.success ? "yes" : "no", of("time_to_goal"), of("human_distance_min")]) word("td", text, row);
+      for (const text of [r.gap, r.planner === "none" ? "–" : r.success ? "yes" : "no", of("time_to_goal"), of("human_distance_min")]) word("td", text, row);
       word("option", r.name, beside).value = String(i);
     });
     const many = data.runs.length > 1;

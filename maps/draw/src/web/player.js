@@ -28,12 +28,15 @@ const player = (() => {
     return node;
   };
   const seconds = (run) => Math.max(0, ...run.agents.map((a) => a.track.length / 4 - 1)) / run.hz;
-  // Where somebody is between two samples: x, y, heading, gesture. Tracks are x y in tenths, heading in hundredths.
+  // Where somebody is between two samples: x, y, heading, gesture; null who is not there. Tracks are x y in tenths, heading in hundredths.
   function state(track, at) {
     const n = track.length / 4;
     if (!n) return null;
     const i = Math.max(0, Math.min(Math.floor(at + 1e-6), n - 1)), j = Math.min(i + 1, n - 1), u = Math.max(0, Math.min(at - i, 1));
     const a = i * 4, b = j * 4;
+    // Who comes or goes is there or not: nothing is in between.
+    if (track[a + 3] < 0) return null;
+    if (track[b + 3] < 0) return [track[a] / 10, track[a + 1] / 10, track[a + 2] / 100, track[a + 3]];
     let turn = (track[b + 2] - track[a + 2]) / 100;
     turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
     return [(track[a] + (track[b] - track[a]) * u) / 10, (track[a + 1] + (track[b + 1] - track[a + 1]) * u) / 10, track[a + 2] / 100 + turn * u, track[a + 3]];
@@ -100,7 +103,8 @@ const player = (() => {
       const hz = this.run.hz, at = now * hz, k = this.k, places = this.shapes.map((s) => state(s.agent.track, at));
       this.shapes.forEach((s, index) => {
         const track = s.agent.track, p = places[index];
-        if (!p) return;
+        s.group.setAttribute("visibility", p ? "visible" : "hidden");
+        if (!p) { s.trail.setAttribute("points", ""); return; }
         const [x, y, yaw, code] = p, r = s.agent.radius * s.grow, said = SAYS[code] || "";
         s.group.setAttribute("transform", `translate(${x} ${y})`);
         s.turned.setAttribute("transform", `rotate(${-yaw * 180 / Math.PI}) scale(${s.grow})`);
@@ -120,7 +124,7 @@ const player = (() => {
         const last = Math.min(Math.floor(at + 1e-6), track.length / 4 - 1);
         const first = this.crowd && s.agent.number !== 0 ? Math.max(0, last - Math.round(TRAIL_SECS * hz)) : 0;
         let points = "";
-        for (let i = first; i <= last; i++) points += track[i * 4] / 10 + "," + track[i * 4 + 1] / 10 + " ";
+        for (let i = first; i <= last; i++) points = track[i * 4 + 3] < 0 ? "" : points + track[i * 4] / 10 + "," + track[i * 4 + 1] / 10 + " ";
         s.trail.setAttribute("points", points + x + "," + y);
       });
       for (const d of this.doors) {

@@ -7,6 +7,7 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::gaps;
 use crate::fidelity::leaves::does;
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
+use crate::fidelity::reactions::said_after;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::windows::{Mark, held, stretches};
 use crate::tracks::MOVING_MPS;
@@ -21,6 +22,8 @@ const IN_WAY_M: f64 = 0.6;
 const LOOK_REACH_M: f64 = 10.0;
 /// Distance within which a gesture can be noticed, m.
 const GESTURE_M: f64 = 8.0;
+/// A gesture with a reason comes so long after it at most, s.
+const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
 const ASIDE_M: f64 = 0.7;
 /// Speed away from the robot that is running from it, m/s.
@@ -204,7 +207,18 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
         Some((distance, t)) => {
             let text =
                 format!("{agent} says {gesture} at {t:.1} s, listener {distance:.1} m away (at most {GESTURE_M:.0} m)");
-            Finding::by_margin(GESTURE_M - distance, vec![t], text)
+            let near = Finding::by_margin(GESTURE_M - distance, vec![t], text.clone());
+            // What is said for a reason is said when there is the reason.
+            match agent {
+                AgentId::Human(id) if near.margin >= 0.0 => match said_after(signals, id, gesture, t) {
+                    Some(delay) if delay > SAID_SECS => {
+                        timely(delay, SAID_SECS, vec![t], format!("{text}, {delay:.1} s after its reason"))
+                    }
+                    Some(delay) => near.shifted(SAID_SECS - delay),
+                    None => near,
+                },
+                AgentId::Human(_) | AgentId::Robot => near,
+            }
         }
         None => Finding::never(-1.0, vec![], format!("{agent} never says {gesture}")),
     }

@@ -33,5 +33,5 @@ pub use robot::{GOAL_M, goal as robot_goal};
 pub use signals::{Moment, Signals};
 pub use verdict::{Ruling, rule};
 
-pub(crate) use gaps::encounter_gaps;
+pub(crate) use gaps::{encounter_gaps, to_millis};
 pub(crate) use leaves::does;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use socrates_model::{Action, AgentId, HumanId, Trigger};
+use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::{seen, timely};
 use crate::fidelity::finding::Finding;
@@ -152,6 +152,18 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
         return Finding::late(within_s - delay, times, format!("{text}, when the trigger came again"));
     }
     timely(delay, within_s, times, text)
+}
+
+/// How long after the reason for it a gesture is made, s: after the last rise of the triggers of a rule with this
+/// gesture up to then, no sooner than earlier rules end. `None` where no rule asks for it or no reason is seen.
+pub(super) fn said_after(signals: &Signals<'_>, human: HumanId, gesture: Gesture, said_s: f64) -> Option<f64> {
+    let rules = &signals.evidence.proposal?.human(human)?.rules;
+    let delay = |rule: &Rule| {
+        let rise =
+            rises(&marks(signals, human, &rule.when, EARLY_M)).into_iter().rfind(|t| *t <= said_s + EARLY_SECS)?;
+        Some((said_s - busy_until(signals, human, &rule.act, rise)).max(0.0))
+    };
+    rules.iter().filter(|rule| rule.gesture == Some(gesture)).filter_map(delay).min_by(f64::total_cmp)
 }
 
 /// Whether another rule with the same action had a reason at the time.

@@ -43,7 +43,7 @@ fn place(track: &Track, t: f64) -> Option<Point> {
         return Some(sample.at);
     }
     let (first, last) = (track.present().next()?, track.present().next_back()?);
-    (t >= last.t).then_some(last.at).or((t <= first.t).then_some(first.at))
+    (t >= last.t).then_some(last.at).or_else(|| (t <= first.t).then_some(first.at))
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

@@ -1,0 +1,138 @@
+//! C: one follows the robot, another obstructs it.
+
+use socrates_model::{AgentState, Point, Relation, Vector};
+
+use super::{Case, STOPPED_MPS, Wrong, check, longest, off_heading, secs, study};
+
+/// At every tick where the follower is on the way that the robot has come: gap along it, distance from it, and the
+/// angle between its heading and the way on towards the robot.
+fn trail_gaps(robot: &[AgentState], follower: &[AgentState]) -> Vec<(f64, f64, f64)> {
+    let first = robot[0].point();
+    let back = Vector::new(robot[0].yaw.cos(), robot[0].yaw.sin());
+    // The way straight back from its start comes first.
+    let mut trail: Vec<(f64, Point)> =
+        (1..=60).rev().map(|k| (-0.1 * f64::from(k), first - back * (0.1 * f64::from(k)))).collect();
+    trail.push((0.0, first));
+    let mut found = Vec::new();
+    for (r, h) in robot.iter().zip(follower) {
+        let (arc, last) = trail[trail.len() - 1];
+        let now = arc + (r.point() - last).norm();
+        if now - arc >= 0.1 {
+            trail.push((now, r.point()));
+        }
+        let recent = &trail[trail.len().saturating_sub(80)..];
+        let near = recent
+            .iter()
+            .enumerate()
+            .min_by(|(_, a), (_, b)| (a.1 - h.point()).norm().total_cmp(&(b.1 - h.point()).norm()));
+        let (index, (at, point)) = near.unwrap();
+        let on = recent.get(index + 10).map_or_else(|| r.point(), |(_, point)| *point);
+        found.push((now - at, (point - h.point()).norm(), off_heading(h, &on)));
+    }
+    found
+}
+
+fn items(case: &Case<'_>) -> Wrong {
+    let mut wrong = Wrong::new();
+    let behind = case.of_relation(Relation::Behind);
+    let Some(follower) = behind.first() else { return vec!["S2: nobody is behind the robot".to_owned()] };
+    let (robot, track) = (&case.robot, case.person(*follower));
+    // S1: the robot's way is along corridors or passages for 10 m.
+    let place = &case.scenario.prepared.location;
+    let ways = case.scenario.made.paths.robot.windows(2).filter_map(|pair| {
+        let edge = place
+            .graph
+            .edges
+            .iter()
+            .find(|e| [&e.from, &e.to] == [&pair[0], &pair[1]] || [&e.from, &e.to] == [&pair[1], &pair[0]])?;
+        let kind = edge.kind.to_lowercase();
+        (kind.contains("corridor") || kind.contains("passage") || kind.contains("hall"))
+            .then(|| (case.node(&pair[1]) - case.node(&pair[0])).norm())
+    });
+    let corridor: f64 = ways.sum();
+    check(&mut wrong, corridor >= 10.0, || format!("S1: {corridor:.1} m of the robot's way are corridor"));
+    // S2: it starts behind; then a gap of 0.6 to 3 m, behind, the same way, for eight seconds and most of the motion.
+    let ahead = |k: usize| {
+        let line = track[k].point() - robot[k].point();
+        line.x * robot[k].yaw.cos() + line.y * robot[k].yaw.sin()
+    };
+    let near = (0..track.len()).find(|k| (track[*k].point() - robot[*k].point()).norm() <= 5.0);
+    check(&mut wrong, near.is_some() && ahead(0) < 0.0, || {
+        format!("S2: starts {:.1} m ahead, near {near:?}", ahead(0))
+    });
+    let gaps = trail_gaps(robot, track);
+    let follows = |k: usize| {
+        let (gap, off, turned) = gaps[k];
+        (0.6..=3.0).contains(&gap) && off <= 1.0 && turned <= 45.0_f64.to_radians()
+    };
+    // Who stands behind one that dodges looks about for a moment.
+    let about = |k: usize| (k.saturating_sub(50)..(k + 50).min(track.len())).filter(|k| follows(*k)).count() >= 50;
+    let (from, length) = longest((0..track.len()).map(about));
+    check(&mut wrong, secs(length) >= 8.0, || {
+        format!("S2: follows for {:.1} s from {:.1} s", secs(length), secs(from))
+    });
+    let moving: Vec<usize> = (0..robot.len()).filter(|k| robot[*k].speed() > STOPPED_MPS).collect();
+    let share = moving.iter().filter(|k| follows(**k)).count() as f64 / moving.len().max(1) as f64;
+    check(&mut wrong, share >= 0.6, || format!("S2: follows for {:.0} % of the robot's motion", share * 100.0));
+    // S3: it stops behind a robot that stops.
+    let mut still = 0;
+    for k in 0..robot.len() {
+        still = if robot[k].speed() < STOPPED_MPS && k > from { still + 1 } else { 0 };
+        if still == 400 && k < from + length {
+            let gap = (track[k].point() - robot[k].point()).norm();
+            check(&mut wrong, track[k].speed() < 0.3, || {
+                format!("S3: at {:.1} m/s behind a robot that stands", track[k].speed())
+            });
+            check(&mut wrong, gap >= 0.5, || format!("S3: {gap:.2} m behind a robot that stands"));
+        }
+    }
+    // S4: somebody else ahead in the way for three seconds.
+    let mut blocked = Vec::new();
+    for id in case.people.keys().filter(|id| *id != follower) {
+        let other = case.person(*id);
+        let first = (0..other.len()).find(|k| (other[*k].point() - robot[*k].point()).norm() <= 4.0);
+        let (begun, lasts) = longest((0..other.len()).map(|k| {
+            let at = other[k].point();
+            (at - robot[k].point()).norm() <= 2.5 && case.on_way(&at).1 < 0.6
+        }));
+        blocked.push((
+            secs(lasts),
+            secs(begun),
+            *id,
+            first.map(|k| off_heading(&robot[k], &other[k].point()).to_degrees()),
+        ));
+    }
+    blocked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let Some((lasts, begun, id, angle)) = blocked.first() else {
+        wrong.push("S4: there is nobody else".to_owned());
+        return wrong;
+    };
+    check(&mut wrong, *lasts >= 3.0, || format!("S4: {id} is in the way for {lasts:.1} s"));
+    check(&mut wrong, angle.is_some_and(|angle| angle <= 30.0), || {
+        format!("S4: {id} first comes near at {angle:?} degrees")
+    });
+    // S6: following for three seconds before, and both together for two.
+    let first = (*begun / super::TICK_SECS) as usize;
+    let (_, before) = longest((0..first).map(about));
+    check(&mut wrong, secs(before) >= 3.0, || {
+        format!("S6: follows for {:.1} s before {id} is in the way", secs(before))
+    });
+    let together = (first..first + (*lasts / super::TICK_SECS) as usize).filter(|k| about(*k)).count();
+    check(&mut wrong, secs(together) >= 2.0, || format!("S6: both together for {:.1} s", secs(together)));
+    // S7: the way opens within 30 s, and the robot arrives.
+    check(&mut wrong, *lasts <= 30.0, || format!("S7: in the way for {lasts:.1} s"));
+    check(&mut wrong, case.arrival().is_some(), || "S7: the robot never arrives".to_owned());
+    wrong
+}
+
+#[tokio::test]
+async fn in_the_corridor_one_follows_and_one_obstructs() {
+    let kinds = [
+        "N: follower ahead",
+        "N: follower beside",
+        "N: gap over 5 m",
+        "N: obstruction of 0.5 s",
+        "N: beside the way all the time",
+    ];
+    study("corridor", items, &kinds).await;
+}
