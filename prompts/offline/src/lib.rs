@@ -37,6 +37,12 @@ mod place;
 mod proposal;
 mod prose;
 
+mod edit;
+mod edit_paths;
+mod edit_people;
+mod edit_settle;
+mod edit_wish;
+
 mod answer;
 mod draw;
 mod humans;
@@ -50,6 +56,7 @@ use socrates_model::{Location, Reading, Request};
 
 pub use answer::Offline;
 pub use card::{Card, catalog};
+pub use edit::{Draft, Edited, edit};
 pub use summary::summary;
 
 /// Name of this author, as artifacts spell it.

@@ -49,7 +49,11 @@ struct Thread {
 
 /// Reads the text.
 pub(crate) fn read(text: &str) -> Story {
-    let mut story = Story::default();
+    read_on(Story::default(), sentences(text), text)
+}
+
+/// Reads sentences of a text about people of whom was spoken before.
+pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str) -> Story {
     let mut thread = Thread {
         subject: Subject::Nobody,
         pending: Vec::new(),
@@ -60,7 +64,7 @@ pub(crate) fn read(text: &str) -> Story {
         doer: None,
         led: None,
     };
-    for mut sentence in sentences(text) {
+    for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
         thread.made.clear();
         thread.pending.clear();
