@@ -131,7 +131,8 @@ impl Cast {
             }
             Who::AllOf(n) => {
                 let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
-                let fitting = |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                let fitting =
+                    |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
                 let sets = [self.last.clone(), self.latest()];
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
@@ -234,7 +235,12 @@ impl Cast {
     /// Takes `a nurse and two visitors` as one set.
     pub(crate) fn together(&mut self, members: &[usize], quote: &str) {
         if members.len() > 1 && !self.sets.iter().any(|set| set.members == members) {
-            self.sets.push(Together { members: members.to_vec(), total: false, quote: quote.to_owned(), counted: Vec::new() });
+            self.sets.push(Together {
+                members: members.to_vec(),
+                total: false,
+                quote: quote.to_owned(),
+                counted: Vec::new(),
+            });
         }
     }
 

@@ -148,7 +148,11 @@ fn measures(stretch: &mut Stretch, found: &mut Found) {
     }
     if let Some((at, secs)) = span(stretch) {
         let before = at.checked_sub(1).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
-        if before == "after" { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
+        if before == "after" {
+            found.after_s = Some(secs)
+        } else {
+            found.lasts_s = Some(secs)
+        }
         let to = (at..stretch.words.len()).find(|i| unit_s(stretch, *i).is_some()).unwrap_or(at);
         mark(stretch, at, to);
     }
@@ -185,8 +189,18 @@ fn span(stretch: &Stretch) -> Option<(usize, f64)> {
         }
         let long = matches!(text(start + 1), "short" | "brief" | "little" | "long" | "full");
         // `the second nurse` and `a second one` count nothing.
-        let unit = unit_s(stretch, start + 1 + usize::from(long)).filter(|_| half || text(start + 1 + usize::from(long)) != "second")?;
-        Some((at, unit * if half { 0.5 } else if text(start + 1) == "long" { 3.0 } else { 1.0 }))
+        let unit = unit_s(stretch, start + 1 + usize::from(long))
+            .filter(|_| half || text(start + 1 + usize::from(long)) != "second")?;
+        Some((
+            at,
+            unit * if half {
+                0.5
+            } else if text(start + 1) == "long" {
+                3.0
+            } else {
+                1.0
+            },
+        ))
     })
 }
 
@@ -205,7 +219,9 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
             if at.len() == 1
                 && phrase.means == PlaceClass::Room
-                && made.is_some_and(|word| matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give"))
+                && made.is_some_and(|word| {
+                    matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give")
+                })
             {
                 continue;
             }
@@ -246,10 +262,13 @@ fn gesture(stretch: &mut Stretch, found: &mut Found) {
     }
     // `waves it on`, `beckons the robot through`, `motions it back`.
     if stretch.words.get(first).is_some_and(|word| matches!(word.stem.as_str(), "wave" | "beckon" | "motion")) {
-        let robot = |word: &crate::words::Word| word.stem == "robot" || matches!(word.text.as_str(), "the" | "at" | "to");
+        let robot =
+            |word: &crate::words::Word| word.stem == "robot" || matches!(word.text.as_str(), "the" | "at" | "to");
         let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)));
         let says = next.and_then(|i| stretch.words.get(i)).and_then(|word| match word.text.as_str() {
-            "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "closer" | "over" => Some(Gesture::Proceed),
+            "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "closer" | "over" => {
+                Some(Gesture::Proceed)
+            }
             "back" | "off" | "away" => Some(Gesture::Wait),
             _ => None,
         });
@@ -305,7 +324,8 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
 }
 
 fn negated(stretch: &Stretch, at: usize) -> bool {
-    let before = |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
+    let before =
+        |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
     (1..=2).any(|back| {
         matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
             || before(back) == "of" && before(back + 1) == "instead"

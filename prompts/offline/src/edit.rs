@@ -48,7 +48,13 @@ pub struct Edited {
 #[must_use]
 pub fn edit(question: &Question, draft: &Draft, words: &str) -> Edited {
     let mut desk = Desk {
-        question: Question { stage: Stage::Paths, feedback: Vec::new(), refused: None, only: Vec::new(), ..question.clone() },
+        question: Question {
+            stage: Stage::Paths,
+            feedback: Vec::new(),
+            refused: None,
+            only: Vec::new(),
+            ..question.clone()
+        },
         draft: draft.clone(),
         done: Vec::new(),
         not_done: Vec::new(),

@@ -1,6 +1,8 @@
 //! Edits of paths: longer, shorter, the other way round, from and to somewhere, round a place, met elsewhere.
 
-use socrates_model::{Encounter, Fault, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Relation};
+use socrates_model::{
+    Encounter, Fault, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Relation,
+};
 use socrates_prompts::Question;
 
 use crate::card::{Ends, card};
@@ -58,7 +60,10 @@ pub(crate) fn grant(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         match trip.changed(wish, &others_ends(&new, id, &net)) {
             Ok(found) => {
                 let [before, after] = [net.length_m(&old), net.length_m(&found)];
-                done.push(format!("the way of {name} is {after:.1} m instead of {before:.1} m: {}", listed(&net, &found)));
+                done.push(format!(
+                    "the way of {name} is {after:.1} m instead of {before:.1} m: {}",
+                    listed(&net, &found)
+                ));
                 match id {
                     Some(id) => drop(new.humans.insert(id, net.named(&found))),
                     None => new.robot = net.named(&found),
@@ -143,7 +148,11 @@ impl Trip<'_> {
         let Some(class) = wish.place else { return Err("it does not say where".to_owned()) };
         let found: Vec<usize> = (0..self.net.len()).filter(|node| self.net.is(*node, class)).collect();
         if found.is_empty() {
-            return Err(format!("the map has no {}; it has: {}", place::words(class), place::listed(self.net.location)));
+            return Err(format!(
+                "the map has no {}; it has: {}",
+                place::words(class),
+                place::listed(self.net.location)
+            ));
         }
         // A class that is a node's own type before one that only an edge gives it.
         let own: Vec<usize> = found.iter().copied().filter(|node| self.net.kind(*node) == class).collect();
@@ -162,7 +171,10 @@ impl Trip<'_> {
                     break;
                 };
                 let free = |node: &usize| {
-                    !nodes.contains(node) && !ends.contains(node) && !self.net.inside(*node) && self.net.near(*node).len() + usize::from(self.net.kind(*node) != PlaceClass::Doorway) > 1
+                    !nodes.contains(node)
+                        && !ends.contains(node)
+                        && !self.net.inside(*node)
+                        && self.net.near(*node).len() + usize::from(self.net.kind(*node) != PlaceClass::Doorway) > 1
                 };
                 let next = self.net.near(last).iter().map(|(node, _)| *node).filter(free);
                 let straight = |node: usize| self.net.straight(previous, last, node);
@@ -194,7 +206,10 @@ impl Trip<'_> {
             nodes.reverse();
         }
         if nodes.len() == self.old.len() {
-            return Err(format!("it needs its {:.1} m for the meeting and the way after it", self.net.length_m(self.old)));
+            return Err(format!(
+                "it needs its {:.1} m for the meeting and the way after it",
+                self.net.length_m(self.old)
+            ));
         }
         Ok(nodes)
     }
@@ -271,13 +286,24 @@ impl Trip<'_> {
     }
 }
 
+/// A longer way for a human whose way is too short.
+pub(crate) fn lengthen(net: &Net<'_>, paths: &mut Paths, id: HumanId) {
+    let nodes = paths.humans.get(&id).cloned().unwrap_or_default();
+    let Some(old) = nodes.iter().map(|node| net.index(node)).collect::<Option<Vec<usize>>>() else { return };
+    let trip = Trip { net, old: &old, keep: kept(paths, Some(id), net), robot: false };
+    if let Ok(longer) = trip.longer(STEP_M, &others_ends(paths, Some(id), net)) {
+        paths.humans.insert(id, net.named(&longer));
+    }
+}
+
 /// Everybody who goes the robot's way, or against it, turns with it.
 fn reverse(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     let mut new = paths.clone();
     new.robot.reverse();
     let mut turned = Vec::new();
     for human in &desk.draft.proposal.humans {
-        let along = matches!(human.relation, Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast);
+        let along =
+            matches!(human.relation, Relation::Frontal | Relation::Behind | Relation::Ahead | Relation::Abreast);
         if let Some(nodes) = new.humans.get_mut(&human.id).filter(|nodes| along && nodes.len() > 1) {
             nodes.reverse();
             turned.push(human.id.to_string());
@@ -305,8 +331,13 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     let net = Net::new(&location);
     let node = |paths: &Paths| paths.encounters.first().map(|encounter| encounter.node.clone());
     let before = node(paths);
-    let named: Vec<NodeId> =
-        location.graph.nodes.iter().filter(|node| wish.names.iter().any(|name| *name == node.id.as_str())).map(|node| node.id.clone()).collect();
+    let named: Vec<NodeId> = location
+        .graph
+        .nodes
+        .iter()
+        .filter(|node| wish.names.iter().any(|name| *name == node.id.as_str()))
+        .map(|node| node.id.clone())
+        .collect();
     let same = class == desk.draft.proposal.place && named.is_empty();
     if same && !wish.other && wish.place.is_some() {
         return desk.refuse(&wish.quote, "is so already; say `the other …` for another place of this kind");
@@ -365,14 +396,25 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
     Taken {
         net,
         starts: others().filter_map(|nodes| index(nodes.first())).chain(index(paths.robot.first())).collect(),
-        goals: others().filter(|nodes| nodes.len() > 1).filter_map(|nodes| index(nodes.last())).chain(index(paths.robot.last())).collect(),
+        goals: others()
+            .filter(|nodes| nodes.len() > 1)
+            .filter_map(|nodes| index(nodes.last()))
+            .chain(index(paths.robot.last()))
+            .collect(),
         crowded: false,
         ends,
         place: class,
     }
 }
 
-fn lay(location: &Location, paths: &mut Paths, human: &HumanProposal, class: PlaceClass, at: Option<PlaceClass>, pattern: &str) -> bool {
+fn lay(
+    location: &Location,
+    paths: &mut Paths,
+    human: &HumanProposal,
+    class: PlaceClass,
+    at: Option<PlaceClass>,
+    pattern: &str,
+) -> bool {
     let net = Net::new(location);
     let old = paths.encounter_of(human.id).cloned();
     let Some(route) = route(&net, paths, old.as_ref()) else { return false };
@@ -400,7 +442,10 @@ fn stands(net: &Net<'_>, route: &Route, taken: &Taken<'_>, class: PlaceClass) ->
     // Beside a place that lies off its way, as far as a few steps.
     let near = || {
         let off = |node: usize| {
-            (0..net.len()).filter(|other| net.is(*other, class)).map(|other| (net.at(other) - net.at(node)).norm()).fold(f64::INFINITY, f64::min)
+            (0..net.len())
+                .filter(|other| net.is(*other, class))
+                .map(|other| (net.at(other) - net.at(node)).norm())
+                .fold(f64::INFINITY, f64::min)
         };
         let free = inner.iter().copied().filter(|node| !taken.starts.contains(node) && off(*node) < 4.0);
         free.min_by(|a, b| off(*a).total_cmp(&off(*b)))
@@ -411,7 +456,8 @@ fn stands(net: &Net<'_>, route: &Route, taken: &Taken<'_>, class: PlaceClass) ->
 
 /// A way for somebody new.
 pub(crate) fn join(desk: &mut Desk, who: usize, at: Option<PlaceClass>) -> bool {
-    let (Some(human), Some(mut paths)) = (desk.draft.proposal.humans.get(who).cloned(), desk.draft.paths.clone()) else {
+    let (Some(human), Some(mut paths)) = (desk.draft.proposal.humans.get(who).cloned(), desk.draft.paths.clone())
+    else {
         return false;
     };
     let proposal = &desk.draft.proposal;

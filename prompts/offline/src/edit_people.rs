@@ -62,7 +62,8 @@ impl Crowd {
             }
         }
         let pronoun = wish.clauses.iter().flat_map(|clause| &clause.words);
-        let pronoun = pronoun.clone().any(|word| matches!(word.text.as_str(), "her" | "his" | "him" | "their" | "them"));
+        let pronoun =
+            pronoun.clone().any(|word| matches!(word.text.as_str(), "her" | "his" | "him" | "their" | "them"));
         if found.is_empty() && !robot && pronoun {
             found.clone_from(&self.cast.last);
         }
@@ -113,12 +114,17 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         let says = |line: &socrates_model::rule::RobotRule| line.act == RobotDo::Say(*gesture);
         if !desk.draft.proposal.robot.script.iter().any(says) {
             let when = socrates_model::rule::RobotWhen::HumanNear(4.0);
-            desk.draft.proposal.robot.script.push(socrates_model::rule::RobotRule { when, act: RobotDo::Say(*gesture) });
+            desk.draft
+                .proposal
+                .robot
+                .script
+                .push(socrates_model::rule::RobotRule { when, act: RobotDo::Say(*gesture) });
             desk.done.push(format!("the robot gestures {gesture} when somebody is near"));
         }
         did = true;
     }
-    let new: Vec<(GroupId, Vec<usize>)> = read.cast.groups.iter().map(|(id, members, _)| (*id, members.clone())).collect();
+    let new: Vec<(GroupId, Vec<usize>)> =
+        read.cast.groups.iter().map(|(id, members, _)| (*id, members.clone())).collect();
     for (_, members) in new {
         did |= group(desk, &members);
     }
@@ -131,7 +137,22 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
 }
 
 /// Words of those who ask for something, which ask for nothing by themselves.
-const COURTESY: &[&str] = &["please", "instead", "add", "additional", "include", "change", "edit", "would", "like", "want", "rather", "yet", "keep", "okay"];
+const COURTESY: &[&str] = &[
+    "please",
+    "instead",
+    "add",
+    "additional",
+    "include",
+    "change",
+    "edit",
+    "would",
+    "like",
+    "want",
+    "rather",
+    "yet",
+    "keep",
+    "okay",
+];
 
 fn quoted(wish: &Wish) -> String {
     // Words know their place in the whole text; blanks keep them there.
@@ -144,14 +165,19 @@ fn adds(clauses: &mut [crate::words::Stretch]) -> bool {
     let mut adds = false;
     for (number, clause) in clauses.iter_mut().enumerate() {
         for word in &mut clause.words {
-            if matches!(word.text.as_str(), "add" | "include" | "insert" | "another" | "additional" | "extra" | "more" | "new") {
+            if matches!(
+                word.text.as_str(),
+                "add" | "include" | "insert" | "another" | "additional" | "extra" | "more" | "new"
+            ) {
                 adds = true;
                 word.used = true;
             }
         }
         let first = mentions(&clause.words).into_iter().next();
         adds |= number == 0
-            && first.is_some_and(|mention| matches!(mention.who, Who::New { article: true, .. } | Who::Further(_) | Who::More(_)));
+            && first.is_some_and(|mention| {
+                matches!(mention.who, Who::New { article: true, .. } | Who::Further(_) | Who::More(_))
+            });
     }
     adds
 }
@@ -221,7 +247,8 @@ pub(crate) fn same_act(a: &Action, b: &Action) -> bool {
 /// A rule in the place of the one that does the same, else behind the others; what is not said stays.
 fn put(rules: &mut Vec<Rule>, read: &ReadRule) {
     let known = rules.iter_mut().find(|rule| {
-        same_act(&rule.act, &read.rule.act) && rule.gesture.is_some() == (read.rule.gesture.is_some() && rule.gesture.is_some())
+        same_act(&rule.act, &read.rule.act)
+            && rule.gesture.is_some() == (read.rule.gesture.is_some() && rule.gesture.is_some())
             || read.rule.gesture.is_some() && rule.gesture == read.rule.gesture
     });
     let Some(old) = known else {
@@ -261,16 +288,16 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     }
     let waits = said.rules.iter().all(|read| read.rule.act == Action::StandStill && !read.stated);
     let at_place = class.is_some() && waits && said.relation.is_none();
-    let relation = if at_place {
-        Relation::Static
-    } else {
-        read.relation_of(who).unwrap_or(Relation::Frontal)
-    };
+    let relation = if at_place { Relation::Static } else { read.relation_of(who).unwrap_or(Relation::Frontal) };
     // Who only waits somewhere stands there all the time.
-    let rules: Vec<Rule> =
-        if relation == Relation::Static && waits { Vec::new() } else { said.rules.iter().map(|read| read.rule.clone()).collect() };
+    let rules: Vec<Rule> = if relation == Relation::Static && waits {
+        Vec::new()
+    } else {
+        said.rules.iter().map(|read| read.rule.clone()).collect()
+    };
     let role = if said.role.is_empty() { "person".to_owned() } else { said.role.clone() };
-    let behavior = prose::behavior(&role, relation, class.unwrap_or(desk.draft.proposal.place), said.start, &rules, false);
+    let behavior =
+        prose::behavior(&role, relation, class.unwrap_or(desk.draft.proposal.place), said.start, &rules, false);
     let human = HumanProposal {
         id: HumanId::new(number),
         role,
@@ -302,7 +329,8 @@ fn group(desk: &mut Desk, members: &[usize]) -> bool {
         return false;
     }
     let id = GroupId(proposal.groups.iter().map(|group| group.id.0).max().unwrap_or(0) + 1);
-    let standing = members.iter().all(|i| proposal.humans.get(*i).is_some_and(|human| human.relation == Relation::Static));
+    let standing =
+        members.iter().all(|i| proposal.humans.get(*i).is_some_and(|human| human.relation == Relation::Static));
     for i in members {
         if let Some(human) = proposal.humans.get_mut(*i) {
             human.group = Some(id);
@@ -335,7 +363,8 @@ fn clause(proposal: &mut Proposal, text: String, predicate: Predicate) {
 }
 
 pub(crate) fn next_id(proposal: &Proposal) -> String {
-    let highest = proposal.expected_events.iter().filter_map(|clause| clause.id.strip_prefix('c')?.parse::<u32>().ok()).max();
+    let highest =
+        proposal.expected_events.iter().filter_map(|clause| clause.id.strip_prefix('c')?.parse::<u32>().ok()).max();
     format!("c{}", highest.unwrap_or(0) + 1)
 }
 
@@ -424,7 +453,9 @@ pub(crate) fn ungroup(desk: &mut Desk, wish: &Wish) {
     }
     desk.draft.proposal.groups.clear();
     for who in 0..desk.draft.proposal.humans.len() {
-        let Some(human) = desk.draft.proposal.humans.get_mut(who).filter(|human| human.group.is_some()) else { continue };
+        let Some(human) = desk.draft.proposal.humans.get_mut(who).filter(|human| human.group.is_some()) else {
+            continue;
+        };
         human.group = None;
         desk.touch(who);
     }
@@ -465,7 +496,8 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     for group in &mut proposal.groups {
         group.members.retain(|id| !gone.contains(id));
     }
-    let small: Vec<GroupId> = proposal.groups.iter().filter(|group| group.members.len() < 2).map(|group| group.id).collect();
+    let small: Vec<GroupId> =
+        proposal.groups.iter().filter(|group| group.members.len() < 2).map(|group| group.id).collect();
     proposal.groups.retain(|group| group.members.len() > 1);
     for human in &mut proposal.humans {
         human.group = human.group.filter(|id| !small.contains(id));
@@ -476,7 +508,10 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         let led = matches!(&clause.predicate, Predicate::Follows { leader: socrates_model::AgentId::Human(id), .. } if gone.contains(id));
         !of_gone(clause.predicate.human()) && !led && clause.predicate.group().is_none_or(|id| !small.contains(&id))
     });
-    proposal.robot.script.retain(|line| !matches!(&line.act, RobotDo::Follow(id) | RobotDo::Abreast(id) if gone.contains(id)));
+    proposal
+        .robot
+        .script
+        .retain(|line| !matches!(&line.act, RobotDo::Follow(id) | RobotDo::Abreast(id) if gone.contains(id)));
     if let Some(paths) = &mut desk.draft.paths {
         paths.humans.retain(|id, _| !gone.contains(id));
         paths.encounters.retain(|encounter| !gone.contains(&encounter.human));
@@ -512,7 +547,9 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     desk.draft.paths = mapped(&desk.draft.paths, &text);
     let facts = &mut desk.question.reading.facts;
     let of = |kind: &FactKind| match kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } => gone.contains(human),
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } => {
+            gone.contains(human)
+        }
         FactKind::Group { members, .. } => members.iter().any(|id| gone.contains(id)),
         _ => false,
     };

@@ -37,15 +37,23 @@ pub(crate) fn settle(desk: &mut Desk, reading: &mut Reading) {
         }
     }
     // Clauses of those who changed are written anew; all others stay as they are.
-    let changed: Vec<HumanProposal> = desk.changed.iter().filter_map(|who| proposal.humans.get(*who)).cloned().collect();
+    let changed: Vec<HumanProposal> =
+        desk.changed.iter().filter_map(|who| proposal.humans.get(*who)).cloned().collect();
     for human in &changed {
-        proposal.expected_events.retain(|clause| clause.role != ClauseRole::Setup || clause.predicate.human() != Some(human.id));
+        proposal
+            .expected_events
+            .retain(|clause| clause.role != ClauseRole::Setup || clause.predicate.human() != Some(human.id));
         for mut clause in events::of_human(human, proposal, reading) {
             clause.id = next_id(proposal);
             proposal.expected_events.push(clause);
         }
     }
-    let says: Vec<_> = proposal.robot.script.iter().filter_map(|line| if let RobotDo::Say(gesture) = line.act { Some(gesture) } else { None }).collect();
+    let says: Vec<_> = proposal
+        .robot
+        .script
+        .iter()
+        .filter_map(|line| if let RobotDo::Say(gesture) = line.act { Some(gesture) } else { None })
+        .collect();
     proposal.expected_events.retain(|clause| {
         !matches!(clause.predicate, Predicate::Gestures { agent: socrates_model::AgentId::Robot, gesture } if !says.contains(&gesture))
     });

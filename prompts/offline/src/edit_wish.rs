@@ -99,13 +99,19 @@ fn names_only(wish: &Wish) -> bool {
 fn polite(wish: &Wish) -> bool {
     let words = wish.clauses.iter().flat_map(|clause| &clause.words);
     words.clone().count() > 0
-        && words.into_iter().all(|word| matches!(word.text.as_str(), "please" | "thanks" | "thank" | "you" | "ok" | "okay" | "now" | "also" | "just"))
+        && words.into_iter().all(|word| {
+            matches!(
+                word.text.as_str(),
+                "please" | "thanks" | "thank" | "you" | "ok" | "okay" | "now" | "also" | "just"
+            )
+        })
 }
 
 fn wish(kind: Kind, stretch: Stretch, text: &str) -> Wish {
     let quote = stretch.quote(text).to_owned();
     let found = clause::read(&mut stretch.clone());
-    let other = stretch.words.iter().any(|word| matches!(word.text.as_str(), "other" | "another" | "different" | "elsewhere"));
+    let other =
+        stretch.words.iter().any(|word| matches!(word.text.as_str(), "other" | "another" | "different" | "elsewhere"));
     let names = stretch.words.iter().map(|word| text.get(word.from..word.to).unwrap_or_default().to_owned()).collect();
     Wish {
         kind,
@@ -119,7 +125,9 @@ fn wish(kind: Kind, stretch: Stretch, text: &str) -> Wish {
 }
 
 fn kind(stretch: &Stretch) -> Kind {
-    let has = |names: &[&str]| stretch.words.iter().any(|word| names.contains(&word.text.as_str()) || names.contains(&word.stem.as_str()));
+    let has = |names: &[&str]| {
+        stretch.words.iter().any(|word| names.contains(&word.text.as_str()) || names.contains(&word.stem.as_str()))
+    };
     let path = has(&["path", "route", "way", "trip", "trajectory", "walk", "drive", "distance"]);
     let no = has(&["no", "without", "drop", "remove", "delete", "not"]);
     if no && has(&["gesture", "gestures", "gesturing", "signal", "signals"]) {
@@ -128,7 +136,9 @@ fn kind(stretch: &Stretch) -> Kind {
     if has(&["ungroup", "dissolve"]) || has(&["break", "split", "separate"]) && has(&["group"]) {
         return Kind::Ungroup;
     }
-    if has(&["remove", "delete", "drop", "kick", "omit", "erase"]) || has(&["without"]) && !has(&["gesture"]) && stretch.words.first().is_some_and(|word| word.text == "without") {
+    if has(&["remove", "delete", "drop", "kick", "omit", "erase"])
+        || has(&["without"]) && !has(&["gesture"]) && stretch.words.first().is_some_and(|word| word.text == "without")
+    {
         return Kind::Remove;
     }
     if has(&["longer", "lengthen", "extend", "farther", "further"]) && (path || has(&["robot", "lengthen", "extend"])) {
@@ -146,7 +156,11 @@ fn kind(stretch: &Stretch) -> Kind {
     if has(&["faster", "quicker"]) || has(&["speed"]) && has(&["up"]) {
         return Kind::Pace(1.35);
     }
-    if has(&["avoid", "bypass"]) && !has(&["avoids"]) && (path || has(&["robot"]) || places(stretch)) && !avoids_robot(stretch) {
+    if has(&["avoid", "bypass"])
+        && !has(&["avoids"])
+        && (path || has(&["robot"]) || places(stretch))
+        && !avoids_robot(stretch)
+    {
         return Kind::Avoid;
     }
     let somewhere = places(stretch) || has(&["node"]);

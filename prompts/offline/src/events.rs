@@ -82,12 +82,7 @@ pub(crate) fn events(
     let source = |wanted: fn(&FactKind) -> bool| {
         reading.facts.iter().find(|fact| wanted(&fact.kind)).map_or("", |fact| fact.id.as_str())
     };
-    list.setup(
-        true,
-        source(|kind| matches!(kind, FactKind::Humans(_))),
-        headcount(count),
-        Predicate::Humans { count },
-    );
+    list.setup(true, source(|kind| matches!(kind, FactKind::Humans(_))), headcount(count), Predicate::Humans { count });
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
     for fact in &reading.facts {
         of_fact(&mut list, fact, proposal, extras);
@@ -123,9 +118,9 @@ pub(crate) fn events(
 pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Reading) -> Vec<Clause> {
     let mut list = List::default();
     let own = |fact: &&Fact| match &fact.kind {
-        FactKind::Reacts { human: who, .. } | FactKind::Gestures { human: who, .. } | FactKind::Relates { human: who, .. } => {
-            *who == human.id
-        }
+        FactKind::Reacts { human: who, .. }
+        | FactKind::Gestures { human: who, .. }
+        | FactKind::Relates { human: who, .. } => *who == human.id,
         _ => false,
     };
     for fact in reading.facts.iter().filter(own) {
@@ -141,7 +136,11 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
 
 /// How many humans there are, as a clause says it.
 pub(crate) fn headcount(count: u32) -> String {
-    if count == 1 { "one human is there all the time".to_owned() } else { format!("{count} humans are there all the time") }
+    if count == 1 {
+        "one human is there all the time".to_owned()
+    } else {
+        format!("{count} humans are there all the time")
+    }
 }
 
 fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) {

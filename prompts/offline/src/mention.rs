@@ -188,7 +188,8 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
         }
     };
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
+    let made =
+        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let of_them = |k: usize| {
         if stem(k) != "of" {
             return None;
@@ -199,9 +200,11 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         let skip = if matches!(text(k + 1), "the" | "these" | "those" | "all") { k + 2 } else { k + 1 };
         let count = words.get(skip).and_then(Word::count).filter(|n| *n > 1);
         let start = skip + usize::from(count.is_some());
-        noun(words, start, lex)
-            .or_else(|| stranger(words, start, count.is_some(), lex))
-            .map(|end| Whole { end, role: role(end), count })
+        noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex)).map(|end| Whole {
+            end,
+            role: role(end),
+            count,
+        })
     };
     match text(at) {
         "nobody" | "noone" => return made(Who::Nobody, None, at),
@@ -258,7 +261,26 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         "he" | "she" => return made(Who::Same, None, at),
         "him" => return made(Who::Object, None, at),
         // `her` before a word of its own is whose, not whom.
-        "her" if words.get(at + 1).is_none_or(|word| matches!(word.stem.as_str(), "to" | "at" | "in" | "into" | "on" | "through" | "along" | "and" | "from" | "by" | "until" | "for" | "past" | "robot")) => {
+        "her"
+            if words.get(at + 1).is_none_or(|word| {
+                matches!(
+                    word.stem.as_str(),
+                    "to" | "at"
+                        | "in"
+                        | "into"
+                        | "on"
+                        | "through"
+                        | "along"
+                        | "and"
+                        | "from"
+                        | "by"
+                        | "until"
+                        | "for"
+                        | "past"
+                        | "robot"
+                )
+            }) =>
+        {
             return made(Who::Object, None, at);
         }
         "a" | "an" if lex.ordinals.get(text(at + 1)).is_some_and(|n| *n > 1) => {
@@ -289,12 +311,14 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
 /// `another …`, `the other …`, `the rest`, `the first …`.
 fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made = |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
+    let made =
+        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
     let the = usize::from(matches!(text(at), "the" | "each"));
     // `each other` and `one after the other` are nobody new.
     let before = if at == 0 { "" } else { text(at - 1) };
     let manner = text(at) == "each" && text(at + 1) == "other"
-        || text(at) == "other" && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
+        || text(at) == "other"
+            && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
         || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
     if manner {
         return None;
@@ -362,8 +386,9 @@ fn counted(
 ) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
-    let made =
-        |who: Who, role: Option<String>, group: bool, to: usize| Some(Mention { who, role, group, parts: 1, from: at, to });
+    let made = |who: Who, role: Option<String>, group: bool, to: usize| {
+        Some(Mention { who, role, group, parts: 1, from: at, to })
+    };
     let article = matches!(text(at), "a" | "an");
     let the = matches!(text(at), "the" | "these" | "those" | "this");
     let mut next = at + usize::from(article || the);
@@ -412,7 +437,8 @@ fn counted(
     if the && !text(at).starts_with("thi") && !text(at).starts_with("tho") {
         let plain = |k: usize| {
             let word = text(k);
-            !lex.stop.contains(word) && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.to_owned())))
+            !lex.stop.contains(word)
+                && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.to_owned())))
         };
         if text(at + 1) == "one" {
             return made(Who::ToldApart, None, false, at + 1);
@@ -423,7 +449,8 @@ fn counted(
     }
     // `his mother`, `her colleague`: known or new.
     if matches!(text(at), "his" | "her" | "their")
-        && let Some(end) = noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
+        && let Some(end) =
+            noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
     {
         let many = words.get(end).is_some_and(plural);
         return made(Who::Definite { plural: many, count: None }, role(end), false, end);
@@ -505,7 +532,9 @@ fn group(
     // `two groups of three` are six people.
     let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
     let who = match who {
-        Who::New { count: Some(n), article } => Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 },
+        Who::New { count: Some(n), article } => {
+            Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 }
+        }
         other => other,
     };
     Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })

@@ -134,8 +134,25 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             && word.text == "left"
             && matches!(
                 before,
-                "the" | "on" | "to" | "its" | "his" | "her" | "their" | "from" | "far" | "turn" | "turns" | "turned"
-                    | "turning" | "keep" | "keeps" | "look" | "looks" | "bear" | "veers"
+                "the"
+                    | "on"
+                    | "to"
+                    | "its"
+                    | "his"
+                    | "her"
+                    | "their"
+                    | "from"
+                    | "far"
+                    | "turn"
+                    | "turns"
+                    | "turned"
+                    | "turning"
+                    | "keep"
+                    | "keeps"
+                    | "look"
+                    | "looks"
+                    | "bear"
+                    | "veers"
             )
         {
             // The side, nobody who leaves.
@@ -240,7 +257,12 @@ const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother"
 fn mended(text: &str) -> Option<&'static str> {
     let lex = lexicon();
     let long = text.chars().count() >= 6;
-    if !long || lex.telling.contains(text) || lex.known.contains(text) || lex.known.contains(&lex.stem(text)) || lex.adjectives.contains(text) {
+    if !long
+        || lex.telling.contains(text)
+        || lex.known.contains(text)
+        || lex.known.contains(&lex.stem(text))
+        || lex.adjectives.contains(text)
+    {
         return None;
     }
     let near = |word: &&String| {

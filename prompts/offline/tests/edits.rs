@@ -38,7 +38,8 @@ fn draft(on: &str, text: &str) -> (Question, Draft) {
     (ask, Draft { proposal, paths: Some(paths), behaviors: Some(behaviors) })
 }
 
-const TWO: &str = "A nurse comes towards the robot in the corridor and stops when it is within 2 m. A visitor follows the robot.";
+const TWO: &str =
+    "A nurse comes towards the robot in the corridor and stops when it is within 2 m. A visitor follows the robot.";
 
 /// The scenario before and after an edit that is done without a remainder.
 fn edited(on: &str, text: &str, words: &str) -> (Draft, Edited) {
@@ -183,7 +184,8 @@ fn a_group_leaves_or_is_broken_up() {
 
 #[test]
 fn nobody_gestures_any_more() {
-    let text = "A nurse crosses at the intersection and gestures WAIT. A visitor steps aside when the robot says EXCUSE_ME.";
+    let text =
+        "A nurse crosses at the intersection and gestures WAIT. A visitor steps aside when the robot says EXCUSE_ME.";
     for words in ["no gestures", "without any gestures please", "remove all gestures"] {
         let (_, after) = edited("hospital", text, words);
         let proposal = &after.draft.proposal;
@@ -197,7 +199,8 @@ fn nobody_gestures_any_more() {
 
 #[test]
 fn what_somebody_does_changes_in_place() {
-    let (before, after) = edited("office", "A nurse comes towards the robot in the corridor.", "let her stop 3 m before the robot");
+    let (before, after) =
+        edited("office", "A nurse comes towards the robot in the corridor.", "let her stop 3 m before the robot");
     let human = &after.draft.proposal.humans[0];
     assert_eq!((human.rules.len(), &human.rules[0].act), (1, &Action::StandStill));
     assert_eq!(human.rules[0].when, [Trigger::RobotVisible(3.0)]);
@@ -222,7 +225,10 @@ fn deeds_durations_and_refusals_are_edited() {
     assert!(after.draft.proposal.humans[0].rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait)));
     let (_, after) = edited("office", TWO, "the visitor runs away when the robot comes within 2 m");
     let rules = &after.draft.proposal.humans[1].rules;
-    assert!(rules.iter().any(|rule| rule.act == Action::RunAway && rule.when == [Trigger::RobotNear(2.0)]), "{rules:?}");
+    assert!(
+        rules.iter().any(|rule| rule.act == Action::RunAway && rule.when == [Trigger::RobotNear(2.0)]),
+        "{rules:?}"
+    );
     let (_, after) = edited("office", TWO, "both look at the robot");
     let looks = |human: &socrates_model::HumanProposal| human.rules.iter().any(|rule| rule.act == Action::LookAtRobot);
     assert!(after.draft.proposal.humans.iter().all(looks));
@@ -233,7 +239,9 @@ fn ways_start_end_turn_and_avoid() {
     let one = "A person comes towards the robot in the corridor.";
     let (before, after) = edited("office", one, "reverse the robot's path");
     let (old, new) = (before.paths.unwrap(), after.draft.paths.unwrap());
-    assert!(new.robot.iter().eq(old.robot.iter().rev()) && new.humans[&id(1)].iter().eq(old.humans[&id(1)].iter().rev()));
+    assert!(
+        new.robot.iter().eq(old.robot.iter().rev()) && new.humans[&id(1)].iter().eq(old.humans[&id(1)].iter().rev())
+    );
     let (before, after) = edited("office", one, "the robot should end at the exit");
     let place = socrates_maps::shipped::load("office").unwrap();
     let (old, new) = (before.paths.unwrap(), after.draft.paths.unwrap());
@@ -244,7 +252,8 @@ fn ways_start_end_turn_and_avoid() {
 
 #[test]
 fn several_wishes_are_done_one_after_the_other() {
-    let (before, after) = edited("office", TWO, "Make the robot's path longer and remove the visitor. The nurse should be slower.");
+    let (before, after) =
+        edited("office", TWO, "Make the robot's path longer and remove the visitor. The nurse should be slower.");
     assert_eq!(after.done.len(), 3, "{:?}", after.done);
     assert_eq!(after.draft.proposal.humans.len(), 1);
     assert!(after.draft.paths.unwrap().robot.len() > before.paths.unwrap().robot.len());
@@ -254,13 +263,24 @@ fn several_wishes_are_done_one_after_the_other() {
 fn what_cannot_be_done_is_said_and_changes_nothing() {
     let (ask, before) = draft("office", TWO);
     for words in [
-        "", "make it nicer", "the robot should be slower", "remove everybody", "remove the astronaut", "he should wait",
-        "paint the walls blue", "ungroup them", "let the fourth one be faster",
+        "",
+        "make it nicer",
+        "the robot should be slower",
+        "remove everybody",
+        "remove the astronaut",
+        "he should wait",
+        "paint the walls blue",
+        "ungroup them",
+        "let the fourth one be faster",
     ] {
         let after = edit(&ask, &before, words);
         assert_eq!(after.draft, before, "{words}: {:?}", after.done);
         assert!(after.not_done.iter().all(|fault| fault.is_soft() || fault.code == FaultCode::PPlace), "{words}");
-        assert!(!after.not_done.is_empty() && after.not_done[0].message.contains("what can be said"), "{words}: {:?}", after.not_done);
+        assert!(
+            !after.not_done.is_empty() && after.not_done[0].message.contains("what can be said"),
+            "{words}: {:?}",
+            after.not_done
+        );
     }
     // What can be done of an edit is done, and the rest is named.
     let after = edit(&ask, &before, "the nurse should be slower and wear a hat");
@@ -270,7 +290,14 @@ fn what_cannot_be_done_is_said_and_changes_nothing() {
 #[test]
 fn the_same_edit_gives_the_same_bytes_and_any_text_is_answered() {
     let (ask, before) = draft("hospital", TWO);
-    for words in ["move it to the other corridor", "add a child", "ß’t né 3 m m m", "and and and", "human_99 stops", "\u{202e}remove"] {
+    for words in [
+        "move it to the other corridor",
+        "add a child",
+        "ß’t né 3 m m m",
+        "and and and",
+        "human_99 stops",
+        "\u{202e}remove",
+    ] {
         let bytes = || serde_json::to_vec(&edit(&ask, &before, words).draft.proposal).unwrap();
         assert_eq!(bytes(), bytes(), "{words}");
     }

@@ -67,9 +67,8 @@ fn a_person_without_a_rule_lets_the_robot_through_in_an_aisle() {
         let cast = [Cast(Relation::Frontal, BACK, vec![])];
         let made = setup(aisle(1.4, true), THERE, &cast, &[(1, "c")]);
         let mut driver = Liner::of(&made);
-        let recording = Engine::new(Setup { seed, duration_s: Some(90.0), ..made })
-            .unwrap()
-            .run(Some(&mut driver), &mut |_, _| {});
+        let recording =
+            Engine::new(Setup { seed, duration_s: Some(90.0), ..made }).unwrap().run(Some(&mut driver), &mut |_, _| {});
         assert!(recording.events.iter().any(|event| event.kind == EventKind::RobotArrived), "seed {seed}");
         assert!(recording.track(AgentId::from_number(1)).last().unwrap().x < 3.0, "seed {seed}");
     }

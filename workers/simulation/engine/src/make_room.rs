@@ -100,10 +100,9 @@ fn back(human: &Human, scene: &Scene<'_>) -> Option<Point> {
         let (at, along) = (human.route.point(s), human.route.direction(s));
         let left = Vector::new(-along.y, along.x) * (ASIDE_M + 0.15);
         [-left, left].into_iter().map(|aside| at + aside).find(|spot| {
-            let crowded = scene
-                .others
-                .iter()
-                .any(|other| of_people(human, other) && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1);
+            let crowded = scene.others.iter().any(|other| {
+                of_people(human, other) && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
+            });
             !crowded
                 && scene.floor.clearance_m(spot) >= human.radius_m + 0.04
                 && scene.floor.straight(&at, spot, human.radius_m - 0.05)

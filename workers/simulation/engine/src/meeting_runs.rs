@@ -13,7 +13,14 @@ fn ring() -> socrates_model::Location {
     let free = [(0.2, 10.7, 24.0, 13.3), (10.7, 10.7, 13.3, 20.0), (20.7, 10.7, 23.3, 20.0), (10.7, 17.4, 23.3, 20.0)];
     location(
         carve(30.0, 24.0, &free),
-        &[("w", 2.0, 12.0), ("w2", 7.0, 12.0), ("m", 12.0, 12.0), ("e", 22.0, 12.0), ("ne", 22.0, 18.7), ("nw", 12.0, 18.7)],
+        &[
+            ("w", 2.0, 12.0),
+            ("w2", 7.0, 12.0),
+            ("m", 12.0, 12.0),
+            ("e", 22.0, 12.0),
+            ("ne", 22.0, 18.7),
+            ("nw", 12.0, 18.7),
+        ],
         &[("w", "w2"), ("w2", "m"), ("m", "e"), ("e", "ne"), ("ne", "nw"), ("nw", "m")],
     )
 }
@@ -66,7 +73,10 @@ fn at_a_node_that_the_robot_visits_twice_people_meet_it_at_one_of_its_visits() {
         let made = setup(ring(), &way, &cast, &[(1, "m")]);
         let recording = run(Setup { seed, duration_s: Some(120.0), ..made });
         let met = met(&recording);
-        assert!(met.iter().any(|(human, node, gap)| (*human, node.as_str()) == (1, "m") && gap.abs() <= 2.5), "{met:?}");
+        assert!(
+            met.iter().any(|(human, node, gap)| (*human, node.as_str()) == (1, "m") && gap.abs() <= 2.5),
+            "{met:?}"
+        );
     }
 }
 
@@ -79,17 +89,5 @@ fn a_human_who_visits_a_node_twice_meets_the_robot_there() {
         let recording = run(Setup { seed, duration_s: Some(120.0), ..made });
         let met = met(&recording);
         assert!(met.iter().any(|(_, _, gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
-    }
-}
-
-#[test]
-fn somebody_may_meet_the_robot_more_than_once() {
-    let cast = [Cast(Relation::Frontal, &["e", "m", "w2", "w"], vec![])];
-    for seed in 1..=4 {
-        let made = setup(ring(), &["w", "w2", "m", "e"], &cast, &[(1, "w2"), (1, "m")]);
-        let recording = run(Setup { seed, ..made });
-        let met = met(&recording);
-        let nodes: Vec<&str> = met.iter().map(|(_, node, _)| node.as_str()).collect();
-        assert!(nodes.contains(&"w2") && nodes.contains(&"m"), "seed {seed}: {met:?}");
     }
 }

@@ -417,7 +417,8 @@ pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) 
             });
             // Nor through the robot to behind it.
             let through = scene.robot.is_some_and(|robot| {
-                nearest_on_segment(&robot.at(), &human.at, &spot).0 < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m) - 0.01
+                nearest_on_segment(&robot.at(), &human.at, &spot).0
+                    < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m) - 0.01
             });
             if crowded
                 || through
