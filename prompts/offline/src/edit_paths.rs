@@ -131,7 +131,13 @@ impl Trip<'_> {
                 nodes
             }),
             Kind::End => self.to(&self.targets(wish)?, ends),
-            _ => Err("it is no change of one way".to_owned()),
+            Kind::Reverse
+            | Kind::Move
+            | Kind::Remove
+            | Kind::Pace(_)
+            | Kind::NoGestures
+            | Kind::Ungroup
+            | Kind::Story => Err("it is no change of one way".to_owned()),
         }
     }
 

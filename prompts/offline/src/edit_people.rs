@@ -236,7 +236,21 @@ fn prose_of(act: crate::lexicon::Act) -> Vec<Action> {
         Act::GiveWay => vec![Action::GiveWay],
         Act::Block => vec![Action::Block],
         Act::Approach => vec![Action::Approach],
-        _ => Vec::new(),
+        Act::Toward
+        | Act::Overtake
+        | Act::Behind
+        | Act::Abreast
+        | Act::Ahead
+        | Act::Cross
+        | Act::ComeOut
+        | Act::Enter
+        | Act::Talk
+        | Act::WalkTogether
+        | Act::Ignore
+        | Act::Gesture
+        | Act::Lead
+        | Act::Pass
+        | Act::Walk => Vec::new(),
     }
 }
 
@@ -546,12 +560,16 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     desk.draft.proposal = mapped(&desk.draft.proposal, &text);
     desk.draft.paths = mapped(&desk.draft.paths, &text);
     let facts = &mut desk.question.reading.facts;
-    let of = |kind: &FactKind| match kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } => {
+    let of = |kind: &FactKind| {
+        if let FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } =
+            kind
+        {
             gone.contains(human)
+        } else if let FactKind::Group { members, .. } = kind {
+            members.iter().any(|id| gone.contains(id))
+        } else {
+            false
         }
-        FactKind::Group { members, .. } => members.iter().any(|id| gone.contains(id)),
-        _ => false,
     };
     facts.retain(|fact| !of(&fact.kind));
     desk.question.reading.humans.retain(|human| !gone.contains(&human.id));
@@ -567,7 +585,7 @@ fn mapped<T: Serialize + DeserializeOwned + Clone>(before: &T, text: &dyn Fn(&st
             Value::Object(members) => {
                 Value::Object(members.into_iter().map(|(key, member)| (text(&key), walk(member, text))).collect())
             }
-            other => other,
+            Value::Null | Value::Bool(_) | Value::Number(_) => value,
         }
     }
     let value = serde_json::to_value(before).map(|value| walk(value, text));

@@ -85,7 +85,13 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
                 }
             }
             FactKind::Place(class) => *class = proposal.place,
-            _ => {}
+            FactKind::Group { .. }
+            | FactKind::Gestures { .. }
+            | FactKind::RobotTask(_)
+            | FactKind::RobotSays(_)
+            | FactKind::RobotStart(_)
+            | FactKind::RobotGoal(_)
+            | FactKind::Pattern(_) => {}
         }
     }
     let says = |gesture| proposal.robot.script.iter().any(|line| line.act == RobotDo::Say(gesture));
@@ -96,7 +102,11 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         FactKind::RobotSays(gesture) => says(*gesture),
         FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
-        _ => true,
+        FactKind::Humans(_)
+        | FactKind::Relates { .. }
+        | FactKind::Place(_)
+        | FactKind::RobotTask(_)
+        | FactKind::Pattern(_) => true,
     });
     reading.place = reading.place.map(|_| proposal.place);
     let guided = !reading.humans.is_empty();

@@ -117,11 +117,15 @@ pub(crate) fn events(
 /// The clauses of one human, as a proposal would have them that was written so.
 pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Reading) -> Vec<Clause> {
     let mut list = List::default();
-    let own = |fact: &&Fact| match &fact.kind {
-        FactKind::Reacts { human: who, .. }
+    let own = |fact: &&Fact| {
+        if let FactKind::Reacts { human: who, .. }
         | FactKind::Gestures { human: who, .. }
-        | FactKind::Relates { human: who, .. } => *who == human.id,
-        _ => false,
+        | FactKind::Relates { human: who, .. } = &fact.kind
+        {
+            *who == human.id
+        } else {
+            false
+        }
     };
     for fact in reading.facts.iter().filter(own) {
         of_fact(&mut list, fact, proposal, &[]);

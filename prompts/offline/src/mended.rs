@@ -76,7 +76,15 @@ fn is_made(trigger: &Trigger, proposal: &Proposal) -> bool {
         Trigger::HumanSays(who, gesture) => {
             proposal.human(*who).is_some_and(|human| human.rules.iter().any(|rule| rule.gesture == Some(*gesture)))
         }
-        _ => true,
+        Trigger::Always
+        | Trigger::RobotVisible(_)
+        | Trigger::RobotNear(_)
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::GoalReached
+        | Trigger::AtEncounter
+        | Trigger::AfterSecs(_) => true,
     }
 }
 

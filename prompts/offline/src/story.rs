@@ -415,7 +415,6 @@ fn quiet(
     thread.subject = Subject::People(people);
 }
 
-#[expect(clippy::too_many_arguments, reason = "all that surrounds a deed decides who does it")]
 fn subject_of(
     (act, at, to): (Act, usize, usize),
     passive: bool,
