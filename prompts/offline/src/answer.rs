@@ -1,12 +1,11 @@
 //! The author itself: a question in, an answer as text out.
 
 use serde_json::{Map, Value, json};
+use socrates_model::Proposal;
 use socrates_model::job::Stage;
-use socrates_model::{Action, FaultCode, Proposal, Rule};
 use socrates_prompts::Question;
 
-use crate::deed::{distance_m, with_distance};
-use crate::{NAME, proposal, solve};
+use crate::{NAME, mended, proposal, solve};
 
 /// The offline author.
 ///
@@ -58,18 +57,7 @@ fn text<T: serde::Serialize>(answer: &T) -> String {
 fn behaviors(question: &Question, proposal: &Proposal) -> String {
     let mut humans = Map::new();
     for human in proposal.humans.iter().filter(|human| question.only.is_empty() || question.only.contains(&human.id)) {
-        let told = |code: FaultCode| {
-            question.feedback.iter().any(|fault| fault.code == code && fault.at.contains(&human.id.to_string()))
-        };
-        // A trigger that never fired gets a longer reach; one that fired too early a shorter one.
-        let scale = if told(FaultCode::DNoTrig) || told(FaultCode::DNoGest) {
-            1.5
-        } else if told(FaultCode::DEarly) {
-            0.7
-        } else {
-            1.0
-        };
-        let rules: Vec<Rule> = human.rules.iter().map(|rule| scaled(rule, scale)).collect();
+        let rules = mended::rules(human, proposal, &question.feedback);
         humans.insert(human.id.to_string(), json!({ "description": human.behavior, "rules": rules }));
     }
     let answer = Value::Object(Map::from_iter([
@@ -77,12 +65,4 @@ fn behaviors(question: &Question, proposal: &Proposal) -> String {
         ("author".to_owned(), json!(NAME)),
     ]));
     text(&answer)
-}
-
-fn scaled(rule: &Rule, scale: f64) -> Rule {
-    let reach = |m: f64| (libm::round(m * scale * 10.0) / 10.0).clamp(0.5, 12.0);
-    let when = rule.when.iter().map(|trigger| with_distance(trigger.clone(), distance_m(trigger).map(reach)));
-    // Running away from afar would end the meeting before it began.
-    let flees = rule.act == Action::RunAway && scale > 1.0;
-    if flees { rule.clone() } else { Rule { when: when.collect(), ..rule.clone() } }
 }

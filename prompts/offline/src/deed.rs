@@ -186,7 +186,14 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
     let stated = around.trigger.is_some() || around.distance_m.is_some();
     let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;
-    let read = ReadRule { rule, quote: around.quote.clone(), stated, exact, then: around.then };
+    let read = ReadRule {
+        rule,
+        quote: around.quote.clone(),
+        stated,
+        exact,
+        then: around.then,
+        lasts: around.lasts_s.is_some(),
+    };
     // `stops and looks` is one thing: who looks stands still already.
     if act == Act::Look && around.goes_on && person.rules.last().is_some_and(|last| last.rule.act == Action::StandStill)
     {
@@ -204,7 +211,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
 pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
     let rule = Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true };
-    let read = ReadRule { rule, quote: quote.to_owned(), stated: true, exact: true, then: false };
+    let read = ReadRule { rule, quote: quote.to_owned(), stated: true, exact: true, then: false, lasts: false };
     // Earlier rules win: what ends the others stands before them.
     if !person.rules.contains(&read) {
         person.rules.insert(0, read);
@@ -286,6 +293,7 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
         stated: around.trigger.is_some(),
         exact: false,
         then: around.then,
+        lasts: around.lasts_s.is_some(),
     });
     Some(person.rules.len() - 1)
 }

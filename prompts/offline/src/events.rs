@@ -82,16 +82,7 @@ pub(crate) fn events(
     let source = |wanted: fn(&FactKind) -> bool| {
         reading.facts.iter().find(|fact| wanted(&fact.kind)).map_or("", |fact| fact.id.as_str())
     };
-    list.setup(
-        true,
-        source(|kind| matches!(kind, FactKind::Humans(_))),
-        if count == 1 {
-            "one human is there all the time".to_owned()
-        } else {
-            format!("{count} humans are there all the time")
-        },
-        Predicate::Humans { count },
-    );
+    list.setup(true, source(|kind| matches!(kind, FactKind::Humans(_))), headcount(count), Predicate::Humans { count });
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
     for fact in &reading.facts {
         of_fact(&mut list, fact, proposal, extras);
@@ -121,6 +112,39 @@ pub(crate) fn events(
         Predicate::RobotKeeps { min_m: 0.3 },
     );
     list.0
+}
+
+/// The clauses of one human, as a proposal would have them that was written so.
+pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Reading) -> Vec<Clause> {
+    let mut list = List::default();
+    let own = |fact: &&Fact| {
+        if let FactKind::Reacts { human: who, .. }
+        | FactKind::Gestures { human: who, .. }
+        | FactKind::Relates { human: who, .. } = &fact.kind
+        {
+            *who == human.id
+        } else {
+            false
+        }
+    };
+    for fact in reading.facts.iter().filter(own) {
+        of_fact(&mut list, fact, proposal, &[]);
+    }
+    for rule in &human.rules {
+        of_rule(&mut list, "", human, rule, false);
+    }
+    let gap_s = crate::card::card(&proposal.pattern).map_or(GAP_S, |card| card.gap_s);
+    of_relation(&mut list, "", human, proposal, gap_s);
+    list.0
+}
+
+/// How many humans there are, as a clause says it.
+pub(crate) fn headcount(count: u32) -> String {
+    if count == 1 {
+        "one human is there all the time".to_owned()
+    } else {
+        format!("{count} humans are there all the time")
+    }
 }
 
 fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) {

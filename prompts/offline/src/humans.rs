@@ -8,6 +8,9 @@ use crate::routes::{Net, Route};
 
 /// Speed of the robot that timings are planned with, m/s.
 const ROBOT_MPS: f64 = 0.8;
+/// Fastest walk of somebody who is late for the meeting, m/s; what is farther away than that and so much more is too far, m.
+const HURRY_MPS: f64 = 1.5;
+const LATE_M: f64 = 2.0;
 /// Desired speed of a human without one of its own, m/s.
 const HUMAN_MPS: f64 = 1.2;
 /// People start at least so far from each other and the robot unless they belong together, m.
@@ -123,7 +126,9 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         .map(|ahead| {
             let length = onward_m(net, meet, &ahead);
             let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
-            ((length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside, ahead)
+            // Who could not be in time even in a hurry would have to start in the middle of its way.
+            let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
+            ((length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late, ahead)
         })
         .min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))?;
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();

@@ -5,6 +5,8 @@
 //!                 lexicon.toml        cast     + problems   catalog/*.toml   scene graph
 //! ```
 //!
+//! What stands can be edited in words ([`edit`]): the same grammar, with the people of the proposal as those of whom was spoken.
+//!
 //! Everything is deterministic in the question's seed, and feedback is acted upon: a fault code leads to
 //! a longer path, another place, another draw. The limits are those of a small grammar: English only,
 //! clause by clause, prose from templates; words that nothing was read from are reported, never dropped.
@@ -24,6 +26,7 @@ mod cast;
 mod clause;
 mod deed;
 mod finish;
+mod robot_deed;
 mod story;
 mod task;
 
@@ -37,9 +40,16 @@ mod place;
 mod proposal;
 mod prose;
 
+mod edit;
+mod edit_paths;
+mod edit_people;
+mod edit_settle;
+mod edit_wish;
+
 mod answer;
 mod draw;
 mod humans;
+mod mended;
 mod routes;
 mod solve;
 
@@ -50,6 +60,7 @@ use socrates_model::{Location, Reading, Request};
 
 pub use answer::Offline;
 pub use card::{Card, catalog};
+pub use edit::{Draft, Edited, edit};
 pub use summary::summary;
 
 /// Name of this author, as artifacts spell it.

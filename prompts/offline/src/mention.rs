@@ -531,11 +531,10 @@ fn group(
     };
     // `two groups of three` are six people.
     let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
-    let who = match who {
-        Who::New { count: Some(n), article } => {
-            Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 }
-        }
-        other => other,
+    let who = if let Who::New { count: Some(n), article } = who {
+        Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 }
+    } else {
+        who
     };
     Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })
 }

@@ -204,14 +204,7 @@ fn robot(
     if leaves && !script.iter().any(|line| line.act == RobotDo::WaitForLeavers) {
         script.push(RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers });
     }
-    // Whoever waits for a word of the robot must hear it.
-    for heard in humans.iter().flat_map(|human| &human.rules).flat_map(|rule| &rule.when) {
-        if let Trigger::RobotSays(gesture) = heard
-            && !script.iter().any(|line| line.act == RobotDo::Say(*gesture))
-        {
-            script.push(RobotRule { when: RobotWhen::HumanNear(4.0), act: RobotDo::Say(*gesture) });
-        }
-    }
+    hear(&mut script, humans);
     let mut seen: Vec<RobotRule> = Vec::new();
     script.retain(|line| {
         if seen.contains(line) {
@@ -227,6 +220,17 @@ fn robot(
         |card| card.expected.clone(),
     );
     RobotProposal { task, start, goal, script, expected_behavior: expected }
+}
+
+/// Whoever waits for a word of the robot must hear it.
+pub(crate) fn hear(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
+    for heard in humans.iter().flat_map(|human| &human.rules).flat_map(|rule| &rule.when) {
+        if let Trigger::RobotSays(gesture) = heard
+            && !script.iter().any(|line| line.act == RobotDo::Say(*gesture))
+        {
+            script.push(RobotRule { when: RobotWhen::HumanNear(4.0), act: RobotDo::Say(*gesture) });
+        }
+    }
 }
 
 /// `start`, `blocked N s`, `human within N m`, `after N s`, as requests write it.

@@ -169,6 +169,8 @@ pub(crate) struct Wish {
     pub(crate) place: PlaceClass,
     /// A class of place that the way should lead past.
     pub(crate) via: Option<PlaceClass>,
+    /// Whether doorways and aisles are to be kept away from.
+    pub(crate) roomy: bool,
     /// 1: straight over the meeting node, -1: round a corner, 0: no matter.
     pub(crate) straight: f64,
     /// Ways shorter than this are not good enough, m.

@@ -9,6 +9,7 @@ use socrates_prompts::Question;
 use crate::NAME;
 use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
+use crate::edit_paths;
 use crate::humans::{Taken, Way, way};
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
@@ -29,10 +30,13 @@ struct Solution {
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let net = Net::new(&question.location);
     let told = |code: FaultCode| {
-        u32::try_from(question.feedback.iter().filter(|fault| fault.code == code).count()).unwrap_or(0)
+        let robot = |fault: &&socrates_model::Fault| fault.code == code && !fault.at.contains("human");
+        u32::try_from(question.feedback.iter().filter(robot).count()).unwrap_or(0)
     };
     let via = crate::task::read(&question.request.task).via.map(|(class, _)| class);
     let wish = Wish { via, ..wish(proposal, told(FaultCode::GShort)) };
+    // Who got stuck is not led through doorways and aisles again.
+    let wish = Wish { roomy: question.feedback.iter().any(|fault| fault.code == FaultCode::DStuck), ..wish };
     let mut solutions = solutions(&net, proposal, &wish);
     if solutions.is_empty() {
         // Better another place than no answer; the checks and the person see what became of it.
@@ -42,8 +46,8 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
         solutions = anywhere(&net, proposal, &wish, true);
     }
     solutions.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.route.nodes.cmp(&b.route.nodes)));
-    // Every refusal moves on to the next meeting node, and so does a simulation in which they did not meet.
-    let moves = question.feedback.iter().filter(|fault| !fault.is_soft() && fault.code != FaultCode::GShort).count();
+    // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
+    let moves = question.feedback.iter().filter(|fault| moves(fault.code)).count();
     let mut seen: Vec<usize> = Vec::new();
     let mut best: Vec<&Solution> = Vec::new();
     for solution in &solutions {
@@ -57,7 +61,34 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let alike = best.iter().filter(|solution| solution.score >= top - ALIKE).count();
     let first = if moves == 0 { Draw::new(question.seed, "paths").below(alike.clamp(1, 3)) } else { moves };
     let chosen = best.get(first % best.len())?;
-    Some(written(&net, chosen, proposal))
+    let mut paths = written(&net, chosen, proposal);
+    for human in &proposal.humans {
+        let short = |fault: &&socrates_model::Fault| {
+            fault.code == FaultCode::GShort && fault.at.split_whitespace().any(|word| word == human.id.to_string())
+        };
+        for _ in question.feedback.iter().filter(short).take(4) {
+            edit_paths::lengthen(&net, &mut paths, human.id);
+        }
+    }
+    Some(paths)
+}
+
+/// Whether a fault is one of the place of the meeting. A slip of the pen is none: then the same paths are written again.
+const fn moves(code: FaultCode) -> bool {
+    matches!(
+        code,
+        FaultCode::GMeet
+            | FaultCode::GMeetEnd
+            | FaultCode::GType
+            | FaultCode::GRel
+            | FaultCode::GColl
+            | FaultCode::GGrp
+            | FaultCode::DNoMeet
+            | FaultCode::DStuck
+            | FaultCode::DPen
+            | FaultCode::DGroup
+            | FaultCode::DSetup
+    )
 }
 
 fn wish(proposal: &Proposal, shorts: u32) -> Wish {
@@ -81,6 +112,7 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         goal: proposal.robot.goal,
         place: proposal.place,
         via: None,
+        roomy: false,
         straight,
         least_m: 6.5 + 2.0 * longer,
         aim_m: if along { 20.0 } else { 16.0 } + 4.0 * longer,
@@ -176,7 +208,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             if let Some(mut solution) = people(net, proposal, route, crowded) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
-                solution.score += rank + hidden - if many { 3.0 * tight } else { 0.0 };
+                solution.score += rank + hidden - if many || wish.roomy { 3.0 * tight } else { 0.0 };
                 found.push(solution);
             }
         }

@@ -1,12 +1,13 @@
 //! The rough scenario, clause by clause: subjects, triggers and deeds are bound to people.
 
-use socrates_model::{Fault, FaultCode, Gesture, HumanId, PlaceClass, Relation, Trigger};
+use socrates_model::{Fault, FaultCode, Gesture, HumanId, PlaceClass, Trigger};
 
 use crate::cast::Cast;
 use crate::clause::{self, Found};
 use crate::deed::{self, Around};
 use crate::lexicon::{Act, Cue, lexicon};
 use crate::mention::Who;
+use crate::robot_deed::{place_of, robot_deed};
 use crate::words::{Joint, Stretch, sentences};
 
 /// Everything that was read of the rough scenario.
@@ -49,7 +50,11 @@ struct Thread {
 
 /// Reads the text.
 pub(crate) fn read(text: &str) -> Story {
-    let mut story = Story::default();
+    read_on(Story::default(), sentences(text), text)
+}
+
+/// Reads sentences of a text about people of whom was spoken before.
+pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str) -> Story {
     let mut thread = Thread {
         subject: Subject::Nobody,
         pending: Vec::new(),
@@ -60,7 +65,7 @@ pub(crate) fn read(text: &str) -> Story {
         doer: None,
         led: None,
     };
-    for mut sentence in sentences(text) {
+    for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
         thread.made.clear();
         thread.pending.clear();
@@ -410,7 +415,6 @@ fn quiet(
     thread.subject = Subject::People(people);
 }
 
-#[expect(clippy::too_many_arguments, reason = "all that surrounds a deed decides who does it")]
 fn subject_of(
     (act, at, to): (Act, usize, usize),
     passive: bool,
@@ -554,99 +558,4 @@ fn people_deed(
     }
     story.cast.last = people.to_vec();
     thread.doer = Some(people.to_vec());
-}
-
-/// The robot's own deeds: what they ask of people, of the places, of its script.
-fn robot_deed(
-    story: &mut Story,
-    act: Act,
-    found: &Found,
-    meant: &[(usize, usize, Vec<usize>)],
-    at: usize,
-    quote: &str,
-) {
-    let object: Vec<usize> =
-        meant.iter().find(|(from, _, _)| *from > at).map(|(_, _, some)| some.clone()).unwrap_or_default();
-    let class = found.places.first().map(|(class, _)| *class);
-    let set = |story: &mut Story, relation: Relation| {
-        for who in &object {
-            deed::relate(&mut story.cast, *who, relation, quote);
-            let doing = if relation == Relation::Ahead { "walks ahead of the robot" } else { "walks beside the robot" };
-            if let Some(person) = story.cast.people.get_mut(*who) {
-                person.doings.push(doing.to_owned());
-            }
-        }
-    };
-    match act {
-        Act::Follow => {
-            story.robot_part = Some("robot_following");
-            set(story, Relation::Ahead);
-        }
-        Act::Overtake => {
-            story.robot_part = Some("robot_overtaking");
-            set(story, Relation::Ahead);
-        }
-        Act::Lead => {
-            story.robot_part = Some("leading");
-            for who in &object {
-                let around = Around { quote: quote.to_owned(), ..Around::default() };
-                let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
-            }
-        }
-        Act::Abreast => set(story, Relation::Abreast),
-        Act::Gesture => story.robot_says.extend(found.gesture.map(|gesture| (gesture, quote.to_owned()))),
-        Act::Enter => {
-            story.robot_enters = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_enters.take())
-        }
-        Act::ComeOut => {
-            story.robot_leaves = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_leaves.take())
-        }
-        Act::RunAway
-        | Act::GiveWay
-        | Act::Block
-        | Act::Look
-        | Act::Approach
-        | Act::Toward
-        | Act::Behind
-        | Act::Ahead
-        | Act::Cross
-        | Act::Stay
-        | Act::Talk
-        | Act::WalkTogether
-        | Act::Stop
-        | Act::Stand
-        | Act::Ignore
-        | Act::Pass
-        | Act::Walk => {}
-    }
-    let its_own =
-        matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
-    if its_own {
-        story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
-    }
-}
-
-fn place_of(story: &mut Story, found: &Found, quote: &str) {
-    let comes_out =
-        found.deeds.iter().find(|deed| matches!(deed.act, Act::ComeOut | Act::Enter | Act::Stay)).map(|deed| deed.at);
-    // Where the robot leads somebody to is where it goes.
-    let robot = |at: usize| {
-        found.robots.iter().any(|robot| *robot < at) && found.mentions.iter().all(|mention| mention.from > at)
-    };
-    let leads = found.deeds.iter().find(|deed| deed.act == Act::Lead && robot(deed.at)).map(|deed| deed.at);
-    for (class, at) in &found.places {
-        // Where somebody is led to is where the robot goes.
-        if leads.is_some_and(|deed| *at > deed) {
-            story.robot_enters = Some((*class, quote.to_owned()));
-            continue;
-        }
-        // The room that people come out of is where they start, not where they are met.
-        let source = comes_out.is_some_and(|deed| *at > deed)
-            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit);
-        let weak =
-            story.place.as_ref().is_none_or(|(old, _)| *class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
-        if !source && weak {
-            story.place = Some((*class, quote.to_owned()));
-        }
-    }
 }

@@ -91,15 +91,3 @@ fn a_human_who_visits_a_node_twice_meets_the_robot_there() {
         assert!(met.iter().any(|(_, _, gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
     }
 }
-
-#[test]
-fn somebody_may_meet_the_robot_more_than_once() {
-    let cast = [Cast(Relation::Frontal, &["e", "m", "w2", "w"], vec![])];
-    for seed in 1..=4 {
-        let made = setup(ring(), &["w", "w2", "m", "e"], &cast, &[(1, "w2"), (1, "m")]);
-        let recording = run(Setup { seed, ..made });
-        let met = met(&recording);
-        let nodes: Vec<&str> = met.iter().map(|(_, node, _)| node.as_str()).collect();
-        assert!(nodes.contains(&"w2") && nodes.contains(&"m"), "seed {seed}: {met:?}");
-    }
-}

@@ -35,6 +35,10 @@ const CROSS_S: f64 = 1.1;
 /// Somebody who comes towards the robot aims at being there so long before it, s: who stops on seeing the robot
 /// stops near the place of the meeting, not far before it.
 const TOWARD_S: f64 = 0.7;
+/// A robot slower than this stands, m/s; after its first moments that takes it so much longer, s.
+const STANDS_MPS: f64 = 0.15;
+const STANDS_FROM_S: f64 = 3.0;
+const STANDS_S: f64 = 1.5;
 /// Somebody ahead is at the encounter so long before the robot, s.
 const AHEAD_S: f64 = 1.0;
 
@@ -93,7 +97,9 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     }
     let slowest = SLOWEST_MPS.min(human.speed_mps);
     let fastest = if human.relation == Relation::Ahead { human.speed_mps.max(slowest) } else { FASTEST_MPS };
-    let due_s = due_s(human.relation, robot.eta_s(meeting.robot_s));
+    // A robot that stands before the meeting is there later than its pace says: it has to get going first.
+    let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
+    let due_s = due_s(human.relation, robot.eta_s(meeting.robot_s) + stands_s);
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;

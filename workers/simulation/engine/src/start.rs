@@ -105,12 +105,12 @@ pub(crate) fn humans(
     floor: &Floor,
     robot: Option<&Robot>,
 ) -> Vec<Human> {
-    let (robot_way, _) = way(setup, &setup.paths.robot);
+    let (robot_way, robot_marks) = way(setup, &setup.paths.robot);
     let mut inside = BTreeMap::new();
     let mut humans = Vec::new();
     for proposal in &setup.proposal.humans {
         let Some(tree) = trees.remove(&proposal.id) else { continue };
-        let mut human = human(setup, proposal, tree, &robot_way, floor);
+        let mut human = human(setup, proposal, tree, (&robot_way, &robot_marks), floor);
         let taken: Vec<Point> = humans
             .iter()
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
@@ -193,7 +193,30 @@ fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
     Polyline::new(&points)
 }
 
-fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyline, floor: &Floor) -> Human {
+type Marks = [(NodeId, f64)];
+
+/// Which of the visits of a node is that of the meeting, along the human's way and the robot's, m: one for which nobody is
+/// too late if there is one, the robot's earliest of those.
+fn visits(node: &NodeId, own: &Marks, robot: &Marks, robot_mps: f64) -> Option<(f64, f64)> {
+    let of = |marks: &Marks| -> Vec<f64> { marks.iter().filter(|(id, _)| id == node).map(|(_, s)| *s).collect() };
+    let (mine, robots) = (of(own), of(robot));
+    let pairs = mine.iter().flat_map(|human_s| robots.iter().map(move |robot_s| (*human_s, *robot_s)));
+    let cost = |(human_s, robot_s): &(f64, f64)| {
+        let due_s = robot_s / robot_mps;
+        // Who stands there from the start goes away before the robot comes, unless it stays.
+        let starts = if *human_s < 1.0 && mine.len() > 1 { 1000.0 } else { 0.0 };
+        starts + 10.0 * (human_s / HURRY_MPS - due_s).max(0.0) + due_s
+    };
+    pairs.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+}
+
+fn human(
+    setup: &Setup,
+    proposal: &HumanProposal,
+    tree: Tree,
+    (robot_way, robot_marks): (&Polyline, &Marks),
+    floor: &Floor,
+) -> Human {
     let nodes: &[NodeId] = setup.paths.humans.get(&proposal.id).map_or(&[], Vec::as_slice);
     let (mut route, marks) = way(setup, nodes);
     if route.length_m() > 1.0 {
@@ -201,8 +224,13 @@ fn human(setup: &Setup, proposal: &HumanProposal, tree: Tree, robot_way: &Polyli
     }
     let meeting = setup.paths.encounter_of(proposal.id).and_then(|node| {
         let at = setup.location.graph.node(node)?.at;
-        let human_s = marks.iter().find(|(id, _)| id == node).map_or_else(|| route.project(&at).0, |(_, s)| *s);
-        Some(Meeting { node: node.clone(), at, human_s, robot_s: robot_way.project(&at).0 })
+        let robot_mps = (0.93 * setup.robot.v_max_mps).max(0.1);
+        let visit = visits(node, &marks, robot_marks, robot_mps);
+        let (human_s, robot_s) = visit.unwrap_or_else(|| {
+            let own = marks.iter().find(|(id, _)| id == node).map_or_else(|| route.project(&at).0, |(_, s)| *s);
+            (own, robot_way.project(&at).0)
+        });
+        Some(Meeting { node: node.clone(), at, human_s, robot_s })
     });
     let (route, marks, meeting) = in_time(setup, proposal.relation, route, marks, meeting);
     let doors = doors_on(setup, &route);

@@ -1,0 +1,157 @@
+//! Edits in words: what stands, and a sentence; what is not spoken of stays as it is.
+//!
+//! A sentence is cut into clauses. What changes paths, speeds or who is there is told by a few words of its own
+//! (`edit_wish`); everything else is read by the grammar of requests, with the people of the proposal as those of whom was
+//! spoken already, and what it says of them replaces what they did.
+
+use socrates_model::job::Stage;
+use socrates_model::{Behaviors, Fault, FaultCode, Paths, Proposal, Reading};
+use socrates_prompts::Question;
+
+use crate::edit_people::Crowd;
+use crate::edit_wish::{Kind, Wish, wishes};
+use crate::{edit_paths, edit_people, edit_settle};
+
+/// What can be said, for those whose words were not understood.
+const SAYABLE: &str = "what can be said: make a path longer or shorter, reverse it, start or end it somewhere, avoid a place, move \
+                       the meeting to another place; add, remove, slow down or speed up somebody; what somebody does, when, \
+                       how long and how near; no gestures";
+
+/// What there is to edit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Draft {
+    /// The proposal as it stands.
+    pub proposal: Proposal,
+    /// The paths, if there are any yet.
+    pub paths: Option<Paths>,
+    /// The behaviors, if there are any yet.
+    pub behaviors: Option<Behaviors>,
+}
+
+/// What became of an edit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edited {
+    /// The artifacts; equal to those before, byte for byte, wherever the edit does not speak of them.
+    pub draft: Draft,
+    /// What was asked for now: facts that the edit overrules are changed, so that the checks hold the draft against them.
+    pub reading: Reading,
+    /// What was done, a sentence each.
+    pub done: Vec<String>,
+    /// What was not done and why, with what can be said instead (P-READ, P-PLACE).
+    pub not_done: Vec<Fault>,
+}
+
+/// Does what the words ask for, as far as they can be understood.
+///
+/// `question` gives request, reading, location and seed; its stage, feedback and proposal are not looked at. Deterministic;
+/// never fails: what cannot be done stands in [`Edited::not_done`].
+#[must_use]
+pub fn edit(question: &Question, draft: &Draft, words: &str) -> Edited {
+    let mut desk = Desk {
+        question: Question {
+            stage: Stage::Paths,
+            feedback: Vec::new(),
+            refused: None,
+            only: Vec::new(),
+            ..question.clone()
+        },
+        draft: draft.clone(),
+        done: Vec::new(),
+        not_done: Vec::new(),
+        changed: Vec::new(),
+    };
+    let mut crowd = Crowd::of(&draft.proposal);
+    let found = wishes(words);
+    if found.is_empty() {
+        desk.refuse(words, "says nothing");
+    }
+    for wish in found {
+        desk.grant(&wish, &mut crowd);
+    }
+    desk.finish(draft)
+}
+
+/// The artifacts while they are being edited.
+pub(crate) struct Desk {
+    pub(crate) question: Question,
+    pub(crate) draft: Draft,
+    pub(crate) done: Vec<String>,
+    pub(crate) not_done: Vec<Fault>,
+    /// Humans whose part changed, by place in the proposal.
+    pub(crate) changed: Vec<usize>,
+}
+
+impl Desk {
+    fn grant(&mut self, wish: &Wish, crowd: &mut Crowd) {
+        match wish.kind {
+            Kind::Longer | Kind::Shorter | Kind::Reverse | Kind::Avoid | Kind::Start | Kind::End | Kind::Move => {
+                edit_paths::grant(self, wish, crowd);
+            }
+            Kind::Remove => edit_people::remove(self, wish, crowd),
+            Kind::Pace(factor) => edit_people::pace(self, wish, crowd, factor),
+            Kind::NoGestures => edit_people::no_gestures(self, wish, crowd),
+            Kind::Ungroup => edit_people::ungroup(self, wish),
+            Kind::Story => edit_people::story(self, wish, crowd),
+        }
+    }
+
+    /// Says that something was not done.
+    pub(crate) fn refuse(&mut self, quote: &str, why: &str) {
+        let message = format!("`{}` {why}; nothing was changed for it; {SAYABLE}", quote.trim());
+        self.not_done.push(Fault::new(FaultCode::PRead, "edit", message));
+    }
+
+    /// Says that the map has no such place.
+    pub(crate) fn no_place(&mut self, quote: &str, why: &str) {
+        let message = format!("`{}` {why}; it has: {}", quote.trim(), crate::place::listed(&self.question.location));
+        self.not_done.push(Fault::new(FaultCode::PPlace, "edit", message));
+    }
+
+    /// Remembers that somebody's part changed.
+    pub(crate) fn touch(&mut self, who: usize) {
+        if !self.changed.contains(&who) {
+            self.changed.push(who);
+        }
+    }
+
+    fn finish(mut self, before: &Draft) -> Edited {
+        let mut reading = self.question.reading.clone();
+        if self.draft.proposal != before.proposal {
+            edit_settle::settle(&mut self, &mut reading);
+        }
+        self.behaviors(before);
+        Edited { draft: self.draft, reading, done: self.done, not_done: self.not_done }
+    }
+
+    /// Trees of those whose part changed; everybody's where somebody left, because their numbers changed.
+    fn behaviors(&mut self, before: &Draft) {
+        let Some(known) = self.draft.behaviors.clone() else { return };
+        let fewer = self.draft.proposal.humans.len() < before.proposal.humans.len();
+        let ids: Vec<socrates_model::HumanId> = self
+            .draft
+            .proposal
+            .humans
+            .iter()
+            .enumerate()
+            .filter(|(place, human)| fewer || self.changed.contains(place) || !known.humans.contains_key(&human.id))
+            .map(|(_, human)| human.id)
+            .collect();
+        if ids.is_empty() {
+            return;
+        }
+        let ask = Question {
+            stage: Stage::Behaviors,
+            proposal: Some(self.draft.proposal.clone()),
+            only: ids,
+            ..self.question.clone()
+        };
+        match socrates_prompts::parse_behaviors(&crate::Offline::answer(&ask), &ask) {
+            Ok(made) => {
+                let mut humans = if fewer { std::collections::BTreeMap::new() } else { known.humans };
+                humans.extend(made.humans);
+                self.draft.behaviors = Some(Behaviors { humans, ..known });
+            }
+            Err(faults) => self.not_done.extend(faults),
+        }
+    }
+}

@@ -1,0 +1,593 @@
+//! Edits of people: who is there, what they do, how fast.
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use socrates_model::rule::RobotDo;
+use socrates_model::{
+    Action, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal, Relation, Rule,
+    Trigger,
+};
+
+use crate::cast::{Cast, Person, ReadRule};
+use crate::deed::distance_m;
+use crate::edit::Desk;
+use crate::edit_paths;
+use crate::edit_wish::Wish;
+use crate::mention::{Who, mentions};
+use crate::story::{Story, read_on};
+use crate::{place, prose};
+
+/// Desired speed of somebody who has none of its own, m/s.
+const USUAL_MPS: f64 = 1.2;
+
+/// The people as the grammar knows them.
+pub(crate) struct Crowd {
+    pub(crate) cast: Cast,
+}
+
+/// Whom an edit speaks of.
+pub(crate) enum Whom {
+    Robot,
+    People(Vec<usize>),
+    /// Nobody by name.
+    Unsaid,
+}
+
+impl Crowd {
+    pub(crate) fn of(proposal: &Proposal) -> Self {
+        Self { cast: Cast::known(proposal.humans.iter().map(person).collect()) }
+    }
+
+    /// Whom the words mean; people who are not there are nobody.
+    pub(crate) fn whom(&mut self, wish: &Wish) -> Whom {
+        let mut found = Vec::new();
+        let mut robot = false;
+        for clause in &wish.clauses {
+            robot |= clause.words.iter().any(|word| {
+                matches!(word.text.as_str(), "robot" | "robots" | "robot's" | "amr" | "agv")
+                    || word.stem == "robot" && word.text == "its"
+            });
+            for mention in mentions(&clause.words) {
+                let before = self.cast.clone();
+                let some = self.cast.resolve(&mention, false, "");
+                if self.cast.people.len() > before.people.len() {
+                    self.cast = before;
+                    continue;
+                }
+                if !some.is_empty() {
+                    self.cast.last.clone_from(&some);
+                }
+                found.extend(some.into_iter().filter(|i| !found.contains(i)).collect::<Vec<_>>());
+            }
+        }
+        let pronoun = wish.clauses.iter().flat_map(|clause| &clause.words);
+        let pronoun =
+            pronoun.clone().any(|word| matches!(word.text.as_str(), "her" | "his" | "him" | "their" | "them"));
+        if found.is_empty() && !robot && pronoun {
+            found.clone_from(&self.cast.last);
+        }
+        match (found.is_empty(), robot) {
+            (false, _) => Whom::People(found),
+            (true, true) => Whom::Robot,
+            (true, false) => Whom::Unsaid,
+        }
+    }
+}
+
+fn person(human: &HumanProposal) -> Person {
+    let role = if human.role == "person" { String::new() } else { human.role.clone() };
+    Person { role, group: human.group, bound: true, ..Person::default() }
+}
+
+/// What the grammar of requests reads: new people, and what somebody does now.
+pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
+    let old = desk.draft.proposal.humans.len();
+    let mut clauses = wish.clauses.clone();
+    let adds = adds(&mut clauses);
+    let mut cast = crowd.cast.clone();
+    for person in &mut cast.people {
+        *person = Person { role: person.role.clone(), group: person.group, bound: true, ..Person::default() };
+    }
+    let before = Story { cast, ..Story::default() };
+    let mut read = read_on(before, vec![clauses], &quoted(wish));
+    read.problems.retain(|fault| !fault.message.contains("says when"));
+    if read.cast.people.len() > old && !adds {
+        return desk.refuse(&wish.quote, "does not say which of those who are there is meant");
+    }
+    for fault in std::mem::take(&mut read.problems) {
+        desk.refuse(&wish.quote, &format!("is not clear: {}", fault.message));
+    }
+    let ignored: Vec<&String> = read.ignored.iter().filter(|word| !COURTESY.contains(&word.as_str())).collect();
+    if !ignored.is_empty() {
+        let listed: Vec<&str> = ignored.iter().map(|word| word.as_str()).collect();
+        desk.refuse(&listed.join(" "), "was not understood");
+    }
+    let mut did = false;
+    for who in 0..old {
+        did |= changed(desk, who, &read, wish);
+    }
+    for who in old..read.cast.people.len() {
+        did |= joins(desk, who, &read, wish);
+    }
+    for (gesture, _) in &read.robot_says {
+        let says = |line: &socrates_model::rule::RobotRule| line.act == RobotDo::Say(*gesture);
+        if !desk.draft.proposal.robot.script.iter().any(says) {
+            let when = socrates_model::rule::RobotWhen::HumanNear(4.0);
+            desk.draft
+                .proposal
+                .robot
+                .script
+                .push(socrates_model::rule::RobotRule { when, act: RobotDo::Say(*gesture) });
+            desk.done.push(format!("the robot gestures {gesture} when somebody is near"));
+        }
+        did = true;
+    }
+    let new: Vec<(GroupId, Vec<usize>)> =
+        read.cast.groups.iter().map(|(id, members, _)| (*id, members.clone())).collect();
+    for (_, members) in new {
+        did |= group(desk, &members);
+    }
+    let mut cast = Cast::known(desk.draft.proposal.humans.iter().map(person).collect());
+    cast.last.clone_from(&read.cast.last);
+    crowd.cast = cast;
+    if !did && desk.not_done.is_empty() {
+        desk.refuse(&wish.quote, "was not understood as a change");
+    }
+}
+
+/// Words of those who ask for something, which ask for nothing by themselves.
+const COURTESY: &[&str] = &[
+    "please",
+    "instead",
+    "add",
+    "additional",
+    "include",
+    "change",
+    "edit",
+    "would",
+    "like",
+    "want",
+    "rather",
+    "yet",
+    "keep",
+    "okay",
+];
+
+fn quoted(wish: &Wish) -> String {
+    // Words know their place in the whole text; blanks keep them there.
+    let from = wish.clauses.first().and_then(|clause| clause.words.first()).map_or(0, |word| word.from);
+    format!("{}{}", " ".repeat(from), wish.quote)
+}
+
+/// Whether somebody new is spoken of; words that only ask are taken as read.
+fn adds(clauses: &mut [crate::words::Stretch]) -> bool {
+    let mut adds = false;
+    for (number, clause) in clauses.iter_mut().enumerate() {
+        for word in &mut clause.words {
+            if matches!(
+                word.text.as_str(),
+                "add" | "include" | "insert" | "another" | "additional" | "extra" | "more" | "new"
+            ) {
+                adds = true;
+                word.used = true;
+            }
+        }
+        let first = mentions(&clause.words).into_iter().next();
+        adds |= number == 0
+            && first.is_some_and(|mention| {
+                matches!(mention.who, Who::New { article: true, .. } | Who::Further(_) | Who::More(_))
+            });
+    }
+    adds
+}
+
+/// What the edit says of somebody who is there already.
+fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
+    let (Some(said), Some(human)) = (read.cast.people.get(who), desk.draft.proposal.humans.get(who).cloned()) else {
+        return false;
+    };
+    let mut new = human.clone();
+    for (act, _) in &said.never {
+        let words = prose_of(*act);
+        new.rules.retain(|rule| !words.iter().any(|other| same_act(&rule.act, other)));
+    }
+    for rule in &said.rules {
+        put(&mut new.rules, rule);
+    }
+    if let Some((relation, _)) = &said.relation {
+        let meant = *relation != Relation::Static || said.rules.is_empty();
+        if meant && *relation != new.relation {
+            new.relation = *relation;
+        }
+    }
+    new.speed_mps = said.speed_mps.or(new.speed_mps).map(|mps| mps.clamp(0.2, 1.8));
+    if new == human {
+        return false;
+    }
+    let moved = new.relation != human.relation;
+    let id = new.id;
+    let slot = desk.draft.proposal.humans.get_mut(who);
+    if let Some(slot) = slot {
+        *slot = new.clone();
+    }
+    if moved && desk.draft.paths.is_some() && !edit_paths::anew(desk, who) {
+        if let Some(slot) = desk.draft.proposal.humans.get_mut(who) {
+            *slot = human;
+        }
+        desk.refuse(&wish.quote, "finds no way on this map beside the robot's path");
+        return true;
+    }
+    desk.touch(who);
+    let place = desk.draft.proposal.place;
+    let text = prose::behavior(&new.role, new.relation, place, new.start, &new.rules, new.group.is_some());
+    desk.done.push(format!("{id}: {text}"));
+    true
+}
+
+/// The actions that an act of the text stands for.
+fn prose_of(act: crate::lexicon::Act) -> Vec<Action> {
+    use crate::lexicon::Act;
+    match act {
+        Act::Stop | Act::Stand | Act::Stay => vec![Action::StandStill],
+        Act::Look => vec![Action::LookAtRobot],
+        Act::Follow => vec![Action::FollowRobot, Action::FollowHuman(HumanId::new(1))],
+        Act::RunAway => vec![Action::RunAway],
+        Act::GiveWay => vec![Action::GiveWay],
+        Act::Block => vec![Action::Block],
+        Act::Approach => vec![Action::Approach],
+        Act::Toward
+        | Act::Overtake
+        | Act::Behind
+        | Act::Abreast
+        | Act::Ahead
+        | Act::Cross
+        | Act::ComeOut
+        | Act::Enter
+        | Act::Talk
+        | Act::WalkTogether
+        | Act::Ignore
+        | Act::Gesture
+        | Act::Lead
+        | Act::Pass
+        | Act::Walk => Vec::new(),
+    }
+}
+
+pub(crate) fn same_act(a: &Action, b: &Action) -> bool {
+    std::mem::discriminant(a) == std::mem::discriminant(b)
+}
+
+/// A rule in the place of the one that does the same, else behind the others; what is not said stays.
+fn put(rules: &mut Vec<Rule>, read: &ReadRule) {
+    let known = rules.iter_mut().find(|rule| {
+        same_act(&rule.act, &read.rule.act)
+            && rule.gesture.is_some() == (read.rule.gesture.is_some() && rule.gesture.is_some())
+            || read.rule.gesture.is_some() && rule.gesture == read.rule.gesture
+    });
+    let Some(old) = known else {
+        // Before whatever goes on for good, behind which nothing would ever be done.
+        let at = rules.iter().position(|rule| rule.for_s.is_none()).unwrap_or(rules.len());
+        rules.insert(at, read.rule.clone());
+        return;
+    };
+    old.act.clone_from(&read.rule.act);
+    if read.stated {
+        // A distance without a trigger of its own is that of the trigger that is there.
+        let meters = read.rule.when.first().and_then(distance_m);
+        let keeps = !read.exact || matches!(read.rule.when.as_slice(), [Trigger::RobotVisible(_)]);
+        match (old.when.as_slice(), meters) {
+            ([Trigger::RobotNear(_)], Some(m)) if keeps => old.when = vec![Trigger::RobotNear(m)],
+            _ => old.when.clone_from(&read.rule.when),
+        }
+    }
+    if read.lasts {
+        old.for_s = read.rule.for_s;
+    }
+    old.gesture = read.rule.gesture.or(old.gesture);
+}
+
+/// Somebody new.
+fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
+    let Some(said) = read.cast.people.get(who) else { return false };
+    let number = u32::try_from(desk.draft.proposal.humans.len() + 1).unwrap_or(u32::MAX);
+    if number > socrates_model::request::MAX_HUMANS {
+        desk.refuse(&wish.quote, &format!("asks for more than {} humans", socrates_model::request::MAX_HUMANS));
+        return false;
+    }
+    let class = wish.place.or_else(|| read.place.as_ref().map(|(class, _)| *class));
+    if let Some(class) = class.filter(|class| !place::has(&desk.question.location, *class)) {
+        desk.no_place(&wish.quote, &format!("asks for {}, which the map does not have", place::an(class)));
+        return false;
+    }
+    let waits = said.rules.iter().all(|read| read.rule.act == Action::StandStill && !read.stated);
+    let at_place = class.is_some() && waits && said.relation.is_none();
+    let relation = if at_place { Relation::Static } else { read.relation_of(who).unwrap_or(Relation::Frontal) };
+    // Who only waits somewhere stands there all the time.
+    let rules: Vec<Rule> = if relation == Relation::Static && waits {
+        Vec::new()
+    } else {
+        said.rules.iter().map(|read| read.rule.clone()).collect()
+    };
+    let role = if said.role.is_empty() { "person".to_owned() } else { said.role.clone() };
+    let behavior =
+        prose::behavior(&role, relation, class.unwrap_or(desk.draft.proposal.place), said.start, &rules, false);
+    let human = HumanProposal {
+        id: HumanId::new(number),
+        role,
+        behavior,
+        relation,
+        rules,
+        group: None,
+        speed_mps: said.speed_mps,
+        start: said.start,
+        goal: None,
+    };
+    desk.draft.proposal.humans.push(human.clone());
+    let place = desk.draft.proposal.humans.len() - 1;
+    if desk.draft.paths.is_some() && !edit_paths::join(desk, place, class.filter(|_| at_place)) {
+        desk.draft.proposal.humans.pop();
+        let at = class.map_or_else(String::new, |class| format!(" at {} that the robot passes", place::an(class)));
+        desk.refuse(&wish.quote, &format!("finds no free way{at}"));
+        return false;
+    }
+    desk.touch(place);
+    desk.done.push(format!("{} joins: {}", human.id, human.behavior));
+    true
+}
+
+fn group(desk: &mut Desk, members: &[usize]) -> bool {
+    let proposal = &mut desk.draft.proposal;
+    let ids: Vec<HumanId> = members.iter().filter_map(|i| proposal.humans.get(*i)).map(|human| human.id).collect();
+    if ids.len() < 2 || proposal.groups.iter().any(|group| group.members == ids) {
+        return false;
+    }
+    let id = GroupId(proposal.groups.iter().map(|group| group.id.0).max().unwrap_or(0) + 1);
+    let standing =
+        members.iter().all(|i| proposal.humans.get(*i).is_some_and(|human| human.relation == Relation::Static));
+    for i in members {
+        if let Some(human) = proposal.humans.get_mut(*i) {
+            human.group = Some(id);
+        }
+    }
+    let listed: Vec<String> = ids.iter().map(HumanId::to_string).collect();
+    proposal.groups.push(GroupProposal { id, members: ids, standing });
+    let predicate = if standing {
+        Predicate::Formation { group: id, spread_m: 1.8 }
+    } else {
+        Predicate::WalksTogether { group: id, spread_m: 2.5 }
+    };
+    let text = format!("{id} {}", if standing { "stands in a circle" } else { "walks together" });
+    clause(proposal, text, predicate);
+    edit_paths::together(desk, members);
+    desk.done.push(format!("{} form {id}", listed.join(" and ")));
+    true
+}
+
+fn clause(proposal: &mut Proposal, text: String, predicate: Predicate) {
+    let clause = socrates_model::Clause {
+        id: next_id(proposal),
+        text,
+        role: ClauseRole::Setup,
+        must: true,
+        source: String::new(),
+        predicate,
+    };
+    proposal.expected_events.push(clause);
+}
+
+pub(crate) fn next_id(proposal: &Proposal) -> String {
+    let highest =
+        proposal.expected_events.iter().filter_map(|clause| clause.id.strip_prefix('c')?.parse::<u32>().ok()).max();
+    format!("c{}", highest.unwrap_or(0) + 1)
+}
+
+/// Somebody is slower or faster than before.
+pub(crate) fn pace(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd, factor: f64) {
+    let people = match crowd.whom(wish) {
+        Whom::People(people) => people,
+        Whom::Robot => return desk.refuse(&wish.quote, "speaks of the robot, whose speed is that of its model"),
+        Whom::Unsaid if crowd.cast.people.len() == 1 => vec![0],
+        Whom::Unsaid => return desk.refuse(&wish.quote, "does not say who"),
+    };
+    for who in people {
+        let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
+        let before = human.speed_mps.unwrap_or(USUAL_MPS);
+        let mps = (libm::round(before * factor * 10.0) / 10.0).clamp(0.3, 1.8);
+        human.speed_mps = Some(mps);
+        let line = format!("{} walks at {mps} m/s instead of {before} m/s", human.id);
+        desk.done.push(line);
+    }
+}
+
+/// Nobody gestures any more, or only these do not.
+pub(crate) fn no_gestures(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
+    let whom = crowd.whom(wish);
+    let count = desk.draft.proposal.humans.len();
+    let people = if let Whom::People(people) = &whom { people.clone() } else { (0..count).collect() };
+    let mut did = false;
+    if !matches!(whom, Whom::Robot) {
+        for who in people {
+            let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
+            let before = human.rules.clone();
+            // Who walked on with a gesture just walks on.
+            human.rules.retain(|rule| rule.gesture.is_none() || rule.act != Action::Navigate);
+            for rule in &mut human.rules {
+                rule.gesture = None;
+                rule.when.retain(|trigger| !matches!(trigger, Trigger::HumanSays(..)) || rule.act == Action::Navigate);
+                if rule.when.is_empty() {
+                    rule.when = vec![Trigger::RobotVisible(4.0)];
+                }
+            }
+            if human.rules != before {
+                let line = format!("{} makes no gesture", human.id);
+                desk.done.push(line);
+                desk.touch(who);
+                did = true;
+            }
+        }
+    }
+    if !matches!(whom, Whom::People(_)) {
+        let script = &mut desk.draft.proposal.robot.script;
+        let before = script.len();
+        script.retain(|line| !matches!(line.act, RobotDo::Say(_)));
+        if script.len() < before {
+            desk.done.push("the robot makes no gesture".to_owned());
+            did = true;
+            deaf(desk);
+        }
+    }
+    if !did {
+        desk.refuse(&wish.quote, "changes nothing: nobody of them gestures");
+    }
+}
+
+/// Who waited for a word of the robot reacts to its nearness.
+fn deaf(desk: &mut Desk) {
+    for who in 0..desk.draft.proposal.humans.len() {
+        let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
+        let mut waited = false;
+        for trigger in human.rules.iter_mut().flat_map(|rule| &mut rule.when) {
+            if matches!(trigger, Trigger::RobotSays(_)) {
+                (*trigger, waited) = (Trigger::RobotNear(3.0), true);
+            }
+        }
+        if waited {
+            let line = format!("{} waited for a gesture of the robot and reacts now when it is within 3 m", human.id);
+            desk.done.push(line);
+            desk.touch(who);
+        }
+    }
+}
+
+/// A group is no group any more.
+pub(crate) fn ungroup(desk: &mut Desk, wish: &Wish) {
+    if desk.draft.proposal.groups.is_empty() {
+        return desk.refuse(&wish.quote, "changes nothing: there is no group");
+    }
+    desk.draft.proposal.groups.clear();
+    for who in 0..desk.draft.proposal.humans.len() {
+        let Some(human) = desk.draft.proposal.humans.get_mut(who).filter(|human| human.group.is_some()) else {
+            continue;
+        };
+        human.group = None;
+        desk.touch(who);
+    }
+    desk.draft.proposal.expected_events.retain(|clause| clause.predicate.group().is_none());
+    desk.done.push("the group is no group any more; everybody keeps path and reactions".to_owned());
+}
+
+/// Somebody leaves the scenario.
+pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
+    let grouped = wish.clauses.iter().flat_map(|clause| &clause.words).any(|word| word.stem == "group");
+    let mut out = if grouped {
+        let humans = desk.draft.proposal.humans.iter().enumerate();
+        humans.filter(|(_, human)| human.group.is_some()).map(|(place, _)| place).collect()
+    } else {
+        match crowd.whom(wish) {
+            Whom::People(people) => people,
+            Whom::Robot => return desk.refuse(&wish.quote, "speaks of the robot, without which there is no scenario"),
+            Whom::Unsaid => Vec::new(),
+        }
+    };
+    out.sort_unstable();
+    if out.is_empty() {
+        return desk.refuse(&wish.quote, "means nobody who is there");
+    }
+    if out.len() >= desk.draft.proposal.humans.len() {
+        return desk.refuse(&wish.quote, "would leave nobody; a social scenario needs a human");
+    }
+    let gone: Vec<HumanId> =
+        out.iter().filter_map(|i| desk.draft.proposal.humans.get(*i)).map(|human| human.id).collect();
+    for who in out.iter().rev() {
+        desk.draft.proposal.humans.remove(*who);
+        desk.changed.retain(|other| other != who);
+        for other in desk.changed.iter_mut().filter(|other| **other > *who) {
+            *other -= 1;
+        }
+    }
+    let proposal = &mut desk.draft.proposal;
+    for group in &mut proposal.groups {
+        group.members.retain(|id| !gone.contains(id));
+    }
+    let small: Vec<GroupId> =
+        proposal.groups.iter().filter(|group| group.members.len() < 2).map(|group| group.id).collect();
+    proposal.groups.retain(|group| group.members.len() > 1);
+    for human in &mut proposal.humans {
+        human.group = human.group.filter(|id| !small.contains(id));
+        human.rules.retain(|rule| !matches!(rule.act, Action::FollowHuman(id) if gone.contains(&id)));
+    }
+    let of_gone = |id: Option<HumanId>| id.is_some_and(|id| gone.contains(&id));
+    proposal.expected_events.retain(|clause| {
+        let led = matches!(&clause.predicate, Predicate::Follows { leader: socrates_model::AgentId::Human(id), .. } if gone.contains(id));
+        !of_gone(clause.predicate.human()) && !led && clause.predicate.group().is_none_or(|id| !small.contains(&id))
+    });
+    proposal
+        .robot
+        .script
+        .retain(|line| !matches!(&line.act, RobotDo::Follow(id) | RobotDo::Abreast(id) if gone.contains(id)));
+    if let Some(paths) = &mut desk.draft.paths {
+        paths.humans.retain(|id, _| !gone.contains(id));
+        paths.encounters.retain(|encounter| !gone.contains(&encounter.human));
+    }
+    renumber(desk, &gone);
+    let named: Vec<String> = gone.iter().map(HumanId::to_string).collect();
+    desk.done.push(format!("{} left; those behind are numbered anew", named.join(" and ")));
+    crowd.cast = Crowd::of(&desk.draft.proposal).cast;
+}
+
+/// `human_3` is `human_2` where the second has left.
+fn renumber(desk: &mut Desk, gone: &[HumanId]) {
+    let text = |text: &str| -> String {
+        let mut out = String::with_capacity(text.len());
+        let mut rest = text;
+        while let Some(at) = rest.find("human_") {
+            let (head, tail) = rest.split_at(at + "human_".len());
+            let digits: String = tail.chars().take_while(char::is_ascii_digit).collect();
+            out.push_str(head);
+            match digits.parse::<u32>() {
+                Ok(number) => {
+                    let before = gone.iter().filter(|id| id.number() < number).count();
+                    out.push_str(&(number - u32::try_from(before).unwrap_or(0)).to_string());
+                }
+                Err(_) => out.push_str(&digits),
+            }
+            rest = tail.get(digits.len()..).unwrap_or_default();
+        }
+        out.push_str(rest);
+        out
+    };
+    desk.draft.proposal = mapped(&desk.draft.proposal, &text);
+    desk.draft.paths = mapped(&desk.draft.paths, &text);
+    let facts = &mut desk.question.reading.facts;
+    let of = |kind: &FactKind| {
+        if let FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } =
+            kind
+        {
+            gone.contains(human)
+        } else if let FactKind::Group { members, .. } = kind {
+            members.iter().any(|id| gone.contains(id))
+        } else {
+            false
+        }
+    };
+    facts.retain(|fact| !of(&fact.kind));
+    desk.question.reading.humans.retain(|human| !gone.contains(&human.id));
+    desk.question.reading = mapped(&desk.question.reading, &text);
+}
+
+/// The same with every string changed; what cannot be written or read back stays.
+fn mapped<T: Serialize + DeserializeOwned + Clone>(before: &T, text: &dyn Fn(&str) -> String) -> T {
+    fn walk(value: Value, text: &dyn Fn(&str) -> String) -> Value {
+        match value {
+            Value::String(old) => Value::String(text(&old)),
+            Value::Array(items) => Value::Array(items.into_iter().map(|item| walk(item, text)).collect()),
+            Value::Object(members) => {
+                Value::Object(members.into_iter().map(|(key, member)| (text(&key), walk(member, text))).collect())
+            }
+            Value::Null | Value::Bool(_) | Value::Number(_) => value,
+        }
+    }
+    let value = serde_json::to_value(before).map(|value| walk(value, text));
+    value.and_then(serde_json::from_value).unwrap_or_else(|_| before.clone())
+}

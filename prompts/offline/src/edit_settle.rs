@@ -1,0 +1,129 @@
+//! What follows from an edit: prose, clauses, the robot's script, and what was asked for.
+
+use socrates_model::reading::ReadHuman;
+use socrates_model::rule::RobotDo;
+use socrates_model::{ClauseRole, FactKind, HumanId, HumanProposal, Predicate, Proposal, Reading};
+
+use crate::edit::Desk;
+use crate::edit_people::{next_id, same_act};
+use crate::{events, proposal, prose};
+
+/// What follows from the changes: prose, clauses, script, and what was asked for.
+pub(crate) fn settle(desk: &mut Desk, reading: &mut Reading) {
+    reading.clone_from(&desk.question.reading);
+    let proposal = &mut desk.draft.proposal;
+    for who in &desk.changed {
+        let place = proposal.place;
+        let Some(human) = proposal.humans.get_mut(*who) else { continue };
+        let old = std::mem::take(&mut human.behavior);
+        let new = prose::behavior(&human.role, human.relation, place, human.start, &human.rules, human.group.is_some());
+        human.behavior.clone_from(&new);
+        let line = format!("{}: {new}", human.id);
+        if !old.is_empty() && proposal.description.contains(&old) {
+            proposal.description = proposal.description.replacen(&old, &new, 1);
+        } else if !proposal.description.contains(&line) {
+            proposal.description = format!("{} {line}", proposal.description.trim_end());
+        }
+    }
+    proposal::hear(&mut proposal.robot.script, &proposal.humans);
+    facts(proposal, reading);
+    let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
+    for clause in &mut proposal.expected_events {
+        if let Predicate::Humans { count: old } = &mut clause.predicate
+            && *old != count
+        {
+            *old = count;
+            clause.text = events::headcount(count);
+        }
+    }
+    // Clauses of those who changed are written anew; all others stay as they are.
+    let changed: Vec<HumanProposal> =
+        desk.changed.iter().filter_map(|who| proposal.humans.get(*who)).cloned().collect();
+    for human in &changed {
+        proposal
+            .expected_events
+            .retain(|clause| clause.role != ClauseRole::Setup || clause.predicate.human() != Some(human.id));
+        for mut clause in events::of_human(human, proposal, reading) {
+            clause.id = next_id(proposal);
+            proposal.expected_events.push(clause);
+        }
+    }
+    let says: Vec<_> = proposal
+        .robot
+        .script
+        .iter()
+        .filter_map(|line| if let RobotDo::Say(gesture) = line.act { Some(gesture) } else { None })
+        .collect();
+    proposal.expected_events.retain(|clause| {
+        !matches!(clause.predicate, Predicate::Gestures { agent: socrates_model::AgentId::Robot, gesture } if !says.contains(&gesture))
+    });
+    // An order of clauses of which one is gone orders nothing.
+    let ids: Vec<String> = proposal.expected_events.iter().map(|clause| clause.id.clone()).collect();
+    proposal.expected_events.retain(|clause| {
+        !matches!(&clause.predicate, Predicate::Order { first, then } if !ids.contains(first) || !ids.contains(then))
+    });
+}
+
+/// The facts that still hold; those that the edit overrules say what it says.
+fn facts(proposal: &Proposal, reading: &mut Reading) {
+    let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
+    let rules = |id: &HumanId| proposal.human(*id).map(|human| human.rules.clone()).unwrap_or_default();
+    for fact in &mut reading.facts {
+        match &mut fact.kind {
+            FactKind::Humans(n) => *n = count,
+            FactKind::Relates { human, relation } => {
+                if let Some(who) = proposal.human(*human) {
+                    *relation = who.relation;
+                }
+            }
+            FactKind::Reacts { human, rule } => {
+                let own = rules(human);
+                if !own.contains(rule)
+                    && let Some(now) = own.iter().find(|other| same_act(&other.act, &rule.act))
+                {
+                    rule.clone_from(now);
+                }
+            }
+            FactKind::Place(class) => *class = proposal.place,
+            FactKind::Group { .. }
+            | FactKind::Gestures { .. }
+            | FactKind::RobotTask(_)
+            | FactKind::RobotSays(_)
+            | FactKind::RobotStart(_)
+            | FactKind::RobotGoal(_)
+            | FactKind::Pattern(_) => {}
+        }
+    }
+    let says = |gesture| proposal.robot.script.iter().any(|line| line.act == RobotDo::Say(gesture));
+    reading.facts.retain(|fact| match &fact.kind {
+        FactKind::Reacts { human, rule } => rules(human).contains(rule),
+        FactKind::Gestures { human, gesture } => rules(human).iter().any(|rule| rule.gesture == Some(*gesture)),
+        FactKind::Group { members, .. } => proposal.groups.iter().any(|group| group.members == *members),
+        FactKind::RobotSays(gesture) => says(*gesture),
+        FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
+        FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
+        FactKind::Humans(_)
+        | FactKind::Relates { .. }
+        | FactKind::Place(_)
+        | FactKind::RobotTask(_)
+        | FactKind::Pattern(_) => true,
+    });
+    reading.place = reading.place.map(|_| proposal.place);
+    let guided = !reading.humans.is_empty();
+    for (place, human) in proposal.humans.iter().enumerate() {
+        let read = ReadHuman {
+            id: human.id,
+            role: human.role.clone(),
+            summary: reading.humans.get(place).map(|read| read.summary.clone()).unwrap_or_default(),
+            relation: Some(human.relation),
+            rules: human.rules.clone(),
+            group: human.group,
+        };
+        match reading.humans.get_mut(place) {
+            Some(slot) => *slot = read,
+            // An unguided request names nobody.
+            None if guided => reading.humans.push(read),
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! What the text says of the robot, and where things happen.
+
+use socrates_model::{PlaceClass, Relation};
+
+use crate::clause::Found;
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
+use crate::story::Story;
+
+/// The robot's own deeds: what they ask of people, of the places, of its script.
+pub(crate) fn robot_deed(
+    story: &mut Story,
+    act: Act,
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    at: usize,
+    quote: &str,
+) {
+    let object: Vec<usize> =
+        meant.iter().find(|(from, _, _)| *from > at).map(|(_, _, some)| some.clone()).unwrap_or_default();
+    let class = found.places.first().map(|(class, _)| *class);
+    let set = |story: &mut Story, relation: Relation| {
+        for who in &object {
+            deed::relate(&mut story.cast, *who, relation, quote);
+            let doing = if relation == Relation::Ahead { "walks ahead of the robot" } else { "walks beside the robot" };
+            if let Some(person) = story.cast.people.get_mut(*who) {
+                person.doings.push(doing.to_owned());
+            }
+        }
+    };
+    match act {
+        Act::Follow => {
+            story.robot_part = Some("robot_following");
+            set(story, Relation::Ahead);
+        }
+        Act::Overtake => {
+            story.robot_part = Some("robot_overtaking");
+            set(story, Relation::Ahead);
+        }
+        Act::Lead => {
+            story.robot_part = Some("leading");
+            for who in &object {
+                let around = Around { quote: quote.to_owned(), ..Around::default() };
+                let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
+            }
+        }
+        Act::Abreast => set(story, Relation::Abreast),
+        Act::Gesture => story.robot_says.extend(found.gesture.map(|gesture| (gesture, quote.to_owned()))),
+        Act::Enter => {
+            story.robot_enters = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_enters.take())
+        }
+        Act::ComeOut => {
+            story.robot_leaves = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_leaves.take())
+        }
+        Act::RunAway
+        | Act::GiveWay
+        | Act::Block
+        | Act::Look
+        | Act::Approach
+        | Act::Toward
+        | Act::Behind
+        | Act::Ahead
+        | Act::Cross
+        | Act::Stay
+        | Act::Talk
+        | Act::WalkTogether
+        | Act::Stop
+        | Act::Stand
+        | Act::Ignore
+        | Act::Pass
+        | Act::Walk => {}
+    }
+    let its_own =
+        matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
+    if its_own {
+        story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
+    }
+}
+
+pub(crate) fn place_of(story: &mut Story, found: &Found, quote: &str) {
+    let comes_out =
+        found.deeds.iter().find(|deed| matches!(deed.act, Act::ComeOut | Act::Enter | Act::Stay)).map(|deed| deed.at);
+    // Where the robot leads somebody to is where it goes.
+    let robot = |at: usize| {
+        found.robots.iter().any(|robot| *robot < at) && found.mentions.iter().all(|mention| mention.from > at)
+    };
+    let leads = found.deeds.iter().find(|deed| deed.act == Act::Lead && robot(deed.at)).map(|deed| deed.at);
+    for (class, at) in &found.places {
+        // Where somebody is led to is where the robot goes.
+        if leads.is_some_and(|deed| *at > deed) {
+            story.robot_enters = Some((*class, quote.to_owned()));
+            continue;
+        }
+        // The room that people come out of is where they start, not where they are met.
+        let source = comes_out.is_some_and(|deed| *at > deed)
+            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit);
+        let weak =
+            story.place.as_ref().is_none_or(|(old, _)| *class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
+        if !source && weak {
+            story.place = Some((*class, quote.to_owned()));
+        }
+    }
+}
