@@ -37,6 +37,19 @@ pub(crate) enum Format {
     Json,
 }
 
+/// Verbs of `evaluate`.
+#[derive(Debug, Subcommand)]
+pub(crate) enum EvaluateVerb {
+    /// Requests by repeats by arms: right at first, after repair, after being asked again, realised.
+    Author {
+        /// Specification (TOML), or `paper` for the shipped one.
+        spec: PathBuf,
+        /// Folder for report.md, trials.csv and faults.csv.
+        #[arg(long, default_value = "evaluation")]
+        out: PathBuf,
+    },
+}
+
 /// The verbs.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
@@ -91,6 +104,12 @@ pub(crate) enum Verb {
         /// Table of prices (TOML, a table per model); default: `author.prices` of the configuration.
         #[arg(long, value_name = "FILE")]
         prices: Option<PathBuf>,
+    },
+    /// Measure how well an author authors.
+    Evaluate {
+        /// What to do.
+        #[command(subcommand)]
+        verb: EvaluateVerb,
     },
     /// Let people label runs by hand.
     Labels {
@@ -386,6 +405,11 @@ pub(crate) enum ClusterVerb {
 /// Verbs of `dev`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum DevVerb {
+    /// Ask a model's server one small question that tells how far it enforces the form of an answer.
+    Probe {
+        /// Author, such as `ollama:MODEL`.
+        author: String,
+    },
     /// Print the JSON schema of an artifact.
     Schema {
         /// `request`, `reading`, `proposal`, `paths`, `behaviors`, `report`, `location`, `clause`.

@@ -23,6 +23,7 @@ mod cluster;
 mod config;
 mod cost;
 mod dev;
+mod evaluate;
 mod exit;
 mod explain;
 mod figure;
@@ -50,7 +51,7 @@ use std::process::ExitCode;
 
 use clap::Parser as _;
 
-use crate::args::{Cli, ClusterVerb, SimulateOptions, Verb};
+use crate::args::{Cli, ClusterVerb, EvaluateVerb, SimulateOptions, Verb};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
@@ -107,6 +108,9 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key_found: bool) -> Result
         Verb::Figure(options) => done(figure::figure(talk, options)),
         Verb::Cost { what, prices } => done(cost::cost(talk, config, what, prices.as_deref())),
         Verb::Cite { bundle } => done(cite::cite(talk, bundle)),
+        Verb::Evaluate { verb } => match verb {
+            EvaluateVerb::Author { spec, out } => done(evaluate::author(talk, config, spec, out).await),
+        },
         Verb::Labels { verb } => done(labels::labels(talk, verb)),
         Verb::Simulate(options) if agents::is_agents_file(&options.what) => done(agents::simulate(talk, options)),
         Verb::Simulate(options) => {

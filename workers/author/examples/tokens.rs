@@ -1,14 +1,15 @@
 //! How many tokens a scenario of two people costs, by stage and style, counted with the o200k tokenizer on a shipped
 //! location and request.
 //!
-//! `cargo run --release -p socrates-author --example tokens`; with a word after it (`-- show`), the questions themselves
+//! `cargo run --release -p socrates-author --example tokens`; with `-- show` the questions themselves, with `-- map.png` the picture
 #![expect(clippy::print_stdout, reason = "the figures are what it is for")]
 #![expect(clippy::expect_used, reason = "without its inputs there are no figures")]
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use socrates_author::{Desk, Papers, Written, llm};
+use socrates_author::offline::Offline;
+use socrates_author::{Answer, AskError, Author, Desk, Papers, Written, attempt, llm};
 use socrates_llm::estimate::{picture_tokens, png_size, request_tokens};
 use socrates_llm::{Detail, Dialect};
 use socrates_model::Request;
@@ -79,7 +80,14 @@ async fn main() {
             );
         }
     }
-    if std::env::args().nth(1).is_some() {
+    let word = std::env::args().nth(1);
+    if let Some(file) = word.as_deref().filter(|word| word.ends_with(".png")) {
+        for question in &questions {
+            for png in request_of(question, &plain).turns.into_iter().filter_map(|turn| turn.png) {
+                std::fs::write(file, png).expect("the picture is written");
+            }
+        }
+    } else if word.is_some() {
         for question in &questions {
             let prompt = question.prompt(&off);
             for message in &prompt.messages {
@@ -90,19 +98,40 @@ async fn main() {
         }
     }
     println!("serial calls: 2 (the proposal; then paths and the behaviors of everybody side by side)");
+    let mut all: Vec<u128> = Vec::new();
     for (question, stage) in questions.iter().zip(STAGES) {
-        let mut spent: Vec<u128> = (0..41)
-            .map(|_| {
-                let start = Instant::now();
-                let request = request_of(question, &off);
-                let body = serde_json::to_string(&request).expect("a request is JSON");
-                std::hint::black_box(body.len());
-                start.elapsed().as_micros()
-            })
-            .collect();
+        let text = Offline.ask(question).await.expect("the offline author answers").text;
+        let mut spent: Vec<u128> = Vec::new();
+        for _ in 0..41 {
+            let start = Instant::now();
+            let request = request_of(question, &plain);
+            let body = serde_json::to_string(&request).expect("a request is JSON");
+            let made = attempt(&Says(text.clone()), question).await;
+            spent.push(start.elapsed().as_micros());
+            std::hint::black_box((body.len(), made.is_ok()));
+        }
         spent.sort_unstable();
         let median = spent.get(20).copied().unwrap_or_default();
-        println!("own overhead, {stage}: median {median} µs to write the question (no picture)");
+        println!(
+            "own time, {stage}: median {median} µs to write the question, picture included, and to read and check the answer"
+        );
+        all.append(&mut spent);
+    }
+    all.sort_unstable();
+    println!("own time per call: median {} µs", all.get(all.len() / 2).copied().unwrap_or_default());
+}
+
+/// Says one text at once: what remains is our own time.
+struct Says(String);
+
+#[async_trait::async_trait]
+impl Author for Says {
+    async fn ask(&self, _question: &Question) -> Result<Answer, AskError> {
+        Ok(Answer { text: self.0.clone(), ..Answer::default() })
+    }
+
+    fn name(&self) -> String {
+        "says".into()
     }
 }
 
