@@ -1,4 +1,3 @@
-compile_error!("from the lead: read orchestrator/cli/src/evaluate/LEAD-READ-THIS.md before anything else");
 //! `evaluate author`: how often an author's scenarios are right at first, after repair, after being asked again, and realised.
 //!
 //! ```text

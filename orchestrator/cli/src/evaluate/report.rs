@@ -124,7 +124,9 @@ fn pairs(plan: &Plan, trials: &[Trial]) -> String {
                 (Some(_) | None, _) => {}
             }
         }
-        text.push_str(&format!("| {} | {lost} | {won} | {:.3} |\n", marked(arm), mcnemar(lost, won)));
+        let p = mcnemar(lost, won);
+        let p = if p < 0.001 { "below 0.001".to_owned() } else { format!("{p:.3}") };
+        text.push_str(&format!("| {} | {lost} | {won} | {p} |\n", marked(arm)));
     }
     text
 }
