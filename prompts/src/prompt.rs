@@ -68,7 +68,7 @@ impl Question {
                 let map = format!("{}{}", place_text::graph(&self.location), place_text::doors(&self.location));
                 let image = (style.image != Image::Off).then_some(Picture::AnnotatedMap);
                 messages.push(Message { role: Role::User, text: map, image });
-                let outline = self.proposal.as_ref().map(|proposal| paths_outline(proposal)).unwrap_or_default();
+                let outline = self.proposal.as_ref().map(paths_outline).unwrap_or_default();
                 messages.push(Message::text(Role::User, outline));
             }
             Stage::Behaviors => messages.push(Message::text(Role::User, self.behaviors_outline())),

@@ -58,9 +58,8 @@ fn proposal(question: &Question) -> Value {
     let graph = &question.location.graph;
     let found: BTreeSet<PlaceClass> = graph.nodes.iter().flat_map(|node| graph.classes(&node.id)).collect();
     let place = json!({"$ref": "#/$defs/place"});
-    let count = question.reading.facts.iter().find_map(|fact| match fact.kind {
-        FactKind::Humans(count) if count <= MOST_KEYED => Some(count),
-        _ => None,
+    let count = question.reading.facts.iter().find_map(|fact| {
+        if let FactKind::Humans(count) = fact.kind { Some(count).filter(|count| *count <= MOST_KEYED) } else { None }
     });
     let mut human = vec![
         ("behavior", text()),
@@ -142,7 +141,7 @@ fn paths(question: &Question, form: PathsForm) -> Value {
         // A map too large for a chain of its own is walked by name.
         PathsForm::Walk if few => {
             defs.extend(graph.nodes.iter().map(|node| {
-                let mut next: Vec<Value> = graph.neighbors(&node.id).iter().map(|id| walk_from(id)).collect();
+                let mut next: Vec<Value> = graph.neighbors(&node.id).iter().map(walk_from).collect();
                 next.push(json!({"type": "null"}));
                 let step = object(&[("at", json!({"const": node.id})), ("next", json!({"anyOf": next}))]);
                 (format!("from_{}", node.id), step)

@@ -50,13 +50,14 @@ pub(crate) fn table(in_full: bool) -> String {
         let ports = sheet.ports.iter().filter(|port| in_full || !is_ours(port.kind));
         let ports: Vec<String> = ports
             .map(|port| {
-                let value = match port.kind {
-                    PortKind::Own => "{id}".to_owned(),
-                    PortKind::Step => "{dt}".to_owned(),
-                    PortKind::Meters => "0.3 to 15".to_owned(),
-                    PortKind::Gesture => "code".to_owned(),
-                    other => port.default.map_or_else(|| other.allowed(), str::to_owned),
-                };
+                let known = [
+                    (PortKind::Own, "{id}"),
+                    (PortKind::Step, "{dt}"),
+                    (PortKind::Meters, "0.3 to 15"),
+                    (PortKind::Gesture, "code"),
+                ];
+                let short = known.iter().find(|(kind, _)| *kind == port.kind).map(|(_, text)| *text);
+                let value = short.or(port.default).map_or_else(|| port.kind.allowed(), str::to_owned);
                 format!(" {}={value}", port.name)
             })
             .collect();

@@ -150,7 +150,8 @@ fn exchanges(provenance: &Value, stage: &str) -> Vec<Value> {
     for job in jobs {
         let attempts = job["attempts"].as_array().unwrap().iter().map(|attempt| &attempt["exchanges"]);
         for exchange in attempts.chain([&job["exchanges"]]).flat_map(|list| list.as_array().unwrap()) {
-            if exchange.is_object() && !found.contains(exchange) {
+            // A refused answer stands beside its exchange, as the object it is.
+            if exchange["question"].is_string() && !found.contains(exchange) {
                 found.push(exchange.clone());
             }
         }
@@ -275,7 +276,9 @@ fn against(response: &Value, more: &[&str]) -> Option<Finished> {
         }
     };
     let folder = tempfile::tempdir().unwrap();
-    let fixtures = json!([{"match": {"userMessage": "Request (data"}, "response": response}]);
+    let always = ["Request (data", "This answer is refused", "Earlier answers were refused"];
+    let fixtures: Value =
+        always.iter().map(|words| json!({"match": {"userMessage": words}, "response": response})).collect();
     let mock = Mock::start(&program, folder.path(), &fixtures);
     let url = format!("author.url=http://127.0.0.1:{}/v1", mock.port);
     let mut args = vec!["--author", "openai:gpt-4o", "--set", url.as_str()];

@@ -400,6 +400,17 @@ pub(crate) enum ClusterVerb {
 /// Verbs of `dev`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum DevVerb {
+    /// Ask a model's server one small question that tells how far it enforces the form of an answer.
+    Probe {
+        /// Author, such as `ollama:MODEL`.
+        author: String,
+    },
+    /// Count the tokens that a scenario of two people costs a model, by style, and time our own part of a call.
+    Tokens {
+        /// Folder for the questions as they are sent, and the picture of the map.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Print the JSON schema of an artifact.
     Schema {
         /// `request`, `reading`, `proposal`, `paths`, `behaviors`, `report`, `location`, `clause`.

@@ -8,11 +8,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use socrates_author::{Keys, Server};
+use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
 use socrates_prompts::Style;
 
 use crate::config::Config;
-use crate::exit::Complaint;
+use crate::exit::{Code, Complaint};
+use crate::talk::Talk;
 
 /// Largest key file that is read, bytes.
 const MAX_KEY_BYTES: u64 = 16 * 1024;
@@ -53,6 +55,26 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
         let key = fault.at.replacen("prompt.", "author.", 1);
         Complaint::input(format!("`{key}`: {}", fault.message), "`socrates config author` prints the manual")
     })
+}
+
+/// `dev probe`: what a server enforces.
+pub(crate) async fn probe(talk: &Talk, config: &Config, author: &str) -> Result<(), Complaint> {
+    let found = socrates_author::probe(author, &keys(config)?).await.map_err(|why| {
+        Complaint::input(why.to_string(), "`socrates config author` shows address and key").with_code(Code::Author)
+    })?;
+    let rung = found.rung.map_or("none", Rung::name);
+    let (kept, told) = match found.kept {
+        Kept::Enforced => ("enforced", "it cannot answer in another form"),
+        Kept::Hinted => ("hinted", "it answers in JSON with what it likes; every answer is checked in any case"),
+        Kept::Ignored => ("ignored", "it answers with any text; expect answers that have to be asked for again"),
+    };
+    talk.line(&format!("model      {}", found.model));
+    for step in &found.steps {
+        talk.line(&format!("           {step}"));
+    }
+    talk.line(&format!("form       {rung}: {kept}, {told}"));
+    talk.result(&serde_json::json!({"model": found.model, "form": rung, "kept": kept, "steps": found.steps}));
+    Ok(())
 }
 
 /// Where the settings of a kind of server stand.

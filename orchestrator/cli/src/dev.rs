@@ -18,6 +18,8 @@ use crate::traces;
 /// Does a `dev` verb.
 pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb) -> Result<(), Complaint> {
     match verb {
+        DevVerb::Probe { author } => crate::authors::probe(talk, config, author).await,
+        DevVerb::Tokens { out } => crate::tokens::tokens(talk, out.as_deref()).await,
         DevVerb::Schema { artifact } => schema(talk, artifact),
         DevVerb::Import { file } => import(talk, file),
         DevVerb::Export { bundle, out } => export(talk, bundle, out),

@@ -43,6 +43,7 @@ mod scenarios;
 mod session;
 mod supervise;
 mod talk;
+mod tokens;
 mod traces;
 mod video;
 mod watch;

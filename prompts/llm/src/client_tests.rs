@@ -115,6 +115,15 @@ async fn generate_content_is_asked_in_the_agreed_form_and_read() {
 }
 
 #[tokio::test]
+async fn who_counts_nothing_has_not_counted() {
+    let told = json!({"content": [{"type": "text", "text": "{\"yes\": 1}"}], "stop_reason": "end_turn",
+        "usage": {"input_tokens": 0, "output_tokens": 0}});
+    let served = Served::once(200, &[], &told.to_string()).await;
+    let answer = client(&served, Dialect::Anthropic, |_| {}).ask(&request()).await.unwrap();
+    assert!(answer.estimated && answer.tokens.0 > 0 && answer.tokens.1 == 3, "{answer:?}");
+}
+
+#[tokio::test]
 async fn a_cut_answer_and_a_refusal_are_told_apart_in_every_format() {
     let served = Served::once(200, &[], &completion("{\"ye", "length")).await;
     assert_eq!(ask(&served, |_| {}).await.unwrap().finish, Finish::Cut);

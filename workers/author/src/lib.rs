@@ -30,4 +30,4 @@ pub use attempt::{Exchange, Made, Refused, Written, attempt};
 pub use author::{Answer, AskError, Author, How};
 pub use faulty::{FaultKind, FaultRates, FaultyAuthor};
 pub use job::{Desk, JobAnswer, JobRefusal, Papers};
-pub use settings::{Keys, Server, author_for};
+pub use settings::{Keys, Server, author_for, probe};

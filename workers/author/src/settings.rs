@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
-use socrates_llm::{ApiKey, ClientConfig, Dialect, Learnt, Rung};
+use socrates_llm::probe::Probe;
+use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learnt, Rung};
 use socrates_model::FaultCode;
 use socrates_prompts::Style;
 
 use crate::author::{AskError, Author};
 use crate::cassette::{Recorder, Replay};
 use crate::faulty::{FaultRates, FaultyAuthor};
-use crate::llm::{Llm, MAX_TOKENS};
+use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
 
 /// What a process knows of one kind of server.
@@ -104,7 +105,23 @@ pub fn author_of_job(
     if rates.is_clean() { Ok(author) } else { Ok(Box::new(FaultyAuthor::new(author, rates, attempt))) }
 }
 
+/// Asks the server of a setting what it enforces; see [`ChatClient::probe`].
+///
+/// # Errors
+/// [`AskError`]: `J-REQUEST` for a setting that means no server, else why there was no answer.
+pub async fn probe(setting: &str, keys: &Keys) -> Result<Probe, AskError> {
+    let (kind, model) = setting.trim().split_once(':').ok_or_else(|| unknown(setting))?;
+    let dialect = kind.parse::<Dialect>().map_err(|_no_dialect| unknown(setting))?;
+    let client = ChatClient::new(config(dialect, model, keys)?).map_err(|error| ask_error(&error))?;
+    client.probe().await.map_err(|error| ask_error(&error))
+}
+
 fn server(dialect: Dialect, model: &str, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
+    let llm = Llm::new(config(dialect, model, keys)?, style, keys.max_tokens.unwrap_or(MAX_TOKENS))?;
+    Ok(Box::new(llm))
+}
+
+fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, AskError> {
     let url = keys.servers.get(&dialect).and_then(|server| server.url.as_deref());
     let url = url.filter(|url| !url.is_empty()).unwrap_or_else(|| dialect.default_url());
     let key = keys.of(dialect).cloned().unwrap_or_else(|| ApiKey::new(""));
@@ -123,7 +140,7 @@ fn server(dialect: Dialect, model: &str, keys: &Keys, style: Style) -> Result<Bo
     if let Some(timeout) = keys.timeout {
         config.timeout = timeout;
     }
-    Ok(Box::new(Llm::new(config, style, keys.max_tokens.unwrap_or(MAX_TOKENS))?))
+    Ok(config)
 }
 
 fn unknown(setting: &str) -> AskError {

@@ -111,7 +111,12 @@ fn limited(cases: Vec<Case>, limit: Option<usize>) -> Vec<Case> {
 /// The configuration values of an arm, as flags.
 fn flags_of(arm: &Arm) -> Vec<String> {
     let values = [("orchestrator.asks_again", arm.asks_again), ("orchestrator.repairs", arm.repairs)];
-    values.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value?))).collect()
+    let budgets = values.into_iter().filter_map(|(key, value)| Some(format!("{key}={}", value?)));
+    let own = arm.set.iter().map(|(key, value)| match value.as_str() {
+        Some(text) => format!("{key}={text}"),
+        None => format!("{key}={value}"),
+    });
+    own.chain(budgets).collect()
 }
 
 /// What is the same for every arm.

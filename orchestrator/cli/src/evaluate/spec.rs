@@ -79,6 +79,9 @@ pub(super) struct Arm {
     pub(super) about: String,
     /// As `--author` takes it.
     pub(super) author: String,
+    /// Configuration values, such as `{ "author.paths" = "nodes", "author.image" = "off" }`.
+    #[serde(default)]
+    pub(super) set: BTreeMap<String, toml::Value>,
     /// How often a refused answer is asked again with its reasons. Default as configured.
     pub(super) asks_again: Option<u32>,
     /// How often a scenario goes back after its run. Default as configured.
