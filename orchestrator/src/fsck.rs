@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::pipeline;
 use crate::state::{Attempt, AttemptEnd, Job, JobState, State};
-use crate::submit::REFERENCE_ROLE;
+use crate::submit::is_beside;
 
 /// Everything that is wrong with a state; empty when nothing is.
 #[must_use]
@@ -38,7 +38,7 @@ fn check_job(state: &State, job: &Job, wrong: &mut Vec<String>) {
     let lacks = job.sources.iter().any(|(role, source)| {
         let parent = state.jobs.get(source);
         let missing = parent.is_none_or(|parent| parent.result.is_none());
-        missing && (role != REFERENCE_ROLE || parent.is_none_or(|parent| !parent.state.is_terminal()))
+        missing && (!is_beside(role) || parent.is_none_or(|parent| !parent.state.is_terminal()))
     });
     match job.state {
         JobState::Ready | JobState::Delayed | JobState::Leased | JobState::Succeeded if lacks => {

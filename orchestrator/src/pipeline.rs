@@ -15,6 +15,8 @@ use socrates_model::{Digest, Fault};
 
 /// The planner that plays the robot script; it always runs.
 pub const REFERENCE: &str = "reference";
+/// The planner that is no robot: the twin run.
+pub const NO_ROBOT: &str = "none";
 
 /// The stages in pipeline order.
 pub const ORDER: [Stage; 6] =

@@ -343,6 +343,28 @@ fn other_runs_follow_the_settled_lead_with_its_recording() {
 }
 
 #[test]
+fn a_run_is_judged_beside_its_twin_without_a_robot_where_there_is_one() {
+    let mut world = World::new();
+    let mut spec = spec("a");
+    spec.planners = vec!["none".to_owned(), "mppi".to_owned()];
+    world.submit(vec![spec]);
+    let lead = world.reach_scoring();
+    assert!(!lead.spec.inputs.contains_key("twin"), "the leading run is judged before any other begins");
+    world.score(&lead, Verdict::Realised, None);
+    let runs = world.grants("w", Stage::Simulation);
+    let of = |planner: &str| runs.iter().find(|grant| grant.spec.key.item.starts_with(planner)).unwrap();
+    world.succeed(of("mppi"));
+    assert!(world.grants("w", Stage::Scoring).is_empty(), "the twin is waited for");
+    world.succeed(of("none"));
+    let scorings = world.grants("w", Stage::Scoring);
+    let inputs = |planner: &str| {
+        &scorings.iter().find(|grant| grant.spec.key.item.starts_with(planner)).unwrap().spec.inputs
+    };
+    assert_eq!(inputs("mppi")["twin"], inputs("none")["recording"]);
+    assert!(!inputs("none").contains_key("twin"), "a twin has none");
+}
+
+#[test]
 fn the_same_work_is_done_once() {
     let mut world = World::new();
     let (mut a, mut b) = (spec("a"), spec("b"));

@@ -13,7 +13,14 @@ use crate::state::{Job, JobState, Scenario, Tries, Worker};
 use crate::turn::Turn;
 
 /// Role of the recording that other planners' runs are compared with; its absence stops nobody.
-pub(crate) const REFERENCE_ROLE: &str = "reference";
+const REFERENCE_ROLE: &str = "reference";
+/// Input of a scoring job: the recording of the same run without a robot, where one was asked for.
+const TWIN_ROLE: &str = "twin";
+
+/// Whether a scoring job waits for this input but does without it.
+pub(crate) fn is_beside(role: &str) -> bool {
+    role == REFERENCE_ROLE || role == TWIN_ROLE
+}
 
 impl Turn<'_> {
     pub(crate) fn hello(&mut self, hello: Hello, to: Token) {
@@ -201,6 +208,11 @@ impl Turn<'_> {
                         let key = place(*need, &reference.item());
                         sources.extend(key.map(|key| (REFERENCE_ROLE.to_owned(), key)));
                     }
+                    if run.planner != pipeline::NO_ROBOT {
+                        let twin = Run { planner: pipeline::NO_ROBOT.to_owned(), seed: run.seed };
+                        let key = place(*need, &twin.item());
+                        sources.extend(key.map(|key| (TWIN_ROLE.to_owned(), key)));
+                    }
                 }
                 Stage::Scoring => {}
             }
@@ -221,7 +233,7 @@ impl Turn<'_> {
             if !parent.state.is_terminal() {
                 return;
             }
-            if parent.state != JobState::Succeeded && role != REFERENCE_ROLE {
+            if parent.state != JobState::Succeeded && !is_beside(role) {
                 failed = Some((parent.state, source.clone()));
             }
         }
@@ -255,7 +267,7 @@ impl Turn<'_> {
         for (role, source) in &job.sources {
             let Some(parent) = self.job(source) else { continue };
             let Some(result) = &parent.result else { continue };
-            let made_as = if role == REFERENCE_ROLE { "recording" } else { role.as_str() };
+            let made_as = if is_beside(role) { "recording" } else { role.as_str() };
             let digest = pipeline::output(&result.artifacts, made_as).or_else(|| {
                 // A review that hands nothing back leaves the proposal as it was.
                 (source.stage == Stage::Review).then(|| parent.spec.inputs.get(role).copied()).flatten()

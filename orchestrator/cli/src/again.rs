@@ -153,16 +153,11 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
             proposal: Some(&bundle.proposal),
             paths: Some(&bundle.paths),
             reference: reference.map(|(recording, _)| recording),
-            twin: None,
+            twin: twin.map(|(recording, _)| recording),
             recording,
         };
-        // The bundle's reports know of no twin; what it adds is told beside.
         let report = socrates_scoring::score(&evidence);
         let same = report == *old;
-        let report = match twin {
-            Some((twin, _)) => socrates_scoring::score(&Evidence { twin: Some(twin), ..evidence }),
-            None => report,
-        };
         differ += usize::from(!same);
         talk.line(&format!(
             "scored     {} seed {}: {} ({})",
