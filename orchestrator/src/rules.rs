@@ -357,9 +357,8 @@ fn a_run_is_judged_beside_its_twin_without_a_robot_where_there_is_one() {
     assert!(world.grants("w", Stage::Scoring).is_empty(), "the twin is waited for");
     world.succeed(of("none"));
     let scorings = world.grants("w", Stage::Scoring);
-    let inputs = |planner: &str| {
-        &scorings.iter().find(|grant| grant.spec.key.item.starts_with(planner)).unwrap().spec.inputs
-    };
+    let inputs =
+        |planner: &str| &scorings.iter().find(|grant| grant.spec.key.item.starts_with(planner)).unwrap().spec.inputs;
     assert_eq!(inputs("mppi")["twin"], inputs("none")["recording"]);
     assert!(!inputs("none").contains_key("twin"), "a twin has none");
 }

@@ -77,7 +77,7 @@ impl Question {
         Prompt { messages, schema: (!naive).then(|| answer_schema(self, style)), template }
     }
 
-    /// A grammar (GBNF) of the answer to a paths question in the form [`PathsForm::Nodes`] in which only a neighbor can come
+    /// A grammar (GBNF) of the answer to a paths question in the form [`crate::PathsForm::Nodes`] in which only a neighbor can come
     /// next; nothing for other questions.
     #[must_use]
     pub fn grammar(&self) -> Option<String> {

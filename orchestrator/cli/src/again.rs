@@ -140,12 +140,13 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     let bundle = bundle::read(dir)?;
     let mut rows = Vec::new();
     let mut differ = 0;
-    for (entry, (recording, old)) in bundle.manifest.runs.iter().zip(&bundle.runs) {
+    for (place, (entry, (recording, old))) in bundle.manifest.runs.iter().zip(&bundle.runs).enumerate() {
         let reference = bundle.runs.iter().find(|(_, report)| {
             report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference"
         });
         let twin = bundle.runs.iter().find(|(_, report)| report.planner == "none" && report.seed == entry.seed);
-        let twin = twin.filter(|_| entry.planner != "none");
+        // The leading run is judged before any other begins, so it has no twin.
+        let twin = twin.filter(|_| entry.planner != "none" && place > 0);
         let evidence = Evidence {
             location: Some(&bundle.location),
             request: Some(&bundle.request),

@@ -157,3 +157,9 @@ fn what_other_people_write_is_read() {
 fn what_was_kept_aside_once_is_read() {
     reads("kept aside once", include_str!("../corpus/sealed.toml"), 95);
 }
+
+/// Written by somebody who did not know the grammar, and not looked at by whoever worked on it.
+#[test]
+fn what_was_kept_aside_second_is_read() {
+    reads("kept aside", include_str!("../corpus/sealed-2.toml"), 95);
+}
