@@ -34,17 +34,16 @@ fn check_job(state: &State, job: &Job, wrong: &mut Vec<String>) {
     if running != usize::from(held) || (held && job.attempts.last().is_none_or(|last| last.end.is_some())) {
         wrong.push(format!("I2 {key}: `{running}` attempts run while it is {}", job.state.name()));
     }
-    // I5: ready exactly when all it needs has results.
-    let lacks = job.sources.iter().any(|(role, source)| {
-        let parent = state.jobs.get(source);
-        let missing = parent.is_none_or(|parent| parent.result.is_none());
-        missing && (!is_beside(role) || parent.is_none_or(|parent| !parent.state.is_terminal()))
-    });
+    // I5: ready exactly when all it needs has results, and what stands beside has ended. Who went on without such an
+    // input does not wait for it when it is tried once more.
+    let parents = || job.sources.iter().map(|(role, source)| (is_beside(role), state.jobs.get(source)));
+    let lacks = parents().any(|(beside, parent)| !beside && parent.is_none_or(|parent| parent.result.is_none()));
+    let waits = lacks || parents().any(|(_, parent)| parent.is_none_or(|parent| !parent.state.is_terminal()));
     match job.state {
         JobState::Ready | JobState::Delayed | JobState::Leased | JobState::Succeeded if lacks => {
             wrong.push(format!("I5 {key}: {} without all inputs", job.state.name()));
         }
-        JobState::Blocked if !lacks => wrong.push(format!("I5 {key}: blocked with all inputs")),
+        JobState::Blocked if !waits => wrong.push(format!("I5 {key}: blocked with all inputs")),
         JobState::Blocked => {
             let open = |source| state.jobs.get(source).is_some_and(|parent| !parent.state.is_terminal());
             if !job.sources.values().any(open) {

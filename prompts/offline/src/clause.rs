@@ -173,7 +173,8 @@ fn unit_s(stretch: &Stretch, at: usize) -> Option<f64> {
     match stretch.words.get(at)?.stem.as_str() {
         "minute" => Some(60.0),
         "second" => Some(1.0),
-        "moment" | "instant" | "while" => Some(3.0),
+        "moment" | "instant" => Some(3.0),
+        "while" => Some(6.0),
         _ => None,
     }
 }
