@@ -117,7 +117,7 @@ impl Outcome {
         }
     }
 
-    /// Names of the columns of [`Outcome::cells`], those of the case first.
+    /// Names of the columns of [`Outcome::line`], those of the case first.
     pub(super) const COLUMNS: &'static str = "arm,request,guided,location,repeat,seed,result,first_pass,after_repair,after_asking,first_run,realised,asks,sent_back,tokens_in,tokens_out,author_ms,injected,found";
 
     /// A line of the table.
