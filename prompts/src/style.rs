@@ -99,6 +99,19 @@ words! {
     }
 }
 
+words! {
+    /// What an author is told of its refused answer.
+    Telling {
+        /// Every fault with where it is and what is allowed.
+        #[default]
+        Named = "named",
+        /// That it was wrong.
+        Vague = "vague",
+        /// Nothing: the same question again.
+        Silent = "none",
+    }
+}
+
 impl Image {
     /// Longest side of the picture, pixels.
     #[must_use]
@@ -123,10 +136,13 @@ pub struct Style {
     pub behaviors: BehaviorsForm,
     /// The picture of the map.
     pub image: Image,
+    /// What is told of a refused answer.
+    pub feedback: Telling,
 }
 
 impl Style {
-    /// The style that a job's settings ask for: `prompt.mode`, `prompt.paths`, `prompt.behaviors`, `prompt.image`.
+    /// The style that a job's settings ask for: `prompt.mode`, `prompt.paths`, `prompt.behaviors`, `prompt.image`,
+    /// `prompt.feedback`.
     ///
     /// # Errors
     /// `J-REQUEST` that names the setting and what it takes.
@@ -138,16 +154,22 @@ impl Style {
                 "paths" => word.parse().map(|form| style.paths = form),
                 "behaviors" => word.parse().map(|form| style.behaviors = form),
                 "image" => word.parse().map(|image| style.image = image),
-                _ => {
-                    Err("is no setting; allowed: prompt.mode, prompt.paths, prompt.behaviors, prompt.image".to_owned())
-                }
+                "feedback" => word.parse().map(|telling| style.feedback = telling),
+                _ => Err("is no setting; allowed: prompt.mode, prompt.paths, prompt.behaviors, prompt.image, \
+                          prompt.feedback"
+                    .to_owned()),
             };
             read.map_err(|why| Fault::new(FaultCode::JRequest, key, why))?;
         }
         if style.mode == Mode::Naive {
             // Who explains nothing shows nothing, and asks for what the baseline asks for.
-            style =
-                Self { mode: Mode::Naive, paths: PathsForm::Nodes, behaviors: BehaviorsForm::Xml, image: Image::Off };
+            style = Self {
+                mode: Mode::Naive,
+                paths: PathsForm::Nodes,
+                behaviors: BehaviorsForm::Xml,
+                image: Image::Off,
+                ..style
+            };
         }
         Ok(style)
     }
@@ -166,6 +188,7 @@ impl Style {
         put("paths", self.paths.name(), self.paths != plain.paths);
         put("behaviors", self.behaviors.name(), self.behaviors != plain.behaviors);
         put("image", self.image.name(), self.image != plain.image);
+        put("feedback", self.feedback.name(), self.feedback != plain.feedback);
         settings
     }
 }

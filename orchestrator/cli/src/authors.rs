@@ -47,7 +47,7 @@ pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
 
 /// The style of questions, as settings of jobs; empty for the default.
 pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complaint> {
-    let asked: BTreeMap<String, String> = ["mode", "paths", "behaviors", "image"]
+    let asked: BTreeMap<String, String> = ["mode", "paths", "behaviors", "image", "feedback"]
         .into_iter()
         .map(|name| (format!("prompt.{name}"), config.text(&format!("author.{name}"))))
         .collect();

@@ -148,8 +148,12 @@ pub(crate) fn prepare_text(
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
     }
-    // Rules have no style of being asked: the offline author's results stay the same results.
-    let style = if author == "offline" { BTreeMap::new() } else { crate::authors::style(config)? };
+    let mut style = crate::authors::style(config)?;
+    if author == "offline" {
+        // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
+        // that were put in matters.
+        style.retain(|key, _| key == "prompt.feedback" && !injected.is_empty());
+    }
     let name = slug(name);
     Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })
 }
