@@ -212,6 +212,7 @@ pub(crate) fn report(grant: &Grant, outcome: Outcome) -> Report {
         remark: String::new(),
         repair: None,
         verdict: None,
+        rates: None,
     }
 }
 

@@ -123,6 +123,7 @@ mod tests {
             remark: String::new(),
             repair: None,
             verdict: None,
+            rates: None,
         }
     }
 
