@@ -152,7 +152,7 @@ pub(crate) fn prepare_text(
     if author == "offline" {
         // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
         // that were put in matters.
-        style.retain(|key, _| key == "prompt.feedback" && !injected.is_empty());
+        style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
     }
     let name = slug(name);
     Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })

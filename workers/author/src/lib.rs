@@ -25,6 +25,7 @@ pub mod confusion;
 pub mod attempt;
 pub mod job;
 pub mod settings;
+pub mod variants;
 
 #[cfg(test)]
 mod testing;

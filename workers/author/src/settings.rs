@@ -15,6 +15,7 @@ use crate::fault_model::FaultRates;
 use crate::faulty::FaultyAuthor;
 use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
+use crate::variants::BySeed;
 
 /// What a process knows of one kind of server.
 #[derive(Debug, Clone, Default)]
@@ -107,6 +108,12 @@ pub fn author_of_job(
         author
     } else {
         Box::new(Told { inner: author, telling: style.feedback })
+    };
+    // A model writes several in one answer; rules are asked with as many seeds.
+    let author: Box<dyn Author> = if style.variants > 1 && author.name() == socrates_offline::NAME {
+        Box::new(BySeed { inner: author, count: style.variants })
+    } else {
+        author
     };
     let rates = FaultRates { told: style.feedback, ..FaultRates::from_settings(settings)? };
     if rates.is_clean() { Ok(author) } else { Ok(Box::new(FaultyAuthor::new(author, rates, attempt))) }

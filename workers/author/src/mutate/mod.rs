@@ -9,6 +9,7 @@ use socrates_model::job::Stage;
 use socrates_prompts::Question;
 
 use crate::fault_model::{FaultKind, concerns};
+use crate::variants::MEMBER;
 
 /// The text with the fault in it; nothing where the answer has no place for it.
 pub(crate) fn apply(kind: FaultKind, question: &Question, text: &str, draw: u64) -> Option<String> {
@@ -25,7 +26,14 @@ pub(crate) fn apply(kind: FaultKind, question: &Question, text: &str, draw: u64)
     }
     let mut answer: Value = serde_json::from_str(text).ok()?;
     match question.stage {
-        Stage::Proposal => proposal::put(kind, &mut answer, question, draw)?,
+        Stage::Proposal => match answer.get_mut(MEMBER).and_then(Value::as_array_mut) {
+            // Several proposals have the fault in common, or the best of them would hide it.
+            Some(all) => {
+                let hit = all.iter_mut().filter_map(|one| proposal::put(kind, one, question, draw)).count();
+                (hit > 0).then_some(())?;
+            }
+            None => proposal::put(kind, &mut answer, question, draw)?,
+        },
         Stage::Paths => paths::put(kind, &mut answer, question, draw)?,
         Stage::Behaviors => behaviors::put(kind, &mut answer, question, draw)?,
         Stage::Simulation | Stage::Scoring | Stage::Review => return None,
