@@ -50,13 +50,7 @@ pub(crate) struct AuthorOptions {
 }
 
 /// Evaluates.
-pub(crate) async fn evaluate(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    verb: &EvaluateVerb,
-    key_found: bool,
-) -> Result<(), Complaint> {
+pub(crate) async fn evaluate(talk: &Talk, cli: &Cli, config: &Config, verb: &EvaluateVerb) -> Result<(), Complaint> {
     let EvaluateVerb::Author(options) = verb;
     let spec = Spec::load(&options.spec)?;
     let cases = limited(spec.cases(), options.limit);
@@ -69,7 +63,7 @@ pub(crate) async fn evaluate(
     let mut done: Vec<report::Done<'_>> = Vec::new();
     for (number, arm) in (1..).zip(&spec.arms) {
         let work = options.out.join(".socrates").join(format!("arm-{number}"));
-        let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec, key_found };
+        let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec };
         let outcomes = maker.run(arm, &cases, &work).await?;
         let realised = outcomes.iter().filter(|outcome| outcome.realised).count();
         talk.line(&format!("arm        {:<26} {realised} of {} realised", arm.name, outcomes.len()));
@@ -99,12 +93,11 @@ pub(crate) async fn evaluate(
 fn limited(cases: Vec<Case>, limit: Option<usize>) -> Vec<Case> {
     let Some(limit) = limit else { return cases };
     let mut seen: std::collections::BTreeMap<(String, bool), usize> = std::collections::BTreeMap::new();
-    let keeps = |case: &Case| {
+    let mut keeps = |case: &Case| {
         let count = seen.entry((case.location.clone(), case.guided)).or_default();
         *count += 1;
         *count <= limit
     };
-    let mut keeps = keeps;
     cases.into_iter().filter(|case| keeps(case)).collect()
 }
 
@@ -126,7 +119,6 @@ struct Maker<'a> {
     config: &'a Config,
     options: &'a AuthorOptions,
     spec: &'a Spec,
-    key_found: bool,
 }
 
 impl Maker<'_> {
@@ -162,6 +154,6 @@ impl Maker<'_> {
             ..RunOptions::plain(case.seed)
         };
         let shown = format!("{} at {}", case.request, case.location);
-        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config, self.key_found)
+        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config)
     }
 }
