@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger};
+use socrates_model::{
+    AgentId, Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger,
+};
 
 use crate::list;
 use crate::proposal::robot_says;
@@ -103,24 +105,8 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
 
 /// Whether a rule of the proposal does what was asked: same action, same gestures; distances are the author's.
 fn covers(found: &Rule, asked: &Rule) -> bool {
-    let heard = |rule: &Rule| -> BTreeSet<(u32, Gesture)> {
-        rule.when
-            .iter()
-            .filter_map(|trigger| match trigger {
-                Trigger::RobotSays(gesture) => Some((0, *gesture)),
-                Trigger::HumanSays(id, gesture) => Some((id.number(), *gesture)),
-                Trigger::Always
-                | Trigger::RobotVisible(_)
-                | Trigger::RobotNear(_)
-                | Trigger::RobotBlocking(_)
-                | Trigger::RobotMoving
-                | Trigger::RobotStopped
-                | Trigger::GoalReached
-                | Trigger::AtEncounter
-                | Trigger::AfterSecs(_) => None,
-            })
-            .collect()
-    };
+    let heard =
+        |rule: &Rule| -> BTreeSet<(AgentId, Gesture)> { rule.when.iter().filter_map(Trigger::awaits).collect() };
     found.act == asked.act
         && (asked.gesture.is_none() || found.gesture == asked.gesture)
         && heard(asked).is_subset(&heard(found))

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
-use crate::ids::HumanId;
+use crate::ids::{AgentId, HumanId};
 
 /// Something a human can notice. Distances are centre to centre, m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -77,6 +77,24 @@ impl Action {
 }
 
 impl Trigger {
+    /// Who has to make which gesture for it; `None` for triggers that wait for no gesture.
+    #[must_use]
+    pub const fn awaits(&self) -> Option<(AgentId, Gesture)> {
+        match self {
+            Self::RobotSays(gesture) => Some((AgentId::Robot, *gesture)),
+            Self::HumanSays(id, gesture) => Some((AgentId::Human(*id), *gesture)),
+            Self::Always
+            | Self::RobotVisible(_)
+            | Self::RobotNear(_)
+            | Self::RobotBlocking(_)
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::GoalReached
+            | Self::AtEncounter
+            | Self::AfterSecs(_) => None,
+        }
+    }
+
     /// The trigger in words: `when it sees the robot within 5 m`.
     #[must_use]
     pub fn phrase(&self) -> String {

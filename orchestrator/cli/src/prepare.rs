@@ -34,6 +34,8 @@ pub(crate) struct Prepared {
     pub(crate) injected: BTreeMap<String, String>,
     /// Style of the questions, as settings of the author's jobs; empty for the default.
     pub(crate) style: BTreeMap<String, String>,
+    /// Whether the provenance keeps questions and answers.
+    pub(crate) keep_answers: bool,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
@@ -72,16 +74,11 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 }
 
 /// Reads and checks one request file.
-pub(crate) fn prepare(
-    file: &Path,
-    options: Option<&RunOptions>,
-    config: &Config,
-    key_found: bool,
-) -> Result<Prepared, Complaint> {
+pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
     let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
-    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config, key_found)
+    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config)
 }
 
 /// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
@@ -92,7 +89,6 @@ pub(crate) fn prepare_text(
     folder: &Path,
     options: Option<&RunOptions>,
     config: &Config,
-    key_found: bool,
 ) -> Result<Prepared, Complaint> {
     let mut request: Request = toml::from_str(text).map_err(|why| {
         let mut complaint = Complaint::input(
@@ -143,7 +139,7 @@ pub(crate) fn prepare_text(
             pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
         }
     }
-    let (author, mut author_note) = choose_author(&request.run.author, config, key_found);
+    let (author, mut author_note) = choose_author(&request.run.author, config)?;
     let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
@@ -154,8 +150,19 @@ pub(crate) fn prepare_text(
         // that were put in matters.
         style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
     }
-    let name = slug(name);
-    Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })
+    Ok(Prepared {
+        name: slug(name),
+        request,
+        location,
+        location_files,
+        reading,
+        pins,
+        injected,
+        style,
+        keep_answers: config.truth("author.keep_answers"),
+        author,
+        author_note,
+    })
 }
 
 /// The settings of `--inject`.
@@ -263,14 +270,15 @@ fn read_pin(role: &str, path: &Path) -> Result<String, Complaint> {
     }
 }
 
-fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, String) {
+fn choose_author(wish: &str, config: &Config) -> Result<(String, String), Complaint> {
     let wish = if wish == "auto" { config.text("author.kind") } else { wish.to_owned() };
     if wish != "auto" {
         let note = if wish == "offline" { "offline, rules".to_owned() } else { wish.clone() };
-        return (wish, note);
+        return Ok((wish, note));
     }
     let model = config.text("author.model");
-    if key_found && !model.is_empty() {
+    let key_found = crate::authors::key_found(config)?;
+    Ok(if key_found && !model.is_empty() {
         (format!("openai:{model}"), format!("openai:{model}"))
     } else if key_found {
         (
@@ -279,7 +287,7 @@ fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, Strin
         )
     } else {
         ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
-    }
+    })
 }
 
 /// A word that is safe as folder and scenario id.

@@ -87,6 +87,7 @@ impl Stage for ScoringStage {
             repair: report.repair,
             verdict: Some(report.verdict),
             tokens: (0, 0),
+            rates: None,
         })
     }
 }

@@ -53,13 +53,7 @@ pub(crate) struct AuthorOptions {
 }
 
 /// Evaluates.
-pub(crate) async fn evaluate(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    verb: &EvaluateVerb,
-    key_found: bool,
-) -> Result<(), Complaint> {
+pub(crate) async fn evaluate(talk: &Talk, cli: &Cli, config: &Config, verb: &EvaluateVerb) -> Result<(), Complaint> {
     let EvaluateVerb::Author(options) = verb;
     let spec = Spec::load(&options.spec)?;
     let cases = limited(spec.cases(), options.limit);
@@ -69,7 +63,7 @@ pub(crate) async fn evaluate(
         plural(cases.len(), "scenario"),
         plural(spec.arms.len(), "arm")
     ));
-    let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec, key_found };
+    let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec };
     if spec.confusion {
         maker.confusion(&cases).await?;
     }
@@ -109,12 +103,11 @@ pub(crate) async fn evaluate(
 fn limited(cases: Vec<Case>, limit: Option<usize>) -> Vec<Case> {
     let Some(limit) = limit else { return cases };
     let mut seen: std::collections::BTreeMap<(String, bool), usize> = std::collections::BTreeMap::new();
-    let keeps = |case: &Case| {
+    let mut keeps = |case: &Case| {
         let count = seen.entry((case.location.clone(), case.guided)).or_default();
         *count += 1;
         *count <= limit
     };
-    let mut keeps = keeps;
     cases.into_iter().filter(|case| keeps(case)).collect()
 }
 
@@ -136,7 +129,6 @@ struct Maker<'a> {
     config: &'a Config,
     options: &'a AuthorOptions,
     spec: &'a Spec,
-    key_found: bool,
 }
 
 impl Maker<'_> {
@@ -188,6 +180,6 @@ impl Maker<'_> {
             ..RunOptions::plain(case.seed)
         };
         let shown = format!("{} at {}", case.request, case.location);
-        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config, self.key_found)
+        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config)
     }
 }
