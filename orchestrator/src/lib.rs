@@ -35,6 +35,8 @@ mod status;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]
+mod look_rules;
+#[cfg(test)]
 mod rules;
 #[cfg(test)]
 mod world;

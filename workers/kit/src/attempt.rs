@@ -174,12 +174,13 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
         tokens: (0, 0),
         remark: String::new(),
         repair: None,
+        anew: Vec::new(),
         verdict: None,
     };
     let outputs = match worked {
         Ok(done) => {
             (report.tokens, report.remark) = (done.tokens, done.remark);
-            (report.repair, report.verdict) = (done.repair, done.verdict);
+            (report.repair, report.anew, report.verdict) = (done.repair, done.anew, done.verdict);
             done.artifacts
         }
         Err(failure) => {
