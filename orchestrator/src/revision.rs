@@ -132,9 +132,16 @@ impl Turn<'_> {
         let made: Vec<JobKey> = steps
             .iter()
             .filter_map(|(stage, item)| {
-                // A new proposal makes reasons against the old paths and behaviors void.
-                let reasons = targets.get(stage).filter(|_| first.is_none_or(|first| first == stage));
-                let reasons = reasons.map(|faults| feedback(faults, &[])).unwrap_or_default();
+                // A new proposal makes reasons against the old paths and behaviors void; whoever looks is told all of them.
+                let reasons = match stage {
+                    Stage::Review => targets.values().flatten().cloned().collect(),
+                    _ => targets
+                        .get(stage)
+                        .filter(|_| first.is_none_or(|first| first == stage))
+                        .cloned()
+                        .unwrap_or_default(),
+                };
+                let reasons = feedback(&reasons, &[]);
                 self.make(id, (*stage, item), run(*stage), revision, &reasons)
             })
             .collect();

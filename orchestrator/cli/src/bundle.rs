@@ -86,6 +86,9 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     if let Some(members) = text.as_object_mut().filter(|_| !prepared.style.is_empty()) {
         members.insert("style".to_owned(), json!(prepared.style));
     }
+    if let Some(members) = text.as_object_mut().filter(|_| prepared.looked_at) {
+        members.insert("looked_at".to_owned(), json!(true));
+    }
     Digest::of(text.to_string().as_bytes())
 }
 
@@ -106,13 +109,22 @@ pub(crate) fn write(
     past: &[PastJob],
     fetch: &Fetch<'_>,
 ) -> Result<Bundle, Complaint> {
+    let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
+        // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
+        if let Some(digest) = judged.and_then(|job| job.inputs.get(role)) {
+            return utf8(role, fetch(digest)?);
+        }
         if let Some(pinned) = prepared.pins.get(role) {
             return Ok(pinned.clone());
         }
         let artifact =
             newest(status, stage, "").and_then(|job| job.artifacts.iter().find(|artifact| artifact.role == role));
         string(artifact.ok_or_else(|| missing(role))?, fetch)
+    };
+    let reading: Reading = match judged.and_then(|job| job.inputs.get("reading")) {
+        Some(digest) => parse("reading", &utf8("reading", fetch(digest)?)?)?,
+        None => prepared.reading.clone(),
     };
     let (proposal_text, paths_text, behaviors_text) =
         (text("proposal", Stage::Proposal)?, text("paths", Stage::Paths)?, text("behaviors", Stage::Behaviors)?);
@@ -161,7 +173,7 @@ pub(crate) fn write(
         out.put(&format!("details/location/{name}"), bytes)?;
     }
     out.put("details/location.json", pretty(&prepared.location)?.as_bytes())?;
-    out.put("details/reading.json", pretty(&prepared.reading)?.as_bytes())?;
+    out.put("details/reading.json", pretty(&reading)?.as_bytes())?;
     out.put("details/proposal.json", pretty(&proposal)?.as_bytes())?;
     out.put("details/paths.json", pretty(&paths)?.as_bytes())?;
     out.put("details/behaviors.json", pretty(&behaviors)?.as_bytes())?;
@@ -185,7 +197,7 @@ pub(crate) fn write(
         manifest,
         request: prepared.request.clone(),
         location: prepared.location.clone(),
-        reading: prepared.reading.clone(),
+        reading,
         proposal,
         paths,
         behaviors,
@@ -312,7 +324,11 @@ fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
     if let Some(text) = &artifact.inline {
         return Ok(text.clone());
     }
-    String::from_utf8(fetch(&artifact.digest)?).map_err(|why| ours(&format!("the {} is no text: {why}", artifact.role)))
+    utf8(&artifact.role, fetch(&artifact.digest)?)
+}
+
+fn utf8(role: &str, bytes: Vec<u8>) -> Result<String, Complaint> {
+    String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
 }
 
 /// The newest job of a stage and item that has a result.

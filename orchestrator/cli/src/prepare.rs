@@ -34,6 +34,8 @@ pub(crate) struct Prepared {
     pub(crate) injected: BTreeMap<String, String>,
     /// Style of the questions, as settings of the author's jobs; empty for the default.
     pub(crate) style: BTreeMap<String, String>,
+    /// Whether a person looks at it while it is made.
+    pub(crate) looked_at: bool,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
@@ -145,7 +147,20 @@ pub(crate) fn prepare_text(
     // Rules have no style of being asked: the offline author's results stay the same results.
     let style = if author == "offline" { BTreeMap::new() } else { crate::authors::style(config)? };
     let name = slug(name);
-    Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })
+    let looked_at = options.is_some_and(|options| options.ask);
+    Ok(Prepared {
+        name,
+        request,
+        location,
+        location_files,
+        reading,
+        pins,
+        injected,
+        style,
+        looked_at,
+        author,
+        author_note,
+    })
 }
 
 /// The settings of `--inject`.
