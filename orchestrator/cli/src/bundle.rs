@@ -354,17 +354,19 @@ fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
 
 /// The request as the bundle keeps it: its location lies beside it, so it can be moved.
 fn portable(prepared: &Prepared) -> Request {
+    // What a person looked at was perhaps changed by hand: the same again is what they left, not what an author writes.
+    let keep = |slot: &mut Option<String>, role: &str| {
+        if slot.is_some() || prepared.looked_at {
+            *slot = Some(format!("details/{role}.json"));
+        }
+    };
     let mut request = prepared.request.clone();
     if socrates_maps::shipped::files(&request.location).is_none() {
         request.location = "details/location".to_owned();
     }
-    for (role, slot) in
-        [("proposal", &mut request.proposal), ("paths", &mut request.paths), ("behaviors", &mut request.behaviors)]
-    {
-        if slot.is_some() {
-            *slot = Some(format!("details/{role}.json"));
-        }
-    }
+    keep(&mut request.proposal, "proposal");
+    keep(&mut request.paths, "paths");
+    keep(&mut request.behaviors, "behaviors");
     request
 }
 
@@ -436,6 +438,11 @@ fn provenance(
             .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
             .collect()
     };
+    // What a person typed who looked at it.
+    let said = |artifacts: &[Artifact]| -> Option<serde_json::Value> {
+        let typed = artifacts.iter().find(|artifact| artifact.role == "said")?;
+        serde_json::from_str(&string(typed, fetch).ok()?).ok()
+    };
     let names = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
         artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect()
     };
@@ -452,7 +459,8 @@ fn provenance(
                 })
                 .collect();
             json!({ "job": job.key, "state": job.state, "seed": job.seed, "inputs": job.inputs, "sent_back": job.sent_back,
-                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts) })
+                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts),
+                    "said": said(&job.artifacts) })
         })
         .collect();
     json!({ "version": env!("CARGO_PKG_VERSION"), "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })

@@ -215,8 +215,8 @@ async fn follow(
             notice = notices.next() => if let Some((_, body)) = notice
                 && let Ok(envelope) = socrates_link::decode::<Notice>("notice", &body) {
                 looks_done = ids.len() == 1 && envelope.body.key.stage == socrates_model::job::Stage::Scoring;
-                if ids.len() == 1 && !looking {
-                    talk.passing(&format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
+                if ids.len() == 1 {
+                    passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
                 }
             },
             gone = supervisor.gave_up() => return Err(ours(&gone.unwrap_or_else(|| "every process has ended".to_owned()))),
@@ -231,12 +231,10 @@ async fn follow(
         match status(bus.as_ref(), 0).await {
             Ok(reply) => {
                 last_heard = Instant::now();
-                if looking {
-                    // Nothing is written over what the person types.
-                } else if ids.len() > 1 {
+                if ids.len() > 1 {
                     talk.passing(&format!("making     {} of {} done", reply.done, reply.total));
                 } else if let Some(line) = reply.scenarios.first() {
-                    talk.passing(&stage_line(line));
+                    passing(talk, asking.as_deref(), &stage_line(line));
                 }
                 if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
                     return all(bus.as_ref(), &ids).await;
@@ -247,6 +245,14 @@ async fn follow(
             }
             Err(_) => {}
         }
+    }
+}
+
+/// Writes a passing line, but not over what a person types.
+fn passing(talk: &Talk, asking: Option<&Asking>, text: &str) {
+    match asking {
+        Some(asking) => asking.passing(talk, text),
+        None => talk.passing(text),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::de::DeserializeOwned;
-use similar::{ChangeTag, TextDiff};
+use similar::{Algorithm, ChangeTag, capture_diff_slices};
 use socrates_checks::check_proposal;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
@@ -14,7 +14,7 @@ use socrates_prompts::Question;
 
 use super::command::{Command, stage as stage_named};
 use super::log::Log;
-use super::version::{Version, named};
+use super::version::{Version, lines, named};
 use crate::exit::Complaint;
 
 /// How a line is meant.
@@ -81,6 +81,8 @@ pub(super) struct Decision {
     pub(super) left: Version,
     /// Stages to be made again, with reasons; empty goes on.
     pub(super) anew: Vec<Repair>,
+    /// What the person typed.
+    pub(super) said: Vec<String>,
 }
 
 /// Shows a look and follows the person until there is a decision; `None` when the person left.
@@ -130,6 +132,11 @@ impl Conversation<'_> {
         self.log.now().cloned().unwrap_or_else(|| self.look.came.clone())
     }
 
+    /// What stands is left; these stages are made again.
+    fn decision(&self, anew: Vec<Repair>) -> Decision {
+        Decision { left: self.now(), anew, said: self.log.said.clone() }
+    }
+
     fn say(&mut self, tone: Tone, line: &str) {
         self.person.say(tone, line);
     }
@@ -163,11 +170,11 @@ impl Conversation<'_> {
     fn show(&mut self) {
         let now = self.now();
         let location = &self.look.question.location;
-        let lines = match self.page {
-            About::Proposal => now.proposal_lines(),
-            About::Draft => now.draft_lines(location),
+        let entries = match self.page {
+            About::Proposal => now.proposal_entries(),
+            About::Draft => now.draft_entries(location),
         };
-        self.all(Tone::Plain, &lines);
+        self.all(Tone::Plain, &lines(&entries));
         if self.page == About::Draft {
             self.person.picture(self.look, &now);
         }
@@ -192,21 +199,23 @@ impl Conversation<'_> {
 
     fn difference(&mut self, before: &Version, after: &Version) {
         let location = &self.look.question.location;
-        let (before, after) = (before.lines(location), after.lines(location));
-        let (old, new): (Vec<&str>, Vec<&str>) =
-            (before.iter().map(String::as_str).collect(), after.iter().map(String::as_str).collect());
+        let (old, new) = (before.entries(location), after.entries(location));
         let mut same = true;
-        for change in TextDiff::from_slices(&old, &new).iter_all_changes() {
+        let ops = capture_diff_slices(Algorithm::Myers, &old, &new);
+        for change in ops.iter().flat_map(|op| op.iter_changes(&old, &new)) {
             let (tone, sign) = match change.tag() {
                 ChangeTag::Equal => continue,
                 ChangeTag::Delete => (Tone::Bad, '-'),
                 ChangeTag::Insert => (Tone::Good, '+'),
             };
             same = false;
-            self.person.say(tone, &format!("{sign} {}", change.value()));
+            for line in change.value().lines() {
+                self.person.say(tone, &format!("{sign} {line}"));
+            }
         }
         if same {
-            self.say(Tone::Quiet, "no difference");
+            let words = if before == after { "no difference" } else { "no difference in what is shown here" };
+            self.say(Tone::Quiet, words);
         }
     }
 
@@ -354,7 +363,7 @@ impl Conversation<'_> {
         }
         let why = if why.is_empty() { "a person wants another one" } else { why };
         let repair = |stage: Stage| Repair { stage, faults: vec![Fault::new(FaultCode::PPerson, stage, why)] };
-        Next::Decide(Decision { left: self.now(), anew: stages.into_iter().map(repair).collect() })
+        Next::Decide(self.decision(stages.into_iter().map(repair).collect()))
     }
 
     fn accept(&mut self) -> Next {
@@ -370,7 +379,7 @@ impl Conversation<'_> {
             !faults.is_empty() && (*stage == Stage::Proposal || self.look.about == About::Draft)
         });
         if found.is_empty() {
-            return Next::Decide(Decision { left: now, anew: Vec::new() });
+            return Next::Decide(self.decision(Vec::new()));
         }
         let stuck = found.keys().find(|stage| **stage == Stage::Proposal || self.look.pinned.contains(stage)).copied();
         for fault in found.values().flatten() {
@@ -384,7 +393,7 @@ impl Conversation<'_> {
         let stages: Vec<&str> = found.keys().map(|stage| stage.name()).collect();
         self.say(Tone::Quiet, &format!("{} no longer fit and are made again", stages.join(" and ")));
         let anew = found.into_iter().map(|(stage, faults)| Repair { stage, faults }).collect();
-        Next::Decide(Decision { left: now, anew })
+        Next::Decide(self.decision(anew))
     }
 
     fn by_hand(&mut self, what: &str) {
@@ -413,7 +422,7 @@ impl Conversation<'_> {
                     self.say(Tone::Bad, &format!("each human has its own tree: {}", ids.join(", ")));
                     return;
                 };
-                self.opened(&format!("{id}.xml"), &tree).map(|tree| {
+                self.opened(&format!("{id}.xml"), &tree).filter(|edited| *edited != tree).map(|tree| {
                     let description = "edited by hand".to_owned();
                     behaviors.humans.insert(id, HumanBehavior { tree, description });
                     version.behaviors = Some(behaviors);

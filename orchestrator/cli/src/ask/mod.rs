@@ -20,9 +20,8 @@ mod version;
 mod tests;
 
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use socrates_kit::{Blobs, Done, Failure, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig};
 use socrates_link::Bus;
@@ -44,7 +43,7 @@ use crate::talk::Talk;
 /// The person and the worker that brings them the looks.
 pub(crate) struct Asking {
     left: watch::Receiver<Option<Left>>,
-    looking: Arc<AtomicBool>,
+    looking: Arc<Mutex<bool>>,
     stop: watch::Sender<Stop>,
     served: JoinHandle<Result<(), KitError>>,
 }
@@ -70,16 +69,16 @@ impl Asking {
         let mut log = terminal.log()?;
         let (looks, brought) = mpsc::channel::<(Look, oneshot::Sender<Decision>)>();
         let (leave, left) = watch::channel(None);
-        let looking = Arc::new(AtomicBool::new(false));
+        let looking = Arc::new(Mutex::new(false));
         let busy = Arc::clone(&looking);
         let talk = *talk;
         // Reading a terminal cannot be taken back, so it has a thread of its own that nobody waits for.
         std::thread::spawn(move || {
             while let Ok((look, answer)) = brought.recv() {
-                busy.store(true, Ordering::Release);
+                set(&busy, true);
                 talk.clear();
                 let decided = converse(&look, &mut log, &mut terminal);
-                busy.store(false, Ordering::Release);
+                set(&busy, false);
                 let why = match decided {
                     Ok(Some(decision)) => {
                         // The worker may be gone; then nobody asks any more.
@@ -108,7 +107,15 @@ impl Asking {
 
     /// Whether the person has the terminal.
     pub(crate) fn is_looking(&self) -> bool {
-        self.looking.load(Ordering::Acquire)
+        *self.looking.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes a passing line, unless the person has the terminal; they do not get it while it is written.
+    pub(crate) fn passing(&self, talk: &Talk, text: &str) {
+        let looking = self.looking.lock().unwrap_or_else(PoisonError::into_inner);
+        if !*looking {
+            talk.passing(text);
+        }
     }
 
     /// Ends when the person leaves, with what is said then.
@@ -135,6 +142,10 @@ impl Asking {
             Err(why) => tracing::warn!(%why, "the review worker broke"),
         }
     }
+}
+
+fn set(flag: &Mutex<bool>, value: bool) {
+    *flag.lock().unwrap_or_else(PoisonError::into_inner) = value;
 }
 
 /// The stage that a person does.
@@ -202,7 +213,7 @@ impl Reviewer {
 
 /// What a person left, as the outputs of the job: only what differs from what came.
 fn done(about: About, came: &Version, decision: Decision) -> Result<Done, Failure> {
-    let Decision { left, anew } = decision;
+    let Decision { left, anew, said } = decision;
     let mut outputs = Vec::new();
     if left.proposal != came.proposal {
         outputs.push(Output::json("proposal", &left.proposal)?);
@@ -225,6 +236,7 @@ fn done(about: About, came: &Version, decision: Decision) -> Result<Done, Failur
         let stages: Vec<&str> = anew.iter().map(|wish| wish.stage.name()).collect();
         format!("{} again{edited}", stages.join(" and "))
     };
+    outputs.push(Output::json("said", &said)?);
     let mut done = Done::with(outputs).remark(remark);
     done.anew = anew;
     Ok(done)

@@ -11,6 +11,8 @@ use socrates_model::{AgentId, Behaviors, Fault, HumanProposal, Location, Paths, 
 const WIDTH: usize = 96;
 /// What the name of the author ends with where a person changed the work.
 const SIGNATURE: &str = " + person";
+/// Name of the entry that tells the whole proposal in sentences.
+const STORY: &str = "story";
 /// Letters of the name before a line.
 const NAME: usize = 11;
 
@@ -59,34 +61,30 @@ impl Version {
         }
     }
 
-    /// The proposal in lines.
-    pub(super) fn proposal_lines(&self) -> Vec<String> {
+    /// The proposal, a name and a text each.
+    pub(super) fn proposal_entries(&self) -> Vec<Entry> {
         let proposal = &self.proposal;
-        let mut lines = named("title", &proposal.title);
-        lines.extend(named("story", &proposal.description));
         let pattern = if proposal.pattern == "free" { String::new() } else { format!(" · {}", proposal.pattern) };
-        lines.extend(named("where", &format!("{}{pattern}", proposal.place)));
-        lines.extend(named("robot", &proposal.robot.task));
-        for rule in &proposal.robot.script {
-            lines.extend(named("", &rule.phrase()));
-        }
-        for human in &proposal.humans {
-            lines.extend(human_lines(human));
-        }
+        let mut entries = vec![
+            Entry::new("title", &proposal.title),
+            Entry::new(STORY, &proposal.description),
+            Entry::new("where", format!("{}{pattern}", proposal.place)),
+            Entry::new("robot", &proposal.robot.task),
+        ];
+        entries.extend(proposal.robot.script.iter().map(|rule| Entry::new("robot", rule.phrase())));
+        entries.extend(proposal.humans.iter().flat_map(human_entries));
         for group in &proposal.groups {
             let members: Vec<String> = group.members.iter().map(ToString::to_string).collect();
             let how = if group.standing { "stand together" } else { "walk together" };
-            lines.extend(named(&group.id.to_string(), &format!("{} {how}", members.join(", "))));
+            entries.push(Entry::new(&group.id.to_string(), format!("{} {how}", members.join(", "))));
         }
-        for note in &proposal.notes {
-            lines.extend(named("note", note));
-        }
-        lines
+        entries.extend(proposal.notes.iter().map(|note| Entry::new("note", note)));
+        entries
     }
 
-    /// Paths and trees in lines; none where there are none yet.
-    pub(super) fn draft_lines(&self, location: &Location) -> Vec<String> {
-        let mut lines = Vec::new();
+    /// Paths and trees, a name and a text each; none where there are none yet.
+    pub(super) fn draft_entries(&self, location: &Location) -> Vec<Entry> {
+        let mut entries = Vec::new();
         if let Some(paths) = &self.paths {
             let agents = std::iter::once(AgentId::Robot).chain(paths.humans.keys().copied().map(AgentId::Human));
             for agent in agents {
@@ -103,37 +101,68 @@ impl Version {
                 } else {
                     format!("{} ({:.1} m){meets}", ids.join(" → "), location.graph.length_m(nodes))
                 };
-                lines.extend(named(&agent.to_string(), &way));
+                entries.push(Entry::new(&agent.to_string(), way));
             }
         }
         for (id, human) in self.behaviors.iter().flat_map(|behaviors| &behaviors.humans) {
             let words = if human.description.is_empty() { "a tree without a description" } else { &human.description };
-            lines.extend(named(&format!("tree {}", id.number()), words));
+            entries.push(Entry::new(&format!("tree {}", id.number()), words));
         }
-        lines
+        entries
     }
 
-    /// Everything in lines, for comparing two versions.
-    pub(super) fn lines(&self, location: &Location) -> Vec<String> {
-        let mut lines = self.proposal_lines();
-        lines.extend(self.draft_lines(location));
-        lines
+    /// Everything in which two versions can differ, the story left out: it tells the rest again.
+    pub(super) fn entries(&self, location: &Location) -> Vec<Entry> {
+        let mut entries = self.proposal_entries();
+        entries.retain(|entry| entry.name != STORY);
+        entries.extend(self.draft_entries(location));
+        entries
     }
 }
 
-fn human_lines(human: &HumanProposal) -> Vec<String> {
+/// A name and what is said under it.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Entry {
+    name: String,
+    text: String,
+}
+
+impl Entry {
+    fn new(name: &str, text: impl Into<String>) -> Self {
+        Self { name: name.to_owned(), text: text.into() }
+    }
+
+    /// The entry in lines.
+    pub(super) fn lines(&self) -> Vec<String> {
+        named(&self.name, &self.text)
+    }
+}
+
+/// Entries in lines; a name that comes again is not written again.
+pub(super) fn lines(entries: &[Entry]) -> Vec<String> {
+    let mut before = "";
+    let mut lines = Vec::new();
+    for entry in entries {
+        let name = if entry.name == before { "" } else { &entry.name };
+        lines.extend(named(name, &entry.text));
+        before = &entry.name;
+    }
+    lines
+}
+
+fn human_entries(human: &HumanProposal) -> Vec<Entry> {
+    let name = human.id.to_string();
     let speed = human.speed_mps.map(|speed| format!(", {speed} m/s")).unwrap_or_default();
     let places: Vec<String> = [("from", human.start), ("to", human.goal)]
         .into_iter()
         .filter_map(|(word, place)| Some(format!(", {word} {}", place?)))
         .collect();
-    let mut lines =
-        named(&human.id.to_string(), &format!("{}, {}{speed}{}", human.role, human.relation.name(), places.concat()));
-    for rule in &human.rules {
+    let who = Entry::new(&name, format!("{}, {}{speed}{}", human.role, human.relation.name(), places.concat()));
+    let rules = human.rules.iter().map(|rule| {
         let lasts = rule.for_s.map(|secs| format!(" for {secs} s")).unwrap_or_default();
-        lines.extend(named("", &format!("{}{lasts}", rule.phrase())));
-    }
-    lines
+        Entry::new(&name, format!("{}{lasts}", rule.phrase()))
+    });
+    std::iter::once(who).chain(rules).collect()
 }
 
 /// A name and its text, broken into lines under each other.
