@@ -37,7 +37,10 @@ fn what_a_person_leaves_is_what_is_simulated_and_made_again() {
     assert!(proposal["humans"][0]["rules"].to_string().contains("give_way"), "{}", proposal["humans"][0]);
     let reading = read(folder.path(), "details/reading.json");
     assert!(reading["humans"].to_string().contains("give_way"), "the wish is one of the request now: {reading}");
-    assert!(proposal["expected_events"].to_string().contains("gives_way"), "and the run is held against it: {proposal}");
+    assert!(
+        proposal["expected_events"].to_string().contains("gives_way"),
+        "and the run is held against it: {proposal}"
+    );
     assert!(read(folder.path(), "details/paths.json")["author"].as_str().unwrap().ends_with("+ person"));
     let provenance = read(folder.path(), "details/provenance.json");
     let looks: Vec<&Value> =
