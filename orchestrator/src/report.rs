@@ -85,11 +85,14 @@ impl Turn<'_> {
         attempt.span_ms = now.saturating_sub(attempt.ready);
         attempt.tokens = report.tokens;
         attempt.remark.clone_from(&report.remark);
+        let tokens = report.tokens.0.saturating_add(report.tokens.1);
         if let Outcome::Failed { class, faults, .. } = &report.outcome {
             attempt.class = Some(*class);
             attempt.faults.clone_from(faults);
             attempt.artifacts.clone_from(&report.artifacts);
         }
+        let (stage, rates) = (report.key.stage, report.rates);
+        self.with_bucket(&report.key, |bucket, policy| bucket.answered(policy, now, stage, tokens, rates));
     }
 
     /// Small contents become rows of their own; the artifacts keep their addresses.

@@ -9,6 +9,7 @@ use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{Hello, ScenarioSpec};
 use socrates_model::{Digest, Fault, ScenarioId};
 
+use crate::bucket::Bucket;
 use crate::policy::Policy;
 
 /// Time on the shell's monotonic clock, ms. Its zero has no meaning.
@@ -350,8 +351,10 @@ pub struct State {
     pub next_seq: u64,
     /// Authoring attempts allowed at one time; shrinks on overload.
     pub author_slots: u32,
-    /// No authoring before this time: the author's server asked for a pause.
-    pub author_pause_until: Millis,
+    /// What is known of the authors' servers, by server and model.
+    pub servers: BTreeMap<String, Bucket>,
+    /// When somebody who was held back by a server's rates may go on; 0 where nobody was.
+    pub author_wake_at: Millis,
     /// Scenarios in order of submission.
     pub(crate) by_order: BTreeMap<u64, ScenarioId>,
     /// Ready jobs by stage, oldest scenario first, then in order of their making.
@@ -389,7 +392,8 @@ impl State {
             next_fence: 1,
             next_order: 0,
             next_seq: 1,
-            author_pause_until: 0,
+            servers: BTreeMap::new(),
+            author_wake_at: 0,
             by_order: BTreeMap::new(),
             ready: BTreeMap::new(),
             timers: BTreeSet::new(),

@@ -213,6 +213,7 @@ pub(crate) fn report(grant: &Grant, outcome: Outcome) -> Report {
         repair: None,
         anew: Vec::new(),
         verdict: None,
+        rates: None,
     }
 }
 

@@ -11,6 +11,7 @@ mod originals;
 mod pages;
 mod repairs;
 mod requests;
+mod training;
 
 use std::path::Path;
 

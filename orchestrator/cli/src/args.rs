@@ -159,6 +159,12 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: crate::evaluate::EvaluateVerb,
     },
+    /// Take out of a library what others can use.
+    Library {
+        /// What to do.
+        #[command(subcommand)]
+        verb: crate::chat::LibraryVerb,
+    },
     /// List, show and rate the canonical scenarios of the catalogue.
     Scenarios {
         /// What to do.

@@ -421,6 +421,16 @@ pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
         .collect()
 }
 
+/// An exchange without what was asked and answered.
+fn without_words(mut exchange: serde_json::Value) -> serde_json::Value {
+    if let Some(members) = exchange.as_object_mut() {
+        for words in ["messages", "answer"] {
+            members.remove(words);
+        }
+    }
+    exchange
+}
+
 /// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.
 fn provenance(
     prepared: &Prepared,
@@ -433,9 +443,10 @@ fn provenance(
     let exchanges = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
         artifacts
             .iter()
-            .filter(|artifact| matches!(artifact.role.as_str(), "exchange" | "refused"))
+            .filter(|artifact| artifact.role == "exchange" || artifact.role == "refused" && prepared.keep_answers)
             .filter_map(|artifact| string(artifact, fetch).ok())
             .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+            .map(|exchange| if prepared.keep_answers { exchange } else { without_words(exchange) })
             .collect()
     };
     // What a person typed who looked at it.

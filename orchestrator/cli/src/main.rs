@@ -19,6 +19,7 @@ mod bt;
 mod bundle;
 #[cfg(test)]
 mod case_studies;
+mod chat;
 mod cite;
 mod cluster;
 mod config;
@@ -125,6 +126,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
         Verb::Doctor => done(explain::doctor(talk, config)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),
+        Verb::Library { verb } => done(chat::library(talk, verb)),
         Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
         Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb).await),
         Verb::Cluster { verb } => match verb {

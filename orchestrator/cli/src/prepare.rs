@@ -36,6 +36,8 @@ pub(crate) struct Prepared {
     pub(crate) style: BTreeMap<String, String>,
     /// Whether a person looks at it while it is made.
     pub(crate) looked_at: bool,
+    /// Whether the provenance keeps questions and answers.
+    pub(crate) keep_answers: bool,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
@@ -144,12 +146,14 @@ pub(crate) fn prepare_text(
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
     }
-    // Rules have no style of being asked: the offline author's results stay the same results.
-    let style = if author == "offline" { BTreeMap::new() } else { crate::authors::style(config)? };
-    let name = slug(name);
-    let looked_at = options.is_some_and(|options| options.ask);
+    let mut style = crate::authors::style(config)?;
+    if author == "offline" {
+        // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
+        // that were put in matters.
+        style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
+    }
     Ok(Prepared {
-        name,
+        name: slug(name),
         request,
         location,
         location_files,
@@ -157,7 +161,8 @@ pub(crate) fn prepare_text(
         pins,
         injected,
         style,
-        looked_at,
+        looked_at: options.is_some_and(|options| options.ask),
+        keep_answers: config.truth("author.keep_answers"),
         author,
         author_note,
     })

@@ -96,6 +96,7 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         beat_ms: config.number("orchestrator.beat_ms").clamp(100, 200_000),
         repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
         asks_again: u32::try_from(config.number("orchestrator.asks_again")).unwrap_or(3).min(10),
+        author_rates: (config.number("author.tokens_per_minute"), config.number("author.requests_per_minute")),
         durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };

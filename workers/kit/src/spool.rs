@@ -124,6 +124,7 @@ mod tests {
             repair: None,
             anew: Vec::new(),
             verdict: None,
+            rates: None,
         }
     }
 

@@ -37,6 +37,7 @@ async fn open(dir: &Path) -> Site {
         beat_ms: 2_000,
         repairs: 3,
         asks_again: 3,
+        author_rates: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
@@ -229,6 +230,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         beat_ms: 2_000,
         repairs: 3,
         asks_again: 3,
+        author_rates: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };
