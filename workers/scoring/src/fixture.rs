@@ -29,6 +29,15 @@ impl Walk {
         Self::through(AgentId::Robot, &[(0.0, x, y), (1000.0, x + 1000.0 * vx, y + 1000.0 * vy)])
     }
 
+    /// The robot once round the origin, evenly and counter-clockwise.
+    pub(crate) fn circle(radius_m: f64, seconds: f64) -> Self {
+        let turn = |share: f64| (share * std::f64::consts::TAU).sin_cos();
+        let stop = |(share, (sin, cos)): (f64, (f64, f64))| (share * seconds, radius_m * cos, radius_m * sin);
+        let shares = (0..=360).map(|k| f64::from(k) / 360.0);
+        let stops: Vec<(f64, f64, f64)> = shares.map(|share| stop((share, turn(share)))).collect();
+        Self::through(AgentId::Robot, &stops)
+    }
+
     pub(crate) fn human(number: u32, x: f64, y: f64, vx: f64, vy: f64) -> Self {
         Self::through(AgentId::Human(HumanId::new(number)), &[(0.0, x, y), (1000.0, x + 1000.0 * vx, y + 1000.0 * vy)])
     }
