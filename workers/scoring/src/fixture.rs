@@ -1,6 +1,6 @@
 //! Recordings and places for tests, made from straight walks.
 
-use socrates_model::recording::AgentInfo;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::{
     AgentId, AgentState, Cell, Encounter, Event, EventKind, Gesture, GraphEdge, GraphNode, Grid, HumanId, Location,
     NodeId, Paths, Point, Pose, Recording, RecordingHeader, RunId, SceneGraph, SimTime,
@@ -136,15 +136,14 @@ pub(crate) fn event(run: &mut Recording, t: f64, kind: EventKind) {
 
 /// Takes a human out of the run for a stretch of time, as the simulation writes those who come and go.
 pub(crate) fn absent(run: &mut Recording, number: u32, times: std::ops::Range<f64>) {
-    let known = run.header.leaves.iter().position(|leaf| leaf == "absent");
-    let leaf = known.unwrap_or_else(|| {
-        run.header.leaves.push("absent".into());
-        run.header.leaves.len() - 1
-    });
+    if run.header.absent().is_none() {
+        run.header.leaves.push(ABSENT_LEAF.into());
+    }
+    let leaf = run.header.absent().unwrap();
     let id = AgentId::Human(HumanId::new(number));
     for state in run.frames.iter_mut().filter(|state| state.agent == id.number()) {
         if times.contains(&(state.tick as f64 * run.header.step_s)) {
-            state.flags = AgentState::flags(id, Gesture::None, u16::try_from(leaf).unwrap());
+            state.flags = AgentState::flags(id, Gesture::None, leaf);
             (state.vx, state.vy) = (0.0, 0.0);
         }
     }
