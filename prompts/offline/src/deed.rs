@@ -28,7 +28,7 @@ pub(crate) struct Around {
 }
 
 /// The triggers and durations that are taken where the text gives none.
-fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
+pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
     Some(match act {
         Act::RunAway => (Action::RunAway, Trigger::RobotVisible(3.0), Some(6.0), true),
         Act::GiveWay => (Action::GiveWay, Trigger::RobotVisible(3.5), Some(6.0), true),
