@@ -2,9 +2,10 @@
 
 use socrates_model::{Gesture, PlaceClass};
 
+use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, mentions};
-use crate::words::{Joint, Stretch, find};
+use crate::words::find;
 
 /// A deed and where it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

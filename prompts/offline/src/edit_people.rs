@@ -162,7 +162,7 @@ fn quoted(wish: &Wish) -> String {
 }
 
 /// Whether somebody new is spoken of; words that only ask are taken as read.
-fn adds(clauses: &mut [crate::words::Stretch]) -> bool {
+fn adds(clauses: &mut [crate::cut::Stretch]) -> bool {
     let mut adds = false;
     for (number, clause) in clauses.iter_mut().enumerate() {
         for word in &mut clause.words {

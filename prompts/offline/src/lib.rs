@@ -20,6 +20,7 @@ mod aside;
 mod lexicon;
 mod words;
 
+mod cut;
 mod mention;
 
 mod cast;

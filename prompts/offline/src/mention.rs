@@ -548,7 +548,7 @@ fn plural(word: &Word) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::sentences;
+    use crate::cut::sentences;
 
     fn who(text: &str) -> Vec<Who> {
         mentions(&sentences(text)[0][0].words).into_iter().map(|mention| mention.who).collect()

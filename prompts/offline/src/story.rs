@@ -4,11 +4,11 @@ use socrates_model::{Fault, FaultCode, Gesture, HumanId, PlaceClass, Trigger};
 
 use crate::cast::Cast;
 use crate::clause::{self, Found};
+use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::lexicon::{Act, Cue, lexicon};
 use crate::mention::Who;
 use crate::robot_deed::{place_of, robot_deed};
-use crate::words::{Joint, Stretch, sentences};
 
 /// Everything that was read of the rough scenario.
 #[derive(Debug, Clone, Default)]

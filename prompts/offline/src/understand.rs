@@ -9,7 +9,7 @@ use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{aside, default_cast, place, words};
+use crate::{aside, cut, default_cast, place, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -133,7 +133,7 @@ fn language(request: &Request, reading: &mut Reading) {
         [("rough_scenario", request.rough_scenario.as_deref().unwrap_or_default()), ("task", request.task.as_str())];
     for (key, text) in texts {
         let all: Vec<words::Word> =
-            words::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
+            cut::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
         let letters: Vec<&words::Word> = all.iter().filter(|word| word.text.starts_with(char::is_alphabetic)).collect();
         let lex = lexicon();
         let known = letters
@@ -322,7 +322,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
     let about: Vec<String> =
-        words::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
+        cut::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
             .into_iter()
             .flatten()
             .flat_map(|stretch| stretch.words)
