@@ -37,6 +37,8 @@ pub(crate) struct Person {
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
     pub(crate) bound: bool,
+    /// Words that say that it walks on after all it did.
+    pub(crate) goes_on: Option<String>,
     /// What was ruled out for it, with the words.
     pub(crate) never: Vec<(Act, String)>,
 }
@@ -164,7 +166,8 @@ impl Cast {
                     self.latest()
                 }
             }
-            Who::Same | Who::Object => self.last.clone(),
+            Who::Same => self.single(&mention.word),
+            Who::Object => self.last.clone(),
             Who::Further(n) => {
                 let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
                 let open = if there { self.pick_open(1, mention) } else { None };
@@ -184,7 +187,11 @@ impl Cast {
         };
         if let Some(role) = &mention.role {
             for i in &found {
-                if let Some(person) = self.people.get_mut(*i).filter(|person| person.role.is_empty()) {
+                // A name gives way to what somebody is.
+                let open = |person: &&mut Person| {
+                    person.role.is_empty() || mention.who == Who::Same && !lexicon().roles.contains_key(&person.role)
+                };
+                if let Some(person) = self.people.get_mut(*i).filter(open) {
                     role.clone_into(&mut person.role);
                 }
             }
@@ -216,6 +223,59 @@ impl Cast {
             }
         }
         found
+    }
+
+    /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
+    fn single(&self, word: &str) -> Vec<usize> {
+        const WOMEN: &[&str] = &[
+            "woman",
+            "lady",
+            "girl",
+            "mother",
+            "wife",
+            "sister",
+            "aunt",
+            "grandmother",
+            "grandma",
+            "daughter",
+            "mom",
+            "waitress",
+            "niece",
+        ];
+        const MEN: &[&str] = &[
+            "man",
+            "gentleman",
+            "boy",
+            "father",
+            "husband",
+            "brother",
+            "uncle",
+            "grandfather",
+            "grandpa",
+            "son",
+            "dad",
+            "guy",
+            "nephew",
+        ];
+        let of =
+            |i: usize, words: &[&str]| self.people.get(i).is_some_and(|person| words.contains(&person.role.as_str()));
+        if self.last.is_empty() {
+            return Vec::new();
+        }
+        let (own, other) = match word {
+            "she" => (WOMEN, MEN),
+            "he" => (MEN, WOMEN),
+            _ => return self.last.clone(),
+        };
+        if let [only] = self.last.as_slice()
+            && !of(*only, other)
+        {
+            return self.last.clone();
+        }
+        let near = || self.last.iter().copied().chain((0..self.people.len()).rev());
+        let found =
+            near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !of(*i, other) && self.last.len() == 1));
+        found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
     }
 
     /// Makes a group of these people.
@@ -352,6 +412,16 @@ impl Cast {
         declares: bool,
         quote: &str,
     ) -> Vec<usize> {
+        if mention.group && !self.groups.is_empty() {
+            // `the pair` and `the group` of those that there are.
+            let wanted = count.and_then(|n| usize::try_from(n).ok());
+            let fits = |members: &&Vec<usize>| wanted.map_or(members.len() > 2, |n| members.len() == n);
+            let named = self.groups.iter().rev().map(|(_, members, _)| members);
+            let last = self.groups.last().map(|(_, members, _)| members);
+            if let Some(members) = named.clone().find(fits).or_else(|| last.filter(|_| wanted.is_none())) {
+                return members.clone();
+            }
+        }
         if let Some(role) = &mention.role {
             let same: Vec<usize> =
                 (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| p.role == *role)).collect();

@@ -1,6 +1,7 @@
 //! Mentions: the stretches of a clause that speak of people.
 
 use crate::lexicon::{Item, Lexicon, lexicon};
+use crate::noun::{band, noun, plural, stranger, thing};
 use crate::words::Word;
 
 /// Whom a mention means.
@@ -65,6 +66,8 @@ pub(crate) struct Mention {
     pub(crate) who: Who,
     /// Role word, if it says more than `person`.
     pub(crate) role: Option<String>,
+    /// The pronoun that it is, if it is `he` or `she`.
+    pub(crate) word: String,
     /// `a group of four`.
     pub(crate) group: bool,
     /// `two groups of three`: into how many; else 1.
@@ -75,30 +78,6 @@ pub(crate) struct Mention {
     pub(crate) to: usize,
 }
 
-/// Nouns of `the other end` and `one side` that are no people.
-const THINGS: &[&str] = &[
-    "side",
-    "end",
-    "direction",
-    "way",
-    "hand",
-    "part",
-    "corner",
-    "door",
-    "floor",
-    "wall",
-    "room",
-    "time",
-    "moment",
-    "place",
-    "thing",
-];
-
-/// Whether a number or `other` before this word counts things.
-fn thing(words: &[Word], at: usize) -> bool {
-    words.get(at).is_some_and(|word| THINGS.contains(&word.text.as_str()) || lexicon().labels.contains(&word.text))
-}
-
 /// Every mention of people in the words, in order.
 pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     let lex = lexicon();
@@ -107,7 +86,7 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     while at < words.len() {
         if let Some(mention) = phrase_at(words, at, lex) {
             at = mention.to + 1;
-            found.push(mention);
+            found.push(predicate(words, mention, &found));
         } else {
             at += 1;
         }
@@ -115,58 +94,18 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     found
 }
 
-/// The noun for people that ends a noun phrase from `at` on, with at most three describing words before it.
-fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
-    let mut end = None;
-    for (i, word) in words.iter().enumerate().skip(at).take(4) {
-        if lex.roles.contains_key(&word.stem) {
-            end = Some(i);
-            break;
+/// `he is a doctor`, `they are friends`: the same people by another word.
+fn predicate(words: &[Word], mention: Mention, before: &[Mention]) -> Mention {
+    let is = mention.from.checked_sub(1).and_then(|at| words.get(at)).is_some_and(|word| word.stem == "be");
+    let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
+    match (subject, &mention.who) {
+        (Some(subject), Who::New { .. }) if subject.who != Who::Nobody => {
+            let many = matches!(subject.who, Who::All | Who::AllOf(_) | Who::New { count: None | Some(2..), .. });
+            Mention { who: if many { Who::All } else { Who::Same }, ..mention }
         }
-        let describes = lex.adjectives.contains(&word.text)
-            || !lex.known.contains(&word.stem)
-                && !lex.stop.contains(&word.text)
-                && word.number().is_none()
-                && word.stem != "robot";
-        if !describes {
-            break;
-        }
+        _ => mention,
     }
-    // `warehouse employee` and `hospital staff member` end at the last noun.
-    let mut end = end?;
-    while words.get(end + 1).is_some_and(|word| lex.roles.contains_key(&word.stem)) {
-        end += 1;
-    }
-    if words.get(end + 1).is_some_and(|word| word.stem == "member") {
-        end += 1;
-    }
-    Some(end)
 }
-
-/// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
-fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
-    let word = words.get(at).filter(|_| introduced)?;
-    let unknown = word.text.len() >= if word.capital { 2 } else { 4 }
-        && word.text.chars().all(char::is_alphabetic)
-        && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives]
-            .iter()
-            .any(|table| table.contains(&word.stem) || table.contains(&word.text))
-        && !thing(words, at)
-        && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())));
-    let acts = words.get(at + 1).is_some_and(|next| DOES.contains(&next.stem.as_str()));
-    // Whoever is led, followed or accompanied is somebody too.
-    let taken_along = (1..=3)
-        .filter_map(|back| at.checked_sub(back))
-        .any(|k| matches!(stem(words, k), "lead" | "guide" | "escort" | "accompany" | "help"));
-    if unknown && (acts || taken_along) { Some(at) } else { None }
-}
-
-/// What only people (and the robot) do, as the first word after who does it.
-const DOES: &[&str] = &[
-    "walk", "come", "stand", "wait", "follow", "look", "stop", "step", "leave", "run", "cross", "talk", "chat",
-    "approach", "block", "stay", "flee", "overtake", "hurry", "gesture", "wave", "who", "give", "go", "ignore",
-    "enter", "exit", "watch",
-];
 
 /// Of whom some are meant: `of the three visitors`.
 struct Whole {
@@ -188,8 +127,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
         }
     };
-    let made =
-        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| {
+        Some(Mention { who, role, word: String::new(), group: false, parts: 1, from: at, to })
+    };
     let of_them = |k: usize| {
         if stem(k) != "of" {
             return None;
@@ -197,7 +137,18 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         if matches!(text(k + 1), "them" | "these" | "those" | "us") {
             return Some(Whole { end: k + 1, role: None, count: None });
         }
-        let skip = if matches!(text(k + 1), "the" | "these" | "those" | "all") { k + 2 } else { k + 1 };
+        let skip = if matches!(
+            text(k + 1),
+            "the" | "these" | "those" | "all" | "our" | "my" | "your" | "his" | "her" | "their"
+        ) {
+            k + 2
+        } else {
+            k + 1
+        };
+        // `one of the pair`
+        if skip == k + 2 && band(words, skip).is_some() && text(skip + 1) != "of" {
+            return Some(Whole { end: skip, role: None, count: None });
+        }
         let count = words.get(skip).and_then(Word::count).filter(|n| *n > 1);
         let start = skip + usize::from(count.is_some());
         noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex)).map(|end| Whole {
@@ -206,7 +157,19 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             count,
         })
     };
+    // `neither of the others`, `both of the rest`: those who are left.
+    let left = matches!(text(at), "both" | "neither" | "none" | "each" | "all" | "any")
+        && text(at + 1) == "of"
+        && text(at + 2) == "the"
+        && matches!(text(at + 3), "other" | "others" | "rest" | "remaining");
+    if left {
+        return others(words, at + 2, lex, &role).map(|mention| Mention { who: Who::Other(None), from: at, ..mention });
+    }
     match text(at) {
+        "not" if matches!(text(at + 1), "a" | "one") && text(at + 2) == "single" => {
+            let end = noun(words, at + 3, lex).unwrap_or(at + 2);
+            return made(Who::Nobody, None, end);
+        }
         "nobody" | "noone" => return made(Who::Nobody, None, at),
         "no" => {
             if text(at + 1) == "one" {
@@ -255,10 +218,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return match noun(words, start, lex) {
                 Some(end) => made(Who::All, None, end),
                 None if start > at + 1 => made(Who::All, None, start - 1),
+                // `each steps aside`
+                None if text(at) == "each" && words.get(at + 1).is_none_or(|word| lex.verbs.contains(&word.stem)) => {
+                    made(Who::All, None, at)
+                }
                 None => None,
             };
         }
-        "he" | "she" => return made(Who::Same, None, at),
+        "he" | "she" => {
+            return made(Who::Same, None, at).map(|mention| Mention { word: text(at).to_owned(), ..mention });
+        }
         "him" => return made(Who::Object, None, at),
         // `her` before a word of its own is whose, not whom.
         "her"
@@ -311,8 +280,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
 /// `another …`, `the other …`, `the rest`, `the first …`.
 fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made =
-        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| {
+        Some(Mention { who, role, word: String::new(), group: false, parts: 1, from: at, to })
+    };
     let the = usize::from(matches!(text(at), "the" | "each"));
     // `each other` and `one after the other` are nobody new.
     let before = if at == 0 { "" } else { text(at - 1) };
@@ -356,7 +326,12 @@ fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Opti
             }
         }
         word if the == 1 || lex.ordinals.contains_key(word) => {
-            let number = lex.ordinals.get(word).copied().or_else(|| if word == "last" { Some(0) } else { None })?;
+            let named = |word: &str| match word {
+                "last" | "latter" => Some(0),
+                "former" => Some(1),
+                _ => None,
+            };
+            let number = lex.ordinals.get(word).copied().or_else(|| named(word))?;
             let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
             if text(start) == "of"
                 && let Some(of) = count(start + 1).filter(|of| *of >= number.max(1))
@@ -387,7 +362,7 @@ fn counted(
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
     let made = |who: Who, role: Option<String>, group: bool, to: usize| {
-        Some(Mention { who, role, group, parts: 1, from: at, to })
+        Some(Mention { who, role, word: String::new(), group, parts: 1, from: at, to })
     };
     let article = matches!(text(at), "a" | "an");
     let the = matches!(text(at), "the" | "these" | "those" | "this");
@@ -404,11 +379,13 @@ fn counted(
     if count.is_some() {
         next += 1;
     }
-    if words
-        .get(next)
-        .is_some_and(|word| matches!(word.stem.as_str(), "group" | "circle" | "cluster" | "bunch" | "team" | "pair"))
-    {
-        return group(words, at, next, count, the, lex, role);
+    // `an old couple`, `the pair`: words that are numbers too, but not where they count others.
+    let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
+    for k in [described, next.saturating_sub(usize::from(count.is_some()))] {
+        let counts = text(k + 1) == "of" && count.is_some() && matches!(text(k), "couple" | "crowd" | "trio");
+        if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some()) {
+            return group(words, at, k, count.filter(|_| k >= next), the, lex, role);
+        }
     }
     let more = matches!(text(next), "more" | "additional" | "further");
     next += usize::from(more);
@@ -512,7 +489,7 @@ fn group(
         .filter_map(|back| group.checked_sub(back))
         .map(&text)
         .find(|word| !matches!(*word, "a" | "the" | "one" | "same" | "small" | "large"));
-    let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming"))
+    let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming" | "into"))
         && text(group + 1) != "of";
     if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
         return None;
@@ -523,9 +500,9 @@ fn group(
     let noun = if listed { noun(words, start, lex) } else { None };
     let end = noun.unwrap_or(start - 1);
     let role = noun.and_then(role);
-    let pair = if words.get(group).is_some_and(|word| word.stem == "pair") { Some(2) } else { None };
+    let pair = band(words, group).and_then(|(_, count)| *count);
     let who = if the && inner.is_none() {
-        Who::Definite { plural: true, count: None }
+        Who::Definite { plural: true, count: pair }
     } else {
         Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
     };
@@ -536,13 +513,8 @@ fn group(
     } else {
         who
     };
-    Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })
-}
-
-/// Whether a noun is in the plural.
-fn plural(word: &Word) -> bool {
-    matches!(word.text.as_str(), "people" | "men" | "women" | "children" | "staff")
-        || word.text != word.stem && word.text.ends_with('s')
+    let lined = matches!(text(group), "queue" | "line" | "row");
+    Some(Mention { who, role, word: String::new(), group: !lined, parts, from: at, to: end })
 }
 
 #[cfg(test)]

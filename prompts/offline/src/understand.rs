@@ -197,12 +197,15 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
         );
         reading.problems.push(Fault::new(FaultCode::PPlace, at, message));
     };
+    // The reading keeps the place as it was said; the fault says that the map has none.
+    let said = story.place.as_ref().map(|(class, _)| *class);
     absent(&mut story.place, "rough_scenario");
     absent(&mut story.robot_enters, "rough_scenario");
     absent(&mut story.robot_leaves, "rough_scenario");
     absent(&mut task.start, "task");
     absent(&mut task.goal, "task");
     absent(&mut task.via, "task");
+    reading.place = said;
     let rooms = !place::inside(location, None).is_empty();
     let cars = !place::inside(location, Some(PlaceClass::Elevator)).is_empty();
     for who in 0..story.cast.people.len() {

@@ -17,12 +17,15 @@ pub(crate) struct Word {
     pub(crate) used: bool,
     /// Whether it is written with a capital letter.
     pub(crate) capital: bool,
+    /// A number that names something (`case 14`), or a word that only describes the robot: read by nobody.
+    pub(crate) label: bool,
 }
 
 impl Word {
     /// The number that the word is, by digits or by name.
     pub(crate) fn number(&self) -> Option<f64> {
-        self.text.parse::<f64>().ok().filter(|n| n.is_finite()).or_else(|| self.count().map(f64::from))
+        let digits = self.text.parse::<f64>().ok().filter(|n| n.is_finite() && !self.label);
+        digits.or_else(|| self.count().map(f64::from))
     }
 
     /// The whole number that the word is.
@@ -34,7 +37,7 @@ impl Word {
                 None
             }
         };
-        lexicon().numbers.get(&self.text).copied().or_else(digits)
+        if self.label { None } else { lexicon().numbers.get(&self.text).copied().or_else(digits) }
     }
 
     /// Whether it is written in digits.
@@ -47,6 +50,7 @@ impl Word {
 pub(crate) enum Piece {
     Word(Word),
     Comma,
+    Colon,
     Stop,
 }
 
@@ -97,7 +101,8 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             i += usize::from(owns);
             match c {
                 '.' | '!' | '?' | ';' => out.push(Piece::Stop),
-                ',' | ':' | '(' | ')' | '–' | '—' => out.push(Piece::Comma),
+                ':' => out.push(Piece::Colon),
+                ',' | '(' | ')' | '[' | ']' | '–' | '—' | '•' => out.push(Piece::Comma),
                 '\n' if at(i + 1) == Some('\n') => out.push(Piece::Stop),
                 '-' if at(i + 1).is_some_and(char::is_whitespace) => out.push(Piece::Comma),
                 _ => {}
@@ -163,10 +168,11 @@ fn mended(text: &str) -> Option<&'static str> {
 fn word(text: String, from: usize, to: usize) -> Word {
     let text = mended(&text).map_or(text, str::to_owned);
     let stem = match text.as_str() {
-        "robot" | "robots" | "robot's" | "it" | "its" | "amr" | "agv" | "cobot" => "robot".to_owned(),
+        "robot" | "robots" | "robot's" | "it" | "its" | "itself" | "amr" | "agv" | "cobot" | "bot" | "machine"
+        | "droid" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false, capital: false }
+    Word { text, stem, from, to, used: false, capital: false, label: false }
 }
 
 /// Where a phrase stands in the words at or after `start`: its first and last index, and the indices of its own words.
@@ -189,12 +195,13 @@ fn match_at(
 ) -> Option<Vec<usize>> {
     let Some((item, rest)) = items.split_first() else { return Some(Vec::new()) };
     match item {
-        Item::Word(wanted) => {
+        Item::Word(_) | Item::OneOf(_) => {
             let word = words.get(at)?;
             let same = if as_written {
-                word.text == *wanted || rest.is_empty() && word.text.strip_suffix('s') == Some(wanted)
+                item.takes(&word.text)
+                    || rest.is_empty() && word.text.strip_suffix('s').is_some_and(|word| item.takes(word))
             } else {
-                word.stem == *wanted
+                item.takes(&word.stem)
             };
             if same && free(at) {
                 let mut found = vec![at];
@@ -211,39 +218,56 @@ fn match_at(
 /// Articles, possessives and `being` between the words of a phrase do not break it: `blocks the way`.
 fn skip_fill(words: &[Word], at: usize, rest: &[Item], as_written: bool) -> usize {
     let mut at = at;
-    let wanted = match rest.first() {
-        Some(Item::Word(wanted)) => wanted.as_str(),
-        Some(Item::Gap) | None => return at,
-    };
+    let Some(wanted) = rest.first().filter(|item| **item != Item::Gap) else { return at };
     let fill = |word: &Word| {
-        matches!(
-            word.text.as_str(),
-            "the"
-                | "a"
-                | "an"
-                | "their"
-                | "his"
-                | "her"
-                | "being"
-                | "has"
-                | "have"
-                | "had"
-                | "is"
-                | "are"
-                | "been"
-                | "will"
-                | "suddenly"
-                | "slowly"
-                | "quickly"
-                | "still"
-                | "very"
-                | "just"
-                | "too"
-                | "directly"
-                | "right"
-        ) || !as_written && matches!(word.text.as_str(), "its" | "this" | "by" | "of" | "at" | "to")
+        word.label
+            || matches!(
+                word.text.as_str(),
+                "the"
+                    | "a"
+                    | "an"
+                    | "their"
+                    | "his"
+                    | "her"
+                    | "being"
+                    | "has"
+                    | "have"
+                    | "had"
+                    | "is"
+                    | "are"
+                    | "been"
+                    | "will"
+                    | "suddenly"
+                    | "slowly"
+                    | "quickly"
+                    | "still"
+                    | "very"
+                    | "just"
+                    | "too"
+                    | "directly"
+                    | "right"
+                    | "straight"
+                    | "simply"
+                    | "quietly"
+                    | "calmly"
+                    | "politely"
+                    | "immediately"
+                    | "abruptly"
+                    | "quite"
+                    | "really"
+                    | "completely"
+                    | "then"
+                    | "both"
+                    | "now"
+                    | "nearly"
+                    | "almost"
+                    | "about"
+                    | "any"
+                    | "another"
+            )
+            || !as_written && matches!(word.text.as_str(), "its" | "this" | "by" | "of" | "at" | "to")
     };
-    while words.get(at).is_some_and(|word| word.stem != wanted && word.text != wanted && fill(word)) {
+    while words.get(at).is_some_and(|word| !wanted.takes(&word.stem) && !wanted.takes(&word.text) && fill(word)) {
         at += 1;
     }
     at
