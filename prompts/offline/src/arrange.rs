@@ -2,7 +2,7 @@
 
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::lexicon;
-use crate::mention::mentions;
+use crate::mention::{Who, mentions};
 use crate::words::Word;
 
 /// The clauses in the order in which they are read: what stands before who does it comes after, and names go together.
@@ -59,6 +59,7 @@ fn is_manner(words: &[Word]) -> bool {
 
 /// `the cleaner, a shy man, stands`, `Ahmed, a clerk, waits`: one clause about one person.
 fn apposed(mut found: Vec<Stretch>) -> Vec<Stretch> {
+    counted(&mut found);
     let mut at = 0;
     while at + 1 < found.len() {
         if let (Some(name), Some(other)) = (found.get(at), found.get(at + 1))
@@ -77,6 +78,39 @@ fn apposed(mut found: Vec<Stretch>) -> Vec<Stretch> {
         at += 1;
     }
     found
+}
+
+/// `people, maybe four, stand there`: the number belongs to the people.
+fn counted(found: &mut Vec<Stretch>) {
+    for at in 1..found.len() {
+        let (Some(name), Some(number)) = (found.get(at - 1), found.get(at)) else { return };
+        let role = name.words.len() <= 2
+            && name
+                .words
+                .last()
+                .is_some_and(|word| lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word))
+            && name.words.iter().all(|word| word.count().is_none());
+        let guess = |word: &Word| {
+            matches!(
+                word.text.as_str(),
+                "maybe" | "perhaps" | "about" | "say" | "roughly" | "around" | "probably" | "exactly"
+            )
+        };
+        let alone = number.joint == Joint::Comma
+            && number.words.iter().all(|word| word.count().is_some() || guess(word))
+            && number.words.iter().any(|word| word.count().is_some());
+        if role && alone && found.len() > at + 1 {
+            let mut number = found.remove(at);
+            let rest = found.remove(at);
+            if let Some(name) = found.get_mut(at - 1) {
+                let noun = name.words.len().saturating_sub(1);
+                number.words.retain(|word| word.count().is_some());
+                name.words.splice(noun..noun, number.words);
+                name.words.extend(rest.words);
+            }
+            return;
+        }
+    }
 }
 
 /// Which of two names is the one that stays.
@@ -100,6 +134,12 @@ fn apposition(name: &Stretch, other: &Stretch, next: Option<&Stretch>) -> Option
         let names = mentions(&next.words).first().is_some_and(|mention| mention.from == 0);
         next.joint == Joint::Comma && verb && !names
     };
+    // `one of them, the first one, says`
+    let told = other.words.first().is_some_and(|word| word.text == "the")
+        && matches!(mentions(&other.words).as_slice(), [only] if matches!(only.who, Who::Ordinal(_) | Who::ToldApart) && only.to + 1 == other.words.len());
+    if told && other.joint == Joint::Comma && whole(&name.words) && next.is_some_and(goes_on) {
+        return Some(Also::First);
+    }
     let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an"));
     let bare = other.words.len() == 1 && whole(&other.words);
     if other.joint != Joint::Comma || !(article && whole(&other.words) || bare) {

@@ -165,6 +165,8 @@ pub(crate) fn people_deed(
         object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
         place,
         startled,
+        stands: stretch.words.get(at).is_some_and(|word| word.text == "standing")
+            && stretch.words.get(at + 1).is_some_and(|word| word.text != "still"),
         then: stretch.joint == Joint::Then,
         goes_on: thread.doer.as_deref() == Some(people),
         quote: quote.to_owned(),
@@ -180,7 +182,25 @@ pub(crate) fn people_deed(
             thread.made.push((*who, rule));
         }
     }
-    if matches!(act, Act::Talk | Act::WalkTogether) || found.in_group {
+    // `a doctor talks to a patient`: both do.
+    let partner = |from: usize| {
+        let before = from.checked_sub(1).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str());
+        act == Act::Talk && matches!(before, "to" | "with")
+    };
+    let others: Vec<usize> = meant
+        .iter()
+        .filter(|(from, _, _)| *from > to && partner(*from))
+        .flat_map(|(_, _, some)| some.iter().copied())
+        .filter(|i| !people.contains(i))
+        .collect();
+    for who in &others {
+        let _rule = deed::apply(&mut story.cast, *who, act, &around);
+    }
+    if !others.is_empty() {
+        let all: Vec<usize> = people.iter().chain(&others).copied().collect();
+        story.cast.together(&all, quote);
+        story.cast.group(&all, quote);
+    } else if matches!(act, Act::Talk | Act::WalkTogether) || found.in_group {
         story.cast.group(people, quote);
     }
     story.cast.last = people.to_vec();

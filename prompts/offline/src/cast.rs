@@ -113,10 +113,21 @@ impl Cast {
                 };
                 pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
-            Who::Bare(n) => self
-                .pick(*n, mention, quote)
-                .or_else(|| self.counted(*n))
-                .unwrap_or_else(|| self.join(*n, mention, declares, quote)),
+            // `Ten, I said.`
+            Who::Bare(n) if declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
+                self.latest()
+            }
+            Who::Bare(n) => {
+                let some = self.pick(*n, mention, quote).or_else(|| self.counted(*n));
+                some.unwrap_or_else(|| {
+                    let joined = self.join(*n, mention, declares, quote);
+                    // `2 leave, 1 stays`: another one, not one of the two.
+                    if let Some(set) = self.sets.last_mut().filter(|set| set.members == joined) {
+                        set.counted.clone_from(&joined);
+                    }
+                    joined
+                })
+            }
             Who::More(n) => match self.pick_open(*n, mention) {
                 Some(found) if *n == 1 => found,
                 Some(_) | None => self.join(*n, mention, declares, quote),
@@ -135,6 +146,19 @@ impl Cast {
                 let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
                 let fitting =
                     |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                let total = self.sets.iter().find(|set| set.total && set.members.len() != wanted);
+                if let Some(set) = total.filter(|_| mention.role.is_none()) {
+                    let (members, first) = (set.members.clone(), set.quote.clone());
+                    self.problems.push(Fault::new(
+                        FaultCode::PContra,
+                        "rough_scenario",
+                        format!(
+                            "`{first}` gives {} humans, but `{quote}` speaks of {n}; correct one of the two",
+                            members.len()
+                        ),
+                    ));
+                    return members;
+                }
                 let sets = [self.last.clone(), self.latest()];
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
@@ -376,8 +400,10 @@ impl Cast {
         if let Some(found) = self.pick_open(n, mention) {
             return found;
         }
-        let set = self.latest();
+        let mut set = self.latest();
         if !set.is_empty() && wanted <= set.len() {
+            // `the taller one follows the other; the shorter one …`: rather somebody else than who did the last thing.
+            set.sort_by_key(|i| self.last.contains(i));
             return set.into_iter().take(wanted).collect();
         }
         self.join(n, mention, false, quote)
@@ -401,7 +427,10 @@ impl Cast {
         if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
             return rest;
         }
-        self.join(count.unwrap_or(1), mention, false, quote)
+        // `one visitor flees, the other looks`: another visitor.
+        let alike = self.last.first().and_then(|i| self.people.get(*i)).map(|person| person.role.clone());
+        let role = mention.role.clone().or_else(|| alike.filter(|role| !role.is_empty()));
+        self.join(count.unwrap_or(1), &Mention { role, ..mention.clone() }, false, quote)
     }
 
     fn definite(

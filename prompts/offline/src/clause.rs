@@ -4,7 +4,7 @@ use socrates_model::{Gesture, PlaceClass};
 
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, Cue, Item, lexicon};
-use crate::mention::{Mention, mentions};
+use crate::mention::{Mention, Who, mentions};
 use crate::words::find;
 use crate::{measure, message};
 
@@ -65,7 +65,8 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     for mention in &found.mentions {
         for at in mention.from..=mention.to {
             // A word between that only describes, and that no table has, is read by nobody.
-            if at == mention.to || at == mention.from || known(stretch, at) {
+            let tells = matches!(mention.who, Who::ToldApart) && at != mention.to && at != mention.from;
+            if at == mention.to || at == mention.from || known(stretch, at) && !tells {
                 mark(stretch, at, at);
             }
         }
@@ -130,10 +131,17 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
                 && stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
             // `makes room` is no room.
             let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
+            // `leave room for it`, but `leave room 3`.
+            let leaves = made.is_some_and(|word| word.stem == "leave")
+                && stretch.words.get(end + 1).is_none_or(|word| !matches!(word.text.as_str(), "for" | "to" | "so"));
             if at.len() == 1
                 && phrase.means == PlaceClass::Room
+                && !leaves
                 && made.is_some_and(|word| {
-                    matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give")
+                    matches!(
+                        word.stem.as_str(),
+                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free"
+                    )
                 })
             {
                 continue;
@@ -266,8 +274,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             let (first, last) = (at.first().copied().unwrap_or(0), at.last().copied().unwrap_or(0));
             from = first + 1;
             // `in the lobby in front of it`: it is the place, not the robot.
-            let of_place = stretch.words.get(last).is_some_and(|word| word.text == "it")
-                && (first..last).any(|i| !at.contains(&i) && placed.get(i).copied().unwrap_or(false));
+            // Two who walk in opposite directions need not walk towards the robot.
+            let apart = phrase.means == Act::Toward
+                && at.iter().any(|i| stretch.words.get(*i).is_some_and(|word| word.text == "directions"));
+            let of_place = apart
+                || stretch.words.get(last).is_some_and(|word| word.text == "it")
+                    && (first..last).any(|i| !at.contains(&i) && placed.get(i).copied().unwrap_or(false));
             if of_place {
                 continue;
             }

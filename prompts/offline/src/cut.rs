@@ -183,7 +183,7 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             };
             let at = (i + 2..i + 6).find(corrects)?;
             let paused = words.get(i + 1..at)?.iter().any(|item| item.as_ref().is_none_or(|word| word.text == "or"));
-            (at + 1..at + 4).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
+            (at + 1..at + 7).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
         });
         if let Some(next) = taken_back.flatten() {
             i = next;
@@ -201,28 +201,32 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
             && word.text == "left"
-            && matches!(
-                before,
-                "the"
-                    | "on"
-                    | "to"
-                    | "its"
-                    | "his"
-                    | "her"
-                    | "their"
-                    | "from"
-                    | "far"
-                    | "turn"
-                    | "turns"
-                    | "turned"
-                    | "turning"
-                    | "keep"
-                    | "keeps"
-                    | "look"
-                    | "looks"
-                    | "bear"
-                    | "veers"
-            )
+            && (words
+                .get(i + 1)
+                .and_then(Option::as_ref)
+                .is_some_and(|next| matches!(next.text.as_str(), "one" | "hand" | "side"))
+                || matches!(
+                    before,
+                    "the"
+                        | "on"
+                        | "to"
+                        | "its"
+                        | "his"
+                        | "her"
+                        | "their"
+                        | "from"
+                        | "far"
+                        | "turn"
+                        | "turns"
+                        | "turned"
+                        | "turning"
+                        | "keep"
+                        | "keeps"
+                        | "look"
+                        | "looks"
+                        | "bear"
+                        | "veers"
+                ))
         {
             // The side, nobody who leaves.
             word.stem = "left".to_owned();
@@ -303,6 +307,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "at" if text(i + 1) == "which" && matches!(text(i + 2), "point" | "moment") => (Some(Joint::Said), 3),
         "whereupon" | "thereupon" => (Some(Joint::Said), 1),
         "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
+        "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
+        "not" if text(i + 1) == "until" => (Some(Joint::When), 2),
         "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
             (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })
         }

@@ -24,6 +24,8 @@ pub(crate) struct Around {
     pub(crate) goes_on: bool,
     /// It comes after what was said before: `and then`.
     pub(crate) then: bool,
+    /// `stands there`: it was there already.
+    pub(crate) stands: bool,
     pub(crate) quote: String,
 }
 
@@ -145,6 +147,12 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     } else {
         act
     };
+    if act == Act::Stop
+        && around.stands
+        && cast.people.get(who).is_some_and(|p| p.relation.is_none() && p.rules.is_empty())
+    {
+        relate(cast, who, Relation::Static, &around.quote);
+    }
     // Who walks along talks on the way.
     let walks =
         |person: &Person| person.relation.is_some() || person.doings.iter().any(|doing| doing.starts_with("walks"));
@@ -184,6 +192,16 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     if let Some((_, never)) = never {
         let never = never.clone();
         cast.problems.push(contradiction(who, &never, &around.quote));
+        return None;
+    }
+    // `stands in its way and does not move for ten seconds`
+    if act == Act::Stop
+        && around.trigger.is_none()
+        && let Some(last) = person.rules.last_mut().filter(|last| around.goes_on && last.rule.act == Action::Block)
+    {
+        if around.lasts_s.is_some() {
+            (last.rule.for_s, last.lasts) = (around.lasts_s, true);
+        }
         return None;
     }
     if let (Some(gesture), Some(last)) = (around.gesture, person.rules.last_mut())

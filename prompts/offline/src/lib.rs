@@ -24,6 +24,7 @@ mod arrange;
 mod cut;
 mod mention;
 mod noun;
+mod refer;
 
 mod bind;
 mod cast;

@@ -6,7 +6,7 @@ use crate::lexicon::lexicon;
 use crate::words::find;
 
 /// Words behind a length that make it the size of a thing.
-const SIZES: &[&str] = &["wide", "tall", "long", "high", "broad", "deep", "width", "height", "thick", "of", "big"];
+const SIZES: &[&str] = &["wide", "tall", "long", "high", "broad", "deep", "width", "height", "thick", "big"];
 
 /// `3 m`, `for 5 seconds`, `after 10 s`, `very close`.
 pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {

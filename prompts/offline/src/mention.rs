@@ -2,6 +2,7 @@
 
 use crate::lexicon::{Item, Lexicon, lexicon};
 use crate::noun::{band, noun, plural, stranger, thing};
+use crate::refer::{group, others};
 use crate::words::Word;
 
 /// Whom a mention means.
@@ -207,6 +208,13 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             if let Some(of) = of_them(at + 1) {
                 return made(Who::All, None, of.end);
             }
+            // `all three of them`
+            if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
+                && text(at + 2) == "of"
+                && let Some(of) = of_them(at + 2)
+            {
+                return made(Who::AllOf(count), of.role, of.end);
+            }
             // `all three nurses` are those three, or three new ones.
             if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
                 && let Some(end) = noun(words, at + 2, lex)
@@ -274,77 +282,23 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return made(Who::Number(number), role(at), at + 1);
         }
     }
-    counted(words, at, lex, &role, &of_them)
-}
-
-/// `another …`, `the other …`, `the rest`, `the first …`.
-fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
-    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made = |who: Who, role: Option<String>, to: usize| {
-        Some(Mention { who, role, word: String::new(), group: false, parts: 1, from: at, to })
+    // `person A`, `pedestrian B`; alone only where it cannot be an article.
+    let letter = |k: usize| {
+        let word = words.get(k).filter(|word| word.capital && word.text.len() == 1)?;
+        "abcdef".find(word.text.as_str()).and_then(|place| u32::try_from(place + 1).ok())
     };
-    let the = usize::from(matches!(text(at), "the" | "each"));
-    // `each other` and `one after the other` are nobody new.
-    let before = if at == 0 { "" } else { text(at - 1) };
-    let manner = text(at) == "each" && text(at + 1) == "other"
-        || text(at) == "other"
-            && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
-        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
-    if manner {
-        return None;
+    if lex.roles.contains_key(stem(at))
+        && let Some(number) = letter(at + 1)
+    {
+        return made(Who::Number(number), role(at), at + 1);
     }
-    let count = |k: usize| words.get(k).and_then(Word::count);
-    match text(at + the) {
-        // `one after another` is a manner, nobody new.
-        "another" if at > 0 && matches!(text(at - 1), "after" | "to" | "from") => None,
-        "another" => {
-            let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
-            let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
-            let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;
-            made(Who::More(several.unwrap_or(1)), role(end), end)
-        }
-        "others" | "rest" | "remaining" => {
-            let several = count(at + the + 1);
-            let mut end = noun(words, at + the + 1 + usize::from(several.is_some()), lex)
-                .unwrap_or_else(|| at + the + usize::from(several.is_some()));
-            if text(end + 1) == "of" && matches!(text(end + 2), "them") {
-                end += 2;
-            }
-            let single = text(at + the) == "remaining" && !words.get(end).is_some_and(plural);
-            made(Who::Other(several.or(if single { Some(1) } else { None })), None, end)
-        }
-        "other" => {
-            let several = count(at + the + 1);
-            let start = at + the + 1 + usize::from(several.is_some());
-            match noun(words, start, lex) {
-                Some(end) if several.is_none() && words.get(end).is_some_and(plural) => {
-                    made(Who::Other(None), role(end), end)
-                }
-                Some(end) => made(Who::Other(Some(several.unwrap_or(1))), role(end), end),
-                None if thing(words, start) => None,
-                None => made(Who::Other(Some(several.unwrap_or(1))), None, start - 1),
-            }
-        }
-        word if the == 1 || lex.ordinals.contains_key(word) => {
-            let named = |word: &str| match word {
-                "last" | "latter" => Some(0),
-                "former" => Some(1),
-                _ => None,
-            };
-            let number = lex.ordinals.get(word).copied().or_else(|| named(word))?;
-            let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
-            if text(start) == "of"
-                && let Some(of) = count(start + 1).filter(|of| *of >= number.max(1))
-                && let Some(end) = noun(words, start + 2, lex)
-            {
-                return made(Who::OrdinalOf { number, count: of }, role(end), end);
-            }
-            let end = noun(words, start, lex).unwrap_or(start - 1);
-            let bare = end == at + the && (the == 0 || thing(words, start));
-            if bare { None } else { made(Who::Ordinal(number), role(end), end) }
-        }
-        _ => None,
+    let acts = |k: usize| words.get(k).is_some_and(|word| lex.verbs.contains(&word.stem));
+    if let Some(number) =
+        letter(at).filter(|number| *number > 1 && (acts(at + 1) || at + 1 == words.len() && (0..at).any(acts)))
+    {
+        return made(Who::Number(number), None, at);
     }
+    counted(words, at, lex, &role, &of_them)
 }
 
 fn stem(words: &[Word], at: usize) -> &str {
@@ -383,9 +337,21 @@ fn counted(
     let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
     for k in [described, next.saturating_sub(usize::from(count.is_some()))] {
         let counts = text(k + 1) == "of" && count.is_some() && matches!(text(k), "couple" | "crowd" | "trio");
-        if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some()) {
+        let bare = at == 0 && k == 0 && words.len() > 1
+            || text(k + 1) == "of" && words.get(k + 2).is_some_and(|word| word.count().is_some());
+        if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some() || bare) {
             return group(words, at, k, count.filter(|_| k >= next), the, lex, role);
         }
+    }
+    // `half of the six employees`, `two others`
+    if text(at) == "half"
+        && let Some(of) = of_them(at + 1)
+        && let Some(whole) = of.count
+    {
+        return made(Who::PartOfNew(whole / 2, whole), of.role, false, of.end);
+    }
+    if let Some(n) = count.filter(|_| text(next) == "others") {
+        return made(Who::More(n), None, false, next);
     }
     let more = matches!(text(next), "more" | "additional" | "further");
     next += usize::from(more);
@@ -424,8 +390,12 @@ fn counted(
             return made(Who::ToldApart, None, false, at + 2);
         }
     }
+    // `left one gives way`, where people leave articles out.
+    if at == 0 && text(1) == "one" && lex.adjectives.contains(text(0)) && stem(words, 0) != "robot" {
+        return made(Who::ToldApart, None, false, 1);
+    }
     // `his mother`, `her colleague`: known or new.
-    if matches!(text(at), "his" | "her" | "their")
+    if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && let Some(end) =
             noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
     {
@@ -437,7 +407,9 @@ fn counted(
         && count.is_none()
         && words.get(at).is_some_and(|word| word.capital)
         && noun(words, at, lex).is_none()
-        && stranger(words, at, true, lex).is_some()
+        && stranger(words, at, true, lex).is_some_and(|end| {
+            words.get(end + 1).is_some_and(|word| lex.verbs.contains(&word.stem) || word.text == "who")
+        })
     {
         return made(Who::Definite { plural: false, count: None }, role(at), false, at);
     }
@@ -448,7 +420,9 @@ fn counted(
             (true, count, _) => Who::Definite { plural: many, count },
             (false, Some(n), false) => Who::New { count: Some(n), article: false },
             (false, None, _) if article => Who::New { count: Some(1), article: true },
-            (false, None, _) => Who::New { count: if many { None } else { Some(1) }, article: true },
+            // `Driver blocks. Driver ignores it.`: without an article it is who is there already, if there is.
+            (false, None, _) if !many => Who::Definite { plural: false, count: None },
+            (false, None, _) => Who::New { count: None, article: true },
         };
         return made(who, role(end), false, end);
     }
@@ -472,49 +446,6 @@ fn counted(
         Who::Bare(n)
     };
     made(who, None, false, next - 1)
-}
-
-fn group(
-    words: &[Word],
-    at: usize,
-    group: usize,
-    count: Option<u32>,
-    the: bool,
-    lex: &Lexicon,
-    role: &dyn Fn(usize) -> Option<String>,
-) -> Option<Mention> {
-    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    // `in a group` says how people stand; it is not a mention of its own.
-    let lead = (1..=3)
-        .filter_map(|back| group.checked_sub(back))
-        .map(&text)
-        .find(|word| !matches!(*word, "a" | "the" | "one" | "same" | "small" | "large"));
-    let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming" | "into"))
-        && text(group + 1) != "of";
-    if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
-        return None;
-    }
-    let listed = text(group + 1) == "of";
-    let inner = if listed { words.get(group + 2).and_then(Word::count) } else { None };
-    let start = group + 1 + usize::from(listed) + usize::from(inner.is_some());
-    let noun = if listed { noun(words, start, lex) } else { None };
-    let end = noun.unwrap_or(start - 1);
-    let role = noun.and_then(role);
-    let pair = band(words, group).and_then(|(_, count)| *count);
-    let who = if the && inner.is_none() {
-        Who::Definite { plural: true, count: pair }
-    } else {
-        Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
-    };
-    // `two groups of three` are six people.
-    let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
-    let who = if let Who::New { count: Some(n), article } = who {
-        Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 }
-    } else {
-        who
-    };
-    let lined = matches!(text(group), "queue" | "line" | "row");
-    Some(Mention { who, role, word: String::new(), group: !lined, parts, from: at, to: end })
 }
 
 #[cfg(test)]

@@ -49,7 +49,16 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         return;
     }
     let noun = matches!(stem(last), "gesture" | "signal" | "sign");
-    for (from, to) in [(last + 1, last + 10), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
+    // `was asked to follow somebody` is an errand, nothing that is said now.
+    let told = matches!(stem(first), "ask" | "tell" | "order" | "instruct" | "request")
+        && first.checked_sub(1).is_some_and(|k| stem(k) == "be")
+        && !stretch.words.iter().any(|word| word.text == "by");
+    if told {
+        return;
+    }
+    for (from, to) in
+        [(first + 1, last), (last + 1, last + 10), (first.saturating_sub(if noun { 3 } else { 0 }), first)]
+    {
         for phrase in &lexicon().gestures {
             let inside = |i: usize| (from..to).contains(&i) && !verb.contains(&i);
             if let Some(at) = find(&stretch.words, phrase, from, false, &inside) {

@@ -99,6 +99,13 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
     if words.get(end + 1).is_some_and(|word| word.stem == "member") {
         end += 1;
     }
+    // `doctor Miller`
+    let name = |word: &Word| {
+        word.capital && word.text.len() > 2 && !lex.known.contains(&word.stem) && !lex.stop.contains(&word.text)
+    };
+    if words.get(end + 1).is_some_and(name) {
+        end += 1;
+    }
     Some(end)
 }
 

@@ -54,6 +54,8 @@ pub(crate) struct Thread {
     pub(crate) led: Option<(Vec<usize>, Vec<usize>)>,
     /// What was said last, as what others may wait for.
     pub(crate) said: Option<Trigger>,
+    /// The same, as long as nothing else was said to happen.
+    pub(crate) fresh: Option<Trigger>,
     /// What the last acting clause said of its people, for `the other does not`.
     pub(crate) acts: Vec<(Act, Around)>,
     /// The clause before signals, or names the robot: a message alone is its message.
@@ -83,6 +85,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         doer: None,
         led: None,
         said: None,
+        fresh: None,
         acts: Vec::new(),
         speaks: false,
         not_until: false,
@@ -146,9 +149,15 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
     if stretch.joint == Joint::Said {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
+    } else if stretch.joint == Joint::Opens && answers(&found) && thread.waiting.is_none() {
+        // `The robot says PROCEED. He walks on.`
+        (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
         // `blocks its way until it asks; then he steps aside`
         (thread.waiting, thread.vague) = (thread.ended.take(), false);
+    }
+    if found.acts() {
+        thread.fresh = None;
     }
     let cue_only = found.cue.is_some()
         && (found.deeds.is_empty() || matches!(stretch.joint, Joint::When | Joint::Until) && robot_first(&found));
@@ -271,6 +280,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 }
                 if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture) {
                     thread.said = Some(Trigger::RobotSays(gesture));
+                    thread.fresh.clone_from(&thread.said);
                 }
             }
             // `does not move aside until the robot asks`: it does then.
@@ -353,6 +363,15 @@ fn mark(stretch: &mut Stretch, at: &[usize]) {
             word.used = true;
         }
     }
+}
+
+/// Whether the clause is an answer to what the robot said just before.
+fn answers(found: &Found) -> bool {
+    let answer = |act: Act| matches!(act, Act::GoOn | Act::GiveWay);
+    found.distance_m.is_none()
+        && found.robots.is_empty()
+        && found.gesture.is_none()
+        && found.deeds.first().is_some_and(|deed| answer(deed.act) && !deed.negated)
 }
 
 /// Whether the robot does it: `is followed by the robot`.

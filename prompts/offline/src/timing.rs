@@ -132,6 +132,11 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
     }
 }
 
+/// Whether the robot is named before anybody else.
+fn robot_leads(found: &Found) -> bool {
+    found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
+}
+
 /// A clause without a deed: it names people, places, a group, a pace.
 pub(crate) fn quiet(
     story: &mut Story,
@@ -148,8 +153,22 @@ pub(crate) fn quiet(
     }
     if let Some(secs) = found.after_s {
         thread.waiting = Some(Trigger::AfterSecs(secs));
-    } else if let Some(m) = found.distance_m.filter(|_| found.distance_is_when && people.is_empty()) {
+    } else if let Some(m) =
+        found.distance_m.filter(|_| found.distance_is_when && people.is_empty() || robot_leads(found))
+    {
+        // `at 2 m`, `then it is 2 m in front of him`
         (thread.waiting, thread.vague) = (Some(Trigger::RobotNear(m)), false);
+        if robot_leads(found) {
+            return;
+        }
+    }
+    let behind = stretch.words.iter().position(|word| word.text == "behind");
+    if let Some(behind) = behind.filter(|behind| robot_leads(found) && found.robots.iter().all(|robot| robot < behind))
+    {
+        // `the robot is behind him`
+        for who in meant.iter().filter(|(from, _, _)| *from > behind).flat_map(|(_, _, some)| some) {
+            deed::relate(&mut story.cast, *who, socrates_model::Relation::Ahead, quote);
+        }
     }
     if people.is_empty() {
         if !found.robots.is_empty() {

@@ -56,9 +56,11 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             Part::Origin => continue,
             Part::There => {}
         }
+        let enters = found.deeds.iter().all(|deed| deed.act != Act::ComeOut && deed.act != Act::Stay);
         // The room that people come out of is where they start, not where they are met.
         let source = comes_out.is_some_and(|deed| *at > deed)
-            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit);
+            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit)
+            && !(enters && class == PlaceClass::Doorway);
         let weak =
             story.place.as_ref().is_none_or(|(old, _)| class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
         let in_lobby = class == PlaceClass::ElevatorLobby && text(*at) == "lobby";

@@ -221,6 +221,7 @@ fn skip_fill(words: &[Word], at: usize, rest: &[Item], as_written: bool) -> usiz
     let Some(wanted) = rest.first().filter(|item| **item != Item::Gap) else { return at };
     let fill = |word: &Word| {
         word.label
+            || word.text.ends_with("ly") && word.text.len() > 4
             || matches!(
                 word.text.as_str(),
                 "the"
