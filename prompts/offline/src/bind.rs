@@ -165,7 +165,7 @@ pub(crate) fn people_deed(
         object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
         place,
         startled,
-        stands: stretch.words.get(at).is_some_and(|word| word.text == "standing")
+        stands: stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
             && stretch.words.get(at + 1).is_some_and(|word| word.text != "still"),
         then: stretch.joint == Joint::Then,
         goes_on: thread.doer.as_deref() == Some(people),

@@ -68,6 +68,8 @@ pub(crate) struct Cast {
     pub(crate) count_quote: Option<String>,
     /// Somebody was said not to be there.
     pub(crate) nobody: Option<String>,
+    /// A colon stood before: what comes lists those who are there.
+    pub(crate) listing: bool,
     overflow: bool,
 }
 
@@ -106,7 +108,9 @@ impl Cast {
                 self.latest()
             }
             Who::New { count: Some(n), article } => {
-                let pick = if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
+                let pick = if self.listing {
+                    self.pick_open(*n, mention)
+                } else if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)
                 } else {
                     None
@@ -220,18 +224,18 @@ impl Cast {
                 }
             }
         }
-        let singles = matches!(
-            mention.who,
-            Who::Bare(_)
-                | Who::PartOf(_)
-                | Who::PartOfNew(..)
-                | Who::ToldApart
-                | Who::Further(_)
-                | Who::Other(_)
-                | Who::Ordinal(_)
-                | Who::Number(_)
-                | Who::More(_)
-        );
+        let singles = matches!(mention.who, Who::Bare(_)) && !declares
+            || matches!(
+                mention.who,
+                Who::PartOf(_)
+                    | Who::PartOfNew(..)
+                    | Who::ToldApart
+                    | Who::Further(_)
+                    | Who::Other(_)
+                    | Who::Ordinal(_)
+                    | Who::Number(_)
+                    | Who::More(_)
+            );
         let picked = matches!(mention.who, Who::New { .. } | Who::Definite { .. }) && self.latest().len() > found.len();
         for i in &found {
             if let Some(person) = self.people.get_mut(*i) {
@@ -314,6 +318,12 @@ impl Cast {
             }
         }
         self.groups.push((id, members.to_vec(), quote.to_owned()));
+    }
+
+    /// From here to the end of the sentence, people are those of the newest set of whom nothing is known yet.
+    pub(crate) fn lists(&mut self) {
+        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty() && !person.bound);
+        self.listing = self.sets.last().is_some_and(|set| set.members.len() > 1 && set.members.iter().all(plain));
     }
 
     /// Takes `a nurse and two visitors` as one set.

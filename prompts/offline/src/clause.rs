@@ -46,6 +46,8 @@ pub(crate) struct Found {
     pub(crate) pace_mps: Option<f64>,
     /// The pace was given as a number.
     pub(crate) pace_said: bool,
+    /// `obeys`, `does as it is told`.
+    pub(crate) obeys: bool,
     /// `in a group`.
     pub(crate) in_group: bool,
     /// `there are`, `in the scenario`.
@@ -182,11 +184,13 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         let hears = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "hear" | "listen"));
         match (robot, first) {
             _ if hears => found.cue = Some((Cue::Says, 0)),
+            // `when human 1 gestures WAIT`: somebody else says it.
+            (robot, Some(first)) if first < found.gesture_at && robot.is_none_or(|robot| first < robot) => {
+                found.cue = Some((Cue::Told, first));
+            }
             (Some(robot), first) if robot < found.gesture_at || first.is_none_or(|first| first > robot) => {
                 found.cue = Some((Cue::Says, robot));
             }
-            // `when human 1 gestures WAIT`: somebody else says it.
-            (_, Some(first)) if first < found.gesture_at => found.cue = Some((Cue::Told, first)),
             (_, _) => {}
         }
         if found.cue.is_some() {
@@ -244,7 +248,20 @@ fn echoes(stretch: &mut Stretch) -> bool {
 fn negated(stretch: &Stretch, at: usize) -> bool {
     let before =
         |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
-    (1..=2).any(|back| {
+    // `will not stop looking` looks on.
+    if before(1) == "stop" && matches!(before(2), "not" | "never") {
+        return false;
+    }
+    // `never so much as glances`, `not even once looks`
+    let reach = (1..=6)
+        .find(|back| {
+            !matches!(
+                before(*back),
+                "so" | "much" | "as" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually"
+            )
+        })
+        .unwrap_or(1);
+    (1..=2).chain([reach]).any(|back| {
         matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
             || before(back) == "of" && before(back + 1) == "instead"
             || before(back) == "than" && before(back + 1) == "rather"
@@ -289,6 +306,13 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 }
             }
             mark_each(stretch, &at);
+            let ends = phrase.means == Act::Stop
+                && at.len() == 1
+                && negated(stretch, first)
+                && stretch.words.get(last + 1).is_some_and(|word| word.text.ends_with("ing"));
+            if ends {
+                continue;
+            }
             let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
             found.deeds.push(Deed {
                 act: phrase.means,
@@ -351,9 +375,34 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             used.push(i);
         }
         if word.stem == "robot" {
-            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" {
+            // `passes the robot`: what somebody passes does nothing in this clause.
+            let verb = (0..i).rev().find_map(|k| stretch.words.get(k).filter(|word| !word.label && word.text != "the"));
+            let object = verb.is_some_and(|word| {
+                matches!(
+                    word.stem.as_str(),
+                    "pass"
+                        | "approach"
+                        | "meet"
+                        | "encounter"
+                        | "face"
+                        | "reach"
+                        | "past"
+                        | "towards"
+                        | "toward"
+                        | "behind"
+                        | "beside"
+                )
+            });
+            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" && !object {
                 found.robots.push(i);
             }
+            used.push(i);
+        }
+        let next = stretch.words.get(i + 1).map_or("", |word| word.text.as_str());
+        if matches!(word.stem.as_str(), "obey" | "comply" | "oblige") && !negated(stretch, i)
+            || word.stem == "do" && matches!(next, "so" | "as") && !negated(stretch, i)
+        {
+            found.obeys = true;
             used.push(i);
         }
         if text == "group" && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {

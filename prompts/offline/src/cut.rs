@@ -54,13 +54,17 @@ impl Stretch {
 pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut found = Vec::new();
     let mut words: Vec<Option<Word>> = Vec::new();
+    let mut colon = false;
     for piece in pieces(text) {
         match piece {
-            Piece::Word(word) => words.push(Some(word)),
+            Piece::Word(word) => {
+                words.push(Some(Word { after_colon: std::mem::take(&mut colon), ..word }));
+            }
             Piece::Comma => words.push(None),
             Piece::Colon => {
                 labels(&mut words);
                 words.push(None);
+                colon = true;
             }
             Piece::Stop => found.push(arranged(stretches(settled(std::mem::take(&mut words))))),
         }
@@ -95,7 +99,10 @@ fn labels(words: &mut [Option<Word>]) {
     let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
     let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
     let whole = words.iter().skip(start).flatten();
-    if whole.clone().count() <= 2 && whole.clone().all(|word| LISTS.contains(&word.text.as_str())) {
+    let list = |word: &Word| {
+        LISTS.contains(&word.text.as_str()) || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
+    };
+    if whole.clone().count() <= 2 && whole.clone().all(list) {
         for word in words.iter_mut().skip(start).flatten() {
             (word.label, word.used) = (true, true);
         }
@@ -322,7 +329,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
-            if !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
+            if !(text(i) == "so" && matches!(before, "do"))
+                && !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
         {
             (Some(Joint::Comma), 1)
         }

@@ -338,7 +338,7 @@ fn once(person: &mut Person, read: ReadRule) -> usize {
             && !old.lasts
             && read.lasts
             && !read.then
-            && !read.stated
+            && (!read.stated || old.rule.when == read.rule.when)
     });
     if let Some(old) = longer {
         (old.rule.for_s, old.lasts) = (read.rule.for_s, true);

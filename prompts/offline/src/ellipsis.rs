@@ -1,8 +1,11 @@
 //! Clauses that leave their verb out: `the other does not`, `and the nurse does as well`.
 
+use socrates_model::{Gesture, Trigger};
+
 use crate::clause::Found;
 use crate::cut::Stretch;
-use crate::deed;
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
 use crate::story::{Story, Subject, Thread};
 
 /// Words that such a clause is made of, beside those whom it speaks of.
@@ -65,6 +68,37 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
     } else {
         None
     }
+}
+
+/// `obeys`, `does so`: what the robot, or somebody else, asked for just before.
+pub(crate) fn obeys(
+    story: &mut Story,
+    thread: &mut Thread,
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    quote: &str,
+) -> bool {
+    let Some(said) = thread.said.clone() else { return false };
+    let (Trigger::RobotSays(gesture) | Trigger::HumanSays(_, gesture)) = said else { return false };
+    let act = match gesture {
+        Gesture::Wait => Act::Stop,
+        Gesture::Proceed => Act::GoOn,
+        Gesture::ExcuseMe => Act::GiveWay,
+        Gesture::FollowMe => Act::Follow,
+        Gesture::None | Gesture::Acknowledged => return false,
+    };
+    let named: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    let people = match (named.is_empty(), &thread.subject) {
+        (false, _) => named,
+        (true, Subject::People(people)) => people.clone(),
+        (true, Subject::Robot | Subject::Nobody) => return false,
+    };
+    let around = Around { trigger: Some(said), lasts_s: found.lasts_s, quote: quote.to_owned(), ..Around::default() };
+    for who in &people {
+        let _rule = deed::apply(&mut story.cast, *who, act, &around);
+    }
+    thread.subject = Subject::People(people);
+    true
 }
 
 /// Says of these people what the clause before said of others, or rules it out for them.

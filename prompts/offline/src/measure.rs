@@ -57,7 +57,9 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
                             before,
                             "about" | "some" | "another" | "roughly" | "approximately" | "only" | "just"
                         )
-                    || matches!(text(unit_at + 1), "later" | "after" | "in" | "into");
+                    || before == "at"
+                    || matches!(text(unit_at + 1), "later" | "after")
+                    || text(unit_at + 1) == "in" && text(unit_at + 2).is_empty();
                 if after { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
             }
             _ => continue,

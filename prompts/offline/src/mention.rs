@@ -337,7 +337,8 @@ fn counted(
     let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
     for k in [described, next.saturating_sub(usize::from(count.is_some()))] {
         let counts = text(k + 1) == "of" && count.is_some() && matches!(text(k), "couple" | "crowd" | "trio");
-        let bare = at == 0 && k == 0 && words.len() > 1
+        let around = matches!(text(k + 1), "around" | "round" | "about" | "up" | "in" | "the");
+        let bare = at == 0 && k == 0 && words.len() > 1 && !around
             || text(k + 1) == "of" && words.get(k + 2).is_some_and(|word| word.count().is_some());
         if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some() || bare) {
             return group(words, at, k, count.filter(|_| k >= next), the, lex, role);
@@ -368,6 +369,10 @@ fn counted(
             Some(_) | None => Who::PartOf(part),
         };
         return made(who, of.role, false, of.end);
+    }
+    // `one on each side` tells where those are of whom was spoken.
+    if text(at) == "one" && text(at + 1) == "on" && matches!(text(at + 2), "each" | "either" | "every" | "both") {
+        return None;
     }
     // `one after another`, `one by one` say how, not who.
     if text(at) == "one"

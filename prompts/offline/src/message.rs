@@ -125,12 +125,18 @@ fn own_way(stretch: &Stretch, first: usize, last: usize) -> Option<usize> {
 
 /// A message without a verb: what somebody hears, or nothing but the message itself.
 fn alone(stretch: &mut Stretch, found: &mut Found, temporal: bool) {
+    let says = |at: usize| {
+        temporal && at.checked_sub(1).and_then(|k| stretch.words.get(k)).is_some_and(|word| word.stem == "robot")
+    };
     let hears = temporal && stretch.words.iter().any(|word| word.stem == "hear");
     for phrase in &lexicon().gestures {
         let Some(at) = find(&stretch.words, phrase, 0, false, &|_| true) else { continue };
         let (first, last) = (at.first().copied().unwrap_or(0), at.last().copied().unwrap_or(0));
         // `waits` is done, `WAIT` is said.
         let said = stretch.words.iter().all(|word| word.text == word.stem);
+        // `upon the robot's PROCEED`
+        let written = stretch.words.get(first).is_some_and(|word| word.capital);
+        let hears = hears || written && says(first) && last + 1 == stretch.words.len();
         if hears
             || said
                 && first == 0

@@ -91,6 +91,22 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
             break;
         }
     }
+    // `the nurse station`, `a staff room` are places, `a visitor badge` is a thing.
+    let names_thing = end.is_some_and(|end| {
+        let generic = words.get(end).and_then(|word| lex.roles.get(&word.stem)).is_none_or(|role| role.generic);
+        words.get(end + 1).is_some_and(|next| {
+            let place = |place: &crate::lexicon::Phrase<socrates_model::PlaceClass>| {
+                place.items == [Item::Word(next.text.clone())]
+            };
+            matches!(
+                next.text.as_str(),
+                "station" | "badge" | "desk" | "bed" | "uniform" | "trolley" | "cart" | "area" | "office" | "lounge"
+            ) || !generic && lex.places.iter().any(place)
+        })
+    });
+    if names_thing {
+        return None;
+    }
     // `warehouse employee` and `hospital staff member` end at the last noun.
     let mut end = end?;
     while words.get(end + 1).is_some_and(|word| lex.roles.contains_key(&word.stem) && !word.label) {

@@ -94,6 +94,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
     };
     for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
+        story.cast.listing = false;
         thread.made.clear();
         thread.pending.clear();
         let count = sentence.len();
@@ -180,6 +181,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if stretch.joint == Joint::Except && excepted(story, thread, &found) {
         return;
     }
+    // `two people: a nurse who …, and a visitor who …` lists those two.
+    if stretch.words.first().is_some_and(|word| word.after_colon) {
+        story.cast.lists();
+    }
     // Whom the mentions mean, in order.
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
     let spoken_of = story.cast.last.clone();
@@ -190,7 +195,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let mut people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        let mut people =
+            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
@@ -210,6 +216,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
     if let Some(does) = ellipsis::elided(stretch, &found) {
         return ellipsis::repeat(story, thread, &meant, does, stretch, &quote);
+    }
+    if found.obeys && !found.acts() && ellipsis::obeys(story, thread, &found, &meant, &quote) {
+        return;
     }
     if !found.acts() {
         return quiet(story, thread, &found, &meant, stretch, &quote, next);
@@ -273,6 +282,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         thread.untaken = None;
         match &subject {
             Subject::Robot => {
+                // `robot stops, worker stops`
+                if thread.waiting.is_none() && next == Some(Joint::Comma) && act == Act::Stop && !negated {
+                    (thread.waiting, thread.vague) = (Some(Trigger::RobotStopped), false);
+                }
                 robot_deed(story, act, &found, &object, quote);
                 // `The robot asks to be let through and the first one gives way`: what comes next answers it.
                 if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture && thread.waiting.is_none()) {
@@ -378,7 +391,15 @@ fn answers(found: &Found) -> bool {
 fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
     let does = matches!(
         act,
-        Act::Overtake | Act::Follow | Act::Lead | Act::Abreast | Act::Pass | Act::Approach | Act::Toward | Act::Block
+        Act::Overtake
+            | Act::Follow
+            | Act::Lead
+            | Act::Abreast
+            | Act::Pass
+            | Act::Approach
+            | Act::Toward
+            | Act::Block
+            | Act::Gesture
     );
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
     let by = (at..to + 2).find(|k| text(*k) == "by");

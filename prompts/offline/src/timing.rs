@@ -181,6 +181,10 @@ pub(crate) fn quiet(
     }
     if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
         let mut all = std::mem::take(&mut thread.pending);
+        // `two people: a guard …` speaks of one of the two.
+        if !people.is_empty() && people.iter().all(|i| all.contains(i)) {
+            all.clear();
+        }
         all.extend(people.iter().filter(|i| !all.contains(i)).copied().collect::<Vec<_>>());
         story.cast.together(&all, quote);
         people = all;

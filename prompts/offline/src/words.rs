@@ -19,6 +19,8 @@ pub(crate) struct Word {
     pub(crate) capital: bool,
     /// A number that names something (`case 14`), or a word that only describes the robot: read by nobody.
     pub(crate) label: bool,
+    /// Whether a colon stands right before it.
+    pub(crate) after_colon: bool,
 }
 
 impl Word {
@@ -172,7 +174,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
         | "droid" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false, capital: false, label: false }
+    Word { text, stem, from, to, used: false, capital: false, label: false, after_colon: false }
 }
 
 /// Where a phrase stands in the words at or after `start`: its first and last index, and the indices of its own words.
