@@ -207,7 +207,7 @@ impl Turn<'_> {
     fn send_back(&mut self, key: &JobKey, failure: &Failure, owners: &[Option<Stage>], why: &str) {
         let mut targets: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
         for (owner, fault) in owners.iter().zip(&failure.faults) {
-            if let Some(owner) = owner.filter(|owner| pipeline::is_after(key.stage, *owner)) {
+            if let Some(owner) = owner.filter(|owner| pipeline::is_after(key.stage, &key.item, *owner)) {
                 targets.entry(owner).or_default().push(fault.clone());
             }
         }

@@ -36,6 +36,8 @@ mod status;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]
+mod look_rules;
+#[cfg(test)]
 mod rates;
 #[cfg(test)]
 mod rules;

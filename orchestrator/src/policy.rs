@@ -40,7 +40,7 @@ pub struct Policy {
     pub repairs: u32,
     /// Re-proposals because a later stage found no answer. Default 1.
     pub reproposals: u32,
-    /// Revisions that a person may ask for. Default 20.
+    /// Revisions that a person may ask for. Default 1 000.
     pub reviews: u32,
     /// First back-off, ms; doubles with every failure. Default 500.
     pub backoff_ms: u64,
@@ -81,7 +81,7 @@ impl Default for Policy {
             lapses: 3,
             repairs: 3,
             reproposals: 1,
-            reviews: 20,
+            reviews: 1_000,
             backoff_ms: 500,
             backoff_cap_ms: 60_000,
             open_per_worker: 4,

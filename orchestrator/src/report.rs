@@ -127,6 +127,7 @@ impl Turn<'_> {
             artifacts: report.artifacts,
             verdict: report.verdict,
             repair: report.repair,
+            anew: report.anew,
             remark: report.remark,
             wall_ms: report.wall_ms,
         };
@@ -142,11 +143,13 @@ impl Turn<'_> {
         let same = job.shares().then_some(result.idem_key);
         job.result = Some(result.clone());
         self.rows.push(Row::Result(key.clone(), Box::new(result.clone())));
+        if key.stage == Stage::Review {
+            // First, so that nothing that is to be made again is begun, or known already, in between.
+            self.reviewed(key, &result);
+        }
         self.move_to(key, JobState::Succeeded, "");
-        match key.stage {
-            Stage::Scoring => self.judged(key, &result),
-            Stage::Review => self.reviewed(key, &result),
-            Stage::Proposal | Stage::Paths | Stage::Behaviors | Stage::Simulation => {}
+        if key.stage == Stage::Scoring {
+            self.judged(key, &result);
         }
         let waiting = same.and_then(|same| self.state.waiting.get(&same).cloned()).unwrap_or_default();
         for twin in waiting {

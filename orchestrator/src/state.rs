@@ -155,6 +155,9 @@ pub struct JobResult {
     pub verdict: Option<Verdict>,
     /// Repair that was asked for.
     pub repair: Option<Repair>,
+    /// Stages that a person wants made again.
+    #[serde(default)]
+    pub anew: Vec<Repair>,
     /// Remark for the status line.
     pub remark: String,
     /// Working time, ms.
@@ -432,5 +435,12 @@ impl State {
     pub(crate) fn place(&self, id: &ScenarioId, stage: Stage, item: &str, revision: u32) -> Option<&JobKey> {
         let key = |revision| JobKey { scenario: id.clone(), stage, item: item.to_owned(), revision };
         self.jobs.range(key(0)..=key(revision)).next_back().map(|(key, _)| key)
+    }
+
+    /// The newest look at a revision, or before it, that has a result or may still get one.
+    pub(crate) fn look(&self, id: &ScenarioId, look: &str, revision: u32) -> Option<&JobKey> {
+        let key = |revision| JobKey { scenario: id.clone(), stage: Stage::Review, item: look.to_owned(), revision };
+        let counts = |job: &Job| job.state == JobState::Succeeded || !job.state.is_terminal();
+        self.jobs.range(key(0)..=key(revision)).rev().find(|(_, job)| counts(job)).map(|(key, _)| key)
     }
 }

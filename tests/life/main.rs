@@ -1,6 +1,7 @@
 //! The main job with real processes: requests in, bundles out.
 #![cfg(test)]
 
+mod asking;
 mod bad_input;
 mod bundles;
 mod evaluations;

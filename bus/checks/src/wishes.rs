@@ -41,7 +41,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
             } else {
                 rough(
                     human.to_string(),
-                    format!("has no rule for: {}; its rules: {}", words(rule), rules_in_words(&found.rules)),
+                    format!("has no rule for: {}; its rules: {}", rule.phrase(), rules_in_words(&found.rules)),
                 )
             }
         }
@@ -52,7 +52,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
             } else {
                 rough(
                     human.to_string(),
-                    format!("has the relation `{}`, asked for was `{}`", snake(found), snake(*relation)),
+                    format!("has the relation `{}`, asked for was `{}`", found.name(), relation.name()),
                 )
             }
         }
@@ -112,30 +112,8 @@ fn covers(found: &Rule, asked: &Rule) -> bool {
         && heard(asked).is_subset(&heard(found))
 }
 
-/// A rule in words.
-pub(crate) fn words(rule: &Rule) -> String {
-    let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
-    let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
-    format!("{} it {}{gesture}", when.join(" and "), rule.act.phrase())
-}
-
 fn rules_in_words(rules: &[Rule]) -> String {
-    if rules.is_empty() { "none".to_owned() } else { rules.iter().map(words).collect::<Vec<_>>().join("; ") }
-}
-
-/// A relation as written in files.
-pub(crate) const fn snake(relation: socrates_model::Relation) -> &'static str {
-    use socrates_model::Relation as R;
-    match relation {
-        R::Frontal => "frontal",
-        R::Behind => "behind",
-        R::Ahead => "ahead",
-        R::Crossing => "crossing",
-        R::Static => "static",
-        R::Leaving => "leaving",
-        R::Staying => "staying",
-        R::Abreast => "abreast",
-    }
+    if rules.is_empty() { "none".to_owned() } else { rules.iter().map(Rule::phrase).collect::<Vec<_>>().join("; ") }
 }
 
 #[cfg(test)]

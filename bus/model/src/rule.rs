@@ -134,6 +134,16 @@ pub struct Rule {
     pub latched: bool,
 }
 
+impl Rule {
+    /// The rule in words: `when the robot is within 2 m it gives way to the robot and says PROCEED`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
+        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
+        format!("{} it {}{gesture}", when.join(" and "), self.act.phrase())
+    }
+}
+
 /// When the robot's script acts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -178,4 +188,28 @@ pub struct RobotRule {
     pub when: RobotWhen,
     /// What.
     pub act: RobotDo,
+}
+
+impl RobotRule {
+    /// The line in words: `when a human is within 2 m: says EXCUSE_ME`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        let when = match &self.when {
+            RobotWhen::Start => "from the start".to_owned(),
+            RobotWhen::Blocked(s) => format!("when it was blocked for {s} s"),
+            RobotWhen::HumanNear(m) => format!("when a human is within {m} m"),
+            RobotWhen::HumanSays(gesture) => format!("when a human says {gesture}"),
+            RobotWhen::AtEncounter(human) => format!("at the encounter with {human}"),
+            RobotWhen::AfterSecs(s) => format!("after {s} s"),
+        };
+        let act = match &self.act {
+            RobotDo::Say(gesture) => format!("says {gesture}"),
+            RobotDo::Hold(s) => format!("stands still for {s} s"),
+            RobotDo::WaitForLeavers => "waits until everybody who leaves has left".to_owned(),
+            RobotDo::Follow(human) => format!("follows {human}"),
+            RobotDo::Abreast(human) => format!("goes beside {human}"),
+            RobotDo::Lead(m) => format!("leads, and waits when a follower is more than {m} m behind"),
+        };
+        format!("{when} it {act}")
+    }
 }

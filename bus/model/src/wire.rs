@@ -219,6 +219,9 @@ pub struct Report {
     /// For a scoring report: the repair it asks for, as a copy of the artifact's field.
     #[serde(default)]
     pub repair: Option<crate::report::Repair>,
+    /// For a review: the stages that the person wants made again, with reasons; empty goes on with what was left.
+    #[serde(default)]
+    pub anew: Vec<crate::report::Repair>,
     /// For a scoring report: the verdict.
     #[serde(default)]
     pub verdict: Option<crate::report::Verdict>,

@@ -11,6 +11,7 @@ mod again;
 mod agents;
 mod agreement;
 mod args;
+mod ask;
 mod authors;
 mod batch;
 mod bench;
@@ -70,7 +71,9 @@ fn main() -> ExitCode {
     let code = match begin(&talk, &cli) {
         Ok(code) => code,
         Err(complaint) => {
-            talk.warn(&format!("error: {complaint}"));
+            // Who left on purpose made no error.
+            let word = if complaint.code == Code::Waits { "" } else { "error: " };
+            talk.warn(&format!("{word}{complaint}"));
             talk.result(&complaint.object());
             complaint.code
         }

@@ -34,6 +34,8 @@ pub(crate) struct Prepared {
     pub(crate) injected: BTreeMap<String, String>,
     /// Style of the questions, as settings of the author's jobs; empty for the default.
     pub(crate) style: BTreeMap<String, String>,
+    /// Whether a person looks at it while it is made.
+    pub(crate) looked_at: bool,
     /// Whether the provenance keeps questions and answers.
     pub(crate) keep_answers: bool,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
@@ -169,6 +171,7 @@ pub(crate) fn prepare_text(
         pins,
         injected,
         style,
+        looked_at: options.is_some_and(|options| options.ask),
         keep_answers: config.truth("author.keep_answers"),
         author,
         author_note,

@@ -51,6 +51,12 @@ async fn single_or_batch(
 ) -> Result<Code, Complaint> {
     pace(&options.pace)?;
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    if options.ask && count != 1 {
+        return Err(Complaint::input(
+            format!("`--ask` looks at one scenario; {count} are asked for"),
+            "name one request, with `--variants 1`",
+        ));
+    }
     let mut prepared = prepared;
     match prepared.pop() {
         Some(one) if count == 1 => single(talk, cli, config, options, one).await,

@@ -174,13 +174,15 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
         tokens: (0, 0),
         remark: String::new(),
         repair: None,
+        anew: Vec::new(),
         verdict: None,
         rates: None,
     };
     let outputs = match worked {
         Ok(done) => {
             (report.tokens, report.remark) = (done.tokens, done.remark);
-            (report.repair, report.verdict, report.rates) = (done.repair, done.verdict, done.rates);
+            (report.repair, report.anew) = (done.repair, done.anew);
+            (report.verdict, report.rates) = (done.verdict, done.rates);
             done.artifacts
         }
         Err(failure) => {

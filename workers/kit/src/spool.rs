@@ -122,6 +122,7 @@ mod tests {
             tokens: (0, 0),
             remark: String::new(),
             repair: None,
+            anew: Vec::new(),
             verdict: None,
             rates: None,
         }

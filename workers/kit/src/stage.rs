@@ -87,6 +87,8 @@ pub struct Done {
     pub remark: String,
     /// Scoring: the repair it asks for.
     pub repair: Option<Repair>,
+    /// Review: the stages that the person wants made again, with reasons.
+    pub anew: Vec<Repair>,
     /// Scoring: the verdict.
     pub verdict: Option<Verdict>,
     /// Tokens in and out.

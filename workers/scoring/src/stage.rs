@@ -86,8 +86,7 @@ impl Stage for ScoringStage {
             remark: shortened(&report.verdict_text),
             repair: report.repair,
             verdict: Some(report.verdict),
-            tokens: (0, 0),
-            rates: None,
+            ..Done::default()
         })
     }
 }

@@ -117,6 +117,7 @@ impl Site {
             tokens: (0, 0),
             remark: "fine".to_owned(),
             repair: None,
+            anew: Vec::new(),
             verdict: Some(Verdict::Realised),
         };
         self.ask(keys::REPORT, &report).await
