@@ -1,11 +1,12 @@
 //! Answers that nobody can use: each is refused with a code, and with words that say what to do instead. None leads outside of
 //! what can be simulated, and none ends the program.
+#![cfg(test)]
 
 use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 use socrates_author::offline::Offline;
-use socrates_author::{Author, Papers, Refused, Says, attempt};
+use socrates_author::{Author as _, Papers, Refused, Says, attempt};
 use socrates_model::job::Stage;
 use socrates_model::{Fault, Request};
 use socrates_prompts::Question;
