@@ -44,6 +44,10 @@ impl Turn<'_> {
         }
         let Some(number) = number else { return };
         let why = codes(class, &failure.faults);
+        let asks_again = matches!(class, FailureClass::Semantic | FailureClass::Unparsable);
+        if asks_again && self.stop_if_spent(key, number, &why) {
+            return;
+        }
         match class {
             FailureClass::Transient => {
                 let limit = self.state.policy.transient_tries;

@@ -22,6 +22,7 @@ mod turn;
 
 mod acquire;
 mod beat;
+mod budget;
 mod control;
 mod failure;
 mod recover;

@@ -54,6 +54,10 @@ pub struct Policy {
     pub max_runs: usize,
     /// Authoring attempts at one time. Default 256; halves on overload and grows back.
     pub author_slots: u32,
+    /// Tokens, in and out, that the authors of one scenario may take; 0 sets no limit. Default 0.
+    pub tokens_per_scenario: u64,
+    /// Time that the authors of one scenario may take, ms; 0 sets no limit. Default 0.
+    pub author_ms_per_scenario: u64,
     /// Tokens that one author's server is asked for in a minute, in and out; 0 leaves it to what the server says. Default 0.
     pub tokens_per_minute: u64,
     /// Questions that one author's server is asked in a minute; 0 leaves it to what the server says. Default 0.
@@ -88,6 +92,8 @@ impl Default for Policy {
             max_open_jobs: 200_000,
             max_runs: 10_000,
             author_slots: 256,
+            tokens_per_scenario: 0,
+            author_ms_per_scenario: 0,
             tokens_per_minute: 0,
             requests_per_minute: 0,
             code_version: String::new(),

@@ -95,3 +95,41 @@ fn an_answer_that_is_cut_twice_in_a_row_is_given_up() {
     world.fail(&between, FailureClass::Unparsable, vec![fault(FaultCode::EJson, "no JSON")]);
     assert_eq!(world.state_of(&between), JobState::Ready);
 }
+
+#[test]
+fn a_scenario_whose_tokens_are_spent_is_asked_about_no_more() {
+    let mut world = World::with(Policy { tokens_per_scenario: 1_000, ..Policy::default() });
+    world.submit(vec![spec("a")]);
+    let cost = |grant: &socrates_model::wire::Grant, tokens: u64| Report { tokens: (tokens, 0), ..success(grant) };
+    let first = world.grant("w", Stage::Proposal);
+    world.send_report(cost(&first, 400));
+    let wrong = |grant: &socrates_model::wire::Grant| {
+        let faults = vec![fault(FaultCode::GDisc, "jumps")];
+        let outcome = Outcome::Failed { class: FailureClass::Semantic, faults, retry_after_ms: None };
+        Report { tokens: (300, 10), ..report(grant, outcome) }
+    };
+    let paths = world.grant("w", Stage::Paths);
+    world.send_report(wrong(&paths));
+    assert_eq!(world.state_of(&paths), JobState::Ready, "710 of 1 000");
+    let again = world.grant("w", Stage::Paths);
+    world.send_report(wrong(&again));
+    assert_eq!(world.state_of(&again), JobState::Failed, "1 020 of 1 000");
+    let told = world.state.jobs[&again.spec.key].attempts.last().unwrap().faults.clone();
+    assert!(
+        told.iter().any(|fault| fault.code == FaultCode::JBudget && fault.message.contains("1020 tokens")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn a_spent_budget_does_not_take_back_what_is_there() {
+    let mut world = World::with(Policy { author_ms_per_scenario: 1, ..Policy::default() });
+    world.submit(vec![spec("a")]);
+    // Every answer is right at once: nobody is asked again, so the budget matters to nobody.
+    let scoring = world.reach_scoring();
+    let repair =
+        socrates_model::report::Repair { stage: Stage::Paths, faults: vec![fault(FaultCode::DNoMeet, "never")] };
+    world.score(&scoring, socrates_model::Verdict::NotTriggered, Some(repair));
+    assert!(world.scenario("a").end.is_some(), "the repair would have asked an author");
+    assert_eq!(world.scenario("a").revision, 0);
+}

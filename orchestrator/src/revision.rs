@@ -66,6 +66,9 @@ impl Turn<'_> {
     /// Does stages anew for these reasons, within the scenario's budget.
     pub(crate) fn repair(&mut self, id: &ScenarioId, targets: BTreeMap<Stage, Vec<Fault>>) -> bool {
         let limit = self.state.policy.repairs;
+        if self.spent(id).is_some() {
+            return false;
+        }
         if self.scenario(id).is_none_or(|scenario| scenario.repairs >= limit) || !self.redo(id, &targets) {
             return false;
         }

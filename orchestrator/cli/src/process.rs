@@ -97,6 +97,10 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
         asks_again: u32::try_from(config.number("orchestrator.asks_again")).unwrap_or(3).min(10),
         author_rates: (config.number("author.tokens_per_minute"), config.number("author.requests_per_minute")),
+        author_budget: (
+            config.number("orchestrator.tokens_per_scenario"),
+            config.number("orchestrator.author_s_per_scenario").saturating_mul(1_000),
+        ),
         durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };

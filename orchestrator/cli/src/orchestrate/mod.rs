@@ -50,6 +50,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) asks_again: u32,
     /// Tokens and questions that one author's server is asked for in a minute; 0 leaves it to the server.
     pub(crate) author_rates: (u64, u64),
+    /// Tokens and time in ms that the authors of one scenario may take; 0 sets no limit.
+    pub(crate) author_budget: (u64, u64),
     /// What a commit of the job store outlives.
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
@@ -74,6 +76,8 @@ pub(crate) async fn serve(
         beat_ms: config.beat_ms,
         repairs: config.repairs,
         code_version: config.code_version,
+        tokens_per_scenario: config.author_budget.0,
+        author_ms_per_scenario: config.author_budget.1,
         tokens_per_minute: config.author_rates.0,
         requests_per_minute: config.author_rates.1,
         ..Policy::default().asking_again(config.asks_again)

@@ -38,6 +38,7 @@ async fn open(dir: &Path) -> Site {
         repairs: 3,
         asks_again: 3,
         author_rates: (0, 0),
+        author_budget: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
@@ -232,6 +233,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         repairs: 3,
         asks_again: 3,
         author_rates: (0, 0),
+        author_budget: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };
