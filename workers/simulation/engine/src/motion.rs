@@ -32,6 +32,8 @@ const BERTH_M: f64 = 0.45;
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
 const ASIDE_M: f64 = 1.0;
+/// Gap, surface to surface, at which somebody who makes room goes by the robot, m: in a doorway less is no way out.
+const BY_ROBOT_M: f64 = 0.25;
 
 /// Face to face with a robot that stands, somebody on its way lets it through after so long, s.
 const PATIENCE_S: f64 = 3.0;
@@ -415,10 +417,10 @@ pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) 
                     && other.id != Some(human.id)
                     && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
             });
-            // Nor through the robot to behind it.
+            // Nor through the robot to behind it, nor so close by it that its forces push whoever tries back again.
             let through = scene.robot.is_some_and(|robot| {
                 nearest_on_segment(&robot.at(), &human.at, &spot).0
-                    < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m) - 0.01
+                    < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m + BY_ROBOT_M) - 0.01
             });
             if crowded
                 || through
