@@ -70,7 +70,9 @@ pub fn write_agents_at(recording: &Recording, rate: Rate) -> String {
     text
 }
 
-fn quoted(text: &str) -> String {
+/// A cell as RFC 4180 has it: in quotes only where it needs them.
+#[must_use]
+pub fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
@@ -283,6 +285,12 @@ mod tests {
         assert!((human.y - 3.5).abs() < 1e-9 && (human.yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
         let before = recording.tick(10)[1];
         assert!((before.y - 3.0).abs() < 1e-12 && before.speed() < 1e-12);
+    }
+
+    #[test]
+    fn a_cell_with_a_comma_is_quoted() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(quoted("plain"), "plain");
     }
 
     #[test]

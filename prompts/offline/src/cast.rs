@@ -37,6 +37,8 @@ pub(crate) struct Person {
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
     pub(crate) bound: bool,
+    /// Words that say that it walks on after all it did.
+    pub(crate) goes_on: Option<String>,
     /// What was ruled out for it, with the words.
     pub(crate) never: Vec<(Act, String)>,
 }
@@ -66,6 +68,8 @@ pub(crate) struct Cast {
     pub(crate) count_quote: Option<String>,
     /// Somebody was said not to be there.
     pub(crate) nobody: Option<String>,
+    /// A colon stood before: what comes lists those who are there.
+    pub(crate) listing: bool,
     overflow: bool,
 }
 
@@ -104,17 +108,30 @@ impl Cast {
                 self.latest()
             }
             Who::New { count: Some(n), article } => {
-                let pick = if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
+                let pick = if self.listing {
+                    self.pick_open(*n, mention)
+                } else if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)
                 } else {
                     None
                 };
                 pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
-            Who::Bare(n) => self
-                .pick(*n, mention, quote)
-                .or_else(|| self.counted(*n))
-                .unwrap_or_else(|| self.join(*n, mention, declares, quote)),
+            // `Ten, I said.`
+            Who::Bare(n) if declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
+                self.latest()
+            }
+            Who::Bare(n) => {
+                let some = self.pick(*n, mention, quote).or_else(|| self.counted(*n));
+                some.unwrap_or_else(|| {
+                    let joined = self.join(*n, mention, declares, quote);
+                    // `2 leave, 1 stays`: another one, not one of the two.
+                    if let Some(set) = self.sets.last_mut().filter(|set| set.members == joined) {
+                        set.counted.clone_from(&joined);
+                    }
+                    joined
+                })
+            }
             Who::More(n) => match self.pick_open(*n, mention) {
                 Some(found) if *n == 1 => found,
                 Some(_) | None => self.join(*n, mention, declares, quote),
@@ -133,6 +150,19 @@ impl Cast {
                 let wanted = usize::try_from(*n).unwrap_or(usize::MAX);
                 let fitting =
                     |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
+                let total = self.sets.iter().find(|set| set.total && set.members.len() != wanted);
+                if let Some(set) = total.filter(|_| mention.role.is_none()) {
+                    let (members, first) = (set.members.clone(), set.quote.clone());
+                    self.problems.push(Fault::new(
+                        FaultCode::PContra,
+                        "rough_scenario",
+                        format!(
+                            "`{first}` gives {} humans, but `{quote}` speaks of {n}; correct one of the two",
+                            members.len()
+                        ),
+                    ));
+                    return members;
+                }
                 let sets = [self.last.clone(), self.latest()];
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
@@ -164,7 +194,8 @@ impl Cast {
                     self.latest()
                 }
             }
-            Who::Same | Who::Object => self.last.clone(),
+            Who::Same => self.single(&mention.word),
+            Who::Object => self.last.clone(),
             Who::Further(n) => {
                 let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
                 let open = if there { self.pick_open(1, mention) } else { None };
@@ -184,23 +215,27 @@ impl Cast {
         };
         if let Some(role) = &mention.role {
             for i in &found {
-                if let Some(person) = self.people.get_mut(*i).filter(|person| person.role.is_empty()) {
+                // A name gives way to what somebody is.
+                let open = |person: &&mut Person| {
+                    person.role.is_empty() || mention.who == Who::Same && !lexicon().roles.contains_key(&person.role)
+                };
+                if let Some(person) = self.people.get_mut(*i).filter(open) {
                     role.clone_into(&mut person.role);
                 }
             }
         }
-        let singles = matches!(
-            mention.who,
-            Who::Bare(_)
-                | Who::PartOf(_)
-                | Who::PartOfNew(..)
-                | Who::ToldApart
-                | Who::Further(_)
-                | Who::Other(_)
-                | Who::Ordinal(_)
-                | Who::Number(_)
-                | Who::More(_)
-        );
+        let singles = matches!(mention.who, Who::Bare(_)) && !declares
+            || matches!(
+                mention.who,
+                Who::PartOf(_)
+                    | Who::PartOfNew(..)
+                    | Who::ToldApart
+                    | Who::Further(_)
+                    | Who::Other(_)
+                    | Who::Ordinal(_)
+                    | Who::Number(_)
+                    | Who::More(_)
+            );
         let picked = matches!(mention.who, Who::New { .. } | Who::Definite { .. }) && self.latest().len() > found.len();
         for i in &found {
             if let Some(person) = self.people.get_mut(*i) {
@@ -218,6 +253,59 @@ impl Cast {
         found
     }
 
+    /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
+    fn single(&self, word: &str) -> Vec<usize> {
+        const WOMEN: &[&str] = &[
+            "woman",
+            "lady",
+            "girl",
+            "mother",
+            "wife",
+            "sister",
+            "aunt",
+            "grandmother",
+            "grandma",
+            "daughter",
+            "mom",
+            "waitress",
+            "niece",
+        ];
+        const MEN: &[&str] = &[
+            "man",
+            "gentleman",
+            "boy",
+            "father",
+            "husband",
+            "brother",
+            "uncle",
+            "grandfather",
+            "grandpa",
+            "son",
+            "dad",
+            "guy",
+            "nephew",
+        ];
+        let of =
+            |i: usize, words: &[&str]| self.people.get(i).is_some_and(|person| words.contains(&person.role.as_str()));
+        if self.last.is_empty() {
+            return Vec::new();
+        }
+        let (own, other) = match word {
+            "she" => (WOMEN, MEN),
+            "he" => (MEN, WOMEN),
+            _ => return self.last.clone(),
+        };
+        if let [only] = self.last.as_slice()
+            && !of(*only, other)
+        {
+            return self.last.clone();
+        }
+        let near = || self.last.iter().copied().chain((0..self.people.len()).rev());
+        let found =
+            near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !of(*i, other) && self.last.len() == 1));
+        found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
+    }
+
     /// Makes a group of these people.
     pub(crate) fn group(&mut self, members: &[usize], quote: &str) {
         if members.len() < 2 || self.groups.iter().any(|(_, known, _)| members.iter().all(|i| known.contains(i))) {
@@ -230,6 +318,12 @@ impl Cast {
             }
         }
         self.groups.push((id, members.to_vec(), quote.to_owned()));
+    }
+
+    /// From here to the end of the sentence, people are those of the newest set of whom nothing is known yet.
+    pub(crate) fn lists(&mut self) {
+        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty() && !person.bound);
+        self.listing = self.sets.last().is_some_and(|set| set.members.len() > 1 && set.members.iter().all(plain));
     }
 
     /// Takes `a nurse and two visitors` as one set.
@@ -316,8 +410,10 @@ impl Cast {
         if let Some(found) = self.pick_open(n, mention) {
             return found;
         }
-        let set = self.latest();
+        let mut set = self.latest();
         if !set.is_empty() && wanted <= set.len() {
+            // `the taller one follows the other; the shorter one …`: rather somebody else than who did the last thing.
+            set.sort_by_key(|i| self.last.contains(i));
             return set.into_iter().take(wanted).collect();
         }
         self.join(n, mention, false, quote)
@@ -341,7 +437,10 @@ impl Cast {
         if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
             return rest;
         }
-        self.join(count.unwrap_or(1), mention, false, quote)
+        // `one visitor flees, the other looks`: another visitor.
+        let alike = self.last.first().and_then(|i| self.people.get(*i)).map(|person| person.role.clone());
+        let role = mention.role.clone().or_else(|| alike.filter(|role| !role.is_empty()));
+        self.join(count.unwrap_or(1), &Mention { role, ..mention.clone() }, false, quote)
     }
 
     fn definite(
@@ -352,6 +451,16 @@ impl Cast {
         declares: bool,
         quote: &str,
     ) -> Vec<usize> {
+        if mention.group && !self.groups.is_empty() {
+            // `the pair` and `the group` of those that there are.
+            let wanted = count.and_then(|n| usize::try_from(n).ok());
+            let fits = |members: &&Vec<usize>| wanted.map_or(members.len() > 2, |n| members.len() == n);
+            let named = self.groups.iter().rev().map(|(_, members, _)| members);
+            let last = self.groups.last().map(|(_, members, _)| members);
+            if let Some(members) = named.clone().find(fits).or_else(|| last.filter(|_| wanted.is_none())) {
+                return members.clone();
+            }
+        }
         if let Some(role) = &mention.role {
             let same: Vec<usize> =
                 (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| p.role == *role)).collect();

@@ -2,9 +2,11 @@
 
 use socrates_model::{Gesture, PlaceClass};
 
+use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, Cue, Item, lexicon};
-use crate::mention::{Mention, mentions};
-use crate::words::{Joint, Stretch, find};
+use crate::mention::{Mention, Who, mentions};
+use crate::words::find;
+use crate::{measure, message};
 
 /// A deed and where it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +29,8 @@ pub(crate) struct Found {
     pub(crate) deeds: Vec<Deed>,
     pub(crate) cue: Option<(Cue, usize)>,
     pub(crate) gesture: Option<Gesture>,
+    /// The clause is nothing but a message: `(WAIT)`.
+    pub(crate) only_says: Option<Gesture>,
     /// First word of the verb that says so.
     pub(crate) gesture_at: usize,
     pub(crate) places: Vec<(PlaceClass, usize)>,
@@ -42,6 +46,8 @@ pub(crate) struct Found {
     pub(crate) pace_mps: Option<f64>,
     /// The pace was given as a number.
     pub(crate) pace_said: bool,
+    /// `obeys`, `does as it is told`.
+    pub(crate) obeys: bool,
     /// `in a group`.
     pub(crate) in_group: bool,
     /// `there are`, `in the scenario`.
@@ -61,14 +67,15 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     for mention in &found.mentions {
         for at in mention.from..=mention.to {
             // A word between that only describes, and that no table has, is read by nobody.
-            if at == mention.to || at == mention.from || known(stretch, at) {
+            let tells = matches!(mention.who, Who::ToldApart) && at != mention.to && at != mention.from;
+            if at == mention.to || at == mention.from || known(stretch, at) && !tells {
                 mark(stretch, at, at);
             }
         }
     }
-    measures(stretch, &mut found);
+    measure::measures(stretch, &mut found);
     let placed = places(stretch, &mut found);
-    gesture(stretch, &mut found);
+    message::message(stretch, &mut found);
     let mut taken = vec![false; stretch.words.len()];
     if found.gesture.is_some() {
         for (i, word) in stretch.words.iter().enumerate() {
@@ -85,7 +92,7 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
             *flag |= *at;
         }
     }
-    deeds(stretch, &mut found, &mut taken);
+    deeds(stretch, &mut found, &mut taken, &placed);
     rest(stretch, &mut found, &taken);
     found
 }
@@ -100,109 +107,16 @@ fn known(stretch: &Stretch, at: usize) -> bool {
     })
 }
 
-fn mark(stretch: &mut Stretch, from: usize, to: usize) {
+pub(crate) fn mark(stretch: &mut Stretch, from: usize, to: usize) {
     for word in stretch.words.iter_mut().take(to + 1).skip(from) {
         word.used = true;
     }
 }
 
-fn mark_each(stretch: &mut Stretch, at: &[usize]) {
+pub(crate) fn mark_each(stretch: &mut Stretch, at: &[usize]) {
     for i in at {
         mark(stretch, *i, *i);
     }
-}
-
-/// `3 m`, `for 5 seconds`, `after 10 s`, `very close`.
-fn measures(stretch: &mut Stretch, found: &mut Found) {
-    for i in 0..stretch.words.len() {
-        let Some(number) =
-            stretch.words.get(i).filter(|word| !word.used || word.is_digits()).and_then(|word| word.number())
-        else {
-            continue;
-        };
-        let unit = stretch.words.get(i + 1).map_or("", |word| word.stem.as_str());
-        let before = if i == 0 { "" } else { stretch.words.get(i - 1).map_or("", |word| word.text.as_str()) };
-        // `0.5 m/s`, `2 meters per second`, `3 km/h`: a pace.
-        let next = |k: usize| stretch.words.get(i + k).map_or("", |word| word.stem.as_str());
-        let per_second = unit == "meter" && (next(2) == "second" || next(2) == "per" && next(3) == "second");
-        let per_hour = unit == "km" && (matches!(next(2), "h" | "hour") || next(2) == "per" && next(3) == "hour");
-        if per_second || per_hour {
-            found.pace_mps = Some((if per_hour { number / 3.6 } else { number }).clamp(0.3, 1.8));
-            found.pace_said = true;
-            mark(stretch, i, i + 2 + usize::from(next(2) == "per"));
-            continue;
-        }
-        if matches!(unit, "meter" | "centimeter") {
-            found.distance_is_when |= matches!(before, "at" | "within" | "from" | "under");
-        }
-        match unit {
-            "meter" => found.distance_m = Some(number.clamp(0.3, 15.0)),
-            "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
-            "second" | "minute" => {
-                let secs = (if unit == "minute" { number * 60.0 } else { number }).clamp(0.5, 120.0);
-                if before == "after" { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }
-            }
-            _ => continue,
-        }
-        mark(stretch, i, i + 1);
-    }
-    if let Some((at, secs)) = span(stretch) {
-        let before = at.checked_sub(1).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
-        if before == "after" {
-            found.after_s = Some(secs)
-        } else {
-            found.lasts_s = Some(secs)
-        }
-        let to = (at..stretch.words.len()).find(|i| unit_s(stretch, *i).is_some()).unwrap_or(at);
-        mark(stretch, at, to);
-    }
-    if found.distance_m.is_none() {
-        for phrase in &lexicon().distances {
-            let free = |_: usize| true;
-            if let Some(at) = find(&stretch.words, phrase, 0, false, &free) {
-                found.distance_m = Some(phrase.means);
-                mark_each(stretch, &at);
-                break;
-            }
-        }
-    }
-}
-
-/// Seconds that a word of time stands for.
-fn unit_s(stretch: &Stretch, at: usize) -> Option<f64> {
-    match stretch.words.get(at)?.stem.as_str() {
-        "minute" => Some(60.0),
-        "second" => Some(1.0),
-        "moment" | "instant" => Some(3.0),
-        "while" => Some(6.0),
-        _ => None,
-    }
-}
-
-/// `half a minute`, `a moment`, `a short while`: from which word on, and how long, s.
-fn span(stretch: &Stretch) -> Option<(usize, f64)> {
-    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    (0..stretch.words.len()).find_map(|at| {
-        let half = text(at) == "half" && matches!(text(at + 1), "a" | "an");
-        let start = at + usize::from(half);
-        if !matches!(text(start), "a" | "an") {
-            return None;
-        }
-        let long = matches!(text(start + 1), "short" | "brief" | "little" | "long" | "full");
-        // `the second nurse` and `a second one` count nothing.
-        let unit = unit_s(stretch, start + 1 + usize::from(long))
-            .filter(|_| half || text(start + 1 + usize::from(long)) != "second")?;
-        Some((
-            at,
-            unit * if half {
-                0.5
-            } else if text(start + 1) == "long" {
-                3.0
-            } else {
-                1.0
-            },
-        ))
-    })
 }
 
 /// Finds places; says which words they take, so that `the exit` is no deed.
@@ -215,13 +129,21 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             // `corner of the warehouse` is an end of the map, no blind corner.
             let end = at.last().copied().unwrap_or(0);
             let of = stretch.words.get(end + 1).is_some_and(|word| word.text == "of");
-            let opens = stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
+            let opens = phrase.means != PlaceClass::Elevator
+                && stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
             // `makes room` is no room.
             let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
+            // `leave room for it`, but `leave room 3`.
+            let leaves = made.is_some_and(|word| word.stem == "leave")
+                && stretch.words.get(end + 1).is_none_or(|word| !matches!(word.text.as_str(), "for" | "to" | "so"));
             if at.len() == 1
                 && phrase.means == PlaceClass::Room
+                && !leaves
                 && made.is_some_and(|word| {
-                    matches!(word.stem.as_str(), "make" | "enough" | "no" | "some" | "more" | "give")
+                    matches!(
+                        word.stem.as_str(),
+                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free"
+                    )
                 })
             {
                 continue;
@@ -238,6 +160,10 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             }
         }
     }
+    // `the ward corridor` is a corridor.
+    let heads = |at: usize| taken.get(at + 1).copied().unwrap_or(false);
+    let starts: Vec<usize> = found.places.iter().map(|(_, at)| *at).collect();
+    found.places.retain(|(_, at)| !(heads(*at) && starts.contains(&(at + 1))));
     found.places.sort_by_key(|(_, at)| *at);
     found.nowhere = (0..stretch.words.len())
         .filter(|i| {
@@ -250,57 +176,29 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
     taken
 }
 
-/// A gesture needs a verb (or the word `gesture`) and a message near it.
-fn gesture(stretch: &mut Stretch, found: &mut Found) {
-    let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
-    let Some(verb) = verbs.filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true)).min() else { return };
-    let (first, last) = (verb.first().copied().unwrap_or(0), verb.last().copied().unwrap_or(0));
-    found.gesture_at = first;
-    if stretch.words.get(first).is_some_and(|word| word.stem == "acknowledge") {
-        found.gesture = Some(Gesture::Acknowledged);
-        mark_each(stretch, &verb);
-        return;
-    }
-    // `waves it on`, `beckons the robot through`, `motions it back`.
-    if stretch.words.get(first).is_some_and(|word| matches!(word.stem.as_str(), "wave" | "beckon" | "motion")) {
-        let robot =
-            |word: &crate::words::Word| word.stem == "robot" || matches!(word.text.as_str(), "the" | "at" | "to");
-        let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)));
-        let says = next.and_then(|i| stretch.words.get(i)).and_then(|word| match word.text.as_str() {
-            "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "closer" | "over" => {
-                Some(Gesture::Proceed)
-            }
-            "back" | "off" | "away" => Some(Gesture::Wait),
-            _ => None,
-        });
-        if let (Some(says), Some(at)) = (says, next) {
-            found.gesture = Some(says);
-            mark_each(stretch, &verb);
-            mark(stretch, at, at);
-            return;
-        }
-    }
-    let noun = stretch.words.get(last).is_some_and(|word| word.stem == "gesture" || word.stem == "signal");
-    for (from, to) in [(last + 1, last + 9), (first.saturating_sub(if noun { 3 } else { 0 }), first)] {
-        for phrase in &lexicon().gestures {
-            let inside = |i: usize| (from..to).contains(&i) && !verb.contains(&i);
-            if let Some(at) = find(&stretch.words, phrase, from, false, &inside) {
-                found.gesture = Some(phrase.means);
-                mark_each(stretch, &at);
-                mark_each(stretch, &verb);
-                return;
-            }
-        }
-    }
-}
-
 fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
     let temporal = matches!(stretch.joint, Joint::When | Joint::Until | Joint::While);
     let robot = stretch.words.iter().position(|word| word.stem == "robot");
-    if let Some(robot) = robot.filter(|robot| {
-        temporal && found.gesture.is_some() && found.mentions.iter().all(|mention| mention.from > *robot)
-    }) {
-        found.cue = Some((Cue::Says, robot));
+    if temporal && found.gesture.is_some() {
+        let first = found.mentions.first().map(|mention| mention.from);
+        let hears = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "hear" | "listen"));
+        match (robot, first) {
+            _ if hears => found.cue = Some((Cue::Says, 0)),
+            // `when human 1 gestures WAIT`: somebody else says it.
+            (robot, Some(first)) if first < found.gesture_at && robot.is_none_or(|robot| first < robot) => {
+                found.cue = Some((Cue::Told, first));
+            }
+            (Some(robot), first) if robot < found.gesture_at || first.is_none_or(|first| first > robot) => {
+                found.cue = Some((Cue::Says, robot));
+            }
+            (_, _) => {}
+        }
+        if found.cue.is_some() {
+            return;
+        }
+    }
+    if temporal && echoes(stretch) {
+        found.cue = Some((Cue::Echo, 0));
         return;
     }
     for phrase in &lexicon().cues {
@@ -322,19 +220,55 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         found.cue = Some((phrase.means, first));
         return;
     }
+    // `when there is less than 1.5 m between them`, `with only one meter left`.
+    if stretch.joint == Joint::When && found.distance_m.is_some() {
+        found.cue = Some((Cue::Near, 0));
+    }
+}
+
+/// `upon the request`, `once the former has made this gesture`, `when he sees that`: what was said before.
+fn echoes(stretch: &mut Stretch) -> bool {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    let count = stretch.words.len();
+    let noun =
+        |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue" | "order");
+    let at = (0..count).find(|k| {
+        matches!(text(*k), "this" | "that" | "the" | "his" | "her" | "its" | "such") && noun(k + 1)
+            || matches!(text(*k), "that" | "this")
+                && k + 1 == count
+                && *k > 0
+                && matches!(stem(k - 1), "see" | "hear" | "notice")
+    });
+    let Some(at) = at else { return false };
+    mark(stretch, at, (at + 1).min(count.saturating_sub(1)));
+    true
 }
 
 fn negated(stretch: &Stretch, at: usize) -> bool {
     let before =
         |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
-    (1..=2).any(|back| {
+    // `will not stop looking` looks on.
+    if before(1) == "stop" && matches!(before(2), "not" | "never") {
+        return false;
+    }
+    // `never so much as glances`, `not even once looks`
+    let reach = (1..=6)
+        .find(|back| {
+            !matches!(
+                before(*back),
+                "so" | "much" | "as" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually"
+            )
+        })
+        .unwrap_or(1);
+    (1..=2).chain([reach]).any(|back| {
         matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
             || before(back) == "of" && before(back + 1) == "instead"
             || before(back) == "than" && before(back + 1) == "rather"
     }) || (0..at).any(|i| stretch.words.get(i).is_some_and(|word| matches!(word.text.as_str(), "neither" | "none")))
 }
 
-fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
+fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &[bool]) {
     // The name of a gesture is no deed: `with a WAIT gesture`.
     for i in 0..stretch.words.len() {
         let (Some(word), Some(next)) = (stretch.words.get(i), stretch.words.get(i + 1)) else { break };
@@ -356,12 +290,29 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         while let Some(at) = find(&stretch.words, phrase, from, false, &|i| !taken.get(i).copied().unwrap_or(true)) {
             let (first, last) = (at.first().copied().unwrap_or(0), at.last().copied().unwrap_or(0));
             from = first + 1;
+            // `in the lobby in front of it`: it is the place, not the robot.
+            // Two who walk in opposite directions need not walk towards the robot.
+            let apart = phrase.means == Act::Toward
+                && at.iter().any(|i| stretch.words.get(*i).is_some_and(|word| word.text == "directions"));
+            let of_place = apart
+                || stretch.words.get(last).is_some_and(|word| word.text == "it")
+                    && (first..last).any(|i| !at.contains(&i) && placed.get(i).copied().unwrap_or(false));
+            if of_place {
+                continue;
+            }
             for i in &at {
                 if let Some(flag) = taken.get_mut(*i) {
                     *flag = true;
                 }
             }
             mark_each(stretch, &at);
+            let ends = phrase.means == Act::Stop
+                && at.len() == 1
+                && negated(stretch, first)
+                && stretch.words.get(last + 1).is_some_and(|word| word.text.ends_with("ing"));
+            if ends {
+                continue;
+            }
             let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
             found.deeds.push(Deed {
                 act: phrase.means,
@@ -376,6 +327,9 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
     // The more telling word wins: `approaches from behind` is no coming up to the robot out of curiosity.
     let directed = has(&[Act::Toward, Act::Behind, Act::Cross, Act::Overtake]);
     let telling = found.deeds.iter().any(|deed| !matches!(deed.act, Act::Walk | Act::Pass | Act::Stand | Act::Stop));
+    let directs = found.deeds.iter().any(|deed| {
+        !matches!(deed.act, Act::Walk | Act::Pass | Act::Stand | Act::Stop | Act::GoOn | Act::Ignore | Act::Abreast)
+    });
     let follows = has(&[Act::Follow]);
     let stands = has(&[Act::Block, Act::Look]);
     let keep = |deed: &Deed| match deed.act {
@@ -383,6 +337,7 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         Act::Approach if follows => !directed && deed.at != deed.to,
         Act::Approach => !directed,
         Act::Walk | Act::Pass => !telling || deed.negated,
+        Act::GoOn => !directs,
         Act::Stop => !stands,
         Act::RunAway
         | Act::GiveWay
@@ -420,9 +375,34 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             used.push(i);
         }
         if word.stem == "robot" {
-            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" {
+            // `passes the robot`: what somebody passes does nothing in this clause.
+            let verb = (0..i).rev().find_map(|k| stretch.words.get(k).filter(|word| !word.label && word.text != "the"));
+            let object = verb.is_some_and(|word| {
+                matches!(
+                    word.stem.as_str(),
+                    "pass"
+                        | "approach"
+                        | "meet"
+                        | "encounter"
+                        | "face"
+                        | "reach"
+                        | "past"
+                        | "towards"
+                        | "toward"
+                        | "behind"
+                        | "beside"
+                )
+            });
+            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" && !object {
                 found.robots.push(i);
             }
+            used.push(i);
+        }
+        let next = stretch.words.get(i + 1).map_or("", |word| word.text.as_str());
+        if matches!(word.stem.as_str(), "obey" | "comply" | "oblige") && !negated(stretch, i)
+            || word.stem == "do" && matches!(next, "so" | "as") && !negated(stretch, i)
+        {
+            found.obeys = true;
             used.push(i);
         }
         if text == "group" && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {
@@ -437,7 +417,9 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
                 .words
                 .get(i + 1)
                 .is_some_and(|next| matches!(next.text.as_str(), "are" | "is" | "will" | "should" | "must"));
-        found.declares |= exists || text == "scenario" || text == "exactly";
+        // `exactly three people`, but not `exactly one of them`.
+        let exactly = text == "exactly" && stretch.words.get(i + 2).is_none_or(|next| next.text != "of");
+        found.declares |= exists || text == "scenario" || exactly;
         if lex.impossible.contains(&word.stem) && !word.used {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.

@@ -24,11 +24,16 @@ pub(crate) struct Around {
     pub(crate) goes_on: bool,
     /// It comes after what was said before: `and then`.
     pub(crate) then: bool,
+    /// `stands there`: it was there already.
+    pub(crate) stands: bool,
     pub(crate) quote: String,
 }
 
+/// Who stops and then looks stands so long before it looks, s.
+const HALT_S: f64 = 2.0;
+
 /// The triggers and durations that are taken where the text gives none.
-fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
+pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
     Some(match act {
         Act::RunAway => (Action::RunAway, Trigger::RobotVisible(3.0), Some(6.0), true),
         Act::GiveWay => (Action::GiveWay, Trigger::RobotVisible(3.5), Some(6.0), true),
@@ -54,6 +59,7 @@ fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
         | Act::Gesture
         | Act::Lead
         | Act::Pass
+        | Act::GoOn
         | Act::Walk => return None,
     })
 }
@@ -82,6 +88,7 @@ fn relation(act: Act) -> Option<Relation> {
         | Act::Gesture
         | Act::Lead
         | Act::Pass
+        | Act::GoOn
         | Act::Walk => return None,
     })
 }
@@ -116,6 +123,7 @@ fn words(act: Act, around: &Around) -> String {
         Act::Gesture => around.gesture.map_or_else(String::new, |gesture| format!("gestures {gesture}")),
         Act::Enter => format!("goes into the {}", place(around.place, "room")),
         Act::Lead => "leads".into(),
+        Act::GoOn => "walks on".into(),
         Act::Pass | Act::Walk => "walks".into(),
     }
 }
@@ -129,14 +137,27 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     {
         person.doings.push(doing);
     }
-    if act == Act::Stay
-        && around.place.is_none()
-        && cast.people.get(who).is_some_and(|p| p.relation.is_none())
-        && !cast.people.iter().any(leaves)
+    let left_inside = around.place.is_some() || cast.people.iter().any(leaves);
+    let act = if act == Act::Stay && !left_inside {
+        // `stays where she is` without anybody leaving is standing still.
+        if cast.people.get(who).is_some_and(|p| p.relation.is_none()) {
+            relate(cast, who, Relation::Static, &around.quote);
+        }
+        Act::Stop
+    } else {
+        act
+    };
+    if act == Act::Stop
+        && around.stands
+        && cast.people.get(who).is_some_and(|p| p.relation.is_none() && p.rules.is_empty())
     {
-        // `stays` without anybody leaving is no more than standing.
         relate(cast, who, Relation::Static, &around.quote);
-    } else if let Some(relation) = relation(act) {
+    }
+    // Who walks along talks on the way.
+    let walks =
+        |person: &Person| person.relation.is_some() || person.doings.iter().any(|doing| doing.starts_with("walks"));
+    let on_the_way = act == Act::Talk && cast.people.get(who).is_some_and(walks);
+    if let Some(relation) = relation(act).filter(|_| !on_the_way) {
         relate(cast, who, relation, &around.quote);
     }
     let person = cast.people.get_mut(who)?;
@@ -146,23 +167,41 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     if act == Act::Enter {
         person.goal = around.place.filter(|class| matches!(class, PlaceClass::Room | PlaceClass::Elevator));
     }
-    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::WalkTogether);
+    if matches!(act, Act::Walk | Act::Pass | Act::GoOn) || relation(act).is_some() && goes(act) {
+        let answers = |trigger: &Trigger| {
+            matches!(
+                trigger,
+                Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped | Trigger::AfterSecs(_)
+            )
+        };
+        if let Some(trigger) = around.trigger.clone().filter(answers) {
+            walk_on(cast, who, trigger, &around.quote);
+        } else if act == Act::GoOn {
+            goes_on(cast, who, around);
+        }
+    }
+    let person = cast.people.get_mut(who)?;
+    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether);
     person.bound |= moves;
     if act == Act::Gesture {
         return gesture(person, around);
     }
-    if matches!(act, Act::Walk | Act::Pass)
-        && let Some(trigger @ (Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped)) =
-            &around.trigger
-    {
-        let trigger = trigger.clone();
-        walk_on(cast, who, trigger, &around.quote);
-        return None;
-    }
     let (action, usual, lasts, latched) = manner(act)?;
-    if let Some((_, never)) = person.never.iter().find(|(other, _)| *other == act) {
+    // `only when it asks does he move` is no contradiction to `he does not move`.
+    let never = person.never.iter().find(|(other, _)| *other == act && around.trigger.is_none());
+    if let Some((_, never)) = never {
         let never = never.clone();
         cast.problems.push(contradiction(who, &never, &around.quote));
+        return None;
+    }
+    // `stands in its way and does not move for ten seconds`
+    if act == Act::Stop
+        && around.trigger.is_none()
+        && let Some(last) = person.rules.last_mut().filter(|last| around.goes_on && last.rule.act == Action::Block)
+    {
+        if around.lasts_s.is_some() {
+            (last.rule.for_s, last.lasts) = (around.lasts_s, true);
+        }
         return None;
     }
     if let (Some(gesture), Some(last)) = (around.gesture, person.rules.last_mut())
@@ -194,17 +233,45 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         then: around.then,
         lasts: around.lasts_s.is_some(),
     };
-    // `stops and looks` is one thing: who looks stands still already.
-    if act == Act::Look && around.goes_on && person.rules.last().is_some_and(|last| last.rule.act == Action::StandStill)
-    {
-        let kept = person.rules.pop().map(|last| last.rule.when);
+    // `stops and looks`: the look begins when the stop ends, so it waits for the same.
+    let stopped =
+        person.rules.last().filter(|last| act == Act::Look && around.goes_on && last.rule.act == Action::StandStill);
+    if let Some(kept) = stopped.map(|last| last.rule.when.clone()).filter(|_| !stated) {
         let mut read = read;
-        if let Some(when) = kept.filter(|_| !stated) {
-            read.rule.when = when;
+        read.rule.when = kept;
+        if let Some(last) = person.rules.last_mut().filter(|last| !last.lasts) {
+            last.rule.for_s = Some(HALT_S);
         }
-        return Some(once(person, read));
+        person.rules.push(read);
+        return Some(person.rules.len() - 1);
     }
     Some(once(person, read))
+}
+
+/// Deeds by which somebody gets somewhere.
+const fn goes(act: Act) -> bool {
+    matches!(act, Act::Toward | Act::Overtake | Act::Cross | Act::ComeOut | Act::Ahead | Act::Behind)
+}
+
+/// After what it did before it walks on.
+fn goes_on(cast: &mut Cast, who: usize, around: &Around) {
+    let Some(person) = cast.people.get_mut(who) else { return };
+    // The last of all that it does, whatever is said of it yet; who only walks along goes on by itself.
+    if !person.rules.is_empty() || around.trigger.is_some() || person.doings.len() > 1 {
+        person.goes_on = Some(around.quote.clone());
+    }
+}
+
+/// The rule by which somebody walks on after everything else, where the text says so.
+pub(crate) fn settle_going_on(person: &mut Person) {
+    let Some(quote) = person.goes_on.take() else { return };
+    if person.rules.iter().any(|read| read.rule.act == Action::Navigate && read.rule.gesture.is_none()) {
+        return;
+    }
+    let last = person.rules.last().map(|last| last.rule.when.clone());
+    let when = last.unwrap_or_else(|| vec![Trigger::RobotVisible(5.0)]);
+    let rule = Rule { when, act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    person.rules.push(ReadRule { rule, quote, stated: false, exact: false, then: true, lasts: false });
 }
 
 /// From a trigger on it walks on, whatever it did before.
@@ -254,6 +321,28 @@ fn contradiction(who: usize, first: &str, second: &str) -> Fault {
 
 /// Adds a rule, unless the text only says again what another rule holds already: `is surprised, stops and looks`.
 fn once(person: &mut Person, read: ReadRule) -> usize {
+    // `until it says EXCUSE_ME, whereupon he gives way`: what is done then is more than walking on.
+    let walks = |old: &ReadRule| {
+        old.rule.act == Action::Navigate && old.rule.gesture.is_none() && old.rule.when == read.rule.when
+    };
+    if let Some(at) = person.rules.iter().position(walks).filter(|_| !read.then) {
+        if let Some(old) = person.rules.get_mut(at) {
+            *old = read;
+        }
+        return at;
+    }
+    // `blocks it, holding this position for 15 seconds`
+    let longer = person.rules.iter_mut().rev().find(|old| {
+        old.rule.act == read.rule.act
+            && old.rule.gesture.is_none()
+            && !old.lasts
+            && read.lasts
+            && !read.then
+            && (!read.stated || old.rule.when == read.rule.when)
+    });
+    if let Some(old) = longer {
+        (old.rule.for_s, old.lasts) = (read.rule.for_s, true);
+    }
     let again = person.rules.iter().position(|old| {
         old.rule.act == read.rule.act
             && old.rule.gesture.is_none()
@@ -275,9 +364,9 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
     // Whoever lets the robot go first stands still for it; whoever stops it walks on.
     let (act, lasts) = match gesture {
         Gesture::Proceed => (Action::StandStill, 6.0),
-        Gesture::None | Gesture::Wait | Gesture::Acknowledged | Gesture::ExcuseMe | Gesture::FollowMe => {
-            (Action::Navigate, 4.0)
-        }
+        Gesture::None | Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, 4.0),
+        // Whoever acknowledges the robot looks at it.
+        Gesture::Acknowledged => (Action::LookAtRobot, 4.0),
     };
     let when = around.trigger.clone().unwrap_or_else(|| with_distance(Trigger::RobotVisible(5.0), around.distance_m));
     let rule = Rule {
@@ -321,6 +410,14 @@ fn leaves(person: &Person) -> bool {
     person.relation.as_ref().is_some_and(|(relation, _)| *relation == Relation::Leaving)
 }
 
+/// Whether the words say that it happens right in front of the robot.
+fn before_robot(quote: &str) -> bool {
+    let lower = quote.to_lowercase();
+    ["front of the robot", "front of it", "the robot's path", "the robot's way"]
+        .iter()
+        .any(|words| lower.contains(words))
+}
+
 /// Sets the relation; two that exclude each other are a contradiction, quoted.
 pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
@@ -339,6 +436,13 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
             format!("human_{}", who + 1),
             format!("`{first}` and `{quote}` cannot both hold for the same human; correct one of the two"),
         ));
+    } else if new == Relation::Crossing
+        && old == Relation::Leaving
+        && person.start != Some(PlaceClass::Elevator)
+        && before_robot(quote)
+    {
+        // Who comes out right before the robot meets it where it crosses.
+        person.relation = Some((new, quote.to_owned()));
     } else if matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
         && !matches!(old, Relation::Leaving | Relation::Staying)
     {

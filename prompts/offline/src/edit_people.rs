@@ -10,10 +10,11 @@ use socrates_model::{
 };
 
 use crate::cast::{Cast, Person, ReadRule};
-use crate::deed::distance_m;
+use crate::deed::{distance_m, manner};
 use crate::edit::Desk;
 use crate::edit_paths;
 use crate::edit_wish::Wish;
+use crate::lexicon::Act;
 use crate::mention::{Who, mentions};
 use crate::story::{Story, read_on};
 use crate::{place, prose};
@@ -161,7 +162,7 @@ fn quoted(wish: &Wish) -> String {
 }
 
 /// Whether somebody new is spoken of; words that only ask are taken as read.
-fn adds(clauses: &mut [crate::words::Stretch]) -> bool {
+fn adds(clauses: &mut [crate::cut::Stretch]) -> bool {
     let mut adds = false;
     for (number, clause) in clauses.iter_mut().enumerate() {
         for word in &mut clause.words {
@@ -225,33 +226,11 @@ fn changed(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     true
 }
 
-/// The actions that an act of the text stands for.
-fn prose_of(act: crate::lexicon::Act) -> Vec<Action> {
-    use crate::lexicon::Act;
-    match act {
-        Act::Stop | Act::Stand | Act::Stay => vec![Action::StandStill],
-        Act::Look => vec![Action::LookAtRobot],
-        Act::Follow => vec![Action::FollowRobot, Action::FollowHuman(HumanId::new(1))],
-        Act::RunAway => vec![Action::RunAway],
-        Act::GiveWay => vec![Action::GiveWay],
-        Act::Block => vec![Action::Block],
-        Act::Approach => vec![Action::Approach],
-        Act::Toward
-        | Act::Overtake
-        | Act::Behind
-        | Act::Abreast
-        | Act::Ahead
-        | Act::Cross
-        | Act::ComeOut
-        | Act::Enter
-        | Act::Talk
-        | Act::WalkTogether
-        | Act::Ignore
-        | Act::Gesture
-        | Act::Lead
-        | Act::Pass
-        | Act::Walk => Vec::new(),
-    }
+/// The actions that an act of the text stands for: of somebody who is there, `stands` and `stays` are `stops`.
+fn prose_of(act: Act) -> Vec<Action> {
+    let still = matches!(act, Act::Stand | Act::Stay).then_some(Action::StandStill);
+    let also = (act == Act::Follow).then_some(Action::FollowHuman(HumanId::new(1)));
+    still.into_iter().chain(manner(act).map(|(action, ..)| action)).chain(also).collect()
 }
 
 pub(crate) fn same_act(a: &Action, b: &Action) -> bool {

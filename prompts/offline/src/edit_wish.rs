@@ -3,8 +3,8 @@
 use socrates_model::PlaceClass;
 
 use crate::clause;
+use crate::cut::{Joint, Stretch, sentences};
 use crate::mention::mentions;
-use crate::words::{Joint, Stretch, sentences};
 
 /// What an edit wants.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -32,6 +32,12 @@ impl Story {
                 person.start = Some(PlaceClass::Elevator);
             }
         }
+        for person in &mut self.cast.people {
+            deed::settle_going_on(person);
+        }
+        if self.robot_part == Some("leading") && self.robot_enters.is_none() {
+            self.robot_enters = self.headed.take();
+        }
         self.standing();
         self.clashes();
         self.dubious();
@@ -75,6 +81,14 @@ impl Story {
         }
         if person.rules.iter().any(|read| matches!(read.rule.gesture, Some(Gesture::Wait | Gesture::Proceed))) {
             return Some(Relation::Crossing);
+        }
+        // Whoever is followed stands to the robot as those behind do.
+        let id = u32::try_from(who + 1).ok().map(socrates_model::HumanId::new);
+        let behind = |other: &Person| id.is_some_and(|id| does(other, &Action::FollowHuman(id)));
+        if let Some((relation, _)) =
+            self.cast.people.iter().filter(|other| behind(other)).find_map(|other| other.relation.as_ref())
+        {
+            return Some(*relation);
         }
         match self.place.as_ref().map(|(class, _)| *class) {
             Some(PlaceClass::Intersection) => Some(Relation::Crossing),

@@ -1,7 +1,7 @@
 //! The words that the grammar knows, from `data/lexicon.toml`.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde::Deserialize;
 use socrates_model::{Gesture, PlaceClass};
@@ -33,6 +33,8 @@ pub(crate) enum Act {
     Gesture,
     Lead,
     Pass,
+    /// Walks on after something else.
+    GoOn,
     Walk,
 }
 
@@ -46,6 +48,10 @@ pub(crate) enum Cue {
     Stopped,
     Moving,
     Says,
+    /// Another human says something.
+    Told,
+    /// What was said before.
+    Echo,
     Goal,
 }
 
@@ -63,8 +69,21 @@ pub(crate) struct RoleWord {
 pub(crate) enum Item {
     /// This word in its base form.
     Word(String),
+    /// A verb of a kind: `<go>`.
+    OneOf(Arc<BTreeSet<String>>),
     /// Up to four words of any kind.
     Gap,
+}
+
+impl Item {
+    /// Whether this word, in its base form, may stand here.
+    pub(crate) fn takes(&self, stem: &str) -> bool {
+        match self {
+            Self::Word(wanted) => wanted == stem,
+            Self::OneOf(kind) => kind.contains(stem),
+            Self::Gap => false,
+        }
+    }
 }
 
 /// A phrase and what it means.
@@ -83,6 +102,10 @@ pub(crate) struct Lexicon {
     pub(crate) impossible: BTreeSet<String>,
     pub(crate) nowhere: BTreeSet<String>,
     pub(crate) adjectives: BTreeSet<String>,
+    /// Base forms of every verb that tells that somebody does something.
+    pub(crate) verbs: BTreeSet<String>,
+    /// Nouns that are no people.
+    pub(crate) things: BTreeSet<String>,
     pub(crate) numbers: BTreeMap<String, u32>,
     pub(crate) ordinals: BTreeMap<String, u32>,
     pub(crate) roles: BTreeMap<String, RoleWord>,
@@ -97,6 +120,8 @@ pub(crate) struct Lexicon {
     /// Words that carry a wish, in the forms in which people write them: what a slip of the pen may have meant.
     pub(crate) telling: BTreeSet<String>,
     forms: BTreeMap<String, String>,
+    /// Verbs by kind, for phrases.
+    classes: BTreeMap<String, Arc<BTreeSet<String>>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -107,6 +132,9 @@ struct File {
     labels: String,
     impossible: String,
     task: String,
+    verbs: String,
+    things: String,
+    classes: BTreeMap<String, String>,
     numbers: BTreeMap<String, u32>,
     ordinals: BTreeMap<String, u32>,
     forms: BTreeMap<String, String>,
@@ -192,6 +220,9 @@ impl Lexicon {
             impossible: set(&file.impossible),
             nowhere: set(&file.nowhere.words),
             adjectives: set(&file.adjectives.words),
+            verbs: set(&file.verbs),
+            things: set(&file.things),
+            classes: file.classes.iter().map(|(name, text)| (name.clone(), Arc::new(set(text)))).collect(),
             numbers: file.numbers,
             ordinals: file.ordinals,
             forms: file.forms,
@@ -213,14 +244,22 @@ impl Lexicon {
         // Places are matched as written, all else in base forms.
         lex.places = sorted(
             file.place.iter().flat_map(|row| row.words.iter().map(|text| (text.as_str(), row.class))),
-            &str::to_owned,
+            &|word| Item::Word(word.to_owned()),
         );
-        let stem = |word: &str| lex.stem(word);
-        let actions = sorted(pairs(&file.action), &stem);
-        let cues = sorted(pairs(&file.trigger), &stem);
+        let kinds: Vec<String> = lex.classes.values().flat_map(|kind| kind.iter().cloned()).collect();
+        lex.verbs.extend(kinds);
+        let item = |word: &str| {
+            let kind = word.strip_prefix('<').and_then(|word| word.strip_suffix('>'));
+            match kind.and_then(|kind| lex.classes.get(kind)) {
+                Some(kind) => Item::OneOf(Arc::clone(kind)),
+                None => Item::Word(lex.stem(word)),
+            }
+        };
+        let actions = sorted(pairs(&file.action), &item);
+        let cues = sorted(pairs(&file.trigger), &item);
         let gestures =
-            sorted(file.gesture.iter().flat_map(|row| row.phrases.iter().map(|text| (text.as_str(), row.name))), &stem);
-        let distances = sorted(file.distance.iter().map(|row| (row.phrase.as_str(), row.m)), &stem);
+            sorted(file.gesture.iter().flat_map(|row| row.phrases.iter().map(|text| (text.as_str(), row.name))), &item);
+        let distances = sorted(file.distance.iter().map(|row| (row.phrase.as_str(), row.m)), &item);
         (lex.actions, lex.cues, lex.gestures, lex.distances) = (actions, cues, gestures, distances);
         lex
     }
@@ -230,9 +269,11 @@ impl Lexicon {
         let mut known: BTreeSet<String> = english.split_whitespace().map(str::to_owned).collect();
         let phrases = actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases));
         for text in phrases.chain(gestures.iter().flat_map(|row| &row.phrases)) {
-            known.extend(text.split_whitespace().filter(|word| *word != "..").map(str::to_owned));
+            known.extend(plain_words(text).map(str::to_owned));
         }
-        for table in [&self.stop, &self.task, &self.labels, &self.impossible, &self.nowhere] {
+        known.extend(self.classes.values().flat_map(|kind| kind.iter().cloned()));
+        for table in [&self.stop, &self.task, &self.labels, &self.impossible, &self.nowhere, &self.verbs, &self.things]
+        {
             known.extend(table.iter().cloned());
         }
         known.extend(self.roles.keys().cloned());
@@ -242,7 +283,7 @@ impl Lexicon {
         self.known = known;
         let mut telling: BTreeSet<String> = self.roles.keys().cloned().collect();
         for text in actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)) {
-            for word in text.split_whitespace().filter(|word| *word != "..") {
+            for word in plain_words(text) {
                 // `pace` gives `pacing`, and no `paceing`.
                 let cut = word.strip_suffix('e');
                 let ends = if cut.is_some() { ["", "s", "d"].as_slice() } else { &["", "s", "es", "ed", "ing"] };
@@ -295,15 +336,20 @@ impl Lexicon {
     }
 }
 
+/// The words of a phrase that are words.
+fn plain_words(text: &str) -> impl Iterator<Item = &str> {
+    text.split_whitespace().filter(|word| *word != ".." && !word.starts_with('<'))
+}
+
 fn pairs<T: Copy>(rows: &[PhraseRow<T>]) -> impl Iterator<Item = (&str, T)> {
     rows.iter().flat_map(|row| row.phrases.iter().map(|text| (text.as_str(), row.id)))
 }
 
-fn sorted<'a, T>(rows: impl Iterator<Item = (&'a str, T)>, base: &dyn Fn(&str) -> String) -> Vec<Phrase<T>> {
+fn sorted<'a, T>(rows: impl Iterator<Item = (&'a str, T)>, base: &dyn Fn(&str) -> Item) -> Vec<Phrase<T>> {
     let mut phrases: Vec<Phrase<T>> = rows
         .map(|(text, means)| {
             let items = text.split_whitespace();
-            let items = items.map(|word| if word == ".." { Item::Gap } else { Item::Word(base(word)) }).collect();
+            let items = items.map(|word| if word == ".." { Item::Gap } else { base(word) }).collect();
             Phrase { items, means }
         })
         .collect();

@@ -20,15 +20,25 @@ mod aside;
 mod lexicon;
 mod words;
 
+mod arrange;
+mod cut;
 mod mention;
+mod noun;
+mod refer;
 
+mod bind;
 mod cast;
 mod clause;
 mod deed;
+mod ellipsis;
 mod finish;
+mod measure;
+mod message;
 mod robot_deed;
 mod story;
 mod task;
+mod timing;
+mod whereabouts;
 
 mod default_cast;
 mod pattern;

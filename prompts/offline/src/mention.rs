@@ -1,6 +1,8 @@
 //! Mentions: the stretches of a clause that speak of people.
 
 use crate::lexicon::{Item, Lexicon, lexicon};
+use crate::noun::{band, noun, plural, stranger, thing};
+use crate::refer::{group, others};
 use crate::words::Word;
 
 /// Whom a mention means.
@@ -65,6 +67,8 @@ pub(crate) struct Mention {
     pub(crate) who: Who,
     /// Role word, if it says more than `person`.
     pub(crate) role: Option<String>,
+    /// The pronoun that it is, if it is `he` or `she`.
+    pub(crate) word: String,
     /// `a group of four`.
     pub(crate) group: bool,
     /// `two groups of three`: into how many; else 1.
@@ -75,30 +79,6 @@ pub(crate) struct Mention {
     pub(crate) to: usize,
 }
 
-/// Nouns of `the other end` and `one side` that are no people.
-const THINGS: &[&str] = &[
-    "side",
-    "end",
-    "direction",
-    "way",
-    "hand",
-    "part",
-    "corner",
-    "door",
-    "floor",
-    "wall",
-    "room",
-    "time",
-    "moment",
-    "place",
-    "thing",
-];
-
-/// Whether a number or `other` before this word counts things.
-fn thing(words: &[Word], at: usize) -> bool {
-    words.get(at).is_some_and(|word| THINGS.contains(&word.text.as_str()) || lexicon().labels.contains(&word.text))
-}
-
 /// Every mention of people in the words, in order.
 pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     let lex = lexicon();
@@ -107,7 +87,7 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     while at < words.len() {
         if let Some(mention) = phrase_at(words, at, lex) {
             at = mention.to + 1;
-            found.push(mention);
+            found.push(predicate(words, mention, &found));
         } else {
             at += 1;
         }
@@ -115,58 +95,18 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     found
 }
 
-/// The noun for people that ends a noun phrase from `at` on, with at most three describing words before it.
-fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
-    let mut end = None;
-    for (i, word) in words.iter().enumerate().skip(at).take(4) {
-        if lex.roles.contains_key(&word.stem) {
-            end = Some(i);
-            break;
+/// `he is a doctor`, `they are friends`: the same people by another word.
+fn predicate(words: &[Word], mention: Mention, before: &[Mention]) -> Mention {
+    let is = mention.from.checked_sub(1).and_then(|at| words.get(at)).is_some_and(|word| word.stem == "be");
+    let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
+    match (subject, &mention.who) {
+        (Some(subject), Who::New { .. }) if subject.who != Who::Nobody => {
+            let many = matches!(subject.who, Who::All | Who::AllOf(_) | Who::New { count: None | Some(2..), .. });
+            Mention { who: if many { Who::All } else { Who::Same }, ..mention }
         }
-        let describes = lex.adjectives.contains(&word.text)
-            || !lex.known.contains(&word.stem)
-                && !lex.stop.contains(&word.text)
-                && word.number().is_none()
-                && word.stem != "robot";
-        if !describes {
-            break;
-        }
+        _ => mention,
     }
-    // `warehouse employee` and `hospital staff member` end at the last noun.
-    let mut end = end?;
-    while words.get(end + 1).is_some_and(|word| lex.roles.contains_key(&word.stem)) {
-        end += 1;
-    }
-    if words.get(end + 1).is_some_and(|word| word.stem == "member") {
-        end += 1;
-    }
-    Some(end)
 }
-
-/// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
-fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
-    let word = words.get(at).filter(|_| introduced)?;
-    let unknown = word.text.len() >= if word.capital { 2 } else { 4 }
-        && word.text.chars().all(char::is_alphabetic)
-        && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives]
-            .iter()
-            .any(|table| table.contains(&word.stem) || table.contains(&word.text))
-        && !thing(words, at)
-        && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())));
-    let acts = words.get(at + 1).is_some_and(|next| DOES.contains(&next.stem.as_str()));
-    // Whoever is led, followed or accompanied is somebody too.
-    let taken_along = (1..=3)
-        .filter_map(|back| at.checked_sub(back))
-        .any(|k| matches!(stem(words, k), "lead" | "guide" | "escort" | "accompany" | "help"));
-    if unknown && (acts || taken_along) { Some(at) } else { None }
-}
-
-/// What only people (and the robot) do, as the first word after who does it.
-const DOES: &[&str] = &[
-    "walk", "come", "stand", "wait", "follow", "look", "stop", "step", "leave", "run", "cross", "talk", "chat",
-    "approach", "block", "stay", "flee", "overtake", "hurry", "gesture", "wave", "who", "give", "go", "ignore",
-    "enter", "exit", "watch",
-];
 
 /// Of whom some are meant: `of the three visitors`.
 struct Whole {
@@ -188,8 +128,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             }
         }
     };
-    let made =
-        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
+    let made = |who: Who, role: Option<String>, to: usize| {
+        Some(Mention { who, role, word: String::new(), group: false, parts: 1, from: at, to })
+    };
     let of_them = |k: usize| {
         if stem(k) != "of" {
             return None;
@@ -197,7 +138,18 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         if matches!(text(k + 1), "them" | "these" | "those" | "us") {
             return Some(Whole { end: k + 1, role: None, count: None });
         }
-        let skip = if matches!(text(k + 1), "the" | "these" | "those" | "all") { k + 2 } else { k + 1 };
+        let skip = if matches!(
+            text(k + 1),
+            "the" | "these" | "those" | "all" | "our" | "my" | "your" | "his" | "her" | "their"
+        ) {
+            k + 2
+        } else {
+            k + 1
+        };
+        // `one of the pair`
+        if skip == k + 2 && band(words, skip).is_some() && text(skip + 1) != "of" {
+            return Some(Whole { end: skip, role: None, count: None });
+        }
         let count = words.get(skip).and_then(Word::count).filter(|n| *n > 1);
         let start = skip + usize::from(count.is_some());
         noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex)).map(|end| Whole {
@@ -206,7 +158,19 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             count,
         })
     };
+    // `neither of the others`, `both of the rest`: those who are left.
+    let left = matches!(text(at), "both" | "neither" | "none" | "each" | "all" | "any")
+        && text(at + 1) == "of"
+        && text(at + 2) == "the"
+        && matches!(text(at + 3), "other" | "others" | "rest" | "remaining");
+    if left {
+        return others(words, at + 2, lex, &role).map(|mention| Mention { who: Who::Other(None), from: at, ..mention });
+    }
     match text(at) {
+        "not" if matches!(text(at + 1), "a" | "one") && text(at + 2) == "single" => {
+            let end = noun(words, at + 3, lex).unwrap_or(at + 2);
+            return made(Who::Nobody, None, end);
+        }
         "nobody" | "noone" => return made(Who::Nobody, None, at),
         "no" => {
             if text(at + 1) == "one" {
@@ -244,6 +208,13 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             if let Some(of) = of_them(at + 1) {
                 return made(Who::All, None, of.end);
             }
+            // `all three of them`
+            if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
+                && text(at + 2) == "of"
+                && let Some(of) = of_them(at + 2)
+            {
+                return made(Who::AllOf(count), of.role, of.end);
+            }
             // `all three nurses` are those three, or three new ones.
             if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
                 && let Some(end) = noun(words, at + 2, lex)
@@ -255,10 +226,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return match noun(words, start, lex) {
                 Some(end) => made(Who::All, None, end),
                 None if start > at + 1 => made(Who::All, None, start - 1),
+                // `each steps aside`
+                None if text(at) == "each" && words.get(at + 1).is_none_or(|word| lex.verbs.contains(&word.stem)) => {
+                    made(Who::All, None, at)
+                }
                 None => None,
             };
         }
-        "he" | "she" => return made(Who::Same, None, at),
+        "he" | "she" => {
+            return made(Who::Same, None, at).map(|mention| Mention { word: text(at).to_owned(), ..mention });
+        }
         "him" => return made(Who::Object, None, at),
         // `her` before a word of its own is whose, not whom.
         "her"
@@ -305,71 +282,23 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return made(Who::Number(number), role(at), at + 1);
         }
     }
+    // `person A`, `pedestrian B`; alone only where it cannot be an article.
+    let letter = |k: usize| {
+        let word = words.get(k).filter(|word| word.capital && word.text.len() == 1)?;
+        "abcdef".find(word.text.as_str()).and_then(|place| u32::try_from(place + 1).ok())
+    };
+    if lex.roles.contains_key(stem(at))
+        && let Some(number) = letter(at + 1)
+    {
+        return made(Who::Number(number), role(at), at + 1);
+    }
+    let acts = |k: usize| words.get(k).is_some_and(|word| lex.verbs.contains(&word.stem));
+    if let Some(number) =
+        letter(at).filter(|number| *number > 1 && (acts(at + 1) || at + 1 == words.len() && (0..at).any(acts)))
+    {
+        return made(Who::Number(number), None, at);
+    }
     counted(words, at, lex, &role, &of_them)
-}
-
-/// `another …`, `the other …`, `the rest`, `the first …`.
-fn others(words: &[Word], at: usize, lex: &Lexicon, role: &dyn Fn(usize) -> Option<String>) -> Option<Mention> {
-    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let made =
-        |who: Who, role: Option<String>, to: usize| Some(Mention { who, role, group: false, parts: 1, from: at, to });
-    let the = usize::from(matches!(text(at), "the" | "each"));
-    // `each other` and `one after the other` are nobody new.
-    let before = if at == 0 { "" } else { text(at - 1) };
-    let manner = text(at) == "each" && text(at + 1) == "other"
-        || text(at) == "other"
-            && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
-        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
-    if manner {
-        return None;
-    }
-    let count = |k: usize| words.get(k).and_then(Word::count);
-    match text(at + the) {
-        // `one after another` is a manner, nobody new.
-        "another" if at > 0 && matches!(text(at - 1), "after" | "to" | "from") => None,
-        "another" => {
-            let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
-            let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
-            let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;
-            made(Who::More(several.unwrap_or(1)), role(end), end)
-        }
-        "others" | "rest" | "remaining" => {
-            let several = count(at + the + 1);
-            let mut end = noun(words, at + the + 1 + usize::from(several.is_some()), lex)
-                .unwrap_or_else(|| at + the + usize::from(several.is_some()));
-            if text(end + 1) == "of" && matches!(text(end + 2), "them") {
-                end += 2;
-            }
-            let single = text(at + the) == "remaining" && !words.get(end).is_some_and(plural);
-            made(Who::Other(several.or(if single { Some(1) } else { None })), None, end)
-        }
-        "other" => {
-            let several = count(at + the + 1);
-            let start = at + the + 1 + usize::from(several.is_some());
-            match noun(words, start, lex) {
-                Some(end) if several.is_none() && words.get(end).is_some_and(plural) => {
-                    made(Who::Other(None), role(end), end)
-                }
-                Some(end) => made(Who::Other(Some(several.unwrap_or(1))), role(end), end),
-                None if thing(words, start) => None,
-                None => made(Who::Other(Some(several.unwrap_or(1))), None, start - 1),
-            }
-        }
-        word if the == 1 || lex.ordinals.contains_key(word) => {
-            let number = lex.ordinals.get(word).copied().or_else(|| if word == "last" { Some(0) } else { None })?;
-            let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
-            if text(start) == "of"
-                && let Some(of) = count(start + 1).filter(|of| *of >= number.max(1))
-                && let Some(end) = noun(words, start + 2, lex)
-            {
-                return made(Who::OrdinalOf { number, count: of }, role(end), end);
-            }
-            let end = noun(words, start, lex).unwrap_or(start - 1);
-            let bare = end == at + the && (the == 0 || thing(words, start));
-            if bare { None } else { made(Who::Ordinal(number), role(end), end) }
-        }
-        _ => None,
-    }
 }
 
 fn stem(words: &[Word], at: usize) -> &str {
@@ -387,7 +316,7 @@ fn counted(
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     let before = if at == 0 { "" } else { words.get(at - 1).map_or("", |word| word.stem.as_str()) };
     let made = |who: Who, role: Option<String>, group: bool, to: usize| {
-        Some(Mention { who, role, group, parts: 1, from: at, to })
+        Some(Mention { who, role, word: String::new(), group, parts: 1, from: at, to })
     };
     let article = matches!(text(at), "a" | "an");
     let the = matches!(text(at), "the" | "these" | "those" | "this");
@@ -404,11 +333,26 @@ fn counted(
     if count.is_some() {
         next += 1;
     }
-    if words
-        .get(next)
-        .is_some_and(|word| matches!(word.stem.as_str(), "group" | "circle" | "cluster" | "bunch" | "team" | "pair"))
+    // `an old couple`, `the pair`: words that are numbers too, but not where they count others.
+    let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
+    for k in [described, next.saturating_sub(usize::from(count.is_some()))] {
+        let counts = text(k + 1) == "of" && count.is_some() && matches!(text(k), "couple" | "crowd" | "trio");
+        let around = matches!(text(k + 1), "around" | "round" | "about" | "up" | "in" | "the");
+        let bare = at == 0 && k == 0 && words.len() > 1 && !around
+            || text(k + 1) == "of" && words.get(k + 2).is_some_and(|word| word.count().is_some());
+        if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some() || bare) {
+            return group(words, at, k, count.filter(|_| k >= next), the, lex, role);
+        }
+    }
+    // `half of the six employees`, `two others`
+    if text(at) == "half"
+        && let Some(of) = of_them(at + 1)
+        && let Some(whole) = of.count
     {
-        return group(words, at, next, count, the, lex, role);
+        return made(Who::PartOfNew(whole / 2, whole), of.role, false, of.end);
+    }
+    if let Some(n) = count.filter(|_| text(next) == "others") {
+        return made(Who::More(n), None, false, next);
     }
     let more = matches!(text(next), "more" | "additional" | "further");
     next += usize::from(more);
@@ -425,6 +369,10 @@ fn counted(
             Some(_) | None => Who::PartOf(part),
         };
         return made(who, of.role, false, of.end);
+    }
+    // `one on each side` tells where those are of whom was spoken.
+    if text(at) == "one" && text(at + 1) == "on" && matches!(text(at + 2), "each" | "either" | "every" | "both") {
+        return None;
     }
     // `one after another`, `one by one` say how, not who.
     if text(at) == "one"
@@ -447,8 +395,12 @@ fn counted(
             return made(Who::ToldApart, None, false, at + 2);
         }
     }
+    // `left one gives way`, where people leave articles out.
+    if at == 0 && text(1) == "one" && lex.adjectives.contains(text(0)) && stem(words, 0) != "robot" {
+        return made(Who::ToldApart, None, false, 1);
+    }
     // `his mother`, `her colleague`: known or new.
-    if matches!(text(at), "his" | "her" | "their")
+    if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && let Some(end) =
             noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
     {
@@ -460,7 +412,9 @@ fn counted(
         && count.is_none()
         && words.get(at).is_some_and(|word| word.capital)
         && noun(words, at, lex).is_none()
-        && stranger(words, at, true, lex).is_some()
+        && stranger(words, at, true, lex).is_some_and(|end| {
+            words.get(end + 1).is_some_and(|word| lex.verbs.contains(&word.stem) || word.text == "who")
+        })
     {
         return made(Who::Definite { plural: false, count: None }, role(at), false, at);
     }
@@ -471,7 +425,9 @@ fn counted(
             (true, count, _) => Who::Definite { plural: many, count },
             (false, Some(n), false) => Who::New { count: Some(n), article: false },
             (false, None, _) if article => Who::New { count: Some(1), article: true },
-            (false, None, _) => Who::New { count: if many { None } else { Some(1) }, article: true },
+            // `Driver blocks. Driver ignores it.`: without an article it is who is there already, if there is.
+            (false, None, _) if !many => Who::Definite { plural: false, count: None },
+            (false, None, _) => Who::New { count: None, article: true },
         };
         return made(who, role(end), false, end);
     }
@@ -497,58 +453,10 @@ fn counted(
     made(who, None, false, next - 1)
 }
 
-fn group(
-    words: &[Word],
-    at: usize,
-    group: usize,
-    count: Option<u32>,
-    the: bool,
-    lex: &Lexicon,
-    role: &dyn Fn(usize) -> Option<String>,
-) -> Option<Mention> {
-    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    // `in a group` says how people stand; it is not a mention of its own.
-    let lead = (1..=3)
-        .filter_map(|back| group.checked_sub(back))
-        .map(&text)
-        .find(|word| !matches!(*word, "a" | "the" | "one" | "same" | "small" | "large"));
-    let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming"))
-        && text(group + 1) != "of";
-    if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
-        return None;
-    }
-    let listed = text(group + 1) == "of";
-    let inner = if listed { words.get(group + 2).and_then(Word::count) } else { None };
-    let start = group + 1 + usize::from(listed) + usize::from(inner.is_some());
-    let noun = if listed { noun(words, start, lex) } else { None };
-    let end = noun.unwrap_or(start - 1);
-    let role = noun.and_then(role);
-    let pair = if words.get(group).is_some_and(|word| word.stem == "pair") { Some(2) } else { None };
-    let who = if the && inner.is_none() {
-        Who::Definite { plural: true, count: None }
-    } else {
-        Who::New { count: inner.or(pair).or_else(|| count.filter(|_| !listed)), article: true }
-    };
-    // `two groups of three` are six people.
-    let parts = count.filter(|n| (2..=8).contains(n) && listed && inner.is_some()).unwrap_or(1);
-    let who = if let Who::New { count: Some(n), article } = who {
-        Who::New { count: Some(n.saturating_mul(parts)), article: article && parts == 1 }
-    } else {
-        who
-    };
-    Some(Mention { who, role, group: pair.is_none(), parts, from: at, to: end })
-}
-
-/// Whether a noun is in the plural.
-fn plural(word: &Word) -> bool {
-    matches!(word.text.as_str(), "people" | "men" | "women" | "children" | "staff")
-        || word.text != word.stem && word.text.ends_with('s')
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::sentences;
+    use crate::cut::sentences;
 
     fn who(text: &str) -> Vec<Who> {
         mentions(&sentences(text)[0][0].words).into_iter().map(|mention| mention.who).collect()

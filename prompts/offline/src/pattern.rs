@@ -3,9 +3,9 @@
 use socrates_model::{Action, Gesture, PlaceClass, Relation};
 
 use crate::cast::Person;
+use crate::cut::sentences;
 use crate::lexicon::lexicon;
 use crate::story::Story;
-use crate::words::sentences;
 
 /// The card of the story; `None` where no card fits (the proposal is `free` then).
 pub(crate) fn of(story: &Story, wanted: Option<&str>) -> Option<String> {

@@ -1,6 +1,6 @@
-//! What the text says of the robot, and where things happen.
+//! What the text says of the robot.
 
-use socrates_model::{PlaceClass, Relation};
+use socrates_model::Relation;
 
 use crate::clause::Found;
 use crate::deed::{self, Around};
@@ -8,19 +8,10 @@ use crate::lexicon::Act;
 use crate::story::Story;
 
 /// The robot's own deeds: what they ask of people, of the places, of its script.
-pub(crate) fn robot_deed(
-    story: &mut Story,
-    act: Act,
-    found: &Found,
-    meant: &[(usize, usize, Vec<usize>)],
-    at: usize,
-    quote: &str,
-) {
-    let object: Vec<usize> =
-        meant.iter().find(|(from, _, _)| *from > at).map(|(_, _, some)| some.clone()).unwrap_or_default();
+pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[usize], quote: &str) {
     let class = found.places.first().map(|(class, _)| *class);
     let set = |story: &mut Story, relation: Relation| {
-        for who in &object {
+        for who in object {
             deed::relate(&mut story.cast, *who, relation, quote);
             let doing = if relation == Relation::Ahead { "walks ahead of the robot" } else { "walks beside the robot" };
             if let Some(person) = story.cast.people.get_mut(*who) {
@@ -39,7 +30,7 @@ pub(crate) fn robot_deed(
         }
         Act::Lead => {
             story.robot_part = Some("leading");
-            for who in &object {
+            for who in object {
                 let around = Around { quote: quote.to_owned(), ..Around::default() };
                 let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
             }
@@ -68,36 +59,12 @@ pub(crate) fn robot_deed(
         | Act::Stand
         | Act::Ignore
         | Act::Pass
+        | Act::GoOn
         | Act::Walk => {}
     }
     let its_own =
         matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
     if its_own {
         story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
-    }
-}
-
-pub(crate) fn place_of(story: &mut Story, found: &Found, quote: &str) {
-    let comes_out =
-        found.deeds.iter().find(|deed| matches!(deed.act, Act::ComeOut | Act::Enter | Act::Stay)).map(|deed| deed.at);
-    // Where the robot leads somebody to is where it goes.
-    let robot = |at: usize| {
-        found.robots.iter().any(|robot| *robot < at) && found.mentions.iter().all(|mention| mention.from > at)
-    };
-    let leads = found.deeds.iter().find(|deed| deed.act == Act::Lead && robot(deed.at)).map(|deed| deed.at);
-    for (class, at) in &found.places {
-        // Where somebody is led to is where the robot goes.
-        if leads.is_some_and(|deed| *at > deed) {
-            story.robot_enters = Some((*class, quote.to_owned()));
-            continue;
-        }
-        // The room that people come out of is where they start, not where they are met.
-        let source = comes_out.is_some_and(|deed| *at > deed)
-            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit);
-        let weak =
-            story.place.as_ref().is_none_or(|(old, _)| *class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
-        if !source && weak {
-            story.place = Some((*class, quote.to_owned()));
-        }
     }
 }

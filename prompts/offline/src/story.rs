@@ -1,14 +1,18 @@
 //! The rough scenario, clause by clause: subjects, triggers and deeds are bound to people.
 
-use socrates_model::{Fault, FaultCode, Gesture, HumanId, PlaceClass, Trigger};
+use socrates_model::{Fault, FaultCode, Gesture, PlaceClass, Trigger};
 
+use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
 use crate::clause::{self, Found};
+use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
-use crate::lexicon::{Act, Cue, lexicon};
+use crate::ellipsis;
+use crate::lexicon::{Act, lexicon};
 use crate::mention::Who;
-use crate::robot_deed::{place_of, robot_deed};
-use crate::words::{Joint, Stretch, sentences};
+use crate::robot_deed::robot_deed;
+use crate::timing::{quiet, robot_first, timing, trigger};
+use crate::whereabouts::place_of;
 
 /// Everything that was read of the rough scenario.
 #[derive(Debug, Clone, Default)]
@@ -20,32 +24,48 @@ pub(crate) struct Story {
     pub(crate) robot_part: Option<&'static str>,
     pub(crate) robot_enters: Option<(PlaceClass, String)>,
     pub(crate) robot_leaves: Option<(PlaceClass, String)>,
+    /// Where people go: the robot goes there too if it leads them.
+    pub(crate) headed: Option<(PlaceClass, String)>,
     pub(crate) ignored: Vec<String>,
     pub(crate) problems: Vec<Fault>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Subject {
+pub(crate) enum Subject {
     Nobody,
     Robot,
     People(Vec<usize>),
 }
 
 /// What reaches from clause to clause within a sentence.
-struct Thread {
-    subject: Subject,
-    pending: Vec<usize>,
-    waiting: Option<Trigger>,
+pub(crate) struct Thread {
+    pub(crate) subject: Subject,
+    pub(crate) pending: Vec<usize>,
+    pub(crate) waiting: Option<Trigger>,
     /// Words of the trigger that waits, until a deed takes it.
-    untaken: Option<String>,
+    pub(crate) untaken: Option<String>,
     /// Whether the trigger that waits names no distance.
-    vague: bool,
+    pub(crate) vague: bool,
     /// Rules of the clause before, by person and index, that a later `when` may still time.
-    made: Vec<(usize, usize)>,
+    pub(crate) made: Vec<(usize, usize)>,
     /// The subject of the deed before in this sentence, for `stops and gestures`.
-    doer: Option<Vec<usize>>,
+    pub(crate) doer: Option<Vec<usize>>,
     /// Whom somebody leads, and who: `A mother leads two children across`.
-    led: Option<(Vec<usize>, Vec<usize>)>,
+    pub(crate) led: Option<(Vec<usize>, Vec<usize>)>,
+    /// What was said last, as what others may wait for.
+    pub(crate) said: Option<Trigger>,
+    /// The same, as long as nothing else was said to happen.
+    pub(crate) fresh: Option<Trigger>,
+    /// What the last acting clause said of its people, for `the other does not`.
+    pub(crate) acts: Vec<(Act, Around)>,
+    /// The clause before signals, or names the robot: a message alone is its message.
+    pub(crate) speaks: bool,
+    /// `does not move aside until …` says when it does.
+    pub(crate) not_until: bool,
+    /// What ended the deed before: `until it asks`.
+    pub(crate) ended: Option<Trigger>,
+    /// Who walked on in the clause before, which a later `when` may still time.
+    pub(crate) went_on: Vec<usize>,
 }
 
 /// Reads the text.
@@ -64,9 +84,17 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         made: Vec::new(),
         doer: None,
         led: None,
+        said: None,
+        fresh: None,
+        acts: Vec::new(),
+        speaks: false,
+        not_until: false,
+        ended: None,
+        went_on: Vec::new(),
     };
     for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
+        story.cast.listing = false;
         thread.made.clear();
         thread.pending.clear();
         let count = sentence.len();
@@ -84,7 +112,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
                 format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
             ));
         }
-        for word in sentence.iter().flat_map(|stretch| &stretch.words) {
+        for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
             let known =
                 lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot";
             if !word.used && !known && !story.ignored.contains(&word.text) {
@@ -96,6 +124,15 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
 }
 
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
+    // Who somebody is, is no answer to what happens then; the clause after it may be.
+    let suspended = (stretch.joint == Joint::Who).then(|| thread.waiting.take()).flatten();
+    read_clause(story, thread, stretch, text, next);
+    if thread.waiting.is_none() && suspended.is_some() {
+        thread.waiting = suspended;
+    }
+}
+
+fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let quote = stretch.quote(text).to_owned();
     let found = clause::read(stretch);
     for i in &found.nowhere {
@@ -107,6 +144,22 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         ));
     }
     mark(stretch, &found.nowhere);
+    if let Some(gesture) = found.only_says.filter(|_| thread.speaks) {
+        return only_says(story, thread, stretch, gesture, &quote);
+    }
+    thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
+    if stretch.joint == Joint::Said {
+        (thread.waiting, thread.vague) = (thread.said.clone(), false);
+    } else if stretch.joint == Joint::Opens && answers(&found) && thread.waiting.is_none() {
+        // `The robot says PROCEED. He walks on.`
+        (thread.waiting, thread.vague) = (thread.fresh.take(), false);
+    } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
+        // `blocks its way until it asks; then he steps aside`
+        (thread.waiting, thread.vague) = (thread.ended.take(), false);
+    }
+    if found.acts() {
+        thread.fresh = None;
+    }
     let cue_only = found.cue.is_some()
         && (found.deeds.is_empty() || matches!(stretch.joint, Joint::When | Joint::Until) && robot_first(&found));
     let temporal = matches!(stretch.joint, Joint::Until | Joint::When | Joint::While);
@@ -124,9 +177,13 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         let at = found.impossible.clone();
         mark(stretch, &at);
     }
-    place_of(story, &found, &quote);
+    place_of(story, &found, stretch, &thread.subject, &quote);
     if stretch.joint == Joint::Except && excepted(story, thread, &found) {
         return;
+    }
+    // `two people: a nurse who …, and a visitor who …` lists those two.
+    if stretch.words.first().is_some_and(|word| word.after_colon) {
+        story.cast.lists();
     }
     // Whom the mentions mean, in order.
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
@@ -138,7 +195,8 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let mut people = story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. }), said);
+        let mut people =
+            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
@@ -153,13 +211,22 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         }
         meant.push((mention.from, mention.to, people));
     }
+    if !stretch.also.is_empty() {
+        also_called(story, &meant, stretch);
+    }
+    if let Some(does) = ellipsis::elided(stretch, &found) {
+        return ellipsis::repeat(story, thread, &meant, does, stretch, &quote);
+    }
+    if found.obeys && !found.acts() && ellipsis::obeys(story, thread, &found, &meant, &quote) {
+        return;
+    }
     if !found.acts() {
         return quiet(story, thread, &found, &meant, stretch, &quote, next);
     }
     if let Some(secs) = found.after_s {
         thread.waiting = Some(Trigger::AfterSecs(secs));
     } else if let Some((cue, _)) = found.cue {
-        thread.waiting = Some(trigger(cue, &found));
+        thread.waiting = trigger(cue, &found, thread);
         thread.vague = found.distance_m.is_none();
     } else if found.distance_is_when
         && let (Some(waiting), Some(m)) = (&thread.waiting, found.distance_m)
@@ -176,6 +243,9 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     }
     thread.led = None;
     thread.made.clear();
+    thread.acts.clear();
+    thread.went_on.clear();
+    thread.not_until = false;
     let mut acts: Vec<(Act, usize, usize, bool)> =
         found.deeds.iter().map(|deed| (deed.act, deed.at, deed.to, deed.negated)).collect();
     if found.gesture.is_some() {
@@ -185,7 +255,22 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     for (act, at, to, negated) in acts {
         let passive = stretch.words.get(to + 1).is_some_and(|word| word.text == "by")
             && meant.iter().any(|(from, _, _)| *from > to);
-        let subject = subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast);
+        // `is overtaken by the robot`: whom the robot overtakes stands before the verb.
+        let by_robot = !passive && done_by_robot(stretch, act, at, to);
+        let object: Vec<usize> = if by_robot {
+            let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty());
+            before.map_or_else(
+                || if let Subject::People(people) = &previous { people.clone() } else { Vec::new() },
+                |(_, _, some)| some.clone(),
+            )
+        } else {
+            meant.iter().find(|(from, _, _)| *from > at).map(|(_, _, some)| some.clone()).unwrap_or_default()
+        };
+        let subject = if by_robot {
+            Subject::Robot
+        } else {
+            subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast)
+        };
         // Whoever is led goes where the one who leads goes.
         let subject = match (subject, &thread.led) {
             (Subject::People(people), Some((leaders, followers))) if people == *followers => {
@@ -197,11 +282,24 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
         thread.untaken = None;
         match &subject {
             Subject::Robot => {
-                robot_deed(story, act, &found, &meant, at, quote);
+                // `robot stops, worker stops`
+                if thread.waiting.is_none() && next == Some(Joint::Comma) && act == Act::Stop && !negated {
+                    (thread.waiting, thread.vague) = (Some(Trigger::RobotStopped), false);
+                }
+                robot_deed(story, act, &found, &object, quote);
                 // `The robot asks to be let through and the first one gives way`: what comes next answers it.
                 if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture && thread.waiting.is_none()) {
                     (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
                 }
+                if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture) {
+                    thread.said = Some(Trigger::RobotSays(gesture));
+                    thread.fresh.clone_from(&thread.said);
+                }
+            }
+            // `does not move aside until the robot asks`: it does then.
+            Subject::People(people) if negated && next == Some(Joint::Until) && deed::manner(act).is_some() => {
+                people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote);
+                thread.not_until = true;
             }
             Subject::People(people) if negated => {
                 for who in people {
@@ -217,6 +315,9 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
                 people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote)
             }
             Subject::Nobody if found.mentions.iter().any(|mention| mention.who == Who::Nobody) => {
+                for who in 0..story.cast.people.len() {
+                    deed::rule_out(&mut story.cast, who, act, quote);
+                }
                 story.cast.notes.push(format!("`{quote}` rules something out for everybody; no reaction is added"));
             }
             Subject::Nobody => story.problems.push(Fault::new(
@@ -225,7 +326,7 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
                 format!("`{quote}` does not say who does it"),
             )),
         }
-        if subject != Subject::Nobody {
+        if subject != Subject::Nobody && !(by_robot && matches!(previous, Subject::People(_))) {
             thread.subject = subject;
         }
     }
@@ -277,285 +378,69 @@ fn mark(stretch: &mut Stretch, at: &[usize]) {
     }
 }
 
-fn robot_first(found: &Found) -> bool {
-    found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
-        || found.mentions.is_empty()
-        || matches!(found.cue, Some((Cue::Visible, _)))
+/// Whether the clause is an answer to what the robot said just before.
+fn answers(found: &Found) -> bool {
+    let answer = |act: Act| matches!(act, Act::GoOn | Act::GiveWay);
+    found.distance_m.is_none()
+        && found.robots.is_empty()
+        && found.gesture.is_none()
+        && found.deeds.first().is_some_and(|deed| answer(deed.act) && !deed.negated)
 }
 
-fn trigger(cue: Cue, found: &Found) -> Trigger {
-    match cue {
-        Cue::Visible => deed::with_distance(Trigger::RobotVisible(5.0), found.distance_m),
-        Cue::Near => deed::with_distance(Trigger::RobotNear(3.0), found.distance_m),
-        Cue::Blocking => deed::with_distance(Trigger::RobotBlocking(2.0), found.distance_m),
-        Cue::Stopped => Trigger::RobotStopped,
-        Cue::Moving => Trigger::RobotMoving,
-        Cue::Goal => Trigger::GoalReached,
-        Cue::Says => found.gesture.map_or(Trigger::RobotNear(3.0), Trigger::RobotSays),
-    }
-}
-
-/// A clause that only says when: it times the deeds before it, or those still to come.
-fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Found, quote: &str) {
-    let Some((cue, _)) = found.cue else { return };
-    place_of(story, found, quote);
-    if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
-        story.robot_says.push((gesture, quote.to_owned()));
-    }
-    // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
-    if stretch.joint == Joint::Until && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Says) {
-        let when = trigger(cue, found);
-        let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
-        for who in people {
-            deed::walk_on(&mut story.cast, who, when.clone(), quote);
-        }
-        return;
-    }
-    if stretch.joint == Joint::Until {
-        for (who, rule) in &thread.made {
-            if let Some(read) = story.cast.people.get_mut(*who).and_then(|p| p.rules.get_mut(*rule)) {
-                read.rule.for_s = Some(10.0);
-            }
-        }
-        story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
-        return;
-    }
-    let back = matches!(stretch.joint, Joint::When | Joint::While) && !thread.made.is_empty() && !stretch.after_and;
-    // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
-    for mention in found.mentions.iter().filter(|mention| !(back && matches!(mention.who, Who::All | Who::Same))) {
-        let people = story.cast.resolve(mention, false, quote);
-        if !people.is_empty() {
-            story.cast.last.clone_from(&people);
-            thread.subject = Subject::People(people);
-        }
-    }
-    let when = trigger(cue, found);
-    // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
-    if back {
-        for (who, rule) in std::mem::take(&mut thread.made) {
-            if let Some(read) = story.cast.people.get_mut(who).and_then(|p| p.rules.get_mut(rule)) {
-                // A run away must still be a meeting; without a distance in the text the usual one stays.
-                let usual = read.rule.when.first().cloned();
-                read.rule.when = vec![match (usual, &when, found.distance_m) {
-                    (Some(Trigger::RobotVisible(m)), Trigger::RobotVisible(_), None) => Trigger::RobotVisible(m),
-                    _ => when.clone(),
-                }];
-                read.stated = true;
-                read.exact = found.distance_m.is_some();
-                read.quote = format!("{}, {quote}", read.quote);
-            }
-        }
-    } else {
-        thread.waiting = Some(when);
-        // Who comes out waits for the door anyway.
-        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open"));
-        thread.vague = found.distance_m.is_none();
-    }
-}
-
-/// A clause without a deed: it names people, places, a group, a pace.
-fn quiet(
-    story: &mut Story,
-    thread: &mut Thread,
-    found: &Found,
-    meant: &[(usize, usize, Vec<usize>)],
-    stretch: &Stretch,
-    quote: &str,
-    next: Option<Joint>,
-) {
-    let mut people: Vec<usize> = Vec::new();
-    for (_, _, some) in meant {
-        people.extend(some.iter().filter(|i| !people.contains(i)).copied().collect::<Vec<_>>());
-    }
-    if let Some(secs) = found.after_s {
-        thread.waiting = Some(Trigger::AfterSecs(secs));
-    }
-    if people.is_empty() {
-        if !found.robots.is_empty() {
-            thread.subject = Subject::Robot;
-        } else if let Subject::People(last) = &thread.subject
-            && (found.in_group || found.pace_mps.is_some() || found.lasts_s.is_some())
-        {
-            people.clone_from(last);
-        }
-    }
-    if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
-        let mut all = std::mem::take(&mut thread.pending);
-        all.extend(people.iter().filter(|i| !all.contains(i)).copied().collect::<Vec<_>>());
-        story.cast.together(&all, quote);
-        people = all;
-    }
-    if people.is_empty() {
-        return;
-    }
-    if found.in_group {
-        story.cast.group(&people, quote);
-    }
-    for i in &people {
-        if let Some(person) = story.cast.people.get_mut(*i) {
-            person.speed_mps = found.pace_mps.or(person.speed_mps);
-            if let Some((class, _)) =
-                found.places.first().filter(|(class, _)| matches!(class, PlaceClass::Elevator | PlaceClass::Room))
-            {
-                person.start = Some(*class);
-            }
-            if let (Some(secs), Some(last)) = (found.lasts_s, person.rules.last_mut()) {
-                last.rule.for_s = Some(secs);
-            }
-        }
-    }
-    // `a nurse and …`: only bare mentions wait for the deed of the next clause.
-    let bare = stretch.words.iter().enumerate().all(|(i, word)| {
-        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i)) || matches!(word.text.as_str(), "both" | "either")
-    });
-    if bare && matches!(next, Some(Joint::And | Joint::Comma)) {
-        thread.pending.clone_from(&people);
-    }
-    story.cast.last.clone_from(&people);
-    thread.subject = Subject::People(people);
-}
-
-fn subject_of(
-    (act, at, to): (Act, usize, usize),
-    passive: bool,
-    found: &Found,
-    meant: &[(usize, usize, Vec<usize>)],
-    previous: &Subject,
-    joined: &[usize],
-    cast: &Cast,
-) -> Subject {
-    let people = |some: &Vec<usize>| {
-        let mut all = joined.to_vec();
-        all.extend(some.iter().filter(|i| !joined.contains(i)));
-        Subject::People(all)
-    };
-    if let Some((_, _, inside)) = meant.iter().find(|(from, to, _)| (*from..=*to).contains(&at)) {
-        return people(inside);
-    }
-    if passive && let Some((_, _, agent)) = meant.iter().find(|(from, _, _)| *from > at) {
-        return people(agent);
-    }
-    let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty());
-    // `Behind the robot comes a doctor`: who does it stands after the verb.
-    let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
-    if before.is_none()
-        && turned
-        && let Some((_, _, some)) = meant.iter().find(|(from, _, some)| *from == to + 1 && !some.is_empty())
-    {
-        return people(some);
-    }
-    let robot = found.robots.iter().rev().find(|robot| **robot < at);
-    let robotic = matches!(
+/// Whether the robot does it: `is followed by the robot`.
+fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
+    let does = matches!(
         act,
-        Act::Pass
-            | Act::Walk
-            | Act::Stop
+        Act::Overtake
             | Act::Follow
             | Act::Lead
-            | Act::Gesture
-            | Act::Enter
-            | Act::Overtake
-            | Act::ComeOut
-            | Act::GiveWay
             | Act::Abreast
-            | Act::Stay
-            | Act::Stand
+            | Act::Pass
+            | Act::Approach
             | Act::Toward
-            | Act::Cross
+            | Act::Block
+            | Act::Gesture
     );
-    match (before, robot) {
-        (Some((from, _, some)), Some(robot)) if robotic && robot > from => {
-            // The robot between a person and the deed is the object of an earlier one, unless it opens a clause of its own.
-            if found.deeds.iter().any(|deed| deed.at > *from && deed.at < *robot) {
-                people(some)
-            } else {
-                Subject::Robot
-            }
-        }
-        (Some((_, _, some)), _) => people(some),
-        (None, Some(_)) if robotic => Subject::Robot,
-        (None, _) => {
-            if !joined.is_empty() {
-                return Subject::People(joined.to_vec());
-            }
-            match previous {
-                Subject::Robot if robotic => Subject::Robot,
-                Subject::Robot | Subject::Nobody => match meant.first() {
-                    Some((_, _, some)) if !some.is_empty() => people(some),
-                    Some(_) | None if !cast.last.is_empty() => Subject::People(cast.last.clone()),
-                    Some(_) | None => Subject::Nobody,
-                },
-                Subject::People(some) => Subject::People(some.clone()),
-            }
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let by = (at..to + 2).find(|k| text(*k) == "by");
+    does && by.is_some_and(|by| (by + 1..by + 4).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot")))
+}
+
+/// `raises a hand (WAIT)`, `Robot: excuse me`: a message alone is that of the clause before.
+fn only_says(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, gesture: Gesture, quote: &str) {
+    for word in &mut stretch.words {
+        word.used = true;
+    }
+    let signals = thread.made.last().copied();
+    match signals.and_then(|(who, rule)| story.cast.people.get_mut(who).and_then(|person| person.rules.get_mut(rule))) {
+        Some(read) if read.rule.gesture.is_some() => read.rule.gesture = Some(gesture),
+        Some(_) | None => {
+            story.robot_says.push((gesture, quote.to_owned()));
+            (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
+            thread.said = Some(Trigger::RobotSays(gesture));
         }
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "all that surrounds a deed decides what it means")]
-fn people_deed(
-    story: &mut Story,
-    thread: &mut Thread,
-    (act, at, to): (Act, usize, usize),
-    people: &[usize],
-    found: &Found,
-    meant: &[(usize, usize, Vec<usize>)],
-    stretch: &Stretch,
-    quote: &str,
-) {
-    let object = meant
-        .iter()
-        .find(|(from, _, some)| *from > to && some.iter().all(|i| !people.contains(i)))
-        .and_then(|(_, _, some)| some.first());
-    if act == Act::Lead {
-        let followers: Vec<usize> =
-            meant.iter().find(|(from, _, _)| *from > to).map(|(_, _, some)| some.clone()).unwrap_or_default();
-        let leader = people.first().and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new);
-        for who in followers.iter().filter(|who| !people.contains(who)) {
-            let around = Around { object: leader, quote: quote.to_owned(), ..Around::default() };
-            let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
+/// `the third one, a security guard`: the role by which somebody is also called.
+fn also_called(story: &mut Story, meant: &[(usize, usize, Vec<usize>)], stretch: &mut Stretch) {
+    let Some((_, _, people)) = meant.first() else { return };
+    let named = crate::mention::mentions(&stretch.also).into_iter().next();
+    let Some(role) = named.as_ref().and_then(|mention| mention.role.clone()) else {
+        // A name: nothing is lost where only the role counts.
+        if let [name] = stretch.also.as_mut_slice() {
+            name.used = true;
         }
-        thread.led = Some((people.to_vec(), followers));
-    }
-    let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at) { object } else { None };
-    let startled = (at..=to).any(|i| {
-        stretch
-            .words
-            .get(i)
-            .is_some_and(|word| matches!(word.stem.as_str(), "startle" | "surprise" | "shock" | "astonish" | "freeze"))
-    });
-    let inside = found.places.first().map(|(class, _)| *class);
-    let place = if matches!(act, Act::ComeOut | Act::Stay) {
-        found
-            .places
-            .iter()
-            .map(|(class, _)| *class)
-            .find(|class| matches!(class, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway))
-            .or_else(|| people.iter().find_map(|i| story.cast.people.get(*i).and_then(|p| p.start)))
-            .or_else(|| story.place.as_ref().map(|(class, _)| *class).filter(|class| *class == PlaceClass::Elevator))
-    } else {
-        inside
-    };
-    let around = Around {
-        trigger: thread.waiting.clone(),
-        vague: thread.vague,
-        distance_m: found.distance_m,
-        lasts_s: found.lasts_s,
-        gesture: found.gesture,
-        object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
-        place,
-        startled,
-        then: stretch.joint == Joint::Then,
-        goes_on: thread.doer.as_deref() == Some(people),
-        quote: quote.to_owned(),
+        return;
     };
     for who in people {
-        if let Some(rule) = deed::apply(&mut story.cast, *who, act, &around) {
-            thread.made.push((*who, rule));
+        if let Some(person) = story.cast.people.get_mut(*who)
+            && (person.role.is_empty() || !lexicon().roles.contains_key(&person.role))
+        {
+            person.role.clone_from(&role);
         }
     }
-    if matches!(act, Act::Talk | Act::WalkTogether) || found.in_group {
-        story.cast.group(people, quote);
+    for (at, word) in stretch.also.iter_mut().enumerate() {
+        word.used |= named.as_ref().is_some_and(|mention| (mention.from..=mention.to).contains(&at));
     }
-    story.cast.last = people.to_vec();
-    thread.doer = Some(people.to_vec());
 }

@@ -3,8 +3,8 @@
 use socrates_model::PlaceClass;
 
 use crate::clause;
+use crate::cut::sentences;
 use crate::lexicon::lexicon;
-use crate::words::sentences;
 
 /// What was read of the task.
 #[derive(Debug, Clone, Default, PartialEq)]

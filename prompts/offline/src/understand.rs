@@ -9,7 +9,7 @@ use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{aside, default_cast, place, words};
+use crate::{aside, cut, default_cast, place, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -133,7 +133,7 @@ fn language(request: &Request, reading: &mut Reading) {
         [("rough_scenario", request.rough_scenario.as_deref().unwrap_or_default()), ("task", request.task.as_str())];
     for (key, text) in texts {
         let all: Vec<words::Word> =
-            words::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
+            cut::sentences(text).into_iter().flatten().flat_map(|stretch| stretch.words).collect();
         let letters: Vec<&words::Word> = all.iter().filter(|word| word.text.starts_with(char::is_alphabetic)).collect();
         let lex = lexicon();
         let known = letters
@@ -197,12 +197,15 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
         );
         reading.problems.push(Fault::new(FaultCode::PPlace, at, message));
     };
+    // The reading keeps the place as it was said; the fault says that the map has none.
+    let said = story.place.as_ref().map(|(class, _)| *class);
     absent(&mut story.place, "rough_scenario");
     absent(&mut story.robot_enters, "rough_scenario");
     absent(&mut story.robot_leaves, "rough_scenario");
     absent(&mut task.start, "task");
     absent(&mut task.goal, "task");
     absent(&mut task.via, "task");
+    reading.place = said;
     let rooms = !place::inside(location, None).is_empty();
     let cars = !place::inside(location, Some(PlaceClass::Elevator)).is_empty();
     for who in 0..story.cast.people.len() {
@@ -322,7 +325,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
     let about: Vec<String> =
-        words::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
+        cut::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
             .into_iter()
             .flatten()
             .flat_map(|stretch| stretch.words)

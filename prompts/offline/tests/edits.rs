@@ -1,30 +1,14 @@
 //! Edits in words: what they change, and that they change nothing else.
 #![cfg(test)]
 
+mod common;
+
 use socrates_model::job::Stage;
 use socrates_model::{Action, FaultCode, Gesture, HumanId, Location, PlaceClass, Predicate, Relation, Trigger};
 use socrates_offline::{Draft, Edited, Offline, edit};
 use socrates_prompts::Question;
 
-fn question(on: &str, text: &str) -> Question {
-    let request: socrates_model::Request = serde_json::from_value(serde_json::json!({
-        "location": on, "social_context": "", "task": "Deliver mail", "rough_scenario": text,
-    }))
-    .unwrap();
-    let location = socrates_maps::shipped::load(on).unwrap();
-    let reading = socrates_offline::read(&request, &location);
-    Question {
-        stage: Stage::Proposal,
-        request,
-        reading,
-        location,
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 3,
-    }
-}
+use common::question;
 
 /// A scenario as the stages write it.
 fn draft(on: &str, text: &str) -> (Question, Draft) {

@@ -1,29 +1,17 @@
 //! Faults that are handed back: what the author changes for each of them.
 #![cfg(test)]
 
+mod common;
+
 use socrates_model::job::Stage;
 use socrates_model::rule::RobotDo;
 use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, Paths, Proposal, Rule, Trigger};
 use socrates_offline::Offline;
 use socrates_prompts::Question;
 
-fn question(on: &str, text: &str) -> (Question, Proposal) {
-    let request: socrates_model::Request = serde_json::from_value(serde_json::json!({
-        "location": on, "social_context": "", "task": "Deliver mail", "rough_scenario": text,
-    }))
-    .unwrap();
-    let location = socrates_maps::shipped::load(on).unwrap();
-    let mut ask = Question {
-        stage: Stage::Proposal,
-        reading: socrates_offline::read(&request, &location),
-        request,
-        location,
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 3,
-    };
+/// The question with its proposal.
+fn proposed(on: &str, text: &str) -> (Question, Proposal) {
+    let mut ask = common::question(on, text);
     let proposal = socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).unwrap();
     ask.proposal = Some(proposal.clone());
     (ask, proposal)
@@ -49,7 +37,7 @@ const FRONTAL: &str =
 
 #[test]
 fn a_slip_of_the_pen_is_written_again_and_a_wrong_place_is_left() {
-    let (ask, _) = question("office", FRONTAL);
+    let (ask, _) = proposed("office", FRONTAL);
     let first = paths(&ask, &[]);
     for code in [FaultCode::GDisc, FaultCode::GUnknown, FaultCode::GEmpty, FaultCode::GAgents, FaultCode::EJson] {
         assert_eq!(paths(&ask, &[(code, "robot step 3")]), first, "{code}");
@@ -71,7 +59,7 @@ fn a_slip_of_the_pen_is_written_again_and_a_wrong_place_is_left() {
 
 #[test]
 fn a_short_way_gets_longer_and_only_that_of_whom_it_is_said() {
-    let (ask, _) = question("hospital", "A nurse comes towards the robot in the corridor.");
+    let (ask, _) = proposed("hospital", "A nurse comes towards the robot in the corridor.");
     let length = |paths: &Paths, nodes: &[socrates_model::NodeId]| {
         assert!(!paths.robot.is_empty());
         ask.location.graph.length_m(nodes)
@@ -87,7 +75,7 @@ fn a_short_way_gets_longer_and_only_that_of_whom_it_is_said() {
 
 #[test]
 fn a_reaction_that_came_never_or_too_early_gets_another_reach() {
-    let (ask, proposal) = question("office", FRONTAL);
+    let (ask, proposal) = proposed("office", FRONTAL);
     let reach = |rules: &[Rule]| {
         if let Trigger::RobotVisible(m) | Trigger::RobotNear(m) = rules[0].when[0] { m } else { panic!("{rules:?}") }
     };
@@ -115,7 +103,7 @@ fn rule(when: Trigger, act: Action, for_s: Option<f64>) -> Rule {
 
 #[test]
 fn who_waits_for_a_word_that_nobody_says_waits_for_the_robot() {
-    let (ask, _) = question("office", FRONTAL);
+    let (ask, _) = proposed("office", FRONTAL);
     let deaf = vec![
         rule(Trigger::RobotSays(Gesture::ExcuseMe), Action::GiveWay, Some(6.0)),
         rule(Trigger::HumanSays(HumanId::new(2), Gesture::Wait), Action::StandStill, Some(5.0)),
@@ -135,7 +123,7 @@ fn who_waits_for_a_word_that_nobody_says_waits_for_the_robot() {
 
 #[test]
 fn rules_that_cannot_run_or_never_end_are_put_right() {
-    let (ask, _) = question("office", FRONTAL);
+    let (ask, _) = proposed("office", FRONTAL);
     let endless = rule(Trigger::RobotVisible(8.0), Action::FollowRobot, None);
     let look = rule(Trigger::RobotVisible(4.0), Action::LookAtRobot, Some(5.0));
     let dead = with_rules(&ask, vec![endless.clone(), look.clone()]);
@@ -156,24 +144,11 @@ fn rules_that_cannot_run_or_never_end_are_put_right() {
 
 #[test]
 fn a_proposal_that_repeats_another_is_drawn_anew() {
-    let request: socrates_model::Request = serde_json::from_value(
-        serde_json::json!({ "location": "office", "social_context": "", "task": "Deliver mail" }),
-    )
-    .unwrap();
-    let location = socrates_maps::shipped::load("office").unwrap();
+    let first = common::question("office", None);
     let patterns: std::collections::BTreeSet<String> = (0..6)
         .map(|times| {
-            let ask = Question {
-                stage: Stage::Proposal,
-                reading: socrates_offline::read(&request, &location),
-                request: request.clone(),
-                location: location.clone(),
-                proposal: None,
-                only: Vec::new(),
-                feedback: vec![Fault::new(FaultCode::PDup, "pattern", "as an earlier one"); times],
-                refused: None,
-                seed: 3,
-            };
+            let feedback = vec![Fault::new(FaultCode::PDup, "pattern", "as an earlier one"); times];
+            let ask = Question { feedback, ..first.clone() };
             socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask).unwrap().pattern
         })
         .collect();

@@ -1,0 +1,159 @@
+//! Clauses in the order in which they are read: manners behind who they are of, names beside names.
+
+use crate::cut::{Joint, Stretch};
+use crate::lexicon::lexicon;
+use crate::mention::{Who, mentions};
+use crate::words::Word;
+
+/// The clauses in the order in which they are read: what stands before who does it comes after, and names go together.
+pub(crate) fn arranged(found: Vec<Stretch>) -> Vec<Stretch> {
+    fronted(apposed(found))
+}
+
+/// `Walking ahead of the robot, a couple …`: a manner before who it is of is read after it.
+fn fronted(mut found: Vec<Stretch>) -> Vec<Stretch> {
+    let names = |stretch: &Stretch| !mentions(&stretch.words).is_empty();
+    let Some(first) = found.iter().position(names) else { return found };
+    let mut manners = Vec::new();
+    let mut at = 0;
+    for _ in 0..first {
+        let manner = found
+            .get(at)
+            .is_some_and(|stretch| matches!(stretch.joint, Joint::Opens | Joint::Comma) && is_manner(&stretch.words));
+        if manner {
+            manners.push(found.remove(at));
+        } else {
+            at += 1;
+        }
+    }
+    if found.get(at).is_none_or(|stretch| !matches!(stretch.joint, Joint::Comma | Joint::Opens)) {
+        // Nobody to whom it could belong.
+        found.splice(0..0, manners);
+        return found;
+    }
+    for (k, mut manner) in manners.into_iter().enumerate() {
+        manner.joint = Joint::Comma;
+        found.insert(at + 1 + k, manner);
+    }
+    found
+}
+
+/// Whether words only say how or where: a participle, or a place beside the robot.
+fn is_manner(words: &[Word]) -> bool {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let lex = lexicon();
+    let robot = words.iter().any(|word| word.stem == "robot");
+    match words.first() {
+        Some(first) if first.text.ends_with("ing") => lex.verbs.contains(&first.stem),
+        Some(first) if text(1) == "by" && first.text.ends_with("ed") => robot,
+        Some(_) => {
+            text(0) == "from" && matches!(text(1), "behind" | "the")
+                || matches!(text(0), "beside" | "alongside" | "behind" | "ahead" | "next" | "in")
+                    && robot
+                    && words.len() <= 5
+                || matches!(text(0), "side" | "arm" | "hand") && words.len() <= 4
+        }
+        None => false,
+    }
+}
+
+/// `the cleaner, a shy man, stands`, `Ahmed, a clerk, waits`: one clause about one person.
+fn apposed(mut found: Vec<Stretch>) -> Vec<Stretch> {
+    counted(&mut found);
+    let mut at = 0;
+    while at + 1 < found.len() {
+        if let (Some(name), Some(other)) = (found.get(at), found.get(at + 1))
+            && let Some(also) = apposition(name, other, found.get(at + 2))
+        {
+            let rest = if found.len() > at + 2 { Some(found.remove(at + 2)) } else { None };
+            let other = found.remove(at + 1);
+            if let Some(name) = found.get_mut(at) {
+                match also {
+                    Also::Second => name.also = other.words,
+                    Also::First => name.also = std::mem::replace(&mut name.words, other.words),
+                }
+                name.words.extend(rest.into_iter().flat_map(|rest| rest.words));
+            }
+        }
+        at += 1;
+    }
+    found
+}
+
+/// `people, maybe four, stand there`: the number belongs to the people.
+fn counted(found: &mut Vec<Stretch>) {
+    for at in 1..found.len() {
+        let (Some(name), Some(number)) = (found.get(at - 1), found.get(at)) else { return };
+        let role = name.words.len() <= 2
+            && name
+                .words
+                .last()
+                .is_some_and(|word| lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word))
+            && name.words.iter().all(|word| word.count().is_none());
+        let guess = |word: &Word| {
+            matches!(
+                word.text.as_str(),
+                "maybe" | "perhaps" | "about" | "say" | "roughly" | "around" | "probably" | "exactly"
+            )
+        };
+        let alone = number.joint == Joint::Comma
+            && number.words.iter().all(|word| word.count().is_some() || guess(word))
+            && number.words.iter().any(|word| word.count().is_some());
+        if role && alone && found.len() > at + 1 {
+            let mut number = found.remove(at);
+            let rest = found.remove(at);
+            if let Some(name) = found.get_mut(at - 1) {
+                let noun = name.words.len().saturating_sub(1);
+                number.words.retain(|word| word.count().is_some());
+                name.words.splice(noun..noun, number.words);
+                name.words.extend(rest.words);
+            }
+            return;
+        }
+    }
+}
+
+/// Which of two names is the one that stays.
+enum Also {
+    First,
+    Second,
+}
+
+fn apposition(name: &Stretch, other: &Stretch, next: Option<&Stretch>) -> Option<Also> {
+    let lex = lexicon();
+    let whole = |words: &[Word]| {
+        let found = mentions(words);
+        matches!(found.as_slice(), [only] if only.from == 0 && (only.to + 1 == words.len() || words.get(only.to + 1).is_some_and(|word| matches!(word.text.as_str(), "on" | "in" | "from" | "with" | "of" | "at"))))
+    };
+    let goes_on = |next: &Stretch| {
+        let verb = next
+            .words
+            .iter()
+            .take(2)
+            .any(|word| lex.verbs.contains(&word.stem) || matches!(word.text.as_str(), "not" | "never" | "just"));
+        let names = mentions(&next.words).first().is_some_and(|mention| mention.from == 0);
+        next.joint == Joint::Comma && verb && !names
+    };
+    // `one of them, the first one, says`
+    let told = other.words.first().is_some_and(|word| word.text == "the")
+        && matches!(mentions(&other.words).as_slice(), [only] if matches!(only.who, Who::Ordinal(_) | Who::ToldApart) && only.to + 1 == other.words.len());
+    if told && other.joint == Joint::Comma && whole(&name.words) && next.is_some_and(goes_on) {
+        return Some(Also::First);
+    }
+    let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an"));
+    let bare = other.words.len() == 1 && whole(&other.words);
+    if other.joint != Joint::Comma || !(article && whole(&other.words) || bare) {
+        return None;
+    }
+    let called = matches!(name.words.as_slice(), [only] if only.capital && !lex.known.contains(&only.stem) && !lex.stop.contains(&only.text));
+    let single = name
+        .words
+        .first()
+        .is_some_and(|word| !matches!(word.text.as_str(), "two" | "three" | "four" | "several" | "both"));
+    match next {
+        Some(next) if !goes_on(next) => None,
+        Some(_) if called && article => Some(Also::First),
+        Some(_) | None if single && whole(&name.words) && (next.is_some() || bare) => Some(Also::Second),
+        Some(_) | None => None,
+    }
+}

@@ -1,0 +1,208 @@
+//! Who does what is said: the subject of a deed, and the deed itself.
+
+use socrates_model::{HumanId, PlaceClass, Trigger};
+
+use crate::cast::Cast;
+use crate::clause::Found;
+use crate::cut::{Joint, Stretch};
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
+use crate::mention::Who;
+use crate::story::{Story, Subject, Thread};
+
+/// Who does it.
+pub(crate) fn subject_of(
+    (act, at, to): (Act, usize, usize),
+    passive: bool,
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    previous: &Subject,
+    joined: &[usize],
+    cast: &Cast,
+) -> Subject {
+    let people = |some: &Vec<usize>| {
+        let mut all = joined.to_vec();
+        all.extend(some.iter().filter(|i| !joined.contains(i)));
+        Subject::People(all)
+    };
+    if let Some((_, _, inside)) = meant.iter().find(|(from, to, _)| (*from..=*to).contains(&at)) {
+        return people(inside);
+    }
+    // `nobody steps aside`
+    let nearest = found.mentions.iter().rev().find(|mention| mention.from < at && mention.who != Who::Object);
+    if nearest.is_some_and(|mention| mention.who == Who::Nobody) && !found.robots.iter().any(|robot| *robot < at) {
+        return Subject::Nobody;
+    }
+    if passive && let Some((_, _, agent)) = meant.iter().find(|(from, _, _)| *from > at) {
+        return people(agent);
+    }
+    // `the tester behind him stands`: whoever is only told where from does nothing.
+    let object =
+        |from: &usize| found.mentions.iter().any(|mention| mention.from == *from && mention.who == Who::Object);
+    let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty() && !object(from));
+    // `Behind the robot comes a doctor`: who does it stands after the verb.
+    let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
+    if before.is_none()
+        && turned
+        && let Some((_, _, some)) = meant.iter().find(|(from, _, some)| *from == to + 1 && !some.is_empty())
+    {
+        return people(some);
+    }
+    let robot = found.robots.iter().rev().find(|robot| **robot < at);
+    let robotic = matches!(
+        act,
+        Act::Pass
+            | Act::Walk
+            | Act::Stop
+            | Act::Follow
+            | Act::Lead
+            | Act::Gesture
+            | Act::Enter
+            | Act::Overtake
+            | Act::ComeOut
+            | Act::GiveWay
+            | Act::Abreast
+            | Act::Stay
+            | Act::Stand
+            | Act::Toward
+            | Act::Cross
+    );
+    match (before, robot) {
+        (Some((from, _, some)), Some(robot)) if robotic && robot > from => {
+            // The robot between a person and the deed is the object of an earlier one, unless it opens a clause of its own.
+            if found.deeds.iter().any(|deed| deed.at > *from && deed.at < *robot) {
+                people(some)
+            } else {
+                Subject::Robot
+            }
+        }
+        (Some((_, _, some)), _) => people(some),
+        // `a guest and the robot arrive from opposite sides`
+        (None, Some(_)) if !joined.is_empty() && robotic => Subject::People(joined.to_vec()),
+        (None, Some(_)) if robotic => Subject::Robot,
+        (None, _) => {
+            if !joined.is_empty() {
+                return Subject::People(joined.to_vec());
+            }
+            match previous {
+                Subject::Robot if robotic => Subject::Robot,
+                Subject::Robot | Subject::Nobody => match meant.first() {
+                    Some((_, _, some)) if !some.is_empty() => people(some),
+                    Some(_) | None if !cast.last.is_empty() => Subject::People(cast.last.clone()),
+                    Some(_) | None => Subject::Nobody,
+                },
+                Subject::People(some) => Subject::People(some.clone()),
+            }
+        }
+    }
+}
+
+/// What people do, with all that surrounds it.
+#[expect(clippy::too_many_arguments, reason = "all that surrounds a deed decides what it means")]
+pub(crate) fn people_deed(
+    story: &mut Story,
+    thread: &mut Thread,
+    (act, at, to): (Act, usize, usize),
+    people: &[usize],
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    stretch: &Stretch,
+    quote: &str,
+) {
+    // `looks at it, then goes towards it`: by then it is no way that it goes, but up to the robot.
+    let act = if act == Act::Toward && stretch.joint == Joint::Then && thread.doer.as_deref() == Some(people) {
+        Act::Approach
+    } else {
+        act
+    };
+    if act == Act::GoOn {
+        thread.went_on.extend(people);
+    }
+    let object = meant
+        .iter()
+        .find(|(from, _, some)| *from > to && some.iter().all(|i| !people.contains(i)))
+        .and_then(|(_, _, some)| some.first());
+    if act == Act::Lead {
+        let followers: Vec<usize> =
+            meant.iter().find(|(from, _, _)| *from > to).map(|(_, _, some)| some.clone()).unwrap_or_default();
+        let leader = people.first().and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new);
+        for who in followers.iter().filter(|who| !people.contains(who)) {
+            let around = Around { object: leader, quote: quote.to_owned(), ..Around::default() };
+            let _rule = deed::apply(&mut story.cast, *who, Act::Follow, &around);
+        }
+        thread.led = Some((people.to_vec(), followers));
+    }
+    let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at) { object } else { None };
+    let startled = (at..=to).any(|i| {
+        stretch
+            .words
+            .get(i)
+            .is_some_and(|word| matches!(word.stem.as_str(), "startle" | "surprise" | "shock" | "astonish" | "freeze"))
+    });
+    let inside = found.places.first().map(|(class, _)| *class);
+    let place = if matches!(act, Act::ComeOut | Act::Stay) {
+        found
+            .places
+            .iter()
+            .map(|(class, _)| *class)
+            .find(|class| matches!(class, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway))
+            .or_else(|| people.iter().find_map(|i| story.cast.people.get(*i).and_then(|p| p.start)))
+            .or_else(|| story.place.as_ref().map(|(class, _)| *class).filter(|class| *class == PlaceClass::Elevator))
+    } else {
+        inside
+    };
+    // `gives way at 2 m` says when; `follows at 2 m` says how.
+    let at_distance = found.distance_m.filter(|_| found.distance_is_when && thread.waiting.is_none());
+    let near = at_distance
+        .filter(|_| !matches!(act, Act::Follow | Act::Ahead | Act::Behind | Act::Abreast))
+        .map(Trigger::RobotNear);
+    let around = Around {
+        vague: thread.vague && near.is_none(),
+        trigger: thread.waiting.clone().or(near),
+        distance_m: found.distance_m,
+        lasts_s: found.lasts_s,
+        gesture: found.gesture,
+        object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
+        place,
+        startled,
+        stands: stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
+            && stretch.words.get(at + 1).is_some_and(|word| word.text != "still"),
+        then: stretch.joint == Joint::Then,
+        goes_on: thread.doer.as_deref() == Some(people),
+        quote: quote.to_owned(),
+    };
+    let answers = matches!(act, Act::Gesture).then(|| around.gesture).flatten();
+    if let (Some(gesture), Some(first)) = (answers, people.first()) {
+        let id = HumanId::new(u32::try_from(first + 1).unwrap_or(u32::MAX));
+        thread.said = Some(Trigger::HumanSays(id, gesture));
+    }
+    thread.acts.push((act, around.clone()));
+    for who in people {
+        if let Some(rule) = deed::apply(&mut story.cast, *who, act, &around) {
+            thread.made.push((*who, rule));
+        }
+    }
+    // `a doctor talks to a patient`: both do.
+    let partner = |from: usize| {
+        let before = from.checked_sub(1).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str());
+        act == Act::Talk && matches!(before, "to" | "with")
+    };
+    let others: Vec<usize> = meant
+        .iter()
+        .filter(|(from, _, _)| *from > to && partner(*from))
+        .flat_map(|(_, _, some)| some.iter().copied())
+        .filter(|i| !people.contains(i))
+        .collect();
+    for who in &others {
+        let _rule = deed::apply(&mut story.cast, *who, act, &around);
+    }
+    if !others.is_empty() {
+        let all: Vec<usize> = people.iter().chain(&others).copied().collect();
+        story.cast.together(&all, quote);
+        story.cast.group(&all, quote);
+    } else if matches!(act, Act::Talk | Act::WalkTogether) || found.in_group {
+        story.cast.group(people, quote);
+    }
+    story.cast.last = people.to_vec();
+    thread.doer = Some(people.to_vec());
+}

@@ -1,0 +1,532 @@
+//! Words into sentences and clauses.
+
+use crate::arrange::arranged;
+use crate::lexicon::lexicon;
+use crate::mention::mentions;
+use crate::words::{Piece, Word, pieces};
+
+/// How a clause is joined to the one before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Joint {
+    /// It opens the sentence.
+    Opens,
+    /// Comma, `but`, `so`, `because`, brackets.
+    Comma,
+    /// `and`.
+    And,
+    /// `then`.
+    Then,
+    /// `while`, `whereas`.
+    While,
+    /// `when`, `once`, `upon`, `if`, `as`, `after` …
+    When,
+    /// `until`.
+    Until,
+    /// `who`, `that`, `which`.
+    Who,
+    /// `whereupon`: on what was said just now.
+    Said,
+    /// `except`: of those just spoken of, not these.
+    Except,
+}
+
+/// A clause: a stretch of words between two joints.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Stretch {
+    pub(crate) joint: Joint,
+    /// Whether `and` stood before the joint: `…, and when it stops, …` looks ahead, not back.
+    pub(crate) after_and: bool,
+    pub(crate) words: Vec<Word>,
+    /// What its first mention is also called: `the cleaner, a shy man, stands`.
+    pub(crate) also: Vec<Word>,
+}
+
+impl Stretch {
+    /// The words of the text that it spans.
+    pub(crate) fn quote<'a>(&self, text: &'a str) -> &'a str {
+        let from = self.words.first().map_or(0, |word| word.from);
+        let to = self.words.last().map_or(0, |word| word.to);
+        text.get(from..to).unwrap_or_default()
+    }
+}
+
+/// Sentences, each as its clauses.
+pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
+    let mut found = Vec::new();
+    let mut words: Vec<Option<Word>> = Vec::new();
+    let mut colon = false;
+    for piece in pieces(text) {
+        match piece {
+            Piece::Word(word) => {
+                words.push(Some(Word { after_colon: std::mem::take(&mut colon), ..word }));
+            }
+            Piece::Comma => words.push(None),
+            Piece::Colon => {
+                labels(&mut words);
+                words.push(None);
+                colon = true;
+            }
+            Piece::Stop => found.push(arranged(stretches(settled(std::mem::take(&mut words))))),
+        }
+    }
+    found.push(arranged(stretches(settled(words))));
+    found.retain(|sentence| !sentence.is_empty());
+    found
+}
+
+/// What a heading speaks of.
+const HEADS: &[&str] =
+    &["scenario", "test", "condition", "case", "study", "experiment", "trial", "setup", "run", "variant", "setting"];
+
+/// Headings that say nothing by themselves.
+const LISTS: &[&str] = &[
+    "participants",
+    "participant",
+    "people",
+    "persons",
+    "humans",
+    "human",
+    "agents",
+    "actors",
+    "roles",
+    "who",
+    "and",
+    "pedestrians",
+];
+
+/// A number right before a colon names what comes: `test case 14:`, `study 2:`, `scenario for 3 planners:`.
+fn labels(words: &mut [Option<Word>]) {
+    let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
+    let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
+    let whole = words.iter().skip(start).flatten();
+    let list = |word: &Word| {
+        LISTS.contains(&word.text.as_str()) || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
+    };
+    if whole.clone().count() <= 2 && whole.clone().all(list) {
+        for word in words.iter_mut().skip(start).flatten() {
+            (word.label, word.used) = (true, true);
+        }
+    }
+    let purpose = words.iter().skip(start).position(|word| word.as_ref().is_some_and(|word| word.text == "for"));
+    if let Some(purpose) = purpose.filter(|_| heading) {
+        for word in words.iter_mut().skip(start + purpose).flatten() {
+            word.label = true;
+        }
+    }
+    if let [.., Some(noun), Some(number)] = words
+        && number.count().is_some()
+        && !lexicon().verbs.contains(&noun.stem)
+        && !lexicon().roles.contains_key(&noun.stem)
+    {
+        number.label = true;
+    }
+}
+
+/// Words before the robot's name that only describe it: `the little delivery robot`.
+const OF_ROBOT: &[&str] = &[
+    "delivery",
+    "mobile",
+    "service",
+    "little",
+    "small",
+    "big",
+    "large",
+    "white",
+    "approaching",
+    "moving",
+    "passing",
+    "cleaning",
+    "transport",
+    "autonomous",
+    "new",
+    "slow",
+    "waiting",
+    "stopped",
+    "humanoid",
+    "guide",
+    "hospital",
+    "office",
+    "warehouse",
+    "logistics",
+    "mail",
+    "coming",
+    "incoming",
+    "same",
+    "strange",
+    "stationary",
+    "social",
+    "assistive",
+];
+
+/// Marks what only describes the robot.
+fn described(words: &mut [Option<Word>]) {
+    for at in 1..words.len() {
+        let named = |word: &Word| word.stem == "robot" && !matches!(word.text.as_str(), "it" | "its" | "itself");
+        if !words.get(at).and_then(Option::as_ref).is_some_and(named) {
+            continue;
+        }
+        for back in (0..at).rev() {
+            match words.get_mut(back) {
+                Some(Some(word)) if OF_ROBOT.contains(&word.text.as_str()) => (word.label, word.used) = (true, true),
+                Some(_) | None => break,
+            }
+        }
+    }
+}
+
+/// Words with which people take back a number that they have just given.
+const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
+
+/// A sentence with its corrections made (`three, no, two people` are two), and with `left` told from `left`.
+fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let count = |item: &Option<Word>| item.as_ref().is_some_and(|word| word.count().is_some());
+    let mut out: Vec<Option<Word>> = Vec::with_capacity(words.len());
+    let mut i = 0;
+    while let Some(item) = words.get(i) {
+        // A number, at most two words, then a correction and another number.
+        let taken_back = count(item).then(|| {
+            let corrects = |k: &usize| {
+                words.get(*k).and_then(Option::as_ref).is_some_and(|word| CORRECTS.contains(&word.text.as_str()))
+            };
+            let at = (i + 2..i + 6).find(corrects)?;
+            let paused = words.get(i + 1..at)?.iter().any(|item| item.as_ref().is_none_or(|word| word.text == "or"));
+            (at + 1..at + 7).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
+        });
+        if let Some(next) = taken_back.flatten() {
+            i = next;
+            // `two — no, three — visitors`: the dash after the number goes with what was taken back.
+            let noun = words.get(next + 2).and_then(Option::as_ref);
+            if words.get(next + 1).is_some_and(Option::is_none)
+                && noun.is_some_and(|word| lexicon().roles.contains_key(&word.stem))
+            {
+                out.extend(words.get(next).cloned());
+                i = next + 2;
+            }
+            continue;
+        }
+        let mut item = item.clone();
+        let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        if let Some(word) = &mut item
+            && word.text == "left"
+            && (words
+                .get(i + 1)
+                .and_then(Option::as_ref)
+                .is_some_and(|next| matches!(next.text.as_str(), "one" | "hand" | "side"))
+                || matches!(
+                    before,
+                    "the"
+                        | "on"
+                        | "to"
+                        | "its"
+                        | "his"
+                        | "her"
+                        | "their"
+                        | "from"
+                        | "far"
+                        | "turn"
+                        | "turns"
+                        | "turned"
+                        | "turning"
+                        | "keep"
+                        | "keeps"
+                        | "look"
+                        | "looks"
+                        | "bear"
+                        | "veers"
+                ))
+        {
+            // The side, nobody who leaves.
+            word.stem = "left".to_owned();
+        }
+        out.push(item);
+        i += 1;
+    }
+    described(&mut out);
+    out
+}
+
+/// Cuts a sentence (`None` is a comma) at its joints.
+fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
+    let mut found: Vec<Stretch> = Vec::new();
+    let mut open = Stretch { joint: Joint::Opens, after_and: false, words: Vec::new(), also: Vec::new() };
+    let mut i = 0;
+    while let Some(item) = words.get(i) {
+        let (joint, took) = match item {
+            None => (Some(Joint::Comma), 1),
+            Some(_) => match joint_at(&words, i) {
+                (None, _) if begins(&words, i, &open) => (Some(Joint::Comma), 0),
+                joint => joint,
+            },
+        };
+        if let Some(joint) = joint {
+            let done =
+                std::mem::replace(&mut open, Stretch { joint, after_and: false, words: Vec::new(), also: Vec::new() });
+            if done.words.is_empty() {
+                open.after_and = done.after_and || done.joint == Joint::And && joint != Joint::And;
+                // `, and when`: the stronger joint stays; a sentence that opens with `when` is known by its index.
+                if matches!(joint, Joint::Comma | Joint::And)
+                    && !matches!(done.joint, Joint::Opens | Joint::Comma | Joint::And)
+                {
+                    open.joint = done.joint;
+                }
+            } else {
+                found.push(done);
+            }
+            if took == 0 {
+                open.words.extend(item.clone());
+                i += 1;
+            }
+        } else {
+            open.words.extend(item.clone());
+        }
+        i += took;
+    }
+    if !open.words.is_empty() {
+        found.push(open);
+    }
+    found
+}
+
+fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
+    let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
+    let sees = |k: usize| matches!(stem(k), "see" | "notice" | "spot");
+    let before = if i == 0 { "" } else { stem(i - 1) };
+    let person = lexicon().roles.contains_key(before)
+        || matches!(
+            before,
+            "one" | "other" | "two" | "three" | "four" | "pair" | "couple" | "group" | "family" | "team" | "crowd"
+        );
+    let digit = words.get(i + 1).and_then(Option::as_ref).is_some_and(|word| word.number().is_some());
+    let said = |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue");
+    // `seeing the robot, …`, `having noticed it, …`
+    let opens = i == 0 || words.get(i - 1).is_some_and(Option::is_none) || before == "and" || before == "then";
+    let seeing = |k: usize| (sees(k) || stem(k) == "hear") && text(k).ends_with("ing");
+    match text(i) {
+        "and" => (Some(Joint::And), 1),
+        "but" if before == "all" => (None, 1),
+        "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
+        "besides" => (Some(Joint::Except), 1),
+        "other" | "rather" if text(i + 1) == "than" && text(i.wrapping_sub(1)) != "each" && text(i) == "other" => {
+            (Some(Joint::Except), 2)
+        }
+        "except" => (Some(Joint::Except), 1),
+        "at" if text(i + 1) == "which" && matches!(text(i + 2), "point" | "moment") => (Some(Joint::Said), 3),
+        "whereupon" | "thereupon" => (Some(Joint::Said), 1),
+        "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
+        "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
+        "not" if text(i + 1) == "until" => (Some(Joint::When), 2),
+        "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
+            (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })
+        }
+        "by" if text(i + 1) == "the" && text(i + 2) == "time" => (Some(Joint::When), 3),
+        "the"
+            if matches!(text(i + 1), "moment" | "instant")
+                && !matches!(before, "at" | "for" | "of" | "last" | "in" | "from" | "until")
+                && words.get(i + 2).is_some_and(Option::is_some) =>
+        {
+            (Some(Joint::When), 2)
+        }
+        "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
+        "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
+            if !(text(i) == "so" && matches!(before, "do"))
+                && !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
+        {
+            (Some(Joint::Comma), 1)
+        }
+        "then" | "afterwards" | "afterward" | "subsequently" | "thereafter" => (Some(Joint::Then), 1),
+        "while" | "whereas" if before != "a" && before != "short" && before != "long" => (Some(Joint::While), 1),
+        "as" if text(i + 1) == "soon" => (Some(Joint::When), 3),
+        "as" if matches!(text(i + 1), "they" | "he" | "she" | "it")
+            || stem(i + 1) == "robot"
+            || stem(i + 2) == "robot" && !matches!(before, "way" | "direction" | "time" | "pace" | "speed") =>
+        {
+            (Some(Joint::When), 1)
+        }
+        "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
+        "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
+        "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
+        "on" if matches!(text(i + 1), "this" | "that" | "the") && said(i + 2) => (Some(Joint::When), 1),
+        "on" if stem(i + 2) == "robot"
+            && matches!(stem(i + 3), "approach" | "arrival" | "appearance" | "request" | "signal") =>
+        {
+            (Some(Joint::When), 1)
+        }
+        "having" if opens && (sees(i + 1) || stem(i + 1) == "hear") => (Some(Joint::When), 1),
+        _ if opens && seeing(i) => (Some(Joint::When), 0),
+        "with"
+            if opens
+                && matches!(text(i + 1), "only" | "the" | "less" | "just")
+                && (i..i + 8).any(|k| matches!(stem(k), "meter" | "centimeter")) =>
+        {
+            (Some(Joint::When), 1)
+        }
+        // `one after another`, `one after the other` is a manner.
+        "after" if before == "one" && (text(i + 1) == "another" || text(i + 2) == "other") => (None, 1),
+        "after" if text(i + 1) == "which" => (Some(Joint::Then), 2),
+        "after" if text(i + 1) == "that" && words.get(i + 2).is_none_or(Option::is_none) => (Some(Joint::Then), 2),
+        "after" if matches!(before, "second" | "minute") && matches!(text(i + 2), "start" | "beginning" | "outset") => {
+            (None, 1)
+        }
+        "after" | "before"
+            if !digit
+                && !matches!(text(i + 1), "a" | "half" | "you" | "some")
+                && !trails(&words.get(..i).unwrap_or_default()) =>
+        {
+            (Some(Joint::When), 1)
+        }
+        "until" | "till" => (Some(Joint::Until), 1),
+        "who" | "whom" | "which" if before != "of" => (Some(Joint::Who), 1),
+        "that" if person => (Some(Joint::Who), 1),
+        "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 1),
+        _ => (None, 1),
+    }
+}
+
+/// `runs after the robot`: `after` belongs to the verb.
+fn trails(before: &[Option<Word>]) -> bool {
+    let last = before.last().and_then(Option::as_ref);
+    last.is_some_and(|word| {
+        matches!(
+            word.stem.as_str(),
+            "go" | "run" | "walk" | "come" | "hurry" | "trail" | "chase" | "tag" | "look" | "jog" | "rush"
+        )
+    })
+}
+
+/// Whether a clause of its own begins at a word without a joint: `as soon as she sees the robot | she signals`.
+fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
+    let lex = lexicon();
+    let word = |k: usize| words.get(k).and_then(Option::as_ref);
+    let text = |k: usize| word(k).map_or("", |word| word.text.as_str());
+    let temporal = matches!(open.joint, Joint::When | Joint::Until | Joint::While);
+    let acts = open.words.iter().skip(1).any(|word| lex.verbs.contains(&word.stem));
+    if open.words.is_empty() || !acts && !(temporal && open.words.len() > 1) {
+        return false;
+    }
+    let before = if i == 0 { "" } else { text(i - 1) };
+    // `on seeing the robot | halts`: who sees is who halts.
+    let sees = temporal && open.words.first().is_some_and(|word| word.text.ends_with("ing"));
+    if sees
+        && matches!(before, "robot" | "it" | "him" | "her" | "this" | "that")
+        && word(i)
+            .is_some_and(|word| word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem))
+    {
+        return true;
+    }
+    match text(i) {
+        "he" | "she" | "they" => !matches!(
+            before,
+            "where"
+                | "what"
+                | "how"
+                | "that"
+                | "than"
+                | "as"
+                | "who"
+                | "whom"
+                | "which"
+                | "whether"
+                | "does"
+                | "do"
+                | "did"
+        ),
+        "does" | "do" | "did" => matches!(text(i + 1), "he" | "she" | "they"),
+        "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three" if temporal => {
+            let closes = matches!(
+                before,
+                "robot"
+                    | "it"
+                    | "him"
+                    | "her"
+                    | "them"
+                    | "m"
+                    | "meter"
+                    | "meters"
+                    | "metre"
+                    | "metres"
+                    | "seconds"
+                    | "s"
+                    | "away"
+                    | "close"
+                    | "closer"
+                    | "near"
+                    | "nearer"
+                    | "by"
+                    | "past"
+                    | "pass"
+                    | "request"
+                    | "signal"
+                    | "gesture"
+                    | "sign"
+                    | "stops"
+                    | "arrives"
+                    | "appears"
+                    | "approaches"
+                    | "proceed"
+                    | "wait"
+                    | "me"
+                    | "acknowledged"
+                    | "halts"
+                    | "opens"
+                    | "open"
+            );
+            let next = mentions(&following(words, i)).into_iter().next();
+            closes
+                && next.is_some_and(|mention| {
+                    mention.from == 0
+                        && word(i + mention.to + 1).is_some_and(|word| {
+                            lex.verbs.contains(&word.stem)
+                                || matches!(word.text.as_str(), "just" | "simply" | "then" | "both" | "all" | "of")
+                        })
+                })
+        }
+        _ => false,
+    }
+}
+
+/// The words from here to the next mark.
+fn following(words: &[Option<Word>], from: usize) -> Vec<Word> {
+    words.iter().skip(from).map_while(Clone::clone).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cuts(text: &str) -> Vec<(Joint, String)> {
+        sentences(text).into_iter().flatten().map(|s| (s.joint, s.quote(text).to_owned())).collect()
+    }
+
+    #[test]
+    fn a_sentence_is_cut_at_commas_and_joining_words() {
+        let cut = cuts("Two leave, and one stays when it sees the robot. Done!");
+        assert_eq!(
+            cut,
+            [
+                (Joint::Opens, "Two leave".to_owned()),
+                (Joint::And, "one stays".to_owned()),
+                (Joint::When, "it sees the robot".to_owned()),
+                (Joint::Opens, "Done".to_owned()),
+            ]
+        );
+    }
+
+    #[test]
+    fn numbers_units_and_apostrophes_are_taken_apart() {
+        let words: Vec<String> = sentences("within 1.5m, 10,000 people don't; human_2's")
+            .into_iter()
+            .flatten()
+            .flat_map(|s| s.words)
+            .map(|w| w.text)
+            .collect();
+        assert_eq!(words, ["within", "1.5", "m", "10000", "people", "do", "not", "human", "2"]);
+    }
+
+    #[test]
+    fn any_text_is_cut_without_breaking() {
+        for text in ["", "…", "'''", "1.2.3,,,4", "ß’t né", "\u{202e}and and and", "- -- —"] {
+            let _cut = sentences(text);
+        }
+    }
+}

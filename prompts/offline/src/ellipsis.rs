@@ -1,0 +1,137 @@
+//! Clauses that leave their verb out: `the other does not`, `and the nurse does as well`.
+
+use socrates_model::{Gesture, Trigger};
+
+use crate::clause::Found;
+use crate::cut::Stretch;
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
+use crate::story::{Story, Subject, Thread};
+
+/// Words that such a clause is made of, beside those whom it speaks of.
+const LEFT: &[&str] = &[
+    "do",
+    "be",
+    "will",
+    "would",
+    "can",
+    "could",
+    "have",
+    "should",
+    "not",
+    "never",
+    "too",
+    "so",
+    "as",
+    "well",
+    "either",
+    "also",
+    "likewise",
+    "same",
+    "the",
+    "neither",
+    "nor",
+    "just",
+    "however",
+    "though",
+    "equally",
+    "similarly",
+    "and",
+    "both",
+    "all",
+    "must",
+    "thing",
+];
+
+/// Whether the clause leaves its verb out, and whether its people do what was said before.
+pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
+    if found.mentions.is_empty() || found.acts() || found.cue.is_some() {
+        return None;
+    }
+    let outside = stretch.words.iter().enumerate();
+    let left: Vec<&str> = outside
+        .filter(|(at, _)| !found.mentions.iter().any(|mention| (mention.from..=mention.to).contains(at)))
+        .map(|(_, word)| word.stem.as_str())
+        .collect();
+    if left.is_empty() || !left.iter().all(|word| LEFT.contains(word)) {
+        return None;
+    }
+    let has = |words: &[&str]| left.iter().any(|word| words.contains(word));
+    let verb = has(&["do", "be", "will", "would", "can", "could", "have", "should", "must"]);
+    if verb && has(&["not", "never", "neither", "nor"]) {
+        Some(false)
+    } else if has(&["too", "likewise", "same", "well", "also", "similarly", "equally"])
+        || verb && has(&["so"])
+        || left == ["do"]
+    {
+        Some(true)
+    } else {
+        None
+    }
+}
+
+/// `obeys`, `does so`: what the robot, or somebody else, asked for just before.
+pub(crate) fn obeys(
+    story: &mut Story,
+    thread: &mut Thread,
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    quote: &str,
+) -> bool {
+    let Some(said) = thread.said.clone() else { return false };
+    let (Trigger::RobotSays(gesture) | Trigger::HumanSays(_, gesture)) = said else { return false };
+    let act = match gesture {
+        Gesture::Wait => Act::Stop,
+        Gesture::Proceed => Act::GoOn,
+        Gesture::ExcuseMe => Act::GiveWay,
+        Gesture::FollowMe => Act::Follow,
+        Gesture::None | Gesture::Acknowledged => return false,
+    };
+    let named: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    let people = match (named.is_empty(), &thread.subject) {
+        (false, _) => named,
+        (true, Subject::People(people)) => people.clone(),
+        (true, Subject::Robot | Subject::Nobody) => return false,
+    };
+    let around = Around { trigger: Some(said), lasts_s: found.lasts_s, quote: quote.to_owned(), ..Around::default() };
+    for who in &people {
+        let _rule = deed::apply(&mut story.cast, *who, act, &around);
+    }
+    thread.subject = Subject::People(people);
+    true
+}
+
+/// Says of these people what the clause before said of others, or rules it out for them.
+pub(crate) fn repeat(
+    story: &mut Story,
+    thread: &mut Thread,
+    meant: &[(usize, usize, Vec<usize>)],
+    does: bool,
+    stretch: &mut Stretch,
+    quote: &str,
+) {
+    for word in &mut stretch.words {
+        word.used = true;
+    }
+    let people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    let acts = thread.acts.clone();
+    for who in &people {
+        for (act, around) in &acts {
+            if does {
+                let _rule = deed::apply(&mut story.cast, *who, *act, around);
+            } else {
+                deed::rule_out(&mut story.cast, *who, *act, quote);
+            }
+        }
+        if let Some(person) = story.cast.people.get_mut(*who) {
+            person.bound = true;
+        }
+    }
+    if acts.is_empty() {
+        story.cast.notes.push(format!("`{quote}` leaves out what is done, and nothing before says it"));
+    }
+    if !people.is_empty() {
+        story.cast.last.clone_from(&people);
+        thread.subject = Subject::People(people);
+    }
+}

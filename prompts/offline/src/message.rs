@@ -1,0 +1,155 @@
+//! What somebody says or signals in a clause.
+
+use socrates_model::Gesture;
+
+use crate::clause::{Found, mark, mark_each};
+use crate::cut::{Joint, Stretch};
+use crate::lexicon::{Act, lexicon};
+use crate::words::{Word, find};
+
+/// Verbs that ask for something for the one who asks: `asks to pass`.
+const ASKS: &[&str] = &["ask", "request", "beg", "demand", "call"];
+/// What a signal without words means.
+const MUTE: &[(&[&str], Gesture)] = &[
+    (&["beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
+    (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
+    (&["thumb", "nod"], Gesture::Acknowledged),
+    (&["acknowledge"], Gesture::Acknowledged),
+];
+
+/// A gesture needs a verb (or the word `gesture`) and a message near it; a raised hand and a horn are their own.
+pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
+    let temporal = matches!(stretch.joint, Joint::When | Joint::Until | Joint::While);
+    let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
+    let verb = verbs
+        .filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true))
+        .min_by_key(|at| (at.first().copied(), std::cmp::Reverse(at.len())));
+    let Some(verb) = verb else {
+        alone(stretch, found, temporal);
+        return;
+    };
+    let (first, last) = (verb.first().copied().unwrap_or(0), verb.last().copied().unwrap_or(0));
+    found.gesture_at = first;
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    if stem(first) == "acknowledge" {
+        found.gesture = Some(Gesture::Acknowledged);
+        mark_each(stretch, &verb);
+        return;
+    }
+    if let Some((says, at)) = pointed(stretch, first, last) {
+        found.gesture = Some(says);
+        mark_each(stretch, &verb);
+        mark(stretch, at, at);
+        return;
+    }
+    if let Some(to) = own_way(stretch, first, last) {
+        found.gesture = Some(Gesture::ExcuseMe);
+        mark_each(stretch, &verb);
+        mark(stretch, last, to);
+        return;
+    }
+    let noun = matches!(stem(last), "gesture" | "signal" | "sign");
+    // `was asked to follow somebody` is an errand, nothing that is said now.
+    let told = matches!(stem(first), "ask" | "tell" | "order" | "instruct" | "request")
+        && first.checked_sub(1).is_some_and(|k| stem(k) == "be")
+        && !stretch.words.iter().any(|word| word.text == "by");
+    if told {
+        return;
+    }
+    for (from, to) in
+        [(first + 1, last), (last + 1, last + 10), (first.saturating_sub(if noun { 3 } else { 0 }), first)]
+    {
+        for phrase in &lexicon().gestures {
+            let inside = |i: usize| (from..to).contains(&i) && !verb.contains(&i);
+            if let Some(at) = find(&stretch.words, phrase, from, false, &inside) {
+                found.gesture = Some(phrase.means);
+                mark_each(stretch, &at);
+                mark_each(stretch, &verb);
+                return;
+            }
+        }
+    }
+    let mute = MUTE.iter().find(|(words, _)| verb.iter().any(|i| words.contains(&stem(*i))));
+    if let Some((_, gesture)) = mute {
+        found.gesture = Some(*gesture);
+        mark_each(stretch, &verb);
+    }
+}
+
+/// `waves it on`, `beckons the robot through`, `motions it back`: the message and where it stands.
+fn pointed(stretch: &Stretch, first: usize, last: usize) -> Option<(Gesture, usize)> {
+    let word = stretch.words.get(first)?;
+    if !matches!(
+        word.stem.as_str(),
+        "wave" | "beckon" | "motion" | "gesture" | "signal" | "gesticulate" | "point" | "wink"
+    ) {
+        return None;
+    }
+    let robot = |word: &Word| {
+        word.label
+            || word.stem == "robot"
+            || matches!(word.text.as_str(), "the" | "at" | "to" | "for" | "them" | "him" | "her")
+    };
+    let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)))?;
+    let gesture = match stretch.words.get(next)?.text.as_str() {
+        "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "forwards" | "closer" | "over"
+        | "onward" | "onwards" | "ahead" => Gesture::Proceed,
+        "back" | "off" | "away" => Gesture::Wait,
+        _ => return None,
+    };
+    Some((gesture, next))
+}
+
+/// `asks to pass`, `requests passage`: the one who asks wants to get through. Where that ends.
+fn own_way(stretch: &Stretch, first: usize, last: usize) -> Option<usize> {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    if !ASKS.contains(&stem(first)) {
+        return None;
+    }
+    let next = (last + 1..stretch.words.len())
+        .find(|k| !matches!(text(*k), "politely" | "loudly" | "again" | "kindly" | "only"))?;
+    let way = |k: usize| matches!(stem(k), "pass" | "passage" | "way" | "room" | "space" | "path" | "access" | "place");
+    let goes = |k: usize| {
+        matches!(stem(k), "pass" | "get" | "go" | "come" | "drive" | "move" | "squeeze" | "cross" | "continue")
+            || text(k) == "be" && matches!(stem(k + 1), "let" | "allow")
+    };
+    match text(next) {
+        "to" if goes(next + 1) => Some(next + 1),
+        "for" if (next + 1..next + 4).any(way) => (next + 1..next + 4).find(|k| way(*k)),
+        "if" | "whether" => None,
+        _ if way(next) => Some(next),
+        _ => None,
+    }
+}
+
+/// A message without a verb: what somebody hears, or nothing but the message itself.
+fn alone(stretch: &mut Stretch, found: &mut Found, temporal: bool) {
+    let says = |at: usize| {
+        temporal && at.checked_sub(1).and_then(|k| stretch.words.get(k)).is_some_and(|word| word.stem == "robot")
+    };
+    let hears = temporal && stretch.words.iter().any(|word| word.stem == "hear");
+    for phrase in &lexicon().gestures {
+        let Some(at) = find(&stretch.words, phrase, 0, false, &|_| true) else { continue };
+        let (first, last) = (at.first().copied().unwrap_or(0), at.last().copied().unwrap_or(0));
+        // `waits` is done, `WAIT` is said.
+        let said = stretch.words.iter().all(|word| word.text == word.stem);
+        // `upon the robot's PROCEED`
+        let written = stretch.words.get(first).is_some_and(|word| word.capital);
+        let hears = hears || written && says(first) && last + 1 == stretch.words.len();
+        if hears
+            || said
+                && first == 0
+                && last + 1 == stretch.words.len()
+                && phrase.items.iter().all(|item| *item != crate::lexicon::Item::Gap)
+        {
+            if hears {
+                (found.gesture, found.gesture_at) = (Some(phrase.means), first);
+                mark_each(stretch, &at);
+            } else {
+                found.only_says = Some(phrase.means);
+            }
+            return;
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Clauses that only say when, and clauses that only name people.
+
+use socrates_model::{HumanId, PlaceClass, Trigger};
+
+use crate::clause::Found;
+use crate::cut::{Joint, Stretch};
+use crate::deed;
+use crate::lexicon::{Act, Cue};
+use crate::mention::Who;
+use crate::story::{Story, Subject, Thread};
+use crate::whereabouts::place_of;
+
+/// Whether the robot is who the clause speaks of.
+pub(crate) fn robot_first(found: &Found) -> bool {
+    found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
+        || found.mentions.is_empty()
+        || matches!(found.cue, Some((Cue::Visible, _)))
+}
+
+/// What a cue waits for.
+pub(crate) fn trigger(cue: Cue, found: &Found, thread: &Thread) -> Option<Trigger> {
+    Some(match cue {
+        Cue::Visible => deed::with_distance(Trigger::RobotVisible(5.0), found.distance_m),
+        Cue::Near => deed::with_distance(Trigger::RobotNear(3.0), found.distance_m),
+        Cue::Blocking => deed::with_distance(Trigger::RobotBlocking(2.0), found.distance_m),
+        Cue::Stopped => Trigger::RobotStopped,
+        Cue::Moving => Trigger::RobotMoving,
+        Cue::Goal => Trigger::GoalReached,
+        Cue::Says => found.gesture.map_or(Trigger::RobotNear(3.0), Trigger::RobotSays),
+        Cue::Told | Cue::Echo => thread.said.clone()?,
+    })
+}
+
+/// Somebody makes a gesture for which another one waits: `when human 1 gestures WAIT, …`.
+fn told(story: &mut Story, thread: &mut Thread, found: &Found, quote: &str) {
+    let Some(gesture) = found.gesture else { return };
+    let mention = found.mentions.iter().rev().find(|mention| mention.from < found.gesture_at);
+    let people = mention.map(|mention| story.cast.resolve(mention, false, quote)).unwrap_or_default();
+    let Some(first) = people.first().copied() else { return };
+    let makes = |story: &Story| {
+        story
+            .cast
+            .people
+            .get(first)
+            .is_some_and(|person| person.rules.iter().any(|read| read.rule.gesture == Some(gesture)))
+    };
+    if !makes(story) {
+        let around = deed::Around { gesture: Some(gesture), quote: quote.to_owned(), ..deed::Around::default() };
+        let _rule = deed::apply(&mut story.cast, first, Act::Gesture, &around);
+    }
+    let id = HumanId::new(u32::try_from(first + 1).unwrap_or(u32::MAX));
+    thread.said = Some(Trigger::HumanSays(id, gesture));
+}
+
+/// A clause that only says when: it times the deeds before it, or those still to come.
+pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Found, quote: &str) {
+    let Some((cue, _)) = found.cue else { return };
+    place_of(story, found, stretch, &thread.subject, quote);
+    if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
+        story.robot_says.push((gesture, quote.to_owned()));
+        thread.said = Some(Trigger::RobotSays(gesture));
+    }
+    if cue == Cue::Told {
+        told(story, thread, found, quote);
+    }
+    let until = stretch.joint == Joint::Until && !std::mem::take(&mut thread.not_until);
+    // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
+    if until
+        && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Says | Cue::Told | Cue::Echo)
+        && let Some(when) = trigger(cue, found, thread)
+    {
+        let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
+        for who in people {
+            deed::walk_on(&mut story.cast, who, when.clone(), quote);
+        }
+        thread.ended = Some(when);
+        return;
+    }
+    if until {
+        for (who, rule) in &thread.made {
+            if let Some(read) = story.cast.people.get_mut(*who).and_then(|p| p.rules.get_mut(*rule)) {
+                read.rule.for_s = Some(10.0);
+            }
+        }
+        story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
+        return;
+    }
+    let back = matches!(stretch.joint, Joint::When | Joint::While | Joint::Until)
+        && !thread.made.is_empty()
+        && !stretch.after_and;
+    // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
+    for mention in found
+        .mentions
+        .iter()
+        .filter(|mention| cue != Cue::Told && !(back && matches!(mention.who, Who::All | Who::Same)))
+    {
+        let people = story.cast.resolve(mention, false, quote);
+        // `the latter, once the former has …, clears the way`: the latter does.
+        if !people.is_empty() && thread.pending.is_empty() {
+            story.cast.last.clone_from(&people);
+            thread.subject = Subject::People(people);
+        }
+    }
+    let Some(when) = trigger(cue, found, thread) else { return };
+    if thread.made.is_empty() && !thread.went_on.is_empty() && !stretch.after_and {
+        // `and goes on when it has stopped`
+        for who in std::mem::take(&mut thread.went_on) {
+            deed::walk_on(&mut story.cast, who, when.clone(), quote);
+        }
+        return;
+    }
+    // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
+    if back {
+        for (who, rule) in std::mem::take(&mut thread.made) {
+            if let Some(read) = story.cast.people.get_mut(who).and_then(|p| p.rules.get_mut(rule)) {
+                // A run away must still be a meeting; without a distance in the text the usual one stays.
+                let usual = read.rule.when.first().cloned();
+                read.rule.when = vec![match (usual, &when, found.distance_m) {
+                    (Some(Trigger::RobotVisible(m)), Trigger::RobotVisible(_), None) => Trigger::RobotVisible(m),
+                    _ => when.clone(),
+                }];
+                read.stated = true;
+                read.exact = found.distance_m.is_some();
+                read.quote = format!("{}, {quote}", read.quote);
+            }
+        }
+    } else {
+        thread.waiting = Some(when);
+        // Who comes out waits for the door anyway.
+        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open"));
+        thread.vague = found.distance_m.is_none();
+    }
+}
+
+/// Whether the robot is named before anybody else.
+fn robot_leads(found: &Found) -> bool {
+    found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
+}
+
+/// A clause without a deed: it names people, places, a group, a pace.
+pub(crate) fn quiet(
+    story: &mut Story,
+    thread: &mut Thread,
+    found: &Found,
+    meant: &[(usize, usize, Vec<usize>)],
+    stretch: &Stretch,
+    quote: &str,
+    next: Option<Joint>,
+) {
+    let mut people: Vec<usize> = Vec::new();
+    for (_, _, some) in meant {
+        people.extend(some.iter().filter(|i| !people.contains(i)).copied().collect::<Vec<_>>());
+    }
+    if let Some(secs) = found.after_s {
+        thread.waiting = Some(Trigger::AfterSecs(secs));
+    } else if let Some(m) =
+        found.distance_m.filter(|_| found.distance_is_when && people.is_empty() || robot_leads(found))
+    {
+        // `at 2 m`, `then it is 2 m in front of him`
+        (thread.waiting, thread.vague) = (Some(Trigger::RobotNear(m)), false);
+        if robot_leads(found) {
+            return;
+        }
+    }
+    let behind = stretch.words.iter().position(|word| word.text == "behind");
+    if let Some(behind) = behind.filter(|behind| robot_leads(found) && found.robots.iter().all(|robot| robot < behind))
+    {
+        // `the robot is behind him`
+        for who in meant.iter().filter(|(from, _, _)| *from > behind).flat_map(|(_, _, some)| some) {
+            deed::relate(&mut story.cast, *who, socrates_model::Relation::Ahead, quote);
+        }
+    }
+    if people.is_empty() {
+        if !found.robots.is_empty() {
+            thread.subject = Subject::Robot;
+        } else if let Subject::People(last) = &thread.subject
+            && (found.in_group || found.pace_mps.is_some() || found.lasts_s.is_some())
+        {
+            people.clone_from(last);
+        }
+    }
+    if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
+        let mut all = std::mem::take(&mut thread.pending);
+        // `two people: a guard …` speaks of one of the two.
+        if !people.is_empty() && people.iter().all(|i| all.contains(i)) {
+            all.clear();
+        }
+        all.extend(people.iter().filter(|i| !all.contains(i)).copied().collect::<Vec<_>>());
+        story.cast.together(&all, quote);
+        people = all;
+    }
+    if people.is_empty() {
+        return;
+    }
+    if found.in_group {
+        story.cast.group(&people, quote);
+    }
+    for i in &people {
+        if let Some(person) = story.cast.people.get_mut(*i) {
+            person.speed_mps = found.pace_mps.or(person.speed_mps);
+            if let Some((class, _)) =
+                found.places.first().filter(|(class, _)| matches!(class, PlaceClass::Elevator | PlaceClass::Room))
+            {
+                person.start = Some(*class);
+            }
+            if let (Some(secs), Some(last)) = (found.lasts_s, person.rules.last_mut()) {
+                last.rule.for_s = Some(secs);
+            }
+        }
+    }
+    // `a nurse and …`: only bare mentions wait for the deed of the next clause.
+    let bare = stretch.words.iter().enumerate().all(|(i, word)| {
+        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i)) || matches!(word.text.as_str(), "both" | "either")
+    });
+    if bare && matches!(next, Some(Joint::And | Joint::Comma | Joint::When | Joint::While)) {
+        thread.pending.clone_from(&people);
+    }
+    story.cast.last.clone_from(&people);
+    thread.subject = Subject::People(people);
+}

@@ -1,0 +1,174 @@
+//! Where things happen, where the robot comes from and where it goes.
+
+use socrates_model::{PlaceClass, Relation};
+
+use crate::clause::Found;
+use crate::cut::Stretch;
+use crate::lexicon::Act;
+use crate::mention::Who;
+use crate::story::{Story, Subject};
+
+/// Words before a place that make it the end of a way, its beginning, or what somebody stands beside.
+const TO: &[&str] = &["to", "towards", "toward", "for", "into", "reach", "reaches", "is", "be"];
+const FROM: &[&str] = &["from", "leaves", "leave", "leaving", "of"];
+const BESIDE: &[&str] = &["at", "by", "near", "outside", "beside", "before", "front", "for", "facing"];
+
+/// What a place has to do with the clause that names it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// It happens there.
+    There,
+    /// The robot goes there.
+    Goal,
+    /// The robot comes from there.
+    Start,
+    /// It only tells who somebody is: `a nurse from ward 4`.
+    Origin,
+}
+
+/// Takes the places of a clause.
+pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subject: &Subject, quote: &str) {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let comes_out =
+        found.deeds.iter().find(|deed| matches!(deed.act, Act::ComeOut | Act::Enter | Act::Stay)).map(|deed| deed.at);
+    // Where the robot leads somebody to is where it goes.
+    let leads = found.deeds.iter().find(|deed| {
+        let robot = found.robots.iter().any(|robot| *robot < deed.at)
+            && found.mentions.iter().all(|mention| mention.from > deed.at);
+        deed.act == Act::Lead && robot
+    });
+    let leads = leads.map(|deed| deed.at);
+    for (class, at) in &found.places {
+        let class = beside_elevator(story, *class, *at, found, stretch);
+        if leads.is_some_and(|deed| *at > deed) {
+            story.robot_enters = Some((class, quote.to_owned()));
+            continue;
+        }
+        match part(*at, found, stretch, subject) {
+            Part::Goal => {
+                story.robot_enters = Some((class, quote.to_owned()));
+                continue;
+            }
+            Part::Start => {
+                story.robot_leaves = Some((class, quote.to_owned()));
+                continue;
+            }
+            Part::Origin => continue,
+            Part::There => {}
+        }
+        let enters = found.deeds.iter().all(|deed| deed.act != Act::ComeOut && deed.act != Act::Stay);
+        // The room that people come out of is where they start, not where they are met.
+        let source = comes_out.is_some_and(|deed| *at > deed)
+            && matches!(class, PlaceClass::Room | PlaceClass::Doorway | PlaceClass::Exit)
+            && !(enters && class == PlaceClass::Doorway);
+        let weak =
+            story.place.as_ref().is_none_or(|(old, _)| class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
+        let in_lobby = class == PlaceClass::ElevatorLobby && text(*at) == "lobby";
+        if !source && (weak || in_lobby) {
+            story.place = Some((class, quote.to_owned()));
+        }
+        // Where people go in words of their own is where a robot that leads them goes.
+        if before(*at, stretch, TO) && found.mentions.first().is_some_and(|mention| mention.from < *at) {
+            story.headed = Some((class, quote.to_owned()));
+        }
+    }
+}
+
+/// Whether one of these words stands before a place, with at most two words between.
+fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let between = |k: usize| {
+        !matches!(
+            text(k),
+            "the" | "a" | "an" | "its" | "their" | "his" | "her" | "of" | "this" | "nearest" | "main" | "next" | "same"
+        )
+    };
+    // The first word before the place that is no article.
+    let near = (1..=4).filter_map(|back| at.checked_sub(back)).find(|k| between(*k));
+    near.is_some_and(|k| words.contains(&text(k)))
+        || at.checked_sub(1).is_some_and(|k| words.contains(&"of") && text(k) == "of" && k > 0 && text(k - 1) == "out")
+}
+
+fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    let people = found.mentions.iter().any(|mention| mention.from < at && !matches!(mention.who, Who::Nobody));
+    let robot = stretch.words.iter().take(at).any(|word| word.stem == "robot");
+    // `the goal of the robot is the elevator`, `with the elevator as its goal`
+    let goal = stretch.words.iter().position(|word| matches!(word.stem.as_str(), "goal" | "destination" | "target"));
+    if goal.is_some()
+        && !people
+        && !stretch.words.iter().any(|word| matches!(word.text.as_str(), "reaches" | "reached"))
+    {
+        return Part::Goal;
+    }
+    // `a nurse from ward 4`, `somebody from the lab`
+    let of_whom =
+        found.mentions.iter().any(|mention| text(mention.to + 1) == "from" && at > mention.to && at <= mention.to + 3);
+    if of_whom {
+        return Part::Origin;
+    }
+    let moves = |k: usize| {
+        matches!(
+            stem(k),
+            "go" | "drive"
+                | "travel"
+                | "move"
+                | "head"
+                | "navigate"
+                | "bring"
+                | "carry"
+                | "deliver"
+                | "take"
+                | "transport"
+                | "return"
+                | "roll"
+                | "fetch"
+                | "way"
+                | "depart"
+                | "leave"
+                | "start"
+                | "come"
+                | "set"
+                | "run"
+                | "proceed"
+        )
+    };
+    let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
+    // Who follows the robot to a place goes where it goes.
+    let along = people
+        && robot
+        && found.deeds.iter().any(|deed| matches!(deed.act, Act::Follow | Act::Abreast | Act::Behind) && deed.at < at);
+    if (own || along) && before(at, stretch, TO) {
+        Part::Goal
+    } else if own && before(at, stretch, FROM) {
+        Part::Start
+    } else {
+        Part::There
+    }
+}
+
+/// Who waits at the elevator is in its lobby; a lobby of an elevator is one too.
+fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, stretch: &Stretch) -> PlaceClass {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let moves = found.deeds.iter().any(|deed| matches!(deed.act, Act::ComeOut | Act::Enter));
+    let stands = found.deeds.iter().any(|deed| matches!(deed.act, Act::Stop | Act::Stand | Act::Talk));
+    match class {
+        PlaceClass::Elevator if (stands || !moves) && before(at, stretch, BESIDE) => PlaceClass::ElevatorLobby,
+        PlaceClass::Elevator if (0..at).any(|k| text(k) == "lobby") => PlaceClass::ElevatorLobby,
+        PlaceClass::OpenArea if text(at) == "lobby" => {
+            let inside = |person: &crate::cast::Person| {
+                person
+                    .relation
+                    .as_ref()
+                    .is_some_and(|(relation, _)| matches!(relation, Relation::Leaving | Relation::Staying))
+            };
+            let car = found.places.iter().any(|(class, _)| *class == PlaceClass::Elevator)
+                || story.place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::Elevator)
+                    && found.robots.is_empty()
+                    && !story.cast.people.iter().any(inside);
+            if car { PlaceClass::ElevatorLobby } else { class }
+        }
+        _ => class,
+    }
+}

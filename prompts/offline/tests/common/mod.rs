@@ -1,0 +1,25 @@
+//! What the tests of whole questions share.
+
+use socrates_model::job::Stage;
+use socrates_prompts::Question;
+
+/// The question for a proposal on a shipped map, as the stages would ask it; without a text it is unguided.
+pub(crate) fn question<'a>(on: &str, rough: impl Into<Option<&'a str>>) -> Question {
+    let request: socrates_model::Request = serde_json::from_value(serde_json::json!({
+        "location": on, "social_context": "", "task": "Deliver mail", "rough_scenario": rough.into(),
+    }))
+    .unwrap();
+    let location = socrates_maps::shipped::load(on).unwrap();
+    let reading = socrates_offline::read(&request, &location);
+    Question {
+        stage: Stage::Proposal,
+        request,
+        reading,
+        location,
+        proposal: None,
+        only: Vec::new(),
+        feedback: Vec::new(),
+        refused: None,
+        seed: 3,
+    }
+}
