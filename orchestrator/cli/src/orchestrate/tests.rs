@@ -119,6 +119,7 @@ impl Site {
             repair: None,
             anew: Vec::new(),
             verdict: Some(Verdict::Realised),
+            rates: None,
         };
         self.ask(keys::REPORT, &report).await
     }
