@@ -118,6 +118,7 @@ impl Site {
             remark: "fine".to_owned(),
             repair: None,
             anew: Vec::new(),
+            rates: None,
             verdict: Some(Verdict::Realised),
         };
         self.ask(keys::REPORT, &report).await
