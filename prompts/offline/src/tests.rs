@@ -545,5 +545,6 @@ fn a_person_who_wants_other_paths_gets_others() {
         };
         let others = parsed(socrates_prompts::parse_paths(&Offline::answer(&again), &again));
         assert_ne!(others.robot, first.robot, "seed {seed}");
+        assert_eq!(others.robot.last(), first.robot.last(), "the task stays");
     }
 }
