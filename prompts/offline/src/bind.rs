@@ -115,6 +115,16 @@ pub(crate) fn people_deed(
     } else {
         act
     };
+    // `waits 5 seconds and then goes in`: whatever it did, it goes on.
+    let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
+    if after && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {
+        for who in people {
+            let halted = story.cast.people.get_mut(*who).filter(|person| !person.rules.is_empty());
+            if let Some(person) = halted {
+                person.goes_on.get_or_insert_with(|| quote.to_owned());
+            }
+        }
+    }
     if act == Act::GoOn {
         thread.went_on.extend(people);
     }

@@ -37,6 +37,8 @@ pub(crate) struct Person {
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
     pub(crate) bound: bool,
+    /// What it is called.
+    pub(crate) name: Option<String>,
     /// Words that say that it walks on after all it did.
     pub(crate) goes_on: Option<String>,
     /// What was ruled out for it, with the words.
@@ -460,6 +462,10 @@ impl Cast {
             if let Some(members) = named.clone().find(fits).or_else(|| last.filter(|_| wanted.is_none())) {
                 return members.clone();
             }
+        }
+        let called = self.people.iter().position(|person| mention.role.is_some() && person.name == mention.role);
+        if let Some(who) = called.filter(|_| !plural) {
+            return vec![who];
         }
         if let Some(role) = &mention.role {
             let same: Vec<usize> =

@@ -252,6 +252,15 @@ fn negated(stretch: &Stretch, at: usize) -> bool {
     if before(1) == "stop" && matches!(before(2), "not" | "never") {
         return false;
     }
+    // `never turns round to look`, `does not want to move`
+    let to = before(1) == "to"
+        && (2..=5).any(|back| matches!(before(back), "not" | "never"))
+        && !(2..=5)
+            .take_while(|back| !matches!(before(*back), "not" | "never"))
+            .any(|back| before(back) == "robot" || before(back) == "until");
+    if to {
+        return true;
+    }
     // `never so much as glances`, `not even once looks`
     let reach = (1..=6)
         .find(|back| {

@@ -113,8 +113,12 @@ pub(crate) fn repeat(
     for word in &mut stretch.words {
         word.used = true;
     }
-    let people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
     let acts = thread.acts.clone();
+    // `the robot tells them to go ahead, which they do`
+    if does && acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
+        return;
+    }
+    let people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
     for who in &people {
         for (act, around) in &acts {
             if does {

@@ -135,7 +135,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         if stem(k) != "of" {
             return None;
         }
-        if matches!(text(k + 1), "them" | "these" | "those" | "us") {
+        if matches!(text(k + 1), "them" | "these" | "those" | "us" | "whom" | "which") {
             return Some(Whole { end: k + 1, role: None, count: None });
         }
         let skip = if matches!(

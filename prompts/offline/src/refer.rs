@@ -74,7 +74,9 @@ pub(crate) fn others(
                 return made(Who::OrdinalOf { number, count: of }, role(end), end);
             }
             let end = noun(words, start, lex).unwrap_or(start - 1);
-            let bare = end == at + the && (the == 0 || thing(words, start));
+            // `First waits, second looks`, where people leave articles out.
+            let verb = words.get(start).is_some_and(|word| lex.verbs.contains(&word.stem) && at == 0);
+            let bare = end == at + the && (the == 0 && !verb || thing(words, start));
             if bare { None } else { made(Who::Ordinal(number), role(end), end) }
         }
         _ => None,
