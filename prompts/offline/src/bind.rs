@@ -49,6 +49,11 @@ pub(crate) fn subject_of(
         return people(some);
     }
     let robot = found.robots.iter().rev().find(|robot| **robot < at);
+    // `has the robot coming up behind him`: the robot is behind.
+    let after = found.mentions.iter().any(|mention| mention.from > to && mention.who == Who::Object);
+    if act == Act::Behind && after && robot.is_some_and(|robot| robot + 1 == at || robot + 2 == at) {
+        return Subject::Robot;
+    }
     let robotic = matches!(
         act,
         Act::Pass
@@ -115,6 +120,10 @@ pub(crate) fn people_deed(
     } else {
         act
     };
+    // `it says EXCUSE_ME, and she moves`: out of its way.
+    let moves = stretch.words.get(at).is_some_and(|word| word.stem == "move");
+    let asked = matches!(thread.waiting, Some(Trigger::RobotSays(socrates_model::Gesture::ExcuseMe)));
+    let act = if asked && moves && matches!(act, Act::Walk | Act::GoOn) { Act::GiveWay } else { act };
     // `waits 5 seconds and then goes in`: whatever it did, it goes on.
     let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
     if after && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {

@@ -120,7 +120,7 @@ impl Cast {
                 pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
             // `Ten, I said.`
-            Who::Bare(n) if declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
+            Who::Bare(n) if *n > 1 && declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
                 self.latest()
             }
             Who::Bare(n) => {
@@ -136,7 +136,7 @@ impl Cast {
             }
             Who::More(n) => match self.pick_open(*n, mention) {
                 Some(found) if *n == 1 => found,
-                Some(_) | None => self.join(*n, mention, declares, quote),
+                Some(_) | None => self.join(*n, &self.alike(mention), declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
             Who::ToldApart => self.part_of(1, mention, quote),
@@ -201,7 +201,7 @@ impl Cast {
             Who::Further(n) => {
                 let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
                 let open = if there { self.pick_open(1, mention) } else { None };
-                open.unwrap_or_else(|| self.join(1, mention, declares, quote))
+                open.unwrap_or_else(|| self.join(1, &self.alike(mention), declares, quote))
             }
             Who::AllBut(n) => {
                 let set = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
@@ -439,10 +439,15 @@ impl Cast {
         if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
             return rest;
         }
-        // `one visitor flees, the other looks`: another visitor.
+        self.join(count.unwrap_or(1), &self.alike(&Mention { word: "one".to_owned(), ..mention.clone() }), false, quote)
+    }
+
+    /// `one visitor flees, another one looks`: another visitor.
+    fn alike(&self, mention: &Mention) -> Mention {
         let alike = self.last.first().and_then(|i| self.people.get(*i)).map(|person| person.role.clone());
-        let role = mention.role.clone().or_else(|| alike.filter(|role| !role.is_empty()));
-        self.join(count.unwrap_or(1), &Mention { role, ..mention.clone() }, false, quote)
+        let alike =
+            alike.filter(|role| !role.is_empty() && mention.word == "one" && lexicon().roles.contains_key(role));
+        Mention { role: mention.role.clone().or(alike), ..mention.clone() }
     }
 
     fn definite(

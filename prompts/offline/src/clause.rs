@@ -418,6 +418,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             found.in_group = true;
             used.push(i);
         }
+        found.in_group |= text == "together" && i > 0;
         if text == "suddenly" || text == "together" {
             used.push(i);
         }

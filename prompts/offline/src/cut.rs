@@ -343,6 +343,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::When), 1)
         }
+        "each" | "every" | "any" if text(i + 1) == "time" => (Some(Joint::When), 2),
+        "that" if i > 0 && sees(i - 1) && (stem(i + 1) == "robot" || stem(i + 2) == "robot") => (Some(Joint::Comma), 1),
         "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),

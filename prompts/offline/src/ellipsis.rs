@@ -113,7 +113,14 @@ pub(crate) fn repeat(
     for word in &mut stretch.words {
         word.used = true;
     }
-    let acts = thread.acts.clone();
+    let mut acts = thread.acts.clone();
+    // `each time the robot stops, so does the intern`
+    if does && thread.made.is_empty() && thread.waiting == Some(Trigger::RobotStopped) {
+        acts.clear();
+        let around = Around { trigger: thread.waiting.clone(), quote: quote.to_owned(), ..Around::default() };
+        acts.push((Act::Stop, around));
+        thread.untaken = None;
+    }
     // `the robot tells them to go ahead, which they do`
     if does && acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
         return;

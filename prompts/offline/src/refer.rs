@@ -34,7 +34,9 @@ pub(crate) fn others(
             let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
             let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
             let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;
-            made(Who::More(several.unwrap_or(1)), role(end), end)
+            let one = if end < start && several.is_none() { "one" } else { "" };
+            let mention = made(Who::More(several.unwrap_or(1)), role(end), end);
+            mention.map(|mention| Mention { word: one.to_owned(), ..mention })
         }
         "others" | "rest" | "remaining" => {
             let several = count(at + the + 1);

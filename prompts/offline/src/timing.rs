@@ -101,6 +101,11 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
             thread.subject = Subject::People(people);
         }
     }
+    // `when it is 80 cm behind her does she notice it`: what is noticed then is when it is there.
+    let known = thread.waiting.is_some() && !thread.vague;
+    if known && cue == Cue::Visible && !matches!(stretch.joint, Joint::When | Joint::While | Joint::Until) {
+        return;
+    }
     let Some(when) = trigger(cue, found, thread) else { return };
     if thread.made.is_empty() && !thread.went_on.is_empty() && !stretch.after_and {
         // `and goes on when it has stopped`
