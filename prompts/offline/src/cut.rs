@@ -329,8 +329,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
-            if !(text(i) == "so" && matches!(before, "do"))
-                && !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
+            if text(i) != "so"
+                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly") =>
         {
             (Some(Joint::Comma), 1)
         }
@@ -373,7 +373,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "after" | "before"
             if !digit
                 && !matches!(text(i + 1), "a" | "half" | "you" | "some")
-                && !trails(&words.get(..i).unwrap_or_default()) =>
+                && !trails(words.get(..i).unwrap_or_default()) =>
         {
             (Some(Joint::When), 1)
         }
@@ -403,7 +403,7 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let text = |k: usize| word(k).map_or("", |word| word.text.as_str());
     let temporal = matches!(open.joint, Joint::When | Joint::Until | Joint::While);
     let acts = open.words.iter().skip(1).any(|word| lex.verbs.contains(&word.stem));
-    if open.words.is_empty() || !acts && !(temporal && open.words.len() > 1) {
+    if open.words.is_empty() || !(acts || temporal && open.words.len() > 1) {
         return false;
     }
     let before = if i == 0 { "" } else { text(i - 1) };

@@ -169,6 +169,16 @@ fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, s
                     && !story.cast.people.iter().any(inside);
             if car { PlaceClass::ElevatorLobby } else { class }
         }
-        _ => class,
+        PlaceClass::Elevator
+        | PlaceClass::OpenArea
+        | PlaceClass::ElevatorLobby
+        | PlaceClass::Corridor
+        | PlaceClass::NarrowPassage
+        | PlaceClass::Intersection
+        | PlaceClass::BlindCorner
+        | PlaceClass::Doorway
+        | PlaceClass::Room
+        | PlaceClass::Exit
+        | PlaceClass::Plain => class,
     }
 }
