@@ -166,16 +166,26 @@ impl Cast {
                     return members;
                 }
                 let sets = [self.last.clone(), self.latest()];
+                let everybody: Vec<usize> = (0..self.people.len()).collect();
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
                     .collect();
                 sets.into_iter()
-                    .chain([alike])
+                    .chain([alike, everybody])
                     .find(|set| fitting(set))
                     .unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
             Who::Other(count) => self.others(*count, mention, quote),
             Who::Ordinal(n) => {
+                // `three wait, two come out; the former …, the latter …`
+                let sets: Vec<&Vec<usize>> =
+                    self.sets.iter().map(|set| &set.members).filter(|members| members.len() > 1).collect();
+                if let [.., former, latter] = sets.as_slice()
+                    && matches!(mention.word.as_str(), "former" | "latter")
+                    && former.iter().all(|i| !latter.contains(i))
+                {
+                    return if *n == 0 { (*latter).clone() } else { (*former).clone() };
+                }
                 let set = self.latest();
                 let index = if *n == 0 { set.last() } else { set.get(usize::try_from(n - 1).unwrap_or(usize::MAX)) };
                 index.copied().map_or_else(|| self.join(1, mention, false, quote), |i| vec![i])
@@ -480,6 +490,15 @@ impl Cast {
             }
             if !plural && let Some(first) = same.first() {
                 return vec![self.last.iter().copied().find(|i| same.contains(i)).unwrap_or(*first)];
+            }
+            // `a couple …; the husband …, his wife …`, `one of two guards …, his partner …`: of those who are there.
+            const OF_THEM: &[&str] =
+                &["husband", "wife", "partner", "companion", "colleague", "friend", "mate", "buddy", "coworker"];
+            if !plural
+                && OF_THEM.contains(&role.as_str())
+                && let Some(found) = self.pick_open(1, &Mention { role: None, ..mention.clone() })
+            {
+                return found;
             }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
             if !plural && plain(role) {

@@ -348,7 +348,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
-        "on" if matches!(text(i + 1), "this" | "that" | "the") && said(i + 2) => (Some(Joint::When), 1),
+        "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
+            (Some(Joint::When), 1)
+        }
         "on" if stem(i + 2) == "robot"
             && matches!(stem(i + 3), "approach" | "arrival" | "appearance" | "request" | "signal") =>
         {
@@ -373,7 +375,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "after" | "before"
             if !digit
                 && !matches!(text(i + 1), "a" | "half" | "you" | "some")
-                && !trails(words.get(..i).unwrap_or_default()) =>
+                && (!trails(words.get(..i).unwrap_or_default())
+                    || matches!(text(i + 1), "it" | "he" | "she" | "they")
+                        && lexicon().verbs.contains(stem(i + 2))) =>
         {
             (Some(Joint::When), 1)
         }

@@ -45,7 +45,9 @@ const LEFT: &[&str] = &[
 
 /// Whether the clause leaves its verb out, and whether its people do what was said before.
 pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
-    if found.mentions.is_empty() || found.acts() || found.cue.is_some() {
+    let same =
+        stretch.words.iter().any(|word| word.text == "same") && stretch.words.iter().any(|word| word.stem == "do");
+    if found.mentions.is_empty() && !same || found.acts() || found.cue.is_some() {
         return None;
     }
     let outside = stretch.words.iter().enumerate();
@@ -125,7 +127,10 @@ pub(crate) fn repeat(
     if does && acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
         return;
     }
-    let people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    let mut people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    if let (true, Subject::People(some)) = (people.is_empty(), &thread.subject) {
+        people.clone_from(some);
+    }
     for who in &people {
         for (act, around) in &acts {
             if does {

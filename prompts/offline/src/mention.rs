@@ -123,6 +123,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             (0..=2).filter_map(|back| k.checked_sub(back)).map(&stem).find(|name| lex.roles.contains_key(*name));
         match named {
             Some(name) => lex.roles.get(name).filter(|word| !word.generic).map(|_| name.to_owned()),
+            None if matches!(text(k), "guide" | "escort") => Some(stem(k).to_owned()),
             None => {
                 Some(stem(k).to_owned()).filter(|name| !name.is_empty() && !lex.known.contains(name) && name != "robot")
             }

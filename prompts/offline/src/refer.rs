@@ -79,7 +79,14 @@ pub(crate) fn others(
             // `First waits, second looks`, where people leave articles out.
             let verb = words.get(start).is_some_and(|word| lex.verbs.contains(&word.stem) && at == 0);
             let bare = end == at + the && (the == 0 && !verb || thing(words, start));
-            if bare { None } else { made(Who::Ordinal(number), role(end), end) }
+            if bare {
+                None
+            } else if matches!(word, "former" | "latter") {
+                let mention = made(Who::Ordinal(number), None, end);
+                mention.map(|mention| Mention { word: word.to_owned(), ..mention })
+            } else {
+                made(Who::Ordinal(number), role(end), end)
+            }
         }
         _ => None,
     }
@@ -104,6 +111,10 @@ pub(crate) fn group(
     let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming" | "into"))
         && text(group + 1) != "of";
     if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
+        return None;
+    }
+    // `a group consisting of a doctor and two students` is those whom it lists.
+    if matches!(text(group + 1), "consisting" | "comprising" | "composed" | "made") {
         return None;
     }
     let listed = text(group + 1) == "of";

@@ -184,6 +184,15 @@ pub(crate) fn quiet(
             people.clone_from(last);
         }
     }
+    // `a second visitor, right behind the first, …`: only where the second is.
+    let placed =
+        found.mentions.first().and_then(|mention| mention.from.checked_sub(1)).and_then(|k| stretch.words.get(k));
+    let placed =
+        placed.is_some_and(|word| matches!(word.text.as_str(), "behind" | "beside" | "to" | "with" | "near" | "by"));
+    if placed && !thread.pending.is_empty() && stretch.joint == Joint::Comma {
+        thread.subject = Subject::People(std::mem::take(&mut thread.pending));
+        return;
+    }
     if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
         let mut all = std::mem::take(&mut thread.pending);
         // `two people: a guard …` speaks of one of the two.
