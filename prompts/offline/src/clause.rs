@@ -151,7 +151,7 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
                 && made.is_some_and(|word| {
                     matches!(
                         word.stem.as_str(),
-                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free"
+                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free" | "have"
                     )
                 })
             {

@@ -459,7 +459,9 @@ fn counted(
     let unit = words.get(next).is_some_and(|word| {
         matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "pm" | "am")
     });
-    let counts = thing(words, next);
+    // `two or three meters`
+    let range = text(next) == "or" && words.get(next + 1).is_some_and(|word| word.count().is_some());
+    let counts = thing(words, next) || range;
     let verb = words.get(next).is_none_or(|word| lex.known.contains(&word.stem) && !lex.labels.contains(&word.stem));
     if label || unit || counts || !verb || article || text(at).contains('.') || n == 0 {
         return None;

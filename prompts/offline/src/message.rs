@@ -13,7 +13,7 @@ const ASKS: &[&str] = &["ask", "request", "beg", "demand", "call"];
 const MUTE: &[(&[&str], Gesture)] = &[
     (&["beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
     (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
-    (&["thumb", "nod"], Gesture::Acknowledged),
+    (&["thumb", "nod", "greet"], Gesture::Acknowledged),
     (&["acknowledge", "thank"], Gesture::Acknowledged),
 ];
 

