@@ -32,12 +32,16 @@ impl Geodesic {
         let mut distance_m = Layer::filled(raster.width, raster.height, f64::INFINITY);
         let radius_m = radius_m.max(f64::MIN_POSITIVE);
         let fits = |column: usize, row: usize| field.clearance_of_cell(column, row) >= radius_m;
-        let mut front: BinaryHeap<Reverse<(u64, usize, usize)>> = BinaryHeap::new();
+        let mut front: BinaryHeap<Reverse<(u64, u32, u32)>> = BinaryHeap::new();
+        let entry = |away: f64, column: usize, row: usize| {
+            // Bits of floats that are not negative sort as the floats do; a map has fewer than 2^32 cells a side.
+            let short = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+            Reverse((away.to_bits(), short(column), short(row)))
+        };
         let mut push = |layer: &mut Layer<f64>, column: usize, row: usize, away: f64| {
             if layer.get(column, row).is_some_and(|known| away < known) {
                 layer.set(column, row, away);
-                // Bits of floats that are not negative sort as the floats do.
-                front.push(Reverse((away.to_bits(), column, row)));
+                front.push(entry(away, column, row));
             }
         };
         if let Some(start) = nearest_cell(field, goal, radius_m, SNAP_M) {
@@ -54,11 +58,14 @@ impl Geodesic {
         }
         let step = raster.resolution_m;
         while let Some(Reverse((bits, column, row))) = front.pop() {
+            let (column, row) = (column as usize, row as usize);
             if distance_m.get(column, row).is_none_or(|known| known.to_bits() != bits) {
                 continue;
             }
             for (column, row) in four_neighbors(column, row) {
-                if !fits(column, row) {
+                let known = distance_m.get(column, row).unwrap_or(0.0);
+                // What the front has passed stays, and most neighbors are passed.
+                if known.to_bits() <= bits || !fits(column, row) {
                     continue;
                 }
                 let at = |column: Option<usize>, row: Option<usize>| {
@@ -68,9 +75,9 @@ impl Geodesic {
                 let a = at(column.checked_sub(1), there).min(at(column.checked_add(1), there));
                 let b = at(here, row.checked_sub(1)).min(at(here, row.checked_add(1)));
                 let away = upwind(a, b, step);
-                if distance_m.get(column, row).is_some_and(|known| away < known - 1e-12) {
+                if away < known - 1e-12 {
                     distance_m.set(column, row, away);
-                    front.push(Reverse((away.to_bits(), column, row)));
+                    front.push(entry(away, column, row));
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use socrates_model::{Cell, Grid, Point, Vector};
+use socrates_model::{Point, Vector};
 
 use crate::layer::{Raster, floor_index};
 
@@ -24,17 +24,18 @@ pub(crate) struct Faces {
 }
 
 impl Faces {
-    pub(crate) fn of(grid: &Grid, raster: &Raster) -> Self {
-        let columns = grid.width / BUCKET_CELLS + 1;
-        let rows = grid.height / BUCKET_CELLS + 1;
+    /// The surfaces between cells that are free floor and cells that are not.
+    pub(crate) fn of(raster: &Raster, is_free: impl Fn(usize, usize) -> bool) -> Self {
+        let columns = raster.width / BUCKET_CELLS + 1;
+        let rows = raster.height / BUCKET_CELLS + 1;
         let mut faces = Self { columns, buckets: vec![Vec::new(); columns.saturating_mul(rows)] };
         let free = |column: Option<usize>, row: Option<usize>| {
-            column.zip(row).is_some_and(|(column, row)| grid.at(column, row) == Cell::Free)
+            column.zip(row).is_some_and(|(column, row)| is_free(column, row))
         };
         // Surfaces along rows: between the row above and the row below a cell border.
-        for border in 0..=grid.height {
+        for border in 0..=raster.height {
             let side = |at: usize| facing(free(Some(at), border.checked_sub(1)), free(Some(at), Some(border)));
-            faces.collect(grid.width, side, |from, to, first_side| {
+            faces.collect(raster.width, side, |from, to, first_side| {
                 let ends = (raster.world(from, to_f64(border)), raster.world(to, to_f64(border)));
                 // Image x grows to the right, so "left of the way" is up in the world, the row above.
                 let face =
@@ -42,9 +43,9 @@ impl Faces {
                 (face, floor_index(from), border)
             });
         }
-        for border in 0..=grid.width {
+        for border in 0..=raster.width {
             let side = |at: usize| facing(free(border.checked_sub(1), Some(at)), free(Some(border), Some(at)));
-            faces.collect(grid.height, side, |from, to, first_side| {
+            faces.collect(raster.height, side, |from, to, first_side| {
                 let ends = (raster.world(to_f64(border), from), raster.world(to_f64(border), to));
                 // Image y grows downward: going down, the left hand points to larger x, the second side.
                 let face =

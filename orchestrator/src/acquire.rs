@@ -9,9 +9,10 @@ use socrates_model::Digest;
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::wire::{Acquire, Acquired, Grant, Hello};
 
+use crate::bucket::{Bucket, server_of};
 use crate::event::{Answer, Token};
 use crate::pipeline;
-use crate::state::{Attempt, JobState, Worker};
+use crate::state::{Attempt, JobState, Millis, Worker};
 use crate::turn::Turn;
 
 /// Jobs in one reply at most.
@@ -60,7 +61,13 @@ impl Turn<'_> {
                 }
                 self.reply(to, Answer::Acquired(Acquired::Grants(grants)));
             }
-            Err(reason) => self.none(to, reason),
+            Err((reason, wake)) => {
+                if let Some(wake) = wake {
+                    let standing = Some(self.state.author_wake_at).filter(|at| *at > 0);
+                    self.state.author_wake_at = standing.map_or(wake, |at| at.min(wake));
+                }
+                self.none(to, reason);
+            }
         }
     }
 
@@ -70,7 +77,7 @@ impl Turn<'_> {
     }
 
     /// Jobs to hand out, or why there are none.
-    fn choose(&self, ask: &Acquire) -> Result<Vec<JobKey>, &'static str> {
+    fn choose(&self, ask: &Acquire) -> Result<Vec<JobKey>, (&'static str, Option<Millis>)> {
         let state = &*self.state;
         let most = usize::try_from(ask.credits).unwrap_or(GRANTS).min(GRANTS);
         let mut chosen = Vec::new();
@@ -78,17 +85,16 @@ impl Turn<'_> {
         let mut bytes = 0;
         let mut why = "empty";
         let mut begun = 0;
+        let mut wake = Millis::MAX;
+        // Questions and their tokens that this reply already puts to each server.
+        let mut questions: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
         let mut authoring = state.authoring;
         let workers = u32::try_from(state.workers.len()).unwrap_or(u32::MAX);
         let wip = usize::try_from(workers.saturating_mul(state.policy.open_per_worker)).unwrap_or(usize::MAX).max(8);
         if state.paused.contains("") {
-            return Err("paused");
+            return Err(("paused", None));
         }
         for stage in pipeline::URGENCY.into_iter().filter(|stage| ask.stages.contains(stage)) {
-            if pipeline::is_authored(stage) && self.now < state.author_pause_until {
-                why = "throttled";
-                continue;
-            }
             for (_, _, key) in state.ready.get(&stage).into_iter().flatten() {
                 if chosen.len() >= most {
                     return Ok(chosen);
@@ -101,6 +107,13 @@ impl Turn<'_> {
                 if pipeline::is_authored(stage) && authoring >= state.author_slots {
                     why = "throttled";
                     break;
+                }
+                let server = server_of(&job.spec);
+                let asked = server.and_then(|server| questions.get(server)).copied().unwrap_or_default();
+                let asks = server.map(|server| self.asks(server, stage, asked));
+                if let Some((from, _)) = asks.filter(|(from, _)| *from > self.now) {
+                    (why, wake) = ("throttled", wake.min(from));
+                    continue;
                 }
                 let begins = !scenario.started && !scenario.spec.review;
                 if begins && state.under_way + begun >= wip {
@@ -124,11 +137,23 @@ impl Turn<'_> {
                     return Ok(chosen);
                 }
                 begun += usize::from(begins);
+                if let Some((server, (_, more))) = server.zip(asks) {
+                    questions.insert(server, more);
+                }
                 authoring += u32::from(pipeline::is_authored(stage));
                 chosen.push(key.clone());
             }
         }
-        if chosen.is_empty() { Err(why) } else { Ok(chosen) }
+        if chosen.is_empty() { Err((why, Some(wake).filter(|wake| *wake < Millis::MAX))) } else { Ok(chosen) }
+    }
+
+    /// From when on a server may be asked one more question of this stage, beside those already put to it in this reply; and
+    /// how much all of them are.
+    fn asks(&self, server: &str, stage: Stage, asked: (u64, u64)) -> (Millis, (u64, u64)) {
+        let new = || Bucket::new(&self.state.policy, self.now);
+        let bucket = self.state.servers.get(server).cloned().unwrap_or_else(new);
+        let tokens = bucket.typical(stage);
+        (bucket.from(self.now, asked, tokens), (asked.0 + 1, asked.1.saturating_add(tokens)))
     }
 
     /// Leases a ready job to a worker.
@@ -149,6 +174,7 @@ impl Turn<'_> {
         job.deadline_at = deadline_at;
         self.attempt_mut(key, number);
         self.move_to(key, JobState::Leased, "");
+        self.with_bucket(key, |bucket, _policy| bucket.take(now, key.stage));
         self.arm(key, Some(lease_until.min(deadline_at)));
         if let Some(worker) = self.state.workers.get_mut(instance) {
             worker.held.insert(key.clone());

@@ -8,11 +8,13 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::Fault;
 use socrates_model::fault::FailureClass;
 use socrates_model::job::{JobKey, Stage};
+use socrates_model::{Fault, FaultCode};
 
+use crate::bucket::{Bucket, server_of};
 use crate::pipeline;
+use crate::policy::Policy;
 use crate::state::{AttemptEnd, Job, JobState};
 use crate::turn::Turn;
 
@@ -56,7 +58,9 @@ impl Turn<'_> {
             }
             FailureClass::Unparsable => {
                 let limit = self.state.policy.unparsable_tries;
-                if self.count(key, |job| &mut job.tries.unparsable) > limit {
+                // Asked again it had twice the room: who is cut off then will be cut off again.
+                let cut_twice = is_cut(&failure.faults) && self.was_cut(key, number);
+                if self.count(key, |job| &mut job.tries.unparsable) > limit || cut_twice {
                     self.move_to(key, JobState::Dead, why);
                 } else {
                     self.ask_again(key, number, failure, &why);
@@ -66,6 +70,13 @@ impl Turn<'_> {
             FailureClass::Poison => self.move_to(key, JobState::Dead, why),
             FailureClass::Permanent => self.move_to(key, JobState::Failed, why),
         }
+    }
+
+    /// Does something with the bucket of the server that a job's author asks, if it asks one.
+    pub(crate) fn with_bucket(&mut self, key: &JobKey, edit: impl FnOnce(&mut Bucket, &Policy)) {
+        let Some(server) = self.job(key).and_then(|job| server_of(&job.spec)).map(str::to_owned) else { return };
+        let (policy, now) = (&self.state.policy, self.now);
+        edit(self.state.servers.entry(server).or_insert_with(|| Bucket::new(policy, now)), policy);
     }
 
     fn count(&mut self, key: &JobKey, which: impl FnOnce(&mut Job) -> &mut u32) -> u32 {
@@ -104,7 +115,7 @@ impl Turn<'_> {
             self.state.author_slots = (self.state.author_slots.min(self.state.authoring.saturating_add(1)) / 2).max(1);
             if let Some(wish) = failure.retry_after_ms {
                 let until = self.now.saturating_add(wish.min(self.state.policy.backoff_cap_ms));
-                self.state.author_pause_until = self.state.author_pause_until.max(until);
+                self.with_bucket(key, |bucket, _policy| bucket.pause(until));
             }
         }
         let (limit, hard_limit) = (self.state.policy.overload_tries, self.state.policy.overload_tries * 16);
@@ -152,6 +163,13 @@ impl Turn<'_> {
         before.is_some_and(|before| before.class == Some(FailureClass::Semantic) && before.faults == faults)
     }
 
+    /// Whether the answer before was cut off.
+    fn was_cut(&self, key: &JobKey, number: u32) -> bool {
+        let Some(job) = self.job(key) else { return false };
+        let before = job.attempts.iter().rev().find(|attempt| attempt.number < number);
+        before.is_some_and(|before| is_cut(&before.faults))
+    }
+
     fn ask_again(&mut self, key: &JobKey, number: u32, failure: &Failure, why: &str) {
         self.reword(key, why, |job| {
             let left = job.attempts.iter().find(|attempt| attempt.number == number);
@@ -189,7 +207,7 @@ impl Turn<'_> {
     fn send_back(&mut self, key: &JobKey, failure: &Failure, owners: &[Option<Stage>], why: &str) {
         let mut targets: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
         for (owner, fault) in owners.iter().zip(&failure.faults) {
-            if let Some(owner) = owner.filter(|owner| pipeline::is_after(key.stage, *owner)) {
+            if let Some(owner) = owner.filter(|owner| pipeline::is_after(key.stage, &key.item, *owner)) {
                 targets.entry(owner).or_default().push(fault.clone());
             }
         }
@@ -197,6 +215,10 @@ impl Turn<'_> {
             self.move_to(key, JobState::Dead, format!("{why}, nothing left to try"));
         }
     }
+}
+
+fn is_cut(faults: &[Fault]) -> bool {
+    faults.iter().any(|fault| fault.code == FaultCode::ETrunc)
 }
 
 /// The reasons a job carries: those it was sent back with, then the newest refusal.

@@ -59,8 +59,10 @@ fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
             Report { verdict: Some(verdict), repair, ..success(grant) }
         }
         _ if grant.spec.key.stage == Stage::Review && dice.below(2) == 0 => {
-            let repair = Some(Repair { stage: Stage::Proposal, faults: faults(dice) });
-            Report { repair, ..success(grant) }
+            let draft = [Stage::Proposal, Stage::Paths, Stage::Behaviors];
+            let seen = if grant.spec.key.item == crate::pipeline::DRAFT_LOOK { &draft[..] } else { &draft[..1] };
+            let stage = dice.pick(seen);
+            Report { anew: vec![Repair { stage, faults: faults(dice) }], ..success(grant) }
         }
         _ => success(grant),
     }

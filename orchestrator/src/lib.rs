@@ -12,6 +12,7 @@
 //!
 //! *Never here:* a runtime, the bus, a file, a clock, a random number, what an artifact contains.
 
+pub mod bucket;
 pub mod event;
 pub mod pipeline;
 pub mod policy;
@@ -34,6 +35,10 @@ mod status;
 
 #[cfg(test)]
 mod histories;
+#[cfg(test)]
+mod look_rules;
+#[cfg(test)]
+mod rates;
 #[cfg(test)]
 mod rules;
 #[cfg(test)]

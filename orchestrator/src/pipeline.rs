@@ -1,9 +1,11 @@
 //! How the stages hang together: who needs whose output, which runs there are, which seeds.
 //!
 //! ```text
-//! proposal ─► review? ─┬─► paths ─────┐
-//!                      └─► behaviors ─┴─► simulation ─► scoring      (per planner and seed)
+//! proposal ─► look? ─┬─► paths ─────┐
+//!                    └─► behaviors ─┴─► look? ─► simulation ─► scoring      (per planner and seed)
 //! ```
+//!
+//! A look is a job of stage `review`: a person accepts what was made, changes it, or wants stages made again.
 
 use std::collections::BTreeSet;
 
@@ -26,22 +28,32 @@ pub const ORDER: [Stage; 6] =
 pub const URGENCY: [Stage; 6] =
     [Stage::Scoring, Stage::Simulation, Stage::Behaviors, Stage::Paths, Stage::Review, Stage::Proposal];
 
-/// Stages whose outputs a stage needs.
+/// Item of the review job in which a person looks at the proposal.
+pub const PROPOSAL_LOOK: &str = "proposal";
+/// Item of the review job in which a person looks at proposal, paths and behaviors together.
+pub const DRAFT_LOOK: &str = "draft";
+
+/// Whether a job of this stage and item needs, directly or not, what the stage `earlier` makes.
 #[must_use]
-pub const fn needs(stage: Stage) -> &'static [Stage] {
+pub fn is_after(stage: Stage, item: &str, earlier: Stage) -> bool {
     match stage {
-        Stage::Proposal => &[],
-        Stage::Review => &[Stage::Proposal],
-        Stage::Paths | Stage::Behaviors => &[Stage::Proposal, Stage::Review],
-        Stage::Simulation => &[Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors],
-        Stage::Scoring => &[Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation],
+        Stage::Proposal => false,
+        Stage::Review if item == DRAFT_LOOK => is_authored(earlier),
+        Stage::Review | Stage::Paths | Stage::Behaviors => earlier == Stage::Proposal,
+        Stage::Simulation => is_authored(earlier),
+        Stage::Scoring => is_authored(earlier) || earlier == Stage::Simulation,
     }
 }
 
-/// Whether `stage` comes, directly or not, after `earlier`.
+/// Whether a job of this stage and item waits for this look.
 #[must_use]
-pub fn is_after(stage: Stage, earlier: Stage) -> bool {
-    needs(stage).contains(&earlier)
+pub fn is_after_look(stage: Stage, item: &str, look: &str) -> bool {
+    match stage {
+        Stage::Proposal => false,
+        Stage::Review => item == DRAFT_LOOK && look == PROPOSAL_LOOK,
+        Stage::Paths | Stage::Behaviors => look == PROPOSAL_LOOK,
+        Stage::Simulation | Stage::Scoring => true,
+    }
 }
 
 /// Role of the output that a successful attempt must have.
@@ -99,19 +111,21 @@ pub fn runs(spec: &ScenarioSpec) -> Vec<Run> {
         .collect()
 }
 
-/// The authoring and review jobs that a scenario needs, in pipeline order.
+/// The authoring and review jobs that a scenario needs, stage and item, in pipeline order.
 #[must_use]
-pub fn authored(spec: &ScenarioSpec) -> Vec<Stage> {
-    let pinned = |role: &str| spec.pinned.contains_key(role);
-    ORDER
-        .into_iter()
-        .filter(|stage| match stage {
-            Stage::Proposal | Stage::Paths | Stage::Behaviors => !pinned(stage.name()),
-            // Who pins a proposal has looked at it.
-            Stage::Review => spec.review && !pinned("proposal"),
-            Stage::Simulation | Stage::Scoring => false,
-        })
-        .collect()
+pub fn authored(spec: &ScenarioSpec) -> Vec<(Stage, &'static str)> {
+    let asked = |stage: Stage| !spec.pinned.contains_key(stage.name());
+    [
+        (Stage::Proposal, "", asked(Stage::Proposal)),
+        // Who pins a proposal has looked at it.
+        (Stage::Review, PROPOSAL_LOOK, spec.review && asked(Stage::Proposal)),
+        (Stage::Paths, "", asked(Stage::Paths)),
+        (Stage::Behaviors, "", asked(Stage::Behaviors)),
+        (Stage::Review, DRAFT_LOOK, spec.review && (asked(Stage::Paths) || asked(Stage::Behaviors))),
+    ]
+    .into_iter()
+    .filter_map(|(stage, item, needed)| needed.then_some((stage, item)))
+    .collect()
 }
 
 /// Seed of a job. Simulation and scoring take the run's seed and nothing of planner or revision, so
@@ -149,7 +163,7 @@ pub fn owner(fault: &Fault, found_by: Stage) -> Option<Stage> {
         Some(_) | None => None,
     };
     match by_code {
-        Some(stage) if stage == found_by || is_after(found_by, stage) => Some(stage),
+        Some(stage) if stage == found_by || is_after(found_by, "", stage) => Some(stage),
         // Paths and behaviors cannot send each other back, and syntax is the asked stage's own.
         Some(_) | None => is_authored(found_by).then_some(found_by),
     }
@@ -199,9 +213,14 @@ mod tests {
     fn a_pinned_proposal_is_neither_asked_nor_reviewed() {
         let mut spec = spec(&[], &[1]);
         spec.review = true;
-        assert_eq!(authored(&spec), [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors]);
+        let proposal = [(Stage::Proposal, ""), (Stage::Review, PROPOSAL_LOOK)];
+        let rest = [(Stage::Paths, ""), (Stage::Behaviors, ""), (Stage::Review, DRAFT_LOOK)];
+        assert_eq!(authored(&spec), [&proposal[..], &rest[..]].concat());
         spec.pinned.insert("proposal".to_owned(), Digest::of(b"p"));
-        assert_eq!(authored(&spec), [Stage::Paths, Stage::Behaviors]);
+        assert_eq!(authored(&spec), rest);
+        spec.pinned.insert("paths".to_owned(), Digest::of(b"p"));
+        spec.pinned.insert("behaviors".to_owned(), Digest::of(b"b"));
+        assert_eq!(authored(&spec), [], "everything was written by hand");
     }
 
     #[test]

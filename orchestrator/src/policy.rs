@@ -40,7 +40,7 @@ pub struct Policy {
     pub repairs: u32,
     /// Re-proposals because a later stage found no answer. Default 1.
     pub reproposals: u32,
-    /// Revisions that a person may ask for. Default 20.
+    /// Revisions that a person may ask for. Default 1 000.
     pub reviews: u32,
     /// First back-off, ms; doubles with every failure. Default 500.
     pub backoff_ms: u64,
@@ -54,6 +54,10 @@ pub struct Policy {
     pub max_runs: usize,
     /// Authoring attempts at one time. Default 256; halves on overload and grows back.
     pub author_slots: u32,
+    /// Tokens that one author's server is asked for in a minute, in and out; 0 leaves it to what the server says. Default 0.
+    pub tokens_per_minute: u64,
+    /// Questions that one author's server is asked in a minute; 0 leaves it to what the server says. Default 0.
+    pub requests_per_minute: u64,
     /// Version that workers must have; empty takes any. Enters the idempotency keys.
     pub code_version: String,
 }
@@ -77,13 +81,15 @@ impl Default for Policy {
             lapses: 3,
             repairs: 3,
             reproposals: 1,
-            reviews: 20,
+            reviews: 1_000,
             backoff_ms: 500,
             backoff_cap_ms: 60_000,
             open_per_worker: 4,
             max_open_jobs: 200_000,
             max_runs: 10_000,
             author_slots: 256,
+            tokens_per_minute: 0,
+            requests_per_minute: 0,
             code_version: String::new(),
         }
     }

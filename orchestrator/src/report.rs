@@ -85,11 +85,14 @@ impl Turn<'_> {
         attempt.span_ms = now.saturating_sub(attempt.ready);
         attempt.tokens = report.tokens;
         attempt.remark.clone_from(&report.remark);
+        let tokens = report.tokens.0.saturating_add(report.tokens.1);
         if let Outcome::Failed { class, faults, .. } = &report.outcome {
             attempt.class = Some(*class);
             attempt.faults.clone_from(faults);
             attempt.artifacts.clone_from(&report.artifacts);
         }
+        let (stage, rates) = (report.key.stage, report.rates);
+        self.with_bucket(&report.key, |bucket, policy| bucket.answered(policy, now, stage, tokens, rates));
     }
 
     /// Small contents become rows of their own; the artifacts keep their addresses.
@@ -124,6 +127,7 @@ impl Turn<'_> {
             artifacts: report.artifacts,
             verdict: report.verdict,
             repair: report.repair,
+            anew: report.anew,
             remark: report.remark,
             wall_ms: report.wall_ms,
         };
@@ -139,11 +143,13 @@ impl Turn<'_> {
         let same = job.shares().then_some(result.idem_key);
         job.result = Some(result.clone());
         self.rows.push(Row::Result(key.clone(), Box::new(result.clone())));
+        if key.stage == Stage::Review {
+            // First, so that nothing that is to be made again is begun, or known already, in between.
+            self.reviewed(key, &result);
+        }
         self.move_to(key, JobState::Succeeded, "");
-        match key.stage {
-            Stage::Scoring => self.judged(key, &result),
-            Stage::Review => self.reviewed(key, &result),
-            Stage::Proposal | Stage::Paths | Stage::Behaviors | Stage::Simulation => {}
+        if key.stage == Stage::Scoring {
+            self.judged(key, &result);
         }
         let waiting = same.and_then(|same| self.state.waiting.get(&same).cloned()).unwrap_or_default();
         for twin in waiting {

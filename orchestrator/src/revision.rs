@@ -46,14 +46,17 @@ impl Turn<'_> {
             .map_or(0, |key| key.revision)
     }
 
-    /// A person has looked. Reasons send the proposal back; that is not counted as a repair.
+    /// A person has looked. What they want made again is not counted as a repair.
     pub(crate) fn reviewed(&mut self, key: &JobKey, result: &JobResult) {
-        let Some(repair) = &result.repair else { return };
         let Some(scenario) = self.scenario(&key.scenario) else { return };
-        if scenario.reviews >= self.state.policy.reviews || scenario.end.is_some() {
+        if result.anew.is_empty() || scenario.reviews >= self.state.policy.reviews || scenario.end.is_some() {
             return;
         }
-        if self.redo(&key.scenario, &BTreeMap::from([(Stage::Proposal, repair.faults.clone())]))
+        let mut targets: BTreeMap<Stage, Vec<Fault>> = BTreeMap::new();
+        for wish in &result.anew {
+            targets.entry(wish.stage).or_default().extend(wish.faults.iter().cloned());
+        }
+        if self.redo(&key.scenario, &targets)
             && let Some(scenario) = self.scenario_mut(&key.scenario)
         {
             scenario.reviews += 1;
@@ -93,33 +96,30 @@ impl Turn<'_> {
         let Some(scenario) = self.scenario(id) else { return false };
         let authored = pipeline::authored(&scenario.spec);
         // A pinned stage is not asked; what comes after it cannot mend it.
-        let able = targets.keys().all(|stage| pipeline::is_authored(*stage) && authored.contains(stage));
+        let able = targets
+            .keys()
+            .all(|stage| pipeline::is_authored(*stage) && authored.iter().any(|(authored, _)| authored == stage));
         if targets.is_empty() || !able || scenario.settled.is_some() || scenario.end.is_some() || scenario.canceled {
             return false;
         }
         let lead = pipeline::lead(&scenario.spec);
         let (former, revision) = (scenario.revision, scenario.revision + 1);
-        let anew = |stage: &Stage| {
-            targets.contains_key(stage) || targets.keys().any(|target| pipeline::is_after(*stage, *target))
+        let anew = |(stage, item): &(Stage, &str)| {
+            targets.contains_key(stage) || targets.keys().any(|target| pipeline::is_after(*stage, item, *target))
         };
-        let stages: Vec<Stage> = pipeline::ORDER
-            .into_iter()
-            .filter(|stage| authored.contains(stage) || matches!(stage, Stage::Simulation | Stage::Scoring))
-            .filter(anew)
-            .collect();
-        let item = |stage: Stage| match stage {
-            Stage::Simulation | Stage::Scoring => Some(&lead),
-            Stage::Proposal | Stage::Paths | Stage::Behaviors | Stage::Review => None,
-        };
-        let old: Vec<JobKey> = stages
+        let steps: Vec<(Stage, &str)> =
+            authored.into_iter().chain([(Stage::Simulation, ""), (Stage::Scoring, "")]).filter(anew).collect();
+        let run = |stage: Stage| matches!(stage, Stage::Simulation | Stage::Scoring).then_some(&lead);
+        let old: Vec<JobKey> = steps
             .iter()
-            .filter_map(|stage| {
-                let item = item(*stage).map(pipeline::Run::item).unwrap_or_default();
+            .filter_map(|(stage, item)| {
+                let item = run(*stage).map_or_else(|| (*item).to_owned(), pipeline::Run::item);
                 self.state.place(id, *stage, &item, former).cloned()
             })
             .collect();
         for key in &old {
-            if self.job(key).is_none_or(|job| job.state.is_terminal()) {
+            // The look that asks for it has its result and stands.
+            if self.job(key).is_none_or(|job| job.state.is_terminal() || job.result.is_some()) {
                 continue;
             }
             self.end_current(key, AttemptEnd::Superseded);
@@ -129,13 +129,20 @@ impl Turn<'_> {
             scenario.revision = revision;
         }
         let first = targets.keys().find(|stage| **stage == Stage::Proposal);
-        let made: Vec<JobKey> = stages
+        let made: Vec<JobKey> = steps
             .iter()
-            .filter_map(|stage| {
-                // A new proposal makes reasons against the old paths and behaviors void.
-                let reasons = targets.get(stage).filter(|_| first.is_none_or(|first| first == stage));
-                let reasons = reasons.map(|faults| feedback(faults, &[])).unwrap_or_default();
-                self.make(id, *stage, item(*stage), revision, &reasons)
+            .filter_map(|(stage, item)| {
+                // A new proposal makes reasons against the old paths and behaviors void; whoever looks is told all of them.
+                let reasons = match stage {
+                    Stage::Review => targets.values().flatten().cloned().collect(),
+                    _ => targets
+                        .get(stage)
+                        .filter(|_| first.is_none_or(|first| first == stage))
+                        .cloned()
+                        .unwrap_or_default(),
+                };
+                let reasons = feedback(&reasons, &[]);
+                self.make(id, (*stage, item), run(*stage), revision, &reasons)
             })
             .collect();
         for key in made {
@@ -155,7 +162,7 @@ impl Turn<'_> {
         }
         let mut made = Vec::with_capacity(runs.len() * 2);
         for stage in [Stage::Simulation, Stage::Scoring] {
-            made.extend(runs.iter().filter_map(|run| self.make(id, stage, Some(run), revision, &[])));
+            made.extend(runs.iter().filter_map(|run| self.make(id, (stage, ""), Some(run), revision, &[])));
         }
         for key in made {
             self.unblock(&key);

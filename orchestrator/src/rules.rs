@@ -400,26 +400,6 @@ fn an_experiment_without_cache_does_everything_itself() {
 }
 
 #[test]
-fn a_person_may_send_the_proposal_back_or_change_it() {
-    let mut world = World::new();
-    let mut asked = spec("a");
-    asked.review = true;
-    world.submit(vec![asked]);
-    world.pass(Stage::Proposal);
-    assert!(world.grants("w", Stage::Paths).is_empty(), "nothing goes on before the person has looked");
-    let review = world.grant("person", Stage::Review);
-    let repair = Repair { stage: Stage::Proposal, faults: vec![fault(FaultCode::PRough, "no child")] };
-    world.send_report(Report { repair: Some(repair), ..success(&review) });
-    let again = world.pass(Stage::Proposal);
-    assert_eq!(again.spec.feedback[0].message, "no child");
-    let review = world.grant("person", Stage::Review);
-    world.succeed(&review);
-    let paths = world.grant("w", Stage::Paths);
-    assert_eq!(paths.spec.inputs["proposal"], review.spec.inputs["proposal"], "unchanged, it goes on as it was");
-    assert_eq!(world.scenario("a").repairs, 0);
-}
-
-#[test]
 fn a_canceled_batch_ends_when_its_workers_have_stopped() {
     let mut world = begun();
     let grant = world.grant("w", Stage::Proposal);

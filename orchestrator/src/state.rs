@@ -9,6 +9,7 @@ use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{Hello, ScenarioSpec};
 use socrates_model::{Digest, Fault, ScenarioId};
 
+use crate::bucket::Bucket;
 use crate::policy::Policy;
 
 /// Time on the shell's monotonic clock, ms. Its zero has no meaning.
@@ -154,6 +155,9 @@ pub struct JobResult {
     pub verdict: Option<Verdict>,
     /// Repair that was asked for.
     pub repair: Option<Repair>,
+    /// Stages that a person wants made again.
+    #[serde(default)]
+    pub anew: Vec<Repair>,
     /// Remark for the status line.
     pub remark: String,
     /// Working time, ms.
@@ -347,8 +351,10 @@ pub struct State {
     pub next_seq: u64,
     /// Authoring attempts allowed at one time; shrinks on overload.
     pub author_slots: u32,
-    /// No authoring before this time: the author's server asked for a pause.
-    pub author_pause_until: Millis,
+    /// What is known of the authors' servers, by server and model.
+    pub servers: BTreeMap<String, Bucket>,
+    /// When somebody who was held back by a server's rates may go on; 0 where nobody was.
+    pub author_wake_at: Millis,
     /// Scenarios in order of submission.
     pub(crate) by_order: BTreeMap<u64, ScenarioId>,
     /// Ready jobs by stage, oldest scenario first, then in order of their making.
@@ -386,7 +392,8 @@ impl State {
             next_fence: 1,
             next_order: 0,
             next_seq: 1,
-            author_pause_until: 0,
+            servers: BTreeMap::new(),
+            author_wake_at: 0,
             by_order: BTreeMap::new(),
             ready: BTreeMap::new(),
             timers: BTreeSet::new(),
@@ -428,5 +435,12 @@ impl State {
     pub(crate) fn place(&self, id: &ScenarioId, stage: Stage, item: &str, revision: u32) -> Option<&JobKey> {
         let key = |revision| JobKey { scenario: id.clone(), stage, item: item.to_owned(), revision };
         self.jobs.range(key(0)..=key(revision)).next_back().map(|(key, _)| key)
+    }
+
+    /// The newest look at a revision, or before it, that has a result or may still get one.
+    pub(crate) fn look(&self, id: &ScenarioId, look: &str, revision: u32) -> Option<&JobKey> {
+        let key = |revision| JobKey { scenario: id.clone(), stage: Stage::Review, item: look.to_owned(), revision };
+        let counts = |job: &Job| job.state == JobState::Succeeded || !job.state.is_terminal();
+        self.jobs.range(key(0)..=key(revision)).rev().find(|(_, job)| counts(job)).map(|(key, _)| key)
     }
 }

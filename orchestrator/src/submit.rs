@@ -119,9 +119,10 @@ impl Turn<'_> {
         self.state.scenarios.insert(id.clone(), scenario);
         self.state.by_order.insert(order, id.clone());
         self.scenario_mut(&id);
-        let mut made: Vec<JobKey> = stages.iter().filter_map(|stage| self.make(&id, *stage, None, 0, &[])).collect();
+        let mut made: Vec<JobKey> =
+            stages.iter().filter_map(|(stage, item)| self.make(&id, (*stage, item), None, 0, &[])).collect();
         for stage in [Stage::Simulation, Stage::Scoring] {
-            made.extend(self.make(&id, stage, Some(&lead), 0, &[]));
+            made.extend(self.make(&id, (stage, ""), Some(&lead), 0, &[]));
         }
         for key in made {
             self.unblock(&key);
@@ -133,13 +134,13 @@ impl Turn<'_> {
     pub(crate) fn make(
         &mut self,
         id: &ScenarioId,
-        stage: Stage,
+        (stage, item): (Stage, &str),
         run: Option<&Run>,
         revision: u32,
         sent_back: &[Fault],
     ) -> Option<JobKey> {
         let scenario = self.scenario(id)?;
-        let item = run.map(Run::item).unwrap_or_default();
+        let item = run.map_or_else(|| item.to_owned(), Run::item);
         let key = JobKey { scenario: id.clone(), stage, item: item.clone(), revision };
         let former = revision.checked_sub(1).and_then(|last| self.state.place(id, stage, &item, last));
         let former = former.and_then(|former| self.job(former));
@@ -159,7 +160,7 @@ impl Turn<'_> {
             refused,
             settings: scenario.spec.settings.clone(),
         };
-        let sources = self.sources(id, stage, run, revision);
+        let sources = self.sources(&key, run);
         self.enter(Job {
             key: key.clone(),
             state: JobState::Blocked,
@@ -185,39 +186,42 @@ impl Turn<'_> {
     }
 
     /// Which job each input comes from.
-    fn sources(&self, id: &ScenarioId, stage: Stage, run: Option<&Run>, revision: u32) -> BTreeMap<String, JobKey> {
-        let mut sources = BTreeMap::new();
-        let place = |stage, item: &str| self.state.place(id, stage, item, revision).cloned();
-        for need in pipeline::needs(stage) {
-            match need {
-                // The review comes later in the list: what the person left wins.
-                Stage::Proposal | Stage::Review => {
-                    sources.extend(place(*need, "").map(|key| ("proposal".to_owned(), key)));
-                }
-                Stage::Paths | Stage::Behaviors => {
-                    sources.extend(place(*need, "").map(|key| (need.name().to_owned(), key)));
-                }
-                Stage::Simulation => {
-                    let Some(run) = run else { continue };
-                    if let Some(key) = place(*need, &run.item()) {
-                        sources.insert("recording".to_owned(), key.clone());
-                        sources.insert("simulation".to_owned(), key);
-                    }
-                    if run.planner != pipeline::REFERENCE {
-                        let reference = Run { planner: pipeline::REFERENCE.to_owned(), seed: run.seed };
-                        let key = place(*need, &reference.item());
-                        sources.extend(key.map(|key| (REFERENCE_ROLE.to_owned(), key)));
-                    }
-                    if run.planner != pipeline::NO_ROBOT {
-                        let twin = Run { planner: pipeline::NO_ROBOT.to_owned(), seed: run.seed };
-                        let key = place(*need, &twin.item());
-                        sources.extend(key.map(|key| (TWIN_ROLE.to_owned(), key)));
-                    }
-                }
-                Stage::Scoring => {}
-            }
-        }
+    fn sources(&self, key: &JobKey, run: Option<&Run>) -> BTreeMap<String, JobKey> {
+        let written = [Stage::Proposal, Stage::Paths, Stage::Behaviors]
+            .into_iter()
+            .filter(|stage| pipeline::is_after(key.stage, &key.item, *stage))
+            .filter_map(|stage| Some((stage.name().to_owned(), self.writer(key, Some(stage))?)));
+        let mut sources: BTreeMap<String, JobKey> = written.collect();
+        // A person's wishes may change what the request is read as.
+        sources.extend(self.writer(key, None).map(|look| ("reading".to_owned(), look)));
+        let Some(run) = run.filter(|_| key.stage == Stage::Scoring) else { return sources };
+        let beside = |planner: &str| Run { planner: planner.to_owned(), seed: run.seed };
+        let roles = [
+            ("recording", Some(run.clone())),
+            ("simulation", Some(run.clone())),
+            (REFERENCE_ROLE, (run.planner != pipeline::REFERENCE).then(|| beside(pipeline::REFERENCE))),
+            (TWIN_ROLE, (run.planner != pipeline::NO_ROBOT).then(|| beside(pipeline::NO_ROBOT))),
+        ];
+        sources.extend(roles.into_iter().filter_map(|(role, run)| {
+            let simulated = self.state.place(&key.scenario, Stage::Simulation, &run?.item(), key.revision)?;
+            Some((role.to_owned(), simulated.clone()))
+        }));
         sources
+    }
+
+    /// The job whose version of a stage's output holds for the job `key`: the newest, and among equally new ones what a
+    /// person left of it. Without a stage: the newest look, for what only a look changes.
+    fn writer(&self, key: &JobKey, stage: Option<Stage>) -> Option<JobKey> {
+        let author = stage.and_then(|stage| self.state.place(&key.scenario, stage, "", key.revision));
+        let looks = [pipeline::PROPOSAL_LOOK, pipeline::DRAFT_LOOK].into_iter().filter_map(|look| {
+            // A look that comes later in the plan speaks for the next revision only.
+            let waits = pipeline::is_after_look(key.stage, &key.item, look);
+            let newest = if waits { key.revision } else { key.revision.checked_sub(1)? };
+            let saw = stage.is_none_or(|stage| pipeline::is_after(Stage::Review, look, stage));
+            saw.then(|| self.state.look(&key.scenario, look, newest))?
+        });
+        // `max_by_key` takes the last of equals: the look at the draft, the look at the proposal, the author.
+        author.into_iter().chain(looks).max_by_key(|job| job.revision).cloned()
     }
 
     /// Looks whether a blocked job has all it waits for: it becomes ready, is done already, or
@@ -261,7 +265,9 @@ impl Turn<'_> {
             ("reading".to_owned(), scenario.spec.reading),
         ]);
         let wanted = |role: &str| {
-            Stage::WORKERS.into_iter().any(|stage| stage.name() == role && (pipeline::is_after(key.stage, stage)))
+            Stage::WORKERS
+                .into_iter()
+                .any(|stage| stage.name() == role && pipeline::is_after(key.stage, &key.item, stage))
         };
         inputs.extend(scenario.spec.pinned.iter().filter(|(role, _)| wanted(role)).map(|(role, d)| (role.clone(), *d)));
         for (role, source) in &job.sources {
@@ -269,7 +275,7 @@ impl Turn<'_> {
             let Some(result) = &parent.result else { continue };
             let made_as = if is_beside(role) { "recording" } else { role.as_str() };
             let digest = pipeline::output(&result.artifacts, made_as).or_else(|| {
-                // A review that hands nothing back leaves the proposal as it was.
+                // A look that hands nothing back leaves it as it was.
                 (source.stage == Stage::Review).then(|| parent.spec.inputs.get(role).copied()).flatten()
             });
             inputs.extend(digest.map(|digest| (role.clone(), digest)));

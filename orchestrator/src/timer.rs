@@ -25,8 +25,8 @@ impl Turn<'_> {
         let silent = self.state.policy.lease_ms.saturating_mul(FORGET_LEASES);
         let now = self.now;
         self.state.workers.retain(|_, worker| !worker.held.is_empty() || now.saturating_sub(worker.seen) < silent);
-        if self.state.author_pause_until != 0 && self.state.author_pause_until <= now {
-            self.state.author_pause_until = 0;
+        if self.state.author_wake_at != 0 && self.state.author_wake_at <= now {
+            self.state.author_wake_at = 0;
             let ready: Vec<_> = self.state.ready.iter().filter(|(_, jobs)| !jobs.is_empty()).map(|(s, _)| *s).collect();
             for stage in ready {
                 self.hint(stage);

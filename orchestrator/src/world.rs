@@ -211,7 +211,9 @@ pub(crate) fn report(grant: &Grant, outcome: Outcome) -> Report {
         tokens: (1, 1),
         remark: String::new(),
         repair: None,
+        anew: Vec::new(),
         verdict: None,
+        rates: None,
     }
 }
 

@@ -11,10 +11,18 @@ const LONGEST: usize = 24_000;
 const CLOSING: &str =
     "Keep what is correct, change only what is listed, and answer in the same form with the whole answer.";
 
-/// The refused answer and the reasons, or the reasons alone where the answer is not kept.
+/// What is said of a refused answer where no reasons are given.
+const VAGUE: &str = "This answer is wrong. Try again: answer in the same form with the whole answer.";
+
+/// The refused answer and the reasons; the reasons alone where the answer is not kept; the answer alone where no reasons are
+/// given.
 pub(crate) fn messages(faults: &[Fault], refused: Option<&str>) -> Vec<Message> {
+    let shown = refused.map(|answer| {
+        let shown: String = answer.chars().take(LONGEST).collect();
+        Message::text(Role::Assistant, shown)
+    });
     if faults.is_empty() {
-        return Vec::new();
+        return shown.map_or_else(Vec::new, |answer| vec![answer, Message::text(Role::User, VAGUE)]);
     }
     let mut listed: Vec<&Fault> = Vec::new();
     // Newest last: those are the faults of the refused answer. The same one twice says nothing more.
@@ -33,13 +41,9 @@ pub(crate) fn messages(faults: &[Fault], refused: Option<&str>) -> Vec<Message> 
     if more > 0 {
         text.push_str(&format!("(and {more} more of the same kinds)\n"));
     }
-    match refused {
+    match shown {
         Some(answer) => {
-            let shown: String = answer.chars().take(LONGEST).collect();
-            vec![
-                Message::text(Role::Assistant, shown),
-                Message::text(Role::User, format!("This answer is refused:\n{text}{CLOSING}")),
-            ]
+            vec![answer, Message::text(Role::User, format!("This answer is refused:\n{text}{CLOSING}"))]
         }
         None => vec![Message::text(Role::User, format!("Earlier answers were refused. Avoid this:\n{text}"))],
     }

@@ -43,4 +43,4 @@ pub use message::{Message, Picture, Role};
 pub use prompt::{Prompt, Template};
 pub use question::Question;
 pub use schema::answer_schema;
-pub use style::{BehaviorsForm, Image, Mode, PathsForm, Style};
+pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

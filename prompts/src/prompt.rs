@@ -63,6 +63,9 @@ impl Question {
             Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
                 messages.push(Message::text(Role::User, place_text::classes(&self.location)));
                 messages.push(Message::text(Role::User, self.wish()));
+                if self.variants(style) > 1 {
+                    messages.push(Message::text(Role::User, several(self.variants(style))));
+                }
             }
             Stage::Paths => {
                 let map = format!("{}{}", place_text::graph(&self.location), place_text::doors(&self.location));
@@ -75,6 +78,12 @@ impl Question {
         }
         messages.extend(feedback::messages(&self.feedback, self.refused.as_deref()));
         Prompt { messages, schema: (!naive).then(|| answer_schema(self, style)), template }
+    }
+
+    /// Proposals that the answer should hold. Who is shown a refused one mends that one.
+    #[must_use]
+    pub fn variants(&self, style: &Style) -> u32 {
+        if self.stage == Stage::Proposal && self.refused.is_none() { style.variants } else { 1 }
     }
 
     /// A grammar (GBNF) of the answer to a paths question in the form [`crate::PathsForm::Nodes`] in which only a neighbor can come
@@ -188,6 +197,14 @@ impl Question {
     }
 }
 
+/// The wish for several proposals at once.
+fn several(count: u32) -> String {
+    format!(
+        "Write {count} proposals for this request that differ in place, relations or reactions where it leaves room, each of them \
+         complete, as one JSON object {{\"variants\": [proposal, …]}}.\n"
+    )
+}
+
 /// What the paths question needs of the proposal.
 fn paths_outline(proposal: &Proposal) -> String {
     let humans: Vec<Value> = proposal
@@ -273,6 +290,19 @@ mod tests {
                 assert_eq!(prompt.schema.is_none(), style.mode == Mode::Naive);
             }
         }
+    }
+
+    #[test]
+    fn several_proposals_are_asked_for_in_one_answer_and_a_refused_one_alone_is_mended() {
+        let style = Style { variants: 3, ..Style::default() };
+        let mut asked = question(Stage::Proposal);
+        let prompt = asked.prompt(&style);
+        assert!(prompt.messages.last().unwrap().text.starts_with("Write 3 proposals"));
+        let list = &prompt.schema.unwrap()["properties"]["variants"];
+        assert_eq!((&list["minItems"], &list["maxItems"]), (&json!(3), &json!(3)));
+        assert_eq!(question(Stage::Paths).prompt(&style), question(Stage::Paths).prompt(&Style::default()));
+        asked.refused = Some("{}".into());
+        assert_eq!(asked.prompt(&style), asked.prompt(&Style::default()));
     }
 
     #[test]

@@ -4,6 +4,8 @@ use serde::{Deserialize, Serialize};
 use socrates_model::job::Stage;
 use socrates_model::{Fault, HumanId, Location, Proposal, Reading, Request};
 
+use crate::style::Telling;
+
 /// One ask of an authoring stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Question {
@@ -29,4 +31,19 @@ pub struct Question {
     pub refused: Option<String>,
     /// Seed of the answer.
     pub seed: u64,
+}
+
+impl Question {
+    /// The question as it is put to an author who is told so much of its refused answer. Where it is told nothing the
+    /// question is the first one again; where it is told vaguely, the refused answer stays and its reasons go.
+    #[must_use]
+    pub fn telling(mut self, telling: Telling) -> Self {
+        if telling != Telling::Named {
+            self.feedback.clear();
+        }
+        if telling == Telling::Silent {
+            self.refused = None;
+        }
+        self
+    }
 }

@@ -23,7 +23,11 @@ pub(crate) const THINKING: &str = "analysis";
 #[must_use]
 pub fn answer_schema(question: &Question, style: &Style) -> Value {
     match question.stage {
-        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => proposal(question),
+        Stage::Proposal | Stage::Review | Stage::Simulation | Stage::Scoring => {
+            let one = proposal(question);
+            let count = question.variants(style);
+            if count > 1 { several(one, count) } else { one }
+        }
         Stage::Paths => paths(question, style.paths),
         Stage::Behaviors => behaviors(question, style.behaviors),
     }
@@ -114,6 +118,13 @@ fn proposal(question: &Question) -> Value {
     define(&mut schema, &[("human", object(&human)), ("place", place)]);
     strict(&mut schema);
     schema
+}
+
+/// The schema of several answers of this form in one.
+fn several(mut one: Value, count: u32) -> Value {
+    let defs = one.as_object_mut().and_then(|members| members.remove("$defs")).unwrap_or_default();
+    json!({"type": "object", "properties": {"variants": {"type": "array", "items": one, "minItems": count, "maxItems": count}},
+        "required": ["variants"], "additionalProperties": false, "$defs": defs})
 }
 
 fn define(schema: &mut Value, defs: &[(&str, Value)]) {

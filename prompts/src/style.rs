@@ -99,6 +99,19 @@ words! {
     }
 }
 
+words! {
+    /// What an author is told of its refused answer.
+    Telling {
+        /// Every fault with where it is and what is allowed.
+        #[default]
+        Named = "named",
+        /// That it was wrong.
+        Vague = "vague",
+        /// Nothing: the same question again.
+        Silent = "none",
+    }
+}
+
 impl Image {
     /// Longest side of the picture, pixels.
     #[must_use]
@@ -112,7 +125,7 @@ impl Image {
 }
 
 /// One way to put a question.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
     /// How much is explained.
@@ -123,10 +136,31 @@ pub struct Style {
     pub behaviors: BehaviorsForm,
     /// The picture of the map.
     pub image: Image,
+    /// What is told of a refused answer.
+    pub feedback: Telling,
+    /// Proposals in one answer, of which the best by the checks goes on. Default 1, at most [`MOST_VARIANTS`].
+    pub variants: u32,
+}
+
+/// Most proposals in one answer.
+pub const MOST_VARIANTS: u32 = 8;
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            mode: Mode::default(),
+            paths: PathsForm::default(),
+            behaviors: BehaviorsForm::default(),
+            image: Image::default(),
+            feedback: Telling::default(),
+            variants: 1,
+        }
+    }
 }
 
 impl Style {
-    /// The style that a job's settings ask for: `prompt.mode`, `prompt.paths`, `prompt.behaviors`, `prompt.image`.
+    /// The style that a job's settings ask for: `prompt.mode`, `prompt.paths`, `prompt.behaviors`, `prompt.image`,
+    /// `prompt.feedback`, `prompt.variants`.
     ///
     /// # Errors
     /// `J-REQUEST` that names the setting and what it takes.
@@ -138,16 +172,29 @@ impl Style {
                 "paths" => word.parse().map(|form| style.paths = form),
                 "behaviors" => word.parse().map(|form| style.behaviors = form),
                 "image" => word.parse().map(|image| style.image = image),
-                _ => {
-                    Err("is no setting; allowed: prompt.mode, prompt.paths, prompt.behaviors, prompt.image".to_owned())
-                }
+                "feedback" => word.parse().map(|telling| style.feedback = telling),
+                "variants" => match word.parse() {
+                    Ok(count) if (1..=MOST_VARIANTS).contains(&count) => {
+                        style.variants = count;
+                        Ok(())
+                    }
+                    Ok(_) | Err(_) => Err(format!("`{word}` is no number of proposals; allowed: 1 to {MOST_VARIANTS}")),
+                },
+                _ => Err("is no setting; allowed: prompt.mode, prompt.paths, prompt.behaviors, prompt.image, \
+                          prompt.feedback, prompt.variants"
+                    .to_owned()),
             };
             read.map_err(|why| Fault::new(FaultCode::JRequest, key, why))?;
         }
         if style.mode == Mode::Naive {
             // Who explains nothing shows nothing, and asks for what the baseline asks for.
-            style =
-                Self { mode: Mode::Naive, paths: PathsForm::Nodes, behaviors: BehaviorsForm::Xml, image: Image::Off };
+            style = Self {
+                mode: Mode::Naive,
+                paths: PathsForm::Nodes,
+                behaviors: BehaviorsForm::Xml,
+                image: Image::Off,
+                ..style
+            };
         }
         Ok(style)
     }
@@ -166,6 +213,8 @@ impl Style {
         put("paths", self.paths.name(), self.paths != plain.paths);
         put("behaviors", self.behaviors.name(), self.behaviors != plain.behaviors);
         put("image", self.image.name(), self.image != plain.image);
+        put("feedback", self.feedback.name(), self.feedback != plain.feedback);
+        put("variants", &self.variants.to_string(), self.variants != plain.variants);
         settings
     }
 }
@@ -189,7 +238,9 @@ mod tests {
 
     #[test]
     fn a_word_that_means_nothing_is_answered_with_those_that_do() {
-        for (key, word) in [("prompt.paths", "edges"), ("prompt.colour", "red")] {
+        for (key, word) in
+            [("prompt.paths", "edges"), ("prompt.colour", "red"), ("prompt.variants", "9"), ("prompt.variants", "0")]
+        {
             let fault = Style::from_settings(&settings(&[(key, word)])).unwrap_err();
             assert!(fault.at.contains(key) && fault.message.contains("allowed: "), "{fault}");
         }

@@ -1,6 +1,7 @@
 //! The main job with real processes: requests in, bundles out.
 #![cfg(test)]
 
+mod asking;
 mod bad_input;
 mod bundles;
 mod evaluations;
@@ -10,6 +11,7 @@ mod originals;
 mod pages;
 mod repairs;
 mod requests;
+mod training;
 
 use std::path::Path;
 

@@ -32,15 +32,32 @@ impl Finished {
 /// # Errors
 /// When the process or its files cannot be made.
 pub fn start(program: &str, args: &[&str], folder: &Path, name: &str) -> std::io::Result<Child> {
-    let file = |ending: &str| std::fs::File::create(folder.join(format!("{name}.{ending}")));
+    start_typed(program, args, folder, name, "", &[])
+}
+
+/// The same with lines that a person types, and variables of the environment.
+///
+/// # Errors
+/// As [`start`].
+pub fn start_typed(
+    program: &str,
+    args: &[&str],
+    folder: &Path,
+    name: &str,
+    typed: &str,
+    variables: &[(&str, &str)],
+) -> std::io::Result<Child> {
+    let path = |ending: &str| folder.join(format!("{name}.{ending}"));
+    std::fs::write(path("in"), typed)?;
     Command::new(program)
         .args(args)
         .current_dir(folder)
         // A user's own settings must not reach the tests.
         .env_remove("OPENAI_API_KEY")
-        .stdin(Stdio::null())
-        .stdout(file("out")?)
-        .stderr(file("err")?)
+        .envs(variables.iter().copied())
+        .stdin(std::fs::File::open(path("in"))?)
+        .stdout(std::fs::File::create(path("out"))?)
+        .stderr(std::fs::File::create(path("err"))?)
         .spawn()
 }
 

@@ -6,7 +6,6 @@ use socrates_model::{
 
 use crate::list;
 use crate::places::is_inside;
-use crate::wishes::snake;
 
 /// Two ways count as opposite when the cosine between them is below this (135°).
 const OPPOSITE: f64 = -0.7;
@@ -22,7 +21,7 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
             Some(Fault::new(
                 FaultCode::GRel,
                 human.id,
-                format!("is `{}` in the proposal, but {why}", snake(human.relation)),
+                format!("is `{}` in the proposal, but {why}", human.relation.name()),
             ))
         })
         .collect()

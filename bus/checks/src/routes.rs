@@ -132,7 +132,7 @@ fn lengths(paths: &Paths, proposal: &Proposal, graph: &SceneGraph) -> Vec<Fault>
             let message = format!(
                 "has a path of {} nodes and {length_m:.1} m, but it moves (`{}`); at least 2 nodes and {least_m} m are needed",
                 nodes.len(),
-                crate::wishes::snake(human.relation)
+                human.relation.name()
             );
             faults.push(Fault::new(FaultCode::GShort, human.id, message));
         }

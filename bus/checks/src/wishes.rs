@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger};
+use socrates_model::{
+    AgentId, Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger,
+};
 
 use crate::list;
 use crate::proposal::robot_says;
@@ -39,7 +41,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
             } else {
                 rough(
                     human.to_string(),
-                    format!("has no rule for: {}; its rules: {}", words(rule), rules_in_words(&found.rules)),
+                    format!("has no rule for: {}; its rules: {}", rule.phrase(), rules_in_words(&found.rules)),
                 )
             }
         }
@@ -50,7 +52,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
             } else {
                 rough(
                     human.to_string(),
-                    format!("has the relation `{}`, asked for was `{}`", snake(found), snake(*relation)),
+                    format!("has the relation `{}`, asked for was `{}`", found.name(), relation.name()),
                 )
             }
         }
@@ -103,53 +105,15 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
 
 /// Whether a rule of the proposal does what was asked: same action, same gestures; distances are the author's.
 fn covers(found: &Rule, asked: &Rule) -> bool {
-    let heard = |rule: &Rule| -> BTreeSet<(u32, Gesture)> {
-        rule.when
-            .iter()
-            .filter_map(|trigger| match trigger {
-                Trigger::RobotSays(gesture) => Some((0, *gesture)),
-                Trigger::HumanSays(id, gesture) => Some((id.number(), *gesture)),
-                Trigger::Always
-                | Trigger::RobotVisible(_)
-                | Trigger::RobotNear(_)
-                | Trigger::RobotBlocking(_)
-                | Trigger::RobotMoving
-                | Trigger::RobotStopped
-                | Trigger::GoalReached
-                | Trigger::AtEncounter
-                | Trigger::AfterSecs(_) => None,
-            })
-            .collect()
-    };
+    let heard =
+        |rule: &Rule| -> BTreeSet<(AgentId, Gesture)> { rule.when.iter().filter_map(Trigger::awaits).collect() };
     found.act == asked.act
         && (asked.gesture.is_none() || found.gesture == asked.gesture)
         && heard(asked).is_subset(&heard(found))
 }
 
-/// A rule in words.
-pub(crate) fn words(rule: &Rule) -> String {
-    let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
-    let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
-    format!("{} it {}{gesture}", when.join(" and "), rule.act.phrase())
-}
-
 fn rules_in_words(rules: &[Rule]) -> String {
-    if rules.is_empty() { "none".to_owned() } else { rules.iter().map(words).collect::<Vec<_>>().join("; ") }
-}
-
-/// A relation as written in files.
-pub(crate) const fn snake(relation: socrates_model::Relation) -> &'static str {
-    use socrates_model::Relation as R;
-    match relation {
-        R::Frontal => "frontal",
-        R::Behind => "behind",
-        R::Ahead => "ahead",
-        R::Crossing => "crossing",
-        R::Static => "static",
-        R::Leaving => "leaving",
-        R::Staying => "staying",
-        R::Abreast => "abreast",
-    }
+    if rules.is_empty() { "none".to_owned() } else { rules.iter().map(Rule::phrase).collect::<Vec<_>>().join("; ") }
 }
 
 #[cfg(test)]

@@ -125,6 +125,7 @@ fault_codes! {
     "P-READ" PRead Permanent Remedy::AskPerson, true, "a wish of the request could not be read";
     "P-CONTRA" PContra Permanent Remedy::AskPerson, false, "two wishes of the request contradict each other";
     "P-LANG" PLang Permanent Remedy::AskPerson, false, "the request is not in English";
+    "P-PERSON" PPerson Semantic Remedy::AskAgain, false, "a person sent it back";
     "P-LIMIT" PLimit Permanent Remedy::AskPerson, false, "the request asks for more than can be simulated";
     "G-AGENTS" GAgents Semantic Remedy::AskAgain, false, "paths are missing or given for nobody";
     "G-UNKNOWN" GUnknown Semantic Remedy::AskAgain, false, "a path names a node that the map does not have";

@@ -30,6 +30,23 @@ pub enum Relation {
     Abreast,
 }
 
+impl Relation {
+    /// Name, as written in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Frontal => "frontal",
+            Self::Behind => "behind",
+            Self::Ahead => "ahead",
+            Self::Crossing => "crossing",
+            Self::Static => "static",
+            Self::Leaving => "leaving",
+            Self::Staying => "staying",
+            Self::Abreast => "abreast",
+        }
+    }
+}
+
 /// One human of the proposal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

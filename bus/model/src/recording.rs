@@ -210,6 +210,10 @@ pub enum EventKind {
     },
 }
 
+/// Name of the leaf of an agent that is not there: it has not come yet, or has gone. Its position then is where it comes
+/// or has left, and means nothing else.
+pub const ABSENT_LEAF: &str = "absent";
+
 /// What a reader needs to know before the first tick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -230,6 +234,15 @@ pub struct RecordingHeader {
     pub agents: Vec<AgentInfo>,
     /// Names of leaves by index; 0 is none.
     pub leaves: Vec<String>,
+}
+
+impl RecordingHeader {
+    /// Index of [`ABSENT_LEAF`] among the leaves; `None` where everybody is there all the time.
+    #[must_use]
+    pub fn absent(&self) -> Option<u16> {
+        let index = self.leaves.iter().skip(1).position(|leaf| leaf == ABSENT_LEAF)?;
+        u16::try_from(index + 1).ok()
+    }
 }
 
 /// A constant fact sheet of one agent.
@@ -300,6 +313,23 @@ impl Recording {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_leaf_of_the_absent_is_never_the_first() {
+        let header = |leaves: &[&str]| RecordingHeader {
+            format: 1,
+            run: RunId::new("test").unwrap(),
+            planner: "none".into(),
+            seed: 1,
+            profile: "native".into(),
+            step_s: 0.01,
+            agents: vec![],
+            leaves: leaves.iter().map(|leaf| (*leaf).to_owned()).collect(),
+        };
+        assert_eq!(header(&["", "track", ABSENT_LEAF]).absent(), Some(2));
+        // Index 0 is none, whatever its name.
+        assert_eq!((header(&[ABSENT_LEAF, "track"]).absent(), header(&[]).absent()), (None, None));
+    }
 
     #[test]
     fn a_state_is_64_bytes_and_comes_back_as_it_was() {

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
-use crate::ids::HumanId;
+use crate::ids::{AgentId, HumanId};
 
 /// Something a human can notice. Distances are centre to centre, m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -77,6 +77,24 @@ impl Action {
 }
 
 impl Trigger {
+    /// Who has to make which gesture for it; `None` for triggers that wait for no gesture.
+    #[must_use]
+    pub const fn awaits(&self) -> Option<(AgentId, Gesture)> {
+        match self {
+            Self::RobotSays(gesture) => Some((AgentId::Robot, *gesture)),
+            Self::HumanSays(id, gesture) => Some((AgentId::Human(*id), *gesture)),
+            Self::Always
+            | Self::RobotVisible(_)
+            | Self::RobotNear(_)
+            | Self::RobotBlocking(_)
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::GoalReached
+            | Self::AtEncounter
+            | Self::AfterSecs(_) => None,
+        }
+    }
+
     /// The trigger in words: `when it sees the robot within 5 m`.
     #[must_use]
     pub fn phrase(&self) -> String {
@@ -114,6 +132,16 @@ pub struct Rule {
     /// Once started, goes on even when the triggers no longer hold (until `for_s`, or the end).
     #[serde(default)]
     pub latched: bool,
+}
+
+impl Rule {
+    /// The rule in words: `when the robot is within 2 m it gives way to the robot and says PROCEED`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
+        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
+        format!("{} it {}{gesture}", when.join(" and "), self.act.phrase())
+    }
 }
 
 /// When the robot's script acts.
@@ -160,4 +188,28 @@ pub struct RobotRule {
     pub when: RobotWhen,
     /// What.
     pub act: RobotDo,
+}
+
+impl RobotRule {
+    /// The line in words: `when a human is within 2 m: says EXCUSE_ME`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        let when = match &self.when {
+            RobotWhen::Start => "from the start".to_owned(),
+            RobotWhen::Blocked(s) => format!("when it was blocked for {s} s"),
+            RobotWhen::HumanNear(m) => format!("when a human is within {m} m"),
+            RobotWhen::HumanSays(gesture) => format!("when a human says {gesture}"),
+            RobotWhen::AtEncounter(human) => format!("at the encounter with {human}"),
+            RobotWhen::AfterSecs(s) => format!("after {s} s"),
+        };
+        let act = match &self.act {
+            RobotDo::Say(gesture) => format!("says {gesture}"),
+            RobotDo::Hold(s) => format!("stands still for {s} s"),
+            RobotDo::WaitForLeavers => "waits until everybody who leaves has left".to_owned(),
+            RobotDo::Follow(human) => format!("follows {human}"),
+            RobotDo::Abreast(human) => format!("goes beside {human}"),
+            RobotDo::Lead(m) => format!("leads, and waits when a follower is more than {m} m behind"),
+        };
+        format!("{when} it {act}")
+    }
 }

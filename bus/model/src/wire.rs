@@ -168,6 +168,29 @@ pub enum Outcome {
     },
 }
 
+/// One rate of an author's server.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Rate {
+    /// The limit per window.
+    pub limit: u64,
+    /// What is left of it.
+    pub left: u64,
+    /// Time until it is whole again, ms, where the server says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whole_in_ms: Option<u64>,
+}
+
+/// What an author's server says of its rates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Rates {
+    /// Requests.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub requests: Option<Rate>,
+    /// Tokens.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tokens: Option<Rate>,
+}
+
 /// A worker reports an attempt. Repeated until it is recorded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Report {
@@ -196,9 +219,15 @@ pub struct Report {
     /// For a scoring report: the repair it asks for, as a copy of the artifact's field.
     #[serde(default)]
     pub repair: Option<crate::report::Repair>,
+    /// For a review: the stages that the person wants made again, with reasons; empty goes on with what was left.
+    #[serde(default)]
+    pub anew: Vec<crate::report::Repair>,
     /// For a scoring report: the verdict.
     #[serde(default)]
     pub verdict: Option<crate::report::Verdict>,
+    /// For an authoring report: what the server said of its rates. Older readers pass over it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rates: Option<Rates>,
 }
 
 /// A worker hands an attempt back unharmed; its budget is not touched.

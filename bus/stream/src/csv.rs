@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use socrates_model::recording::{AgentInfo, AgentState, Recording, RecordingHeader};
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo, AgentState, Recording, RecordingHeader};
 use socrates_model::time::{STEP_SECS, SimTime};
 use socrates_model::{AgentId, FORMAT, Gesture, RunId};
 
@@ -32,6 +32,10 @@ impl Rate {
 const MAX_STATES: usize = 4 * 1024 * 1024;
 /// Assumed radius where a file says nothing, m: that of a person in the native profile.
 const RADIUS_M: f64 = 0.28;
+/// Times nearer than this are one time that was rounded twice, s.
+const SAME_SECS: f64 = 1e-6;
+/// Index of the leaf of the absent in the recordings that are made here.
+const ABSENT: u16 = 1;
 /// Slower than this no heading is taken from the motion, m/s.
 const STILL_MPS: f64 = 0.05;
 
@@ -66,7 +70,9 @@ pub fn write_agents_at(recording: &Recording, rate: Rate) -> String {
     text
 }
 
-fn quoted(text: &str) -> String {
+/// A cell as RFC 4180 has it: in quotes only where it needs them.
+#[must_use]
+pub fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
@@ -77,11 +83,15 @@ struct Fix {
     x: f64,
     y: f64,
     yaw: Option<f64>,
+    /// Whether the agent is there.
+    there: bool,
 }
 
 /// Reads tracks: columns `t` (s), `id` (`robot`, `human_3` or a number; 0 is the robot), `x`, `y` (m) and maybe `yaw`
-/// (rad), in any order; other columns are passed over. Lines may come in any order. The tracks are brought to the
-/// step of 0.01 s by straight lines between fixes; before its first and after its last fix an agent stands still.
+/// (rad) and `leaf`, in any order; other columns are passed over. Lines may come in any order. The tracks are brought
+/// to the step of 0.01 s by straight lines between fixes. Before its first and after its last fix the robot stands
+/// still and a human is not there, and neither it is at a fix whose `leaf` is `absent` nor on the way to or from one;
+/// all other leaves are passed over.
 ///
 /// # Errors
 /// [`StreamError::Csv`] with the line.
@@ -118,6 +128,10 @@ pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
     }
     let mut per_agent: Vec<Vec<AgentState>> =
         tracks.iter().map(|(agent, track)| resampled(*agent, track, begin, ticks)).collect();
+    let mut leaves = vec![String::new()];
+    if per_agent.iter().flatten().any(|state| state.leaf() == ABSENT) {
+        leaves.push(ABSENT_LEAF.to_owned());
+    }
     let agents = tracks.keys().map(|agent| info(*agent)).collect();
     let mut frames = Vec::with_capacity(ticks.saturating_mul(tracks.len()));
     let mut columns: Vec<_> = per_agent.iter_mut().map(|states| states.drain(..)).collect();
@@ -133,7 +147,7 @@ pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
         profile: "tracks".to_owned(),
         step_s: STEP_SECS,
         agents,
-        leaves: vec![String::new()],
+        leaves,
     };
     Ok(Recording { header, frames, events: Vec::new() })
 }
@@ -156,6 +170,7 @@ struct Columns {
     x: usize,
     y: usize,
     yaw: Option<usize>,
+    leaf: Option<usize>,
 }
 
 impl Columns {
@@ -168,10 +183,10 @@ impl Columns {
         let find = |name: &str| names.iter().position(|found| found == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
-                bad(line, &format!("the head has no column `{name}`; needed are t, id, x, y, allowed is yaw"))
+                bad(line, &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, leaf"))
             })
         };
-        Ok(Self { t: need("t")?, id: need("id")?, x: need("x")?, y: need("y")?, yaw: find("yaw") })
+        Ok(Self { t: need("t")?, id: need("id")?, x: need("x")?, y: need("y")?, yaw: find("yaw"), leaf: find("leaf") })
     }
 
     fn fix(&self, line: usize, text: &str) -> Result<(AgentId, Fix), StreamError> {
@@ -201,24 +216,29 @@ impl Columns {
             Some(at) => Some(number(at, "yaw")?),
             None => None,
         };
-        Ok((agent, Fix { t: number(self.t, "t")?, x: number(self.x, "x")?, y: number(self.y, "y")?, yaw }))
+        let there = self.leaf.and_then(|at| cells.get(at)).is_none_or(|leaf| *leaf != ABSENT_LEAF);
+        Ok((agent, Fix { t: number(self.t, "t")?, x: number(self.x, "x")?, y: number(self.y, "y")?, yaw, there }))
     }
 }
 
 fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<AgentState> {
-    let flags = AgentState::flags(agent, Gesture::None, 0);
     let mut states: Vec<AgentState> = Vec::with_capacity(ticks);
     let mut at = 0_usize;
     let mut heading = track.first().and_then(|fix| fix.yaw).unwrap_or_else(|| first_heading(track));
     for tick in 0..ticks {
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 ticks")]
         let t = begin + tick as f64 * STEP_SECS;
-        while track.get(at + 1).is_some_and(|next| next.t <= t) {
+        while track.get(at + 1).is_some_and(|next| next.t <= t + SAME_SECS) {
             at += 1;
         }
         let Some(from) = track.get(at) else { break };
-        // Half a step of slack at the ends, so that rounding of times makes nobody move early.
-        let to = track.get(at + 1).filter(|_| t >= from.t);
+        let next = track.get(at + 1);
+        let to = next.filter(|_| t >= from.t - SAME_SECS);
+        // Half a step of slack at the ends, so that rounding of times takes nobody away.
+        let (early, late) = (t < from.t - 0.5 * STEP_SECS, t > from.t + 0.5 * STEP_SECS);
+        let there = from.there && !early && next.map_or(!late, |next| next.there || !late);
+        let leaf = if there || agent == AgentId::Robot { 0 } else { ABSENT };
+        let to = to.filter(|_| leaf != ABSENT);
         let (x, y, vx, vy) = match to {
             Some(to) => {
                 let (span, share) = (to.t - from.t, (t - from.t) / (to.t - from.t));
@@ -238,6 +258,7 @@ fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<Age
         };
         let before = states.last().map_or(heading, |last| last.yaw);
         let omega = socrates_model::geometry::wrap_angle(heading - before) / STEP_SECS;
+        let flags = AgentState::flags(agent, Gesture::None, leaf);
         states.push(AgentState { tick: tick as u64, agent: agent.number(), flags, x, y, yaw: heading, vx, vy, omega });
     }
     states
@@ -264,6 +285,42 @@ mod tests {
         assert!((human.y - 3.5).abs() < 1e-9 && (human.yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
         let before = recording.tick(10)[1];
         assert!((before.y - 3.0).abs() < 1e-12 && before.speed() < 1e-12);
+    }
+
+    #[test]
+    fn a_cell_with_a_comma_is_quoted() {
+        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
+        assert_eq!(quoted("plain"), "plain");
+    }
+
+    #[test]
+    fn people_are_not_there_before_their_first_and_after_their_last_line_and_the_robot_stands() {
+        let text = "t,id,x,y\n0.5,robot,0,0\n1,robot,1,0\n0,1,5,5\n2,1,5,3\n0.7,2,0,3\n1.3,2,0,4\n";
+        let recording = read_tracks(text).unwrap();
+        let absent = recording.header.absent().unwrap();
+        let there = |number: u32| -> Vec<u64> {
+            let states = recording.track(AgentId::from_number(number)).filter(|state| state.leaf() != absent);
+            states.map(|state| state.tick).collect()
+        };
+        assert_eq!((there(0).len(), there(1).len()), (201, 201));
+        assert_eq!(there(2), (70..=130).collect::<Vec<u64>>());
+        let gone = recording.tick(150)[2];
+        assert!((gone.y - 4.0).abs() < 1e-12 && gone.speed() < 1e-12);
+        // Where everybody is there all the time, there is no such leaf.
+        assert_eq!(read_tracks("t,id,x,y\n0,1,5,5\n2,1,5,3\n").unwrap().header.leaves, [""]);
+    }
+
+    #[test]
+    fn who_is_written_as_absent_is_read_as_absent() {
+        let text = "t,id,x,y\n0,1,5,5\n2,1,5,3\n0.5,2,0,3\n1,2,0,4\n";
+        let mut first = read_tracks(text).unwrap();
+        let away = |tick: u64| (60..80).contains(&tick);
+        for state in first.frames.iter_mut().filter(|state| state.agent == 2 && away(state.tick)) {
+            state.flags = AgentState::flags(state.agent_id(), Gesture::None, ABSENT);
+        }
+        let again = read_tracks(&write_agents_at(&first, Rate::Every)).unwrap();
+        let leaves = |recording: &Recording| recording.frames.iter().map(AgentState::leaf).collect::<Vec<_>>();
+        assert_eq!(leaves(&again), leaves(&first));
     }
 
     #[test]

@@ -11,6 +11,7 @@
 mod actor;
 pub mod annotated;
 pub mod batch;
+pub mod draft;
 pub mod facts;
 pub mod figure;
 pub mod film;
@@ -34,6 +35,7 @@ mod template;
 
 pub use annotated::annotated_map;
 pub use batch::{BatchEntry, BatchPage};
+pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};
 pub use film::{Film, FilmError, FilmOptions};

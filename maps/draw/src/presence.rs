@@ -2,9 +2,6 @@
 
 use socrates_model::{AgentState, Recording};
 
-/// Leaf name of somebody who is not there, as the simulation writes it.
-const ABSENT_LEAF: &str = "absent";
-
 /// Tells of the states of one recording which are there to be drawn.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct There {
@@ -14,8 +11,7 @@ pub(crate) struct There {
 impl There {
     /// For the states of a recording.
     pub(crate) fn of(recording: &Recording) -> Self {
-        let absent = recording.header.leaves.iter().position(|leaf| leaf == ABSENT_LEAF);
-        Self { absent: absent.and_then(|index| u16::try_from(index).ok()).filter(|index| *index > 0) }
+        Self { absent: recording.header.absent() }
     }
 
     /// Whether the agent is there, at a place.

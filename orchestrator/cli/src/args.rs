@@ -159,6 +159,12 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: crate::evaluate::EvaluateVerb,
     },
+    /// Take out of a library what others can use.
+    Library {
+        /// What to do.
+        #[command(subcommand)]
+        verb: crate::chat::LibraryVerb,
+    },
     /// List, show and rate the canonical scenarios of the catalogue.
     Scenarios {
         /// What to do.
@@ -246,6 +252,9 @@ pub(crate) struct RunOptions {
     /// a probability per ask.
     #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
     pub(crate) inject: String,
+    /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
+    #[arg(long)]
+    pub(crate) ask: bool,
 }
 
 /// Options of `simulate`.
@@ -299,6 +308,7 @@ impl RunOptions {
             require: "any".to_owned(),
             workers: None,
             inject: String::new(),
+            ask: false,
         }
     }
 }

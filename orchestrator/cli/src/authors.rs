@@ -47,9 +47,10 @@ pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
 
 /// The style of questions, as settings of jobs; empty for the default.
 pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complaint> {
-    let asked: BTreeMap<String, String> = ["mode", "paths", "behaviors", "image"]
+    let asked: BTreeMap<String, String> = ["mode", "paths", "behaviors", "image", "feedback"]
         .into_iter()
         .map(|name| (format!("prompt.{name}"), config.text(&format!("author.{name}"))))
+        .chain([("prompt.variants".to_owned(), config.number("author.variants").to_string())])
         .collect();
     Style::from_settings(&asked).map(|style| style.settings()).map_err(|fault| {
         let key = fault.at.replacen("prompt.", "author.", 1);

@@ -85,8 +85,8 @@ fn whole(runs: u32, folder: &Path) -> Result<(Vec<f64>, serde_json::Value), Comp
 /// What each job took beyond its work, ms, sorted: both ways over the bus and the decisions between, with processes that
 /// are awake and nothing in line before it.
 async fn hand_overs(talk: &Talk, cli: &Cli, config: &Config, folder: &Path) -> Result<Vec<f64>, Complaint> {
-    let options = RunOptions::plain(1);
-    let prepared = prepare_text("bench", REQUEST, "bench", Path::new("."), Some(&options), config, false)?;
+    let options = RunOptions { author: Some("offline".to_owned()), ..RunOptions::plain(1) };
+    let prepared = prepare_text("bench", REQUEST, "bench", Path::new("."), Some(&options), config)?;
     let wanted = (1..=SERIES)
         .map(|seed| Ok(Wanted { id: scenario_id("bench", seed, 0, 1)?, seed, prepared: &prepared }))
         .collect::<Result<Vec<_>, Complaint>>()?;

@@ -86,6 +86,9 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     if let Some(members) = text.as_object_mut().filter(|_| !prepared.style.is_empty()) {
         members.insert("style".to_owned(), json!(prepared.style));
     }
+    if let Some(members) = text.as_object_mut().filter(|_| prepared.looked_at) {
+        members.insert("looked_at".to_owned(), json!(true));
+    }
     Digest::of(text.to_string().as_bytes())
 }
 
@@ -106,13 +109,22 @@ pub(crate) fn write(
     past: &[PastJob],
     fetch: &Fetch<'_>,
 ) -> Result<Bundle, Complaint> {
+    let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
+        // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
+        if let Some(digest) = judged.and_then(|job| job.inputs.get(role)) {
+            return utf8(role, fetch(digest)?);
+        }
         if let Some(pinned) = prepared.pins.get(role) {
             return Ok(pinned.clone());
         }
         let artifact =
             newest(status, stage, "").and_then(|job| job.artifacts.iter().find(|artifact| artifact.role == role));
         string(artifact.ok_or_else(|| missing(role))?, fetch)
+    };
+    let reading: Reading = match judged.and_then(|job| job.inputs.get("reading")) {
+        Some(digest) => parse("reading", &utf8("reading", fetch(digest)?)?)?,
+        None => prepared.reading.clone(),
     };
     let (proposal_text, paths_text, behaviors_text) =
         (text("proposal", Stage::Proposal)?, text("paths", Stage::Paths)?, text("behaviors", Stage::Behaviors)?);
@@ -161,7 +173,7 @@ pub(crate) fn write(
         out.put(&format!("details/location/{name}"), bytes)?;
     }
     out.put("details/location.json", pretty(&prepared.location)?.as_bytes())?;
-    out.put("details/reading.json", pretty(&prepared.reading)?.as_bytes())?;
+    out.put("details/reading.json", pretty(&reading)?.as_bytes())?;
     out.put("details/proposal.json", pretty(&proposal)?.as_bytes())?;
     out.put("details/paths.json", pretty(&paths)?.as_bytes())?;
     out.put("details/behaviors.json", pretty(&behaviors)?.as_bytes())?;
@@ -185,7 +197,7 @@ pub(crate) fn write(
         manifest,
         request: prepared.request.clone(),
         location: prepared.location.clone(),
-        reading: prepared.reading.clone(),
+        reading,
         proposal,
         paths,
         behaviors,
@@ -312,7 +324,11 @@ fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
     if let Some(text) = &artifact.inline {
         return Ok(text.clone());
     }
-    String::from_utf8(fetch(&artifact.digest)?).map_err(|why| ours(&format!("the {} is no text: {why}", artifact.role)))
+    utf8(&artifact.role, fetch(&artifact.digest)?)
+}
+
+fn utf8(role: &str, bytes: Vec<u8>) -> Result<String, Complaint> {
+    String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
 }
 
 /// The newest job of a stage and item that has a result.
@@ -338,17 +354,19 @@ fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
 
 /// The request as the bundle keeps it: its location lies beside it, so it can be moved.
 fn portable(prepared: &Prepared) -> Request {
+    // What a person looked at was perhaps changed by hand: the same again is what they left, not what an author writes.
+    let keep = |slot: &mut Option<String>, role: &str| {
+        if slot.is_some() || prepared.looked_at {
+            *slot = Some(format!("details/{role}.json"));
+        }
+    };
     let mut request = prepared.request.clone();
     if socrates_maps::shipped::files(&request.location).is_none() {
         request.location = "details/location".to_owned();
     }
-    for (role, slot) in
-        [("proposal", &mut request.proposal), ("paths", &mut request.paths), ("behaviors", &mut request.behaviors)]
-    {
-        if slot.is_some() {
-            *slot = Some(format!("details/{role}.json"));
-        }
-    }
+    keep(&mut request.proposal, "proposal");
+    keep(&mut request.paths, "paths");
+    keep(&mut request.behaviors, "behaviors");
     request
 }
 
@@ -403,6 +421,16 @@ pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
         .collect()
 }
 
+/// An exchange without what was asked and answered.
+fn without_words(mut exchange: serde_json::Value) -> serde_json::Value {
+    if let Some(members) = exchange.as_object_mut() {
+        for words in ["messages", "answer"] {
+            members.remove(words);
+        }
+    }
+    exchange
+}
+
 /// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.
 fn provenance(
     prepared: &Prepared,
@@ -415,10 +443,16 @@ fn provenance(
     let exchanges = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
         artifacts
             .iter()
-            .filter(|artifact| matches!(artifact.role.as_str(), "exchange" | "refused"))
+            .filter(|artifact| artifact.role == "exchange" || artifact.role == "refused" && prepared.keep_answers)
             .filter_map(|artifact| string(artifact, fetch).ok())
             .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+            .map(|exchange| if prepared.keep_answers { exchange } else { without_words(exchange) })
             .collect()
+    };
+    // What a person typed who looked at it.
+    let said = |artifacts: &[Artifact]| -> Option<serde_json::Value> {
+        let typed = artifacts.iter().find(|artifact| artifact.role == "said")?;
+        serde_json::from_str(&string(typed, fetch).ok()?).ok()
     };
     let names = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
         artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect()
@@ -436,7 +470,8 @@ fn provenance(
                 })
                 .collect();
             json!({ "job": job.key, "state": job.state, "seed": job.seed, "inputs": job.inputs, "sent_back": job.sent_back,
-                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts) })
+                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts),
+                    "said": said(&job.artifacts) })
         })
         .collect();
     json!({ "version": env!("CARGO_PKG_VERSION"), "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })

@@ -23,12 +23,10 @@ pub(crate) async fn submit(
     connect: &str,
     namespace: &str,
     seed: u64,
-    key_found: bool,
 ) -> Result<(), Complaint> {
     let options = RunOptions::plain(seed);
     let files = request_files(requests)?;
-    let prepared =
-        files.iter().map(|file| prepare(file, Some(&options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    let prepared = files.iter().map(|file| prepare(file, Some(&options), config)).collect::<Result<Vec<_>, _>>()?;
     let bus =
         ZenohBus::open(ZenohConfig::new(Mode::Client, namespace, "submit").connect(connect)).await.map_err(|why| {
             Complaint::input(format!("cannot connect to `{connect}`: {why}"), "is `socrates cluster up` running there?")

@@ -64,17 +64,7 @@ pub(crate) fn cost(talk: &Talk, config: &Config, what: &[PathBuf], prices: Optio
     let named = config.text("author.prices");
     let file = prices.map(Path::to_path_buf).or_else(|| (!named.is_empty()).then(|| PathBuf::from(named)));
     let prices = file.as_deref().map_or_else(|| Ok(BTreeMap::new()), read_prices)?;
-    let mut bundles = Vec::new();
-    for path in what {
-        let found = bundles_in(path);
-        if found.is_empty() {
-            return Err(Complaint::input(
-                format!("`{}` is neither a bundle nor a folder of bundles", path.display()),
-                "name what `socrates run` wrote, such as runs/NAME",
-            ));
-        }
-        bundles.extend(found);
-    }
+    let bundles = bundles_in(what)?;
     let mut total: BTreeMap<String, Sum> = BTreeMap::new();
     let mut rows = Vec::new();
     for bundle in &bundles {
@@ -150,7 +140,23 @@ fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
 }
 
 /// The folder itself where it is a bundle, else the bundles inside, in order of their names.
-fn bundles_in(path: &Path) -> Vec<PathBuf> {
+/// The bundles among these folders and in them.
+pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+    let mut bundles = Vec::new();
+    for path in what {
+        let found = inside(path);
+        if found.is_empty() {
+            return Err(Complaint::input(
+                format!("`{}` is neither a bundle nor a folder of bundles", path.display()),
+                "name what `socrates run` wrote, such as runs/NAME",
+            ));
+        }
+        bundles.extend(found);
+    }
+    Ok(bundles)
+}
+
+fn inside(path: &Path) -> Vec<PathBuf> {
     let is_bundle = |dir: &Path| dir.join("details/provenance.json").is_file();
     if is_bundle(path) {
         return vec![path.to_path_buf()];

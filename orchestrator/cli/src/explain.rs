@@ -108,7 +108,8 @@ pub(crate) fn open(talk: &Talk, bundle: &Path) -> Result<(), Complaint> {
 }
 
 /// Checks what this machine can do.
-pub(crate) fn doctor(talk: &Talk, key_found: bool) -> Result<(), Complaint> {
+pub(crate) fn doctor(talk: &Talk, config: &Config) -> Result<(), Complaint> {
+    let key_found = crate::authors::key_found(config)?;
     let program = |name: &str| {
         std::env::var_os("PATH").is_some_and(|paths| std::env::split_paths(&paths).any(|dir| dir.join(name).is_file()))
     };

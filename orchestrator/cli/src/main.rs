@@ -11,6 +11,7 @@ mod again;
 mod agents;
 mod agreement;
 mod args;
+mod ask;
 mod authors;
 mod batch;
 mod bench;
@@ -18,6 +19,7 @@ mod bt;
 mod bundle;
 #[cfg(test)]
 mod case_studies;
+mod chat;
 mod cite;
 mod cluster;
 mod config;
@@ -69,7 +71,9 @@ fn main() -> ExitCode {
     let code = match begin(&talk, &cli) {
         Ok(code) => code,
         Err(complaint) => {
-            talk.warn(&format!("error: {complaint}"));
+            // Who left on purpose made no error.
+            let word = if complaint.code == Code::Waits { "" } else { "error: " };
+            talk.warn(&format!("{word}{complaint}"));
             talk.result(&complaint.object());
             complaint.code
         }
@@ -79,26 +83,25 @@ fn main() -> ExitCode {
 
 fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
     let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.set)?;
-    let key_found = authors::key_found(&config)?;
     start_log(&config)?;
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
             Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
         })?;
-    let code = runtime.block_on(act(talk, cli, &config, key_found));
+    let code = runtime.block_on(act(talk, cli, &config));
     // A blocked reader of a child's pipe must not hold the exit.
     runtime.shutdown_background();
     code
 }
 
-async fn act(talk: &Talk, cli: &Cli, config: &Config, key_found: bool) -> Result<Code, Complaint> {
+async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint> {
     let done = |outcome: Result<(), Complaint>| outcome.map(|()| Code::Ok);
     match &cli.verb {
-        Verb::Demo(options) => run::demo(talk, cli, config, options, key_found).await,
-        Verb::Run { requests, options } => run::run(talk, cli, config, requests, options, key_found).await,
+        Verb::Demo(options) => run::demo(talk, cli, config, options).await,
+        Verb::Run { requests, options } => run::run(talk, cli, config, requests, options).await,
         Verb::New { file, location } => done(explain::new(talk, file, location)),
         Verb::Read { request } => {
-            let prepared = prepare::prepare(request, None, config, key_found)?;
+            let prepared = prepare::prepare(request, None, config)?;
             run::print_reading(talk, &prepared);
             talk.result(&serde_json::json!({ "reading": prepared.reading }));
             Ok(Code::Ok)
@@ -120,16 +123,17 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config, key_found: bool) -> Result
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
         Verb::Status { what } => done(watch::status(talk, what).await),
         Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),
-        Verb::Doctor => done(explain::doctor(talk, key_found)),
+        Verb::Doctor => done(explain::doctor(talk, config)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),
+        Verb::Library { verb } => done(chat::library(talk, verb)),
         Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
-        Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb, key_found).await),
+        Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb).await),
         Verb::Cluster { verb } => match verb {
             ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
             ClusterVerb::Worker(options) => done(process::worker(config, options).await),
             ClusterVerb::Submit { requests, connect, namespace, seed } => {
-                done(cluster::submit(talk, config, requests, connect, namespace, *seed, key_found).await)
+                done(cluster::submit(talk, config, requests, connect, namespace, *seed).await)
             }
         },
         Verb::Dev { verb } => done(dev::dev(talk, cli, config, verb).await),

@@ -125,14 +125,14 @@ pub(crate) fn shipped(config: &Config) -> Result<Vec<Prepared>, Complaint> {
     for location in socrates_maps::shipped::names() {
         for (name, text) in socrates_maps::shipped::requests(location) {
             let name = format!("{location}-{}", name.trim_end_matches(".toml"));
-            found.push(prepare_text(&name, text, &name, Path::new("."), None, config, false)?);
+            found.push(prepare_text(&name, text, &name, Path::new("."), None, config)?);
         }
     }
     Ok(found)
 }
 
 fn named(config: &Config, requests: &[PathBuf]) -> Result<Vec<Prepared>, Complaint> {
-    request_files(requests)?.iter().map(|file| prepare(file, None, config, false)).collect()
+    request_files(requests)?.iter().map(|file| prepare(file, None, config)).collect()
 }
 
 /// The scenario of a request with its reference run, asked again where the verdict says so.

@@ -34,6 +34,10 @@ pub(crate) struct Prepared {
     pub(crate) injected: BTreeMap<String, String>,
     /// Style of the questions, as settings of the author's jobs; empty for the default.
     pub(crate) style: BTreeMap<String, String>,
+    /// Whether a person looks at it while it is made.
+    pub(crate) looked_at: bool,
+    /// Whether the provenance keeps questions and answers.
+    pub(crate) keep_answers: bool,
     /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
     pub(crate) author: String,
     /// Why this author, for the first line of a run.
@@ -72,16 +76,11 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 }
 
 /// Reads and checks one request file.
-pub(crate) fn prepare(
-    file: &Path,
-    options: Option<&RunOptions>,
-    config: &Config,
-    key_found: bool,
-) -> Result<Prepared, Complaint> {
+pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
     let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
-    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config, key_found)
+    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config)
 }
 
 /// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
@@ -92,7 +91,6 @@ pub(crate) fn prepare_text(
     folder: &Path,
     options: Option<&RunOptions>,
     config: &Config,
-    key_found: bool,
 ) -> Result<Prepared, Complaint> {
     let mut request: Request = toml::from_str(text).map_err(|why| {
         let mut complaint = Complaint::input(
@@ -143,15 +141,31 @@ pub(crate) fn prepare_text(
             pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
         }
     }
-    let (author, mut author_note) = choose_author(&request.run.author, config, key_found);
+    let (author, mut author_note) = choose_author(&request.run.author, config)?;
     let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
     }
-    // Rules have no style of being asked: the offline author's results stay the same results.
-    let style = if author == "offline" { BTreeMap::new() } else { crate::authors::style(config)? };
-    let name = slug(name);
-    Ok(Prepared { name, request, location, location_files, reading, pins, injected, style, author, author_note })
+    let mut style = crate::authors::style(config)?;
+    if author == "offline" {
+        // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
+        // that were put in matters.
+        style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
+    }
+    Ok(Prepared {
+        name: slug(name),
+        request,
+        location,
+        location_files,
+        reading,
+        pins,
+        injected,
+        style,
+        looked_at: options.is_some_and(|options| options.ask),
+        keep_answers: config.truth("author.keep_answers"),
+        author,
+        author_note,
+    })
 }
 
 /// The settings of `--inject`.
@@ -259,14 +273,15 @@ fn read_pin(role: &str, path: &Path) -> Result<String, Complaint> {
     }
 }
 
-fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, String) {
+fn choose_author(wish: &str, config: &Config) -> Result<(String, String), Complaint> {
     let wish = if wish == "auto" { config.text("author.kind") } else { wish.to_owned() };
     if wish != "auto" {
         let note = if wish == "offline" { "offline, rules".to_owned() } else { wish.clone() };
-        return (wish, note);
+        return Ok((wish, note));
     }
     let model = config.text("author.model");
-    if key_found && !model.is_empty() {
+    let key_found = crate::authors::key_found(config)?;
+    Ok(if key_found && !model.is_empty() {
         (format!("openai:{model}"), format!("openai:{model}"))
     } else if key_found {
         (
@@ -275,7 +290,7 @@ fn choose_author(wish: &str, config: &Config, key_found: bool) -> (String, Strin
         )
     } else {
         ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
-    }
+    })
 }
 
 /// A word that is safe as folder and scenario id.

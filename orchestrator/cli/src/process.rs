@@ -15,7 +15,7 @@ use crate::exit::{Code, Complaint};
 use crate::orchestrate::{self, OrchestratorConfig};
 
 /// Version of the stages' code; results of another version are not reused.
-const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
+pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// Serves one stage until told to leave.
 pub(crate) async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Complaint> {
@@ -53,7 +53,7 @@ pub(crate) async fn worker(config: &Config, options: &WorkerOptions) -> Result<(
         Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage, bus.clone(), settings, shutdown).await,
         Stage::Review => {
             return Err(Complaint::input(
-                "a review is done by a person",
+                "a review is done by a person: `socrates run --ask`",
                 "stages of workers: proposal, paths, behaviors, simulation, scoring",
             ));
         }
@@ -96,6 +96,7 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
         beat_ms: config.number("orchestrator.beat_ms").clamp(100, 200_000),
         repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
         asks_again: u32::try_from(config.number("orchestrator.asks_again")).unwrap_or(3).min(10),
+        author_rates: (config.number("author.tokens_per_minute"), config.number("author.requests_per_minute")),
         durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };

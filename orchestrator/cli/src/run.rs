@@ -20,18 +20,12 @@ use crate::talk::Talk;
 const DEMO: (&str, &str) = ("hospital", "elevator");
 
 /// Runs the shipped request.
-pub(crate) async fn demo(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    options: &RunOptions,
-    key_found: bool,
-) -> Result<Code, Complaint> {
+pub(crate) async fn demo(talk: &Talk, cli: &Cli, config: &Config, options: &RunOptions) -> Result<Code, Complaint> {
     let requests = socrates_maps::shipped::requests(DEMO.0);
     let (name, text) = requests.into_iter().find(|(stem, _)| *stem == DEMO.1).ok_or_else(|| {
         Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours)
     })?;
-    let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config, key_found)?;
+    let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config)?;
     single_or_batch(talk, cli, config, options, vec![prepared]).await
 }
 
@@ -42,11 +36,9 @@ pub(crate) async fn run(
     config: &Config,
     requests: &[PathBuf],
     options: &RunOptions,
-    key_found: bool,
 ) -> Result<Code, Complaint> {
     let files = request_files(requests)?;
-    let prepared =
-        files.iter().map(|file| prepare(file, Some(options), config, key_found)).collect::<Result<Vec<_>, _>>()?;
+    let prepared = files.iter().map(|file| prepare(file, Some(options), config)).collect::<Result<Vec<_>, _>>()?;
     single_or_batch(talk, cli, config, options, prepared).await
 }
 
@@ -59,6 +51,12 @@ async fn single_or_batch(
 ) -> Result<Code, Complaint> {
     pace(&options.pace)?;
     let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    if options.ask && count != 1 {
+        return Err(Complaint::input(
+            format!("`--ask` looks at one scenario; {count} are asked for"),
+            "name one request, with `--variants 1`",
+        ));
+    }
     let mut prepared = prepared;
     match prepared.pop() {
         Some(one) if count == 1 => single(talk, cli, config, options, one).await,

@@ -10,6 +10,7 @@ use socrates_model::{Digest, ScenarioId};
 use tokio::time::Instant;
 
 use crate::args::{Flags, RunOptions};
+use crate::ask::Asking;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::{self, History};
@@ -73,8 +74,15 @@ pub(crate) async fn make(
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
     let mut supervisor = Supervisor::start(work, config, workers, &passed_on(flags)).await?;
-    let followed = follow_all(talk, &mut supervisor, &specs, at_once).await;
+    let mut asking = match wanted.first().filter(|want| want.prepared.looked_at) {
+        Some(want) => Some(Asking::start(talk, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?),
+        None => None,
+    };
+    let followed = follow_all(talk, &mut supervisor, &specs, at_once, asking.as_mut()).await;
     talk.clear();
+    if let Some(asking) = asking {
+        asking.end().await;
+    }
     supervisor.stop().await;
     let statuses = followed?;
     // The store is free once its orchestrator has left; a history that cannot be read fails no scenario.
@@ -91,11 +99,12 @@ async fn follow_all(
     supervisor: &mut Supervisor,
     specs: &[ScenarioSpec],
     at_once: usize,
+    mut asking: Option<&mut Asking>,
 ) -> Result<Vec<ScenarioStatus>, Complaint> {
     let mut all = Vec::new();
     for some in specs.chunks(at_once.max(1)) {
         let before = u32::try_from(all.len()).unwrap_or(u32::MAX);
-        all.extend(follow(talk, supervisor, some.to_vec(), before).await?);
+        all.extend(follow(talk, supervisor, some.to_vec(), before, asking.as_deref_mut()).await?);
     }
     Ok(all)
 }
@@ -149,7 +158,7 @@ pub(crate) fn spec(
         run_seeds: prepared.request.seeds().map_err(|why| Complaint::input(why, "\"1\", \"1..20\" or \"1,4,9\""))?,
         pinned,
         settings,
-        review: false,
+        review: prepared.looked_at,
     })
 }
 
@@ -185,6 +194,7 @@ async fn follow(
     supervisor: &mut Supervisor,
     specs: Vec<ScenarioSpec>,
     before: u32,
+    mut asking: Option<&mut Asking>,
 ) -> Result<Vec<ScenarioStatus>, Complaint> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
@@ -198,17 +208,20 @@ async fn follow(
     let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
     let mut looks_done = true;
     loop {
+        // While a person has the terminal, its lines and its Ctrl-C are theirs.
+        let looking = asking.as_ref().is_some_and(|asking| asking.is_looking());
         tokio::select! {
             _ = poll.tick() => looks_done = true,
             notice = notices.next() => if let Some((_, body)) = notice
                 && let Ok(envelope) = socrates_link::decode::<Notice>("notice", &body) {
                 looks_done = ids.len() == 1 && envelope.body.key.stage == socrates_model::job::Stage::Scoring;
                 if ids.len() == 1 {
-                    talk.passing(&format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
+                    passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
                 }
             },
             gone = supervisor.gave_up() => return Err(ours(&gone.unwrap_or_else(|| "every process has ended".to_owned()))),
-            _ = tokio::signal::ctrl_c() => return Err(stopped()),
+            complaint = left(&mut asking) => return Err(complaint),
+            _ = tokio::signal::ctrl_c(), if !looking || !talk.live => return Err(stopped()),
             _ = interrupted.recv() => return Err(stopped()),
         }
         if !looks_done {
@@ -221,7 +234,7 @@ async fn follow(
                 if ids.len() > 1 {
                     talk.passing(&format!("making     {} of {} done", reply.done, reply.total));
                 } else if let Some(line) = reply.scenarios.first() {
-                    talk.passing(&stage_line(line));
+                    passing(talk, asking.as_deref(), &stage_line(line));
                 }
                 if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
                     return all(bus.as_ref(), &ids).await;
@@ -232,6 +245,22 @@ async fn follow(
             }
             Err(_) => {}
         }
+    }
+}
+
+/// Writes a passing line, but not over what a person types.
+fn passing(talk: &Talk, asking: Option<&Asking>, text: &str) {
+    match asking {
+        Some(asking) => asking.passing(talk, text),
+        None => talk.passing(text),
+    }
+}
+
+/// Ends when the person who looks leaves; never where nobody looks.
+async fn left(asking: &mut Option<&mut Asking>) -> Complaint {
+    match asking {
+        Some(asking) => asking.left().await,
+        None => std::future::pending().await,
     }
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use serde_json::json;
 use socrates_author::offline::Offline;
-use socrates_author::{Answer, AskError, Author, Desk, Papers, Written, attempt, llm};
+use socrates_author::{Author, Desk, Papers, Says, Written, attempt, llm};
 use socrates_llm::estimate::{picture_tokens, png_size, request_tokens};
 use socrates_llm::{Detail, Dialect};
 use socrates_model::Request;
@@ -105,10 +105,7 @@ fn styles() -> [(&'static str, Style); 8] {
         ("paths as walk", Style { paths: PathsForm::Walk, ..off }),
         ("behaviors as json_tree", Style { behaviors: BehaviorsForm::JsonTree, ..off }),
         ("behaviors as xml", Style { behaviors: BehaviorsForm::Xml, ..off }),
-        (
-            "naive",
-            Style { mode: Mode::Naive, paths: PathsForm::Nodes, behaviors: BehaviorsForm::Xml, image: Image::Off },
-        ),
+        ("naive", Style { mode: Mode::Naive, paths: PathsForm::Nodes, behaviors: BehaviorsForm::Xml, ..off }),
     ]
 }
 
@@ -149,20 +146,6 @@ async fn own_time(talk: &Talk, questions: &[Question], style: &Style) -> Result<
     }
     all.sort_unstable();
     Ok(all.get(all.len() / 2).copied().unwrap_or_default())
-}
-
-/// Says one text at once: what remains is our own time.
-struct Says(String);
-
-#[async_trait::async_trait]
-impl Author for Says {
-    async fn ask(&self, _question: &Question) -> Result<Answer, AskError> {
-        Ok(Answer { text: self.0.clone(), ..Answer::default() })
-    }
-
-    fn name(&self) -> String {
-        "says".into()
-    }
 }
 
 struct Counted {

@@ -108,6 +108,7 @@ fn work(state: &mut State) -> Vec<Row> {
         tokens: (0, 0),
         remark: "done".to_owned(),
         repair: None,
+        anew: Vec::new(),
         verdict: Some(Verdict::Realised),
     };
     all.extend(rows(&step(state, Event::Report { report: Box::new(report), to: 0 }, 0)));

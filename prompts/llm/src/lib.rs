@@ -24,7 +24,7 @@ pub mod key;
 pub mod limits;
 pub mod probe;
 
-mod base64;
+pub mod base64;
 mod waits;
 mod wire;
 

@@ -1,7 +1,7 @@
 //! Rules that were refused, or did not work: what the author writes instead.
 
 use socrates_model::rule::RobotDo;
-use socrates_model::{Action, Fault, FaultCode, HumanProposal, Proposal, Rule, Trigger};
+use socrates_model::{Action, AgentId, Fault, FaultCode, HumanProposal, Proposal, Rule, Trigger};
 
 use crate::deed::{distance_m, with_distance};
 
@@ -71,20 +71,12 @@ pub(crate) fn rules(human: &HumanProposal, proposal: &Proposal, feedback: &[Faul
 
 /// Whether somebody makes the gesture that a trigger waits for; other triggers wait for none.
 fn is_made(trigger: &Trigger, proposal: &Proposal) -> bool {
-    match trigger {
-        Trigger::RobotSays(gesture) => proposal.robot.script.iter().any(|line| line.act == RobotDo::Say(*gesture)),
-        Trigger::HumanSays(who, gesture) => {
-            proposal.human(*who).is_some_and(|human| human.rules.iter().any(|rule| rule.gesture == Some(*gesture)))
+    match trigger.awaits() {
+        Some((AgentId::Robot, gesture)) => proposal.robot.script.iter().any(|line| line.act == RobotDo::Say(gesture)),
+        Some((AgentId::Human(who), gesture)) => {
+            proposal.human(who).is_some_and(|human| human.rules.iter().any(|rule| rule.gesture == Some(gesture)))
         }
-        Trigger::Always
-        | Trigger::RobotVisible(_)
-        | Trigger::RobotNear(_)
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_) => true,
+        None => true,
     }
 }
 

@@ -20,6 +20,9 @@ const ROUTES: usize = 10;
 /// Answers within this much of the best are as good, and the seed picks among them.
 const ALIKE: f64 = 2.5;
 
+/// A person who wants other paths is given one of so many.
+const OTHERS: usize = 6;
+
 struct Solution {
     route: Route,
     ways: BTreeMap<HumanId, Way>,
@@ -57,9 +60,23 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
             best.push(solution);
         }
     }
+    let another = question.feedback.iter().any(|fault| fault.code == FaultCode::PPerson);
+    if another {
+        // A person wants others, not the same once more; where there are no others, the same are better than none.
+        let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
+        let others = |solution: &&Solution| {
+            former.as_ref().is_none_or(|former| written(&net, solution, proposal).robot != former.robot)
+        };
+        let different: Vec<&Solution> = best.iter().copied().filter(others).collect();
+        best = if different.is_empty() { best } else { different };
+    }
     let top = best.first()?.score;
     let alike = best.iter().filter(|solution| solution.score >= top - ALIKE).count();
-    let first = if moves == 0 { Draw::new(question.seed, "paths").below(alike.clamp(1, 3)) } else { moves };
+    let first = match moves {
+        0 if another => Draw::new(question.seed, "other paths").below(best.len().min(OTHERS)),
+        0 => Draw::new(question.seed, "paths").below(alike.clamp(1, 3)),
+        moves => moves,
+    };
     let chosen = best.get(first % best.len())?;
     let mut paths = written(&net, chosen, proposal);
     for human in &proposal.humans {

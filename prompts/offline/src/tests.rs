@@ -529,3 +529,21 @@ fn a_pattern_that_the_map_cannot_hold_is_named_and_one_that_it_can_is_a_fact() {
     let reading = read(&asked, &map("hospital"));
     assert!(reading.facts.iter().any(|fact| fact.kind == FactKind::Pattern("exiting_elevator".to_owned())));
 }
+
+#[test]
+fn a_person_who_wants_other_paths_gets_others() {
+    let location = map("office");
+    let task = "Deliver a parcel from the entrance to the kitchen";
+    let asked = request(task, Some("One person walks towards the robot in the corridor."));
+    let (ask, _, first) = answers(&asked, &location, 1);
+    for seed in 1..6 {
+        let again = Question {
+            feedback: vec![Fault::new(FaultCode::PPerson, "paths", "another one")],
+            refused: Some(serde_json::to_string(&first).unwrap()),
+            seed,
+            ..ask.clone()
+        };
+        let others = parsed(socrates_prompts::parse_paths(&Offline::answer(&again), &again));
+        assert_ne!(others.robot, first.robot, "seed {seed}");
+    }
+}

@@ -8,6 +8,7 @@ use socrates_model::{Behaviors, Digest, FORMAT, FailureClass, Fault, FaultCode, 
 use socrates_prompts::{Message, Question, json, parse_behaviors, parse_paths, parse_proposal};
 
 use crate::author::{Answer, AskError, Author, How};
+use crate::variants;
 
 /// What an author wrote, typed.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +78,12 @@ pub struct Exchange {
     /// What was repaired to read it; such an answer is not counted as right at first pass.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub repairs: Vec<Fault>,
+    /// Faults of each of several proposals, where the answer holds several; the answer keeps them all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variants: Vec<Vec<Fault>>,
+    /// Place of the one that was taken, from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<usize>,
     /// Faults put in on purpose.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub injected: Vec<String>,
@@ -129,6 +136,8 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
         tokens: (0, 0),
         how: How::default(),
         repairs: Vec::new(),
+        variants: Vec::new(),
+        chosen: None,
         injected: Vec::new(),
         faults: Vec::new(),
     };
@@ -137,7 +146,12 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
         Err(error) => return Err(unanswered(&error, exchange)),
     };
     exchange.repairs = json::repairs(&answer.text);
-    let outcome = if answer.cut { Err(vec![cut(&answer)]) } else { read(&answer.text, question) };
+    let taken = if answer.cut { Err(vec![cut(&answer)]) } else { chosen(&answer.text, question, &mut exchange) };
+    let (outcome, own) = match taken {
+        Ok(Some(text)) => (read(&text, question), Some(text)),
+        Ok(None) => (read(&answer.text, question), None),
+        Err(faults) => (Err(faults), None),
+    };
     let model = answer.model.clone();
     exchange.model = answer.model;
     exchange.messages = answer.sent;
@@ -158,8 +172,29 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
             written.sign(&model);
             Ok(Made { written, exchange })
         }
-        Some(_) | None => Err(refused(faults, exchange)),
+        Some(_) | None => {
+            let mut refused = refused(faults, exchange);
+            // Of several only the one that is to be mended is shown again.
+            refused.text = own.or(refused.text);
+            Err(refused)
+        }
     }
+}
+
+/// The text of the best of several proposals; nothing where the answer is one.
+fn chosen(text: &str, question: &Question, exchange: &mut Exchange) -> Result<Option<String>, Vec<Fault>> {
+    // A glance is enough to leave other answers to their own reader.
+    if question.stage != Stage::Proposal || !text.contains(variants::MEMBER) {
+        return Ok(None);
+    }
+    if json::object(text)?.get(variants::MEMBER).is_none() {
+        return Ok(None);
+    }
+    let mut all = variants::read(text, question)?;
+    let best = variants::best(&all);
+    exchange.variants = all.iter().map(|variant| variant.faults.clone()).collect();
+    exchange.chosen = Some(best);
+    Ok((best < all.len()).then(|| all.swap_remove(best).text))
 }
 
 fn read(text: &str, question: &Question) -> Result<Written, Vec<Fault>> {
@@ -175,7 +210,8 @@ fn read(text: &str, question: &Question) -> Result<Written, Vec<Fault>> {
     }
 }
 
-fn check(written: &Written, question: &Question) -> Vec<Fault> {
+/// Every fault of an answer, warnings too.
+pub(crate) fn check(written: &Written, question: &Question) -> Vec<Fault> {
     let place = &question.location;
     match (written, &question.proposal) {
         (Written::Proposal(proposal), _) => check_proposal(proposal, &question.reading, place),

@@ -16,18 +16,25 @@ pub mod offline;
 pub mod cassette;
 pub mod llm;
 
+pub mod fault_model;
 pub mod faulty;
 mod mutate;
+
+pub mod confusion;
 
 pub mod attempt;
 pub mod job;
 pub mod settings;
+pub mod variants;
 
 #[cfg(test)]
 mod testing;
 
 pub use attempt::{Exchange, Made, Refused, Written, attempt};
-pub use author::{Answer, AskError, Author, How};
-pub use faulty::{FaultKind, FaultRates, FaultyAuthor};
+pub use author::{Answer, AskError, Author, How, Says};
+pub use fault_model::{FaultKind, FaultRates};
+pub use faulty::FaultyAuthor;
 pub use job::{Desk, JobAnswer, JobRefusal, Papers};
+pub use socrates_llm::{Limits, Rate};
+
 pub use settings::{Keys, Server, author_for, probe};

@@ -13,6 +13,16 @@ use crate::author::{Answer, AskError, Author, How};
 /// Most tokens of an answer. The largest answers, proposals of many humans, take about a third.
 pub const MAX_TOKENS: u32 = 16_000;
 
+/// Most tokens of an answer that is asked for again because it was cut off.
+const MOST_TOKENS: u32 = 64_000;
+
+/// Room for the answer: twice as much where the answer before was cut off, once, and never more than [`MOST_TOKENS`] unless
+/// so much was configured.
+fn room(question: &Question, max_tokens: u32) -> u32 {
+    let cut = question.feedback.iter().any(|fault| fault.code == FaultCode::ETrunc);
+    if cut { max_tokens.saturating_mul(2).min(MOST_TOKENS.max(max_tokens)) } else { max_tokens }
+}
+
 /// A language model behind a server.
 #[derive(Debug, Clone)]
 pub struct Llm {
@@ -58,7 +68,8 @@ impl Author for Llm {
     async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
         let (style, grammar, change) = self.fitted(question);
         let prompt = question.prompt(&style);
-        let mut request = chat_request(question, &prompt, style.image, self.max_tokens)?;
+        let room = room(question, self.max_tokens);
+        let mut request = chat_request(question, &prompt, style.image, room)?;
         request.grammar = grammar;
         if self.dialect != Dialect::OpenAi {
             // Some models take turns by turns only; two in a row by the same speaker are one.
@@ -68,6 +79,11 @@ impl Author for Llm {
         let answer = ChatAnswer { model: format!("{}:{}", self.dialect, answer.model), ..answer };
         let mut said = said(answer, prompt, style);
         said.how.steps.extend(change);
+        if room != self.max_tokens {
+            let words =
+                format!("up to {room} tokens were allowed, not {}: the answer before was cut off", self.max_tokens);
+            said.how.steps.push(words);
+        }
         said.how.picture = picture_of(&request);
         Ok(said)
     }
@@ -223,6 +239,18 @@ mod tests {
         assert_eq!(fitted(Dialect::OpenAi), (PathsForm::Walk, false, false));
         assert_eq!(fitted(Dialect::LlamaCpp), (PathsForm::Nodes, true, true));
         assert_eq!(fitted(Dialect::Anthropic), (PathsForm::Nodes, false, true));
+    }
+
+    #[test]
+    fn a_cut_answer_gets_twice_the_room_once() {
+        let mut asked = question(Stage::Paths);
+        assert_eq!(room(&asked, 16_000), 16_000);
+        let cut = socrates_model::Fault::new(FaultCode::ETrunc, "answer", "was cut");
+        asked.feedback = vec![cut.clone(), cut];
+        assert_eq!((room(&asked, 16_000), room(&asked, 40_000), room(&asked, 90_000)), (32_000, 64_000, 90_000));
+        // It is asked to be shorter as well.
+        let told = asked.prompt(&Style::default()).messages.pop().unwrap().text;
+        assert!(told.contains("E-TRUNC"), "{told}");
     }
 
     #[test]

@@ -3,16 +3,19 @@
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use async_trait::async_trait;
 use socrates_llm::probe::Probe;
 use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learnt, Rung};
 use socrates_model::FaultCode;
-use socrates_prompts::Style;
+use socrates_prompts::{Question, Style, Telling};
 
-use crate::author::{AskError, Author};
+use crate::author::{Answer, AskError, Author};
 use crate::cassette::{Recorder, Replay};
-use crate::faulty::{FaultRates, FaultyAuthor};
+use crate::fault_model::FaultRates;
+use crate::faulty::FaultyAuthor;
 use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
+use crate::variants::BySeed;
 
 /// What a process knows of one kind of server.
 #[derive(Debug, Clone, Default)]
@@ -101,8 +104,36 @@ pub fn author_of_job(
     let style = Style::from_settings(settings)
         .map_err(|fault| AskError::new(fault.code, format!("{}: {}", fault.at, fault.message)))?;
     let author = author_for(settings.get("author").map_or("auto", String::as_str), keys, style)?;
-    let rates = FaultRates::from_settings(settings)?;
+    let author: Box<dyn Author> = if style.feedback == Telling::Named {
+        author
+    } else {
+        Box::new(Told { inner: author, telling: style.feedback })
+    };
+    // A model writes several in one answer; rules are asked with as many seeds.
+    let author: Box<dyn Author> = if style.variants > 1 && author.name() == socrates_offline::NAME {
+        Box::new(BySeed { inner: author, count: style.variants })
+    } else {
+        author
+    };
+    let rates = FaultRates { told: style.feedback, ..FaultRates::from_settings(settings)? };
     if rates.is_clean() { Ok(author) } else { Ok(Box::new(FaultyAuthor::new(author, rates, attempt))) }
+}
+
+/// An author who is not told everything of its refused answers.
+struct Told {
+    inner: Box<dyn Author>,
+    telling: Telling,
+}
+
+#[async_trait]
+impl Author for Told {
+    async fn ask(&self, question: &Question) -> Result<Answer, AskError> {
+        self.inner.ask(&question.clone().telling(self.telling)).await
+    }
+
+    fn name(&self) -> String {
+        self.inner.name()
+    }
 }
 
 /// Asks the server of a setting what it enforces; see [`ChatClient::probe`].

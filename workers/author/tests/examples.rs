@@ -1,22 +1,8 @@
 //! Every worked example that a prompt shows would itself be accepted: read and checked like an answer of a model.
 
-use socrates_author::{Written, attempt};
+use socrates_author::{Says, Written, attempt};
 use socrates_model::job::Stage;
-use socrates_prompts::{BehaviorsForm, PathsForm, Question, Style, examples};
-
-/// Says one text.
-struct Says(String);
-
-#[async_trait::async_trait]
-impl socrates_author::Author for Says {
-    async fn ask(&self, _question: &Question) -> Result<socrates_author::Answer, socrates_author::AskError> {
-        Ok(socrates_author::Answer { text: self.0.clone(), model: "example".into(), ..Default::default() })
-    }
-
-    fn name(&self) -> String {
-        "example".into()
-    }
-}
+use socrates_prompts::{BehaviorsForm, PathsForm, Style, examples};
 
 fn styles() -> Vec<Style> {
     let forms = PathsForm::ALL.iter().zip(BehaviorsForm::ALL);

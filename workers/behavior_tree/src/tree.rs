@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use socrates_model::{Action, AgentId, Fault, Gesture, HumanId, Trigger};
+use socrates_model::{Action, AgentId, Fault, Gesture, Trigger};
 
 use crate::blackboard::{Input, Ports, Value};
 use crate::parse::{Document, Options};
@@ -310,7 +310,8 @@ impl Tree {
     /// Gestures the tree waits for and who would have to make them, [`Gesture::None`] left out.
     #[must_use]
     pub fn gestures_awaited(&self) -> Vec<(AgentId, Gesture)> {
-        let mut found: Vec<(AgentId, Gesture)> = self.conditions().iter().filter_map(awaited).collect();
+        let mut found: Vec<(AgentId, Gesture)> = self.conditions().iter().filter_map(Trigger::awaits).collect();
+        found.retain(|(_, gesture)| *gesture != Gesture::None);
         found.sort_unstable();
         found.dedup();
         found
@@ -366,21 +367,4 @@ fn in_file(file: &str, mut faults: Vec<Fault>) -> Vec<Fault> {
         }
     }
     faults
-}
-
-fn awaited(trigger: &Trigger) -> Option<(AgentId, Gesture)> {
-    let (agent, gesture) = match trigger {
-        Trigger::RobotSays(gesture) => (AgentId::Robot, *gesture),
-        Trigger::HumanSays(id, gesture) => (AgentId::Human(HumanId::new(id.number())), *gesture),
-        Trigger::Always
-        | Trigger::RobotVisible(_)
-        | Trigger::RobotNear(_)
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_) => return None,
-    };
-    (gesture != Gesture::None).then_some((agent, gesture))
 }

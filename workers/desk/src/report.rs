@@ -1,7 +1,8 @@
 //! The desk's answer in the words of the worker kit.
 
-use socrates_author::{JobAnswer, JobRefusal, Written};
+use socrates_author::{Exchange, JobAnswer, JobRefusal, Written};
 use socrates_kit::{Done, Failure, Output, media};
+use socrates_model::wire::{Rate, Rates};
 
 /// A good answer: the artifact and the exchange it came from.
 pub(crate) fn done(answer: JobAnswer) -> Result<Done, Failure> {
@@ -13,6 +14,7 @@ pub(crate) fn done(answer: JobAnswer) -> Result<Done, Failure> {
     let exchange = Output::json("exchange", &answer.exchange)?;
     let mut done = Done::with(vec![artifact, exchange]).remark(answer.remark);
     done.tokens = answer.exchange.tokens;
+    done.rates = rates(&answer.exchange);
     Ok(done)
 }
 
@@ -24,10 +26,18 @@ pub(crate) fn failure(refusal: JobRefusal) -> Failure {
     }
     if let Some(exchange) = refusal.exchange {
         failure = failure.tokens(exchange.tokens);
+        failure.rates = rates(&exchange);
         // An exchange that cannot be written is no reason to lose the reasons.
         if let Ok(output) = Output::json("exchange", &exchange) {
             failure = failure.with(output);
         }
     }
     failure
+}
+
+/// What the server said of its rates, in the words of the bus.
+fn rates(exchange: &Exchange) -> Option<Rates> {
+    let limits = exchange.how.limits?;
+    let rate = |of: socrates_author::Rate| Rate { limit: of.limit, left: of.left, whole_in_ms: of.whole_in_ms };
+    Some(Rates { requests: limits.requests.map(rate), tokens: limits.tokens.map(rate) })
 }

@@ -174,17 +174,20 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
         tokens: (0, 0),
         remark: String::new(),
         repair: None,
+        anew: Vec::new(),
         verdict: None,
+        rates: None,
     };
     let outputs = match worked {
         Ok(done) => {
             (report.tokens, report.remark) = (done.tokens, done.remark);
-            (report.repair, report.verdict) = (done.repair, done.verdict);
+            (report.repair, report.anew) = (done.repair, done.anew);
+            (report.verdict, report.rates) = (done.verdict, done.rates);
             done.artifacts
         }
         Err(failure) => {
-            let Failure { class, faults, artifacts, retry_after_ms, tokens } = failure;
-            report.tokens = tokens;
+            let Failure { class, faults, artifacts, retry_after_ms, tokens, rates } = failure;
+            (report.tokens, report.rates) = (tokens, rates);
             report.outcome = Outcome::Failed { class, faults, retry_after_ms };
             artifacts
         }

@@ -122,7 +122,9 @@ mod tests {
             tokens: (0, 0),
             remark: String::new(),
             repair: None,
+            anew: Vec::new(),
             verdict: None,
+            rates: None,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use socrates_model::report::{Repair, Verdict};
+use socrates_model::wire::Rates;
 use socrates_model::{FailureClass, Fault, FaultCode};
 
 use crate::job::Job;
@@ -86,10 +87,14 @@ pub struct Done {
     pub remark: String,
     /// Scoring: the repair it asks for.
     pub repair: Option<Repair>,
+    /// Review: the stages that the person wants made again, with reasons.
+    pub anew: Vec<Repair>,
     /// Scoring: the verdict.
     pub verdict: Option<Verdict>,
     /// Tokens in and out.
     pub tokens: (u64, u64),
+    /// Authoring: what the server said of its rates.
+    pub rates: Option<Rates>,
 }
 
 impl Done {
@@ -120,13 +125,15 @@ pub struct Failure {
     pub retry_after_ms: Option<u64>,
     /// Tokens in and out.
     pub tokens: (u64, u64),
+    /// Authoring: what the server said of its rates.
+    pub rates: Option<Rates>,
 }
 
 impl Failure {
     /// A failure of this class.
     #[must_use]
     pub fn new(class: FailureClass, faults: Vec<Fault>) -> Self {
-        Self { class, faults, artifacts: Vec::new(), retry_after_ms: None, tokens: (0, 0) }
+        Self { class, faults, artifacts: Vec::new(), retry_after_ms: None, tokens: (0, 0), rates: None }
     }
 
     /// A failure whose class is that of its weightiest hard fault: what cannot get better wins over what can,

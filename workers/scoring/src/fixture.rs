@@ -1,6 +1,6 @@
 //! Recordings and places for tests, made from straight walks.
 
-use socrates_model::recording::AgentInfo;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::{
     AgentId, AgentState, Cell, Encounter, Event, EventKind, Gesture, GraphEdge, GraphNode, Grid, HumanId, Location,
     NodeId, Paths, Point, Pose, Recording, RecordingHeader, RunId, SceneGraph, SimTime,
@@ -27,6 +27,15 @@ impl Walk {
 
     pub(crate) fn robot(x: f64, y: f64, vx: f64, vy: f64) -> Self {
         Self::through(AgentId::Robot, &[(0.0, x, y), (1000.0, x + 1000.0 * vx, y + 1000.0 * vy)])
+    }
+
+    /// The robot once round the origin, evenly and counter-clockwise.
+    pub(crate) fn circle(radius_m: f64, seconds: f64) -> Self {
+        let turn = |share: f64| (share * std::f64::consts::TAU).sin_cos();
+        let stop = |(share, (sin, cos)): (f64, (f64, f64))| (share * seconds, radius_m * cos, radius_m * sin);
+        let shares = (0..=360).map(|k| f64::from(k) / 360.0);
+        let stops: Vec<(f64, f64, f64)> = shares.map(|share| stop((share, turn(share)))).collect();
+        Self::through(AgentId::Robot, &stops)
     }
 
     pub(crate) fn human(number: u32, x: f64, y: f64, vx: f64, vy: f64) -> Self {
@@ -127,15 +136,14 @@ pub(crate) fn event(run: &mut Recording, t: f64, kind: EventKind) {
 
 /// Takes a human out of the run for a stretch of time, as the simulation writes those who come and go.
 pub(crate) fn absent(run: &mut Recording, number: u32, times: std::ops::Range<f64>) {
-    let known = run.header.leaves.iter().position(|leaf| leaf == "absent");
-    let leaf = known.unwrap_or_else(|| {
-        run.header.leaves.push("absent".into());
-        run.header.leaves.len() - 1
-    });
+    if run.header.absent().is_none() {
+        run.header.leaves.push(ABSENT_LEAF.into());
+    }
+    let leaf = run.header.absent().unwrap();
     let id = AgentId::Human(HumanId::new(number));
     for state in run.frames.iter_mut().filter(|state| state.agent == id.number()) {
         if times.contains(&(state.tick as f64 * run.header.step_s)) {
-            state.flags = AgentState::flags(id, Gesture::None, u16::try_from(leaf).unwrap());
+            state.flags = AgentState::flags(id, Gesture::None, leaf);
             (state.vx, state.vy) = (0.0, 0.0);
         }
     }

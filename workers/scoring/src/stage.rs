@@ -86,7 +86,7 @@ impl Stage for ScoringStage {
             remark: shortened(&report.verdict_text),
             repair: report.repair,
             verdict: Some(report.verdict),
-            tokens: (0, 0),
+            ..Done::default()
         })
     }
 }

@@ -116,9 +116,6 @@ impl Sample {
 /// Faster than this is moving, slower is stopped, m/s (`spec/case_studies`).
 pub const MOVING_MPS: f64 = 0.1;
 
-/// Leaf name of somebody who is not there (yet, or any more), as the simulation writes it.
-const ABSENT_LEAF: &str = "absent";
-
 /// One agent through the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
@@ -163,7 +160,7 @@ impl Tracks {
                 return Err(TrackFault::Twice { agent: info.agent, times });
             }
         }
-        let absent = recording.header.leaves.iter().position(|leaf| leaf == ABSENT_LEAF);
+        let absent = recording.header.absent();
         let step = recording.header.step_s;
         let step = if step.is_finite() && step > 0.0 { step } else { STEP_SECS };
         let mut tracks: Vec<Track> = Vec::with_capacity(agents.len());
@@ -200,7 +197,7 @@ impl Tracks {
                     yaw: state.yaw,
                     gesture: state.gesture(),
                     leaf,
-                    there: absent != Some(usize::from(leaf)) || leaf == 0,
+                    there: absent != Some(leaf),
                 });
             }
         }

@@ -3,9 +3,11 @@
 //!
 //! ```text
 //! specification ─► cases ─┬─► arm 1: one batch of the whole pipeline ─► outcomes ─┐
-//!                         └─► arm 2: …                                            ┴─► results.csv, report.md
+//!                         ├─► arm 2: …                                            ┴─► results.csv, report.md
+//!                         └─► every injected fault against every check ───────────────► confusion.csv, confusion.md
 //! ```
 
+mod confusion;
 mod outcome;
 mod report;
 mod spec;
@@ -35,10 +37,11 @@ pub(crate) enum EvaluateVerb {
 /// Options of `evaluate author`.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct AuthorOptions {
-    /// Specification: a TOML file, or `paper`, which comes with the program.
+    /// Specification: a TOML file, or one that comes with the program: `paper`, `feedback` (what being told the faults is
+    /// worth), `faults` (which check finds which injected fault).
     #[arg(default_value = "paper")]
     spec: PathBuf,
-    /// Folder for `results.csv` and `report.md`.
+    /// Folder for `results.csv` and `report.md`, `confusion.csv` and `confusion.md`.
     #[arg(long, default_value = "evaluation")]
     out: PathBuf,
     /// Only the first so many scenarios of every location and kind, for a quick look.
@@ -50,13 +53,7 @@ pub(crate) struct AuthorOptions {
 }
 
 /// Evaluates.
-pub(crate) async fn evaluate(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    verb: &EvaluateVerb,
-    key_found: bool,
-) -> Result<(), Complaint> {
+pub(crate) async fn evaluate(talk: &Talk, cli: &Cli, config: &Config, verb: &EvaluateVerb) -> Result<(), Complaint> {
     let EvaluateVerb::Author(options) = verb;
     let spec = Spec::load(&options.spec)?;
     let cases = limited(spec.cases(), options.limit);
@@ -66,10 +63,17 @@ pub(crate) async fn evaluate(
         plural(cases.len(), "scenario"),
         plural(spec.arms.len(), "arm")
     ));
+    let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec };
+    if spec.confusion {
+        maker.confusion(&cases).await?;
+    }
+    if spec.arms.is_empty() {
+        talk.result(&json!({ "out": options.out.display().to_string(), "arms": [] }));
+        return Ok(());
+    }
     let mut done: Vec<report::Done<'_>> = Vec::new();
     for (number, arm) in (1..).zip(&spec.arms) {
         let work = options.out.join(".socrates").join(format!("arm-{number}"));
-        let maker = Maker { talk, flags: &cli.flags, config, options, spec: &spec, key_found };
         let outcomes = maker.run(arm, &cases, &work).await?;
         let realised = outcomes.iter().filter(|outcome| outcome.realised).count();
         talk.line(&format!("arm        {:<26} {realised} of {} realised", arm.name, outcomes.len()));
@@ -99,12 +103,11 @@ pub(crate) async fn evaluate(
 fn limited(cases: Vec<Case>, limit: Option<usize>) -> Vec<Case> {
     let Some(limit) = limit else { return cases };
     let mut seen: std::collections::BTreeMap<(String, bool), usize> = std::collections::BTreeMap::new();
-    let keeps = |case: &Case| {
+    let mut keeps = |case: &Case| {
         let count = seen.entry((case.location.clone(), case.guided)).or_default();
         *count += 1;
         *count <= limit
     };
-    let mut keeps = keeps;
     cases.into_iter().filter(|case| keeps(case)).collect()
 }
 
@@ -126,7 +129,6 @@ struct Maker<'a> {
     config: &'a Config,
     options: &'a AuthorOptions,
     spec: &'a Spec,
-    key_found: bool,
 }
 
 impl Maker<'_> {
@@ -153,6 +155,22 @@ impl Maker<'_> {
         Ok(made.statuses.iter().map(|status| Outcome::of(status, made.history.of(&status.id), &fetch)).collect())
     }
 
+    /// The table of injected faults, on the offline author's answers.
+    async fn confusion(&self, cases: &[Case]) -> Result<(), Complaint> {
+        let offline = Arm { author: "offline".to_owned(), ..Arm::default() };
+        let prepared = cases
+            .iter()
+            .map(|case| Ok((self.prepare(&offline, case, self.config)?, case.seed)))
+            .collect::<Result<Vec<_>, Complaint>>()?;
+        let table = confusion::table(&prepared).await;
+        let shown = self.options.spec.display().to_string();
+        let page = self.options.out.join("confusion.md");
+        files::write(&self.options.out.join("confusion.csv"), confusion::csv(&table).as_bytes())?;
+        files::write(&page, confusion::markdown(self.spec, &shown, &table).as_bytes())?;
+        self.talk.line(&format!("look       {}", page.display()));
+        Ok(())
+    }
+
     fn prepare(&self, arm: &Arm, case: &Case, config: &Config) -> Result<Prepared, Complaint> {
         let rates = arm.faults_unguided.as_ref().filter(|_| !case.guided).or(arm.faults.as_ref());
         let rates = rates.and_then(|name| self.spec.rates.get(name)).into_iter().flatten();
@@ -162,6 +180,6 @@ impl Maker<'_> {
             ..RunOptions::plain(case.seed)
         };
         let shown = format!("{} at {}", case.request, case.location);
-        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config, self.key_found)
+        prepare_text(&case.request, &case.toml, &shown, Path::new("."), Some(&options), config)
     }
 }

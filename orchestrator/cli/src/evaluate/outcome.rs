@@ -7,6 +7,7 @@ use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::ScenarioStatus;
 use socrates_model::{Digest, FailureClass, Fault, Verdict};
 use socrates_orchestrator::{Attempt, AttemptEnd};
+use socrates_stream::csv::quoted;
 
 use super::spec::Case;
 use crate::history::PastJob;
@@ -128,10 +129,10 @@ impl Outcome {
         };
         let bit = |value: bool| u8::from(value).to_string();
         let cells = [
-            format!("\"{}\"", arm.replace('"', "\"\"")),
+            quoted(arm),
             case.request.clone(),
             bit(case.guided),
-            format!("\"{}\"", case.location.replace('"', "\"\"")),
+            quoted(&case.location),
             case.repeat.to_string(),
             case.seed.to_string(),
             self.result.clone(),

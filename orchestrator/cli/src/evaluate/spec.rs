@@ -13,7 +13,11 @@ const MAX_BYTES: u64 = 256 * 1024;
 /// Scenarios of one arm at most.
 const MOST: usize = 20_000;
 /// Specifications that come with the program.
-const SHIPPED: [(&str, &str); 1] = [("paper", include_str!("../../../../prompts/protocols/paper.toml"))];
+const SHIPPED: [(&str, &str); 3] = [
+    ("paper", include_str!("../../../../prompts/protocols/paper.toml")),
+    ("feedback", include_str!("../../../../prompts/protocols/feedback.toml")),
+    ("faults", include_str!("../../../../prompts/protocols/faults.toml")),
+];
 
 /// An evaluation.
 #[derive(Debug, Clone, Deserialize)]
@@ -24,6 +28,11 @@ pub(super) struct Spec {
     /// Seed of the experiment: every scenario's own follows from it.
     #[serde(default = "one")]
     pub(super) seed: u64,
+    /// A specification that comes with the program, for the requests and rates that this one does not have.
+    like: Option<String>,
+    /// Whether the table of injected faults and of the checks that find them is made. Default false.
+    #[serde(default)]
+    pub(super) confusion: bool,
     /// Shipped names or folders.
     pub(super) locations: Vec<String>,
     /// Requests with a rough scenario.
@@ -32,6 +41,7 @@ pub(super) struct Spec {
     /// Requests without.
     pub(super) unguided: Option<Unguided>,
     /// Ways of authoring that are compared; the first is what the others are compared with.
+    #[serde(default)]
     pub(super) arms: Vec<Arm>,
     /// Named rates of faults, as `--inject` takes them.
     #[serde(default)]
@@ -69,7 +79,7 @@ struct Context {
 }
 
 /// One way of authoring.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Arm {
     /// Name in tables.
@@ -128,11 +138,20 @@ impl Spec {
             Some((_, text)) => (*text).to_owned(),
             None => files::text(what, MAX_BYTES, &hint)?,
         };
-        let spec: Self = toml::from_str(&text).map_err(|why| {
+        let mut spec: Self = toml::from_str(&text).map_err(|why| {
             let mut complaint = Complaint::input(format!("the evaluation `{shown}` cannot be read"), hint);
             complaint.causes = why.to_string().lines().map(str::to_owned).collect();
             complaint
         })?;
+        if let Some(name) = spec.like.take() {
+            if !names.contains(&name.as_str()) || name == shown {
+                return Err(Complaint::input(
+                    format!("the evaluation `{shown}` is to be like `{name}`, which does not come with the program"),
+                    format!("there is {}", names.join(", ")),
+                ));
+            }
+            spec.take(Self::load(Path::new(&name))?);
+        }
         let problems = spec.problems();
         if problems.is_empty() {
             return Ok(spec);
@@ -142,10 +161,21 @@ impl Spec {
         Err(complaint)
     }
 
+    /// Takes over what it does not have itself.
+    fn take(&mut self, other: Self) {
+        if self.guided.is_empty() && self.unguided.is_none() {
+            (self.guided, self.unguided) = (other.guided, other.unguided);
+        }
+        for (name, rates) in other.rates {
+            self.rates.entry(name).or_insert(rates);
+        }
+    }
+
     fn problems(&self) -> Vec<String> {
         let mut problems = Vec::new();
         for (what, count) in [("locations", self.locations.len()), ("arms", self.arms.len())] {
-            if count == 0 {
+            // A table of faults is made without any arm.
+            if count == 0 && !(what == "arms" && self.confusion) {
                 problems.push(format!("`{what}` is empty; at least one is needed"));
             }
         }
@@ -245,6 +275,23 @@ mod tests {
                 assert!(!socrates_author::FaultRates::from_settings(&rates.collect()).unwrap().is_clean());
             }
         }
+    }
+
+    #[test]
+    fn what_is_like_another_has_its_requests_and_rates() {
+        for name in ["feedback", "faults"] {
+            let spec = Spec::load(Path::new(name)).unwrap();
+            assert!(spec.cases().len() >= 140 && spec.rates.contains_key("paper-guided"), "{name}");
+        }
+        let told: Vec<String> = Spec::load(Path::new("feedback"))
+            .unwrap()
+            .arms
+            .iter()
+            .take(3)
+            .map(|arm| arm.set["author.feedback"].to_string())
+            .collect();
+        assert_eq!(told, ["\"named\"", "\"vague\"", "\"none\""]);
+        assert!(Spec::load(Path::new("faults")).unwrap().confusion);
     }
 
     #[test]

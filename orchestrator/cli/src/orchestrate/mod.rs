@@ -48,6 +48,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) repairs: u32,
     /// Further asks after an answer that cannot be taken.
     pub(crate) asks_again: u32,
+    /// Tokens and questions that one author's server is asked for in a minute; 0 leaves it to the server.
+    pub(crate) author_rates: (u64, u64),
     /// What a commit of the job store outlives.
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
@@ -72,6 +74,8 @@ pub(crate) async fn serve(
         beat_ms: config.beat_ms,
         repairs: config.repairs,
         code_version: config.code_version,
+        tokens_per_minute: config.author_rates.0,
+        requests_per_minute: config.author_rates.1,
         ..Policy::default().asking_again(config.asks_again)
     };
     let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());

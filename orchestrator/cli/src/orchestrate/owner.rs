@@ -92,10 +92,7 @@ impl Owner {
                 () = tokio::time::sleep(wait) => {}
             }
             let now = self.now();
-            if self.state.next_due().is_some_and(|due| due <= now)
-                || wait.is_zero()
-                || self.state.author_pause_until > 0
-            {
+            if self.state.next_due().is_some_and(|due| due <= now) || wait.is_zero() || self.state.author_wake_at > 0 {
                 self.event(Event::Tick).await;
             }
             self.give_up_waiting(now).await;

@@ -37,6 +37,7 @@ async fn open(dir: &Path) -> Site {
         beat_ms: 2_000,
         repairs: 3,
         asks_again: 3,
+        author_rates: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
@@ -116,6 +117,7 @@ impl Site {
             tokens: (0, 0),
             remark: "fine".to_owned(),
             repair: None,
+            anew: Vec::new(),
             verdict: Some(Verdict::Realised),
         };
         self.ask(keys::REPORT, &report).await
@@ -228,6 +230,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         beat_ms: 2_000,
         repairs: 3,
         asks_again: 3,
+        author_rates: (0, 0),
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };

@@ -1,6 +1,6 @@
 //! Who is waited for, and who is spoken of.
 
-use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, HumanId, Trigger};
+use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, HumanId};
 
 use crate::check::{CheckContext, place};
 use crate::sheet::Role;
@@ -13,28 +13,17 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     for node in tree.nodes.iter() {
         let ports = tree.ports(node);
         match node.sheet.role {
-            Role::Asks(means) => match means(&ports) {
-                Some(Trigger::RobotSays(gesture)) => {
-                    hear(AgentId::Robot, gesture, ctx.robot_says, node, ctx, &mut faults)
+            Role::Asks(means) => match means(&ports).and_then(|trigger| trigger.awaits()) {
+                Some((AgentId::Robot, gesture)) => {
+                    hear(AgentId::Robot, gesture, ctx.robot_says, node, ctx, &mut faults);
                 }
-                Some(Trigger::HumanSays(id, gesture)) => {
+                Some((AgentId::Human(id), gesture)) => {
                     if target(id, node, ctx, &mut faults) {
                         let made = ctx.human_says.get(&id).map_or(&[][..], Vec::as_slice);
                         hear(AgentId::Human(id), gesture, made, node, ctx, &mut faults);
                     }
                 }
-                Some(
-                    Trigger::Always
-                    | Trigger::RobotVisible(_)
-                    | Trigger::RobotNear(_)
-                    | Trigger::RobotBlocking(_)
-                    | Trigger::RobotMoving
-                    | Trigger::RobotStopped
-                    | Trigger::GoalReached
-                    | Trigger::AtEncounter
-                    | Trigger::AfterSecs(_),
-                )
-                | None => {}
+                None => {}
             },
             Role::Moves(means) => {
                 if let Some(Action::FollowHuman(id)) = means(&ports) {

@@ -2,7 +2,7 @@
 //! go without a robot.
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
-use crate::tracks::{Track, Tracks};
+use crate::tracks::Track;
 use socrates_model::Point;
 
 /// Nearer than this is a near miss, m between surfaces (as in `near_misses`).
@@ -48,10 +48,9 @@ fn place(track: &Track, t: f64) -> Option<Point> {
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let fail = |why: String| FAMILY.sheets.iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
-    let Some(twin) = scene.signals.evidence.twin else { return fail("there is no twin run".to_owned()) };
-    let twin = match Tracks::read(twin) {
+    let twin = match scene.twin() {
         Ok(twin) => twin,
-        Err(why) => return fail(format!("the twin run cannot be read: {why}")),
+        Err(why) => return fail(why),
     };
     let (mut all, mut robots, mut people) = (0_usize, 0_usize, 0_usize);
     for ((robot, human), distance) in scene.pairs().zip(&scene.distances) {

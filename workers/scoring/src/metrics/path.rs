@@ -181,13 +181,7 @@ mod tests {
 
     #[test]
     fn a_circle_has_the_curvature_of_its_radius_and_turns_once_round() {
-        let circle = || {
-            let stops: Vec<(f64, f64, f64)> = (0..=360)
-                .map(|k| f64::from(k) / 360.0)
-                .map(|share| (share * 20.0, 2.0 * (share * TAU).cos(), 2.0 * (share * TAU).sin()))
-                .collect();
-            vec![Walk::through(AgentId::Robot, &stops)]
-        };
+        let circle = || vec![Walk::circle(2.0, 20.0)];
         at_both_rates(&circle, 19.9, "curvature_mean", 0.5, 0.01);
         at_both_rates(&circle, 19.9, "path_length", 2.0 * TAU * 19.9 / 20.0, 0.02);
         at_both_rates(&circle, 19.9, "cumulative_heading_change", TAU * 19.9 / 20.0, 0.06);

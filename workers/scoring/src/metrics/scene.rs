@@ -33,6 +33,8 @@ pub struct Scene<'a> {
     pub nearest: Series,
     /// Contacts with humans: index of the human and the stretch.
     pub contacts: Vec<(usize, Span)>,
+    /// The same run without a robot, or why there is none.
+    twin: Result<Tracks, String>,
 }
 
 impl<'a> Scene<'a> {
@@ -62,7 +64,10 @@ impl<'a> Scene<'a> {
             signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map(|robot| robot.even(EVEN_SECS)).unwrap_or_default();
         let contacts = contacts(&distances);
-        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts }
+        let twin = signals.evidence.twin.ok_or_else(|| "there is no twin run".to_owned());
+        let twin =
+            twin.and_then(|twin| Tracks::read(twin).map_err(|why| format!("the twin run cannot be read: {why}")));
+        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts, twin }
     }
 
     /// What is missing for metrics with these needs, and why; `None` when nothing is.
@@ -93,6 +98,14 @@ impl<'a> Scene<'a> {
             };
             (!there).then(|| (need.missing(), what.to_owned()))
         })
+    }
+
+    /// The same run without a robot.
+    ///
+    /// # Errors
+    /// Why there is none: it was not given, or its recording cannot be read.
+    pub fn twin(&self) -> Result<&Tracks, String> {
+        self.twin.as_ref().map_err(Clone::clone)
     }
 
     /// The robot; metrics that need one are not computed without.

@@ -109,7 +109,7 @@ fn swings(speeds: &[f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
+    use std::f64::consts::PI;
 
     use socrates_model::AgentId;
 
@@ -119,13 +119,7 @@ mod tests {
     #[test]
     fn a_circle_has_closed_forms() {
         // Radius 2 m, points half a metre of way apart: an angle of 0.25 between neighbours.
-        let circle = || {
-            let stops: Vec<(f64, f64, f64)> = (0..=360)
-                .map(|k| f64::from(k) / 360.0)
-                .map(|share| (share * 20.0, 2.0 * (share * TAU).cos(), 2.0 * (share * TAU).sin()))
-                .collect();
-            vec![Walk::through(AgentId::Robot, &stops)]
-        };
+        let circle = || vec![Walk::circle(2.0, 20.0)];
         let (side, long) = (4.0 * 0.125_f64.sin(), 4.0 * 0.25_f64.sin());
         at_both_rates(&circle, 19.9, "curvature_normalized", side, 0.01 * side);
         let area = side * side * 0.25_f64.sin() / 2.0;

@@ -1,6 +1,7 @@
 //! Metrics as a table for spreadsheets and scripts.
 
 use socrates_model::{Missing, Report};
+use socrates_stream::csv::quoted;
 
 /// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note`. An absent value is an empty cell.
 #[must_use]
@@ -29,20 +30,4 @@ pub fn csv(report: &Report) -> String {
         text.push('\n');
     }
     text
-}
-
-/// A cell as RFC 4180 has it.
-fn quoted(cell: &str) -> String {
-    if cell.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_cell_with_a_comma_is_quoted() {
-        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
-        assert_eq!(quoted("plain"), "plain");
-    }
 }

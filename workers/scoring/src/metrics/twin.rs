@@ -2,7 +2,7 @@
 
 use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
-use crate::tracks::{Track, Tracks};
+use crate::tracks::Track;
 use socrates_model::geometry::wrap_angle;
 
 /// Somebody this near to where it ends in the twin run is there, m.
@@ -66,10 +66,9 @@ fn effort(track: &Track, end_s: f64) -> (f64, f64) {
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let fail = |why: String| FAMILY.sheets.iter().map(|_| Err(why.clone())).collect::<Vec<_>>();
-    let Some(twin) = scene.signals.evidence.twin else { return fail("there is no twin run".to_owned()) };
-    let twin = match Tracks::read(twin) {
+    let twin = match scene.twin() {
         Ok(twin) => twin,
-        Err(why) => return fail(format!("the twin run cannot be read: {why}")),
+        Err(why) => return fail(why),
     };
     let (mut area, mut seconds, mut spent, mut turned) = (0.0, 0.0, 0.0, 0.0);
     let mut delays = Vec::new();

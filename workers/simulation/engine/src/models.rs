@@ -7,7 +7,7 @@ use socrates_crowd::model::View;
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::tracks::Track;
 use socrates_crowd::{Goal, Person, Segment};
-use socrates_model::recording::AgentInfo;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Fault, FaultCode, HumanId, Point, Vector};
 
@@ -18,8 +18,6 @@ use crate::start;
 
 /// Leaf name of somebody who walks as recorded.
 pub(crate) const TRACK_LEAF: &str = "track";
-/// Leaf name of somebody who is not there (yet, or any more).
-pub(crate) const ABSENT_LEAF: &str = "absent";
 
 /// How one human walks.
 #[derive(Debug, Clone, Default)]

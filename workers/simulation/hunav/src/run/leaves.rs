@@ -32,7 +32,7 @@ pub(crate) const MOTIONS: [&str; 27] = [
     "SetGroupWalk",
     "ConversationFormation",
     "track",
-    "absent",
+    socrates_model::recording::ABSENT_LEAF,
     "StopMovement",
 ];
 

@@ -1,0 +1,196 @@
+//! `library export --chat-jsonl`: questions and answers out of the provenance of bundles, for training.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use socrates_export::chat_jsonl::{ChatAnswered, ChatAsked, ChatRole, Fate, write};
+use socrates_model::job::Stage;
+use socrates_prompts::{Question, Role};
+
+use crate::bundle;
+use crate::cost::bundles_in;
+use crate::exit::Complaint;
+use crate::files;
+use crate::talk::Talk;
+
+/// What is done with a library.
+#[derive(Debug, Clone, clap::Subcommand)]
+pub(crate) enum LibraryVerb {
+    /// Write what authors were asked and answered as training data.
+    Export(ExportOptions),
+}
+
+/// Options of `library export`.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct ExportOptions {
+    /// Bundle folders, or folders that hold bundles.
+    #[arg(required = true)]
+    what: Vec<PathBuf>,
+    /// Folder for `chat.jsonl` (answers that were taken), `preferences.jsonl` (chosen and rejected) and `index.jsonl`.
+    #[arg(long, value_name = "DIR")]
+    chat_jsonl: PathBuf,
+}
+
+/// Exports.
+pub(crate) fn library(talk: &Talk, verb: &LibraryVerb) -> Result<(), Complaint> {
+    let LibraryVerb::Export(options) = verb;
+    let bundles = bundles_in(&options.what)?;
+    let mut asked = Vec::new();
+    let mut silent = 0;
+    for dir in &bundles {
+        let found = questions(dir)?;
+        silent += usize::from(found.is_empty());
+        asked.extend(found);
+    }
+    let written = write(&asked);
+    let out = &options.chat_jsonl;
+    for (name, text) in
+        [("chat.jsonl", &written.chat), ("preferences.jsonl", &written.preferences), ("index.jsonl", &written.index)]
+    {
+        files::write(&out.join(name), text.as_bytes())?;
+    }
+    let (chats, pairs) = (written.chat.lines().count(), written.preferences.lines().count());
+    talk.line(&format!("wrote      {}: {chats} answers, {pairs} pairs, of {} bundles", out.display(), bundles.len()));
+    if silent > 0 {
+        talk.warn(&format!("{silent} bundles hold no answers; `author.keep_answers` was off when they were made"));
+    }
+    talk.result(&json!({"out": out.display().to_string(), "answers": chats, "pairs": pairs, "bundles": bundles.len()}));
+    Ok(())
+}
+
+/// What was asked for a bundle. One question is what has the same stage and inputs: asked again, with another seed, or after a
+/// run it stays the same question.
+fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
+    let path = dir.join("details/provenance.json");
+    let broken = |why: String| Complaint::input(format!("`{}`: {why}", path.display()), "make the bundle again");
+    let text = std::fs::read_to_string(&path).map_err(|why| broken(why.to_string()))?;
+    let provenance: Value = serde_json::from_str(&text).map_err(|why| broken(why.to_string()))?;
+    let whole = bundle::read_some(dir, |_, _| false)?;
+    let mut found: BTreeMap<(Stage, String), Vec<Exchange>> = BTreeMap::new();
+    let mut reviewed = false;
+    for job in list(&provenance, "jobs") {
+        let Some(stage) = job["job"]["stage"].as_str().and_then(|name| name.parse::<Stage>().ok()) else { continue };
+        reviewed |= stage == Stage::Review && job["state"] == "succeeded";
+        let inputs = job["inputs"].to_string();
+        // A job that was made anew after a run: what was taken before was not good enough.
+        if !list(&job, "sent_back").is_empty()
+            && let Some(earlier) = found.get_mut(&(stage, inputs.clone()))
+        {
+            earlier.iter_mut().for_each(|exchange| exchange.fate = Fate::Rejected);
+        }
+        let refused = list(&job, "attempts").into_iter().flat_map(|attempt| list(&attempt, "exchanges"));
+        let refused = refused.filter_map(|value| Exchange::read(&value, Fate::Rejected));
+        let taken = list(&job, "exchanges").into_iter().filter_map(|value| Exchange::read(&value, Fate::Accepted));
+        for exchange in refused.chain(taken) {
+            let all = found.entry((stage, inputs.clone())).or_default();
+            // The exchange of the attempt that was taken stands with the attempt as well.
+            all.retain(|other| other.answer != exchange.answer);
+            all.push(exchange);
+        }
+    }
+    let question = |stage: Stage| Question {
+        stage,
+        request: whole.request.clone(),
+        reading: whole.reading.clone(),
+        location: whole.location.clone(),
+        proposal: (stage != Stage::Proposal).then(|| whole.proposal.clone()),
+        only: Vec::new(),
+        feedback: Vec::new(),
+        refused: None,
+        seed: whole.manifest.seed,
+    };
+    let mut asked = Vec::new();
+    for ((stage, _), exchanges) in found {
+        let question = question(stage);
+        // Rules read no messages: the question as a model would be asked it.
+        let first = exchanges.iter().find(|exchange| !exchange.messages.is_empty());
+        let messages = first.map_or_else(|| question.messages(), |exchange| exchange.messages.clone());
+        let prompt = messages
+            .into_iter()
+            // An answer inside of a question is a refused one: that question was no first one.
+            .take_while(|message| message.role != Role::Assistant)
+            .map(|message| (if message.role == Role::System { ChatRole::System } else { ChatRole::User }, message.text))
+            .collect();
+        let mut answers: Vec<ChatAnswered> =
+            exchanges.into_iter().map(|exchange| exchange.answered(&question)).collect();
+        if stage == Stage::Proposal && reviewed {
+            edited(&mut answers, &question, &whole.proposal);
+        }
+        let verdict = whole.manifest.verdict.name().to_owned();
+        asked.push(ChatAsked {
+            scenario: whole.manifest.scenario.clone(),
+            stage: stage.name().to_owned(),
+            verdict,
+            prompt,
+            answers,
+        });
+    }
+    Ok(asked)
+}
+
+/// A proposal that a person left otherwise than the author wrote it.
+fn edited(answers: &mut Vec<ChatAnswered>, question: &Question, left: &socrates_model::Proposal) {
+    let unsigned =
+        |proposal: &socrates_model::Proposal| socrates_model::Proposal { author: String::new(), ..proposal.clone() };
+    let same = |answer: &ChatAnswered| {
+        socrates_prompts::parse_proposal(&answer.text, question).is_ok_and(|read| unsigned(&read) == unsigned(left))
+    };
+    if answers.iter().any(|answer| answer.fate == Fate::Accepted && same(answer)) {
+        return;
+    }
+    if let Ok(text) = serde_json::to_string(&unsigned(left)) {
+        let author = left.author.clone();
+        answers.push(ChatAnswered { text, fate: Fate::Edited, author, faults: Vec::new(), injected: Vec::new() });
+    }
+}
+
+/// What is read of an exchange.
+struct Exchange {
+    answer: String,
+    fate: Fate,
+    author: String,
+    faults: Vec<String>,
+    injected: Vec<String>,
+    chosen: Option<usize>,
+    messages: Vec<socrates_prompts::Message>,
+}
+
+impl Exchange {
+    /// Nothing where there is no answer: none came, or answers were not kept.
+    fn read(value: &Value, fate: Fate) -> Option<Self> {
+        let answer = value.get("answer")?.as_str().filter(|answer| !answer.is_empty())?.to_owned();
+        let words = |key: &str, of: fn(&Value) -> Option<&str>| -> Vec<String> {
+            list(value, key).iter().filter_map(of).map(str::to_owned).collect()
+        };
+        let name = |key: &str| value[key].as_str().filter(|name| !name.is_empty());
+        Some(Self {
+            answer,
+            fate,
+            author: name("model").or_else(|| name("author")).unwrap_or("unknown").to_owned(),
+            faults: words("faults", |fault| fault["code"].as_str()),
+            injected: words("injected", Value::as_str),
+            chosen: value["chosen"].as_u64().and_then(|place| usize::try_from(place).ok()),
+            messages: serde_json::from_value(value["messages"].clone()).unwrap_or_default(),
+        })
+    }
+
+    /// Of several proposals the one that was taken.
+    fn answered(self, question: &Question) -> ChatAnswered {
+        let several = self.chosen.and_then(|place| {
+            let all = socrates_author::variants::read(&self.answer, question).ok()?;
+            Some(all.into_iter().nth(place)?.text)
+        });
+        ChatAnswered {
+            text: several.unwrap_or(self.answer),
+            fate: self.fate,
+            author: self.author,
+            faults: self.faults,
+            injected: self.injected,
+        }
+    }
+}
+
+fn list(value: &Value, key: &str) -> Vec<Value> {
+    value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
+}

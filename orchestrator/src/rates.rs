@@ -1,0 +1,97 @@
+//! Rules of the servers' rates: who is held back, and until when.
+
+use socrates_model::fault::{FailureClass, FaultCode};
+use socrates_model::job::Stage;
+use socrates_model::wire::{Acquired, Outcome, Rate, Rates, Report, ScenarioSpec};
+
+use crate::world::{World, fault, report, spec, success};
+use crate::{Effect, JobState, Policy};
+
+fn by(author: &str, id: &str) -> ScenarioSpec {
+    let mut spec = spec(id);
+    spec.settings.insert("author".to_owned(), author.to_owned());
+    // Scenarios of their own: the same work would be done once.
+    spec.seed = u64::from(id.bytes().map(u32::from).sum::<u32>());
+    spec
+}
+
+/// Why there is no proposal to be made now; nothing where there is one.
+fn held_back(world: &mut World) -> Option<String> {
+    match world.ask("w", &[Stage::Proposal], 1) {
+        Acquired::None { reason, .. } => Some(reason),
+        Acquired::Grants(_) => None,
+    }
+}
+
+#[test]
+fn a_configured_rate_holds_questions_back_until_there_is_room() {
+    let mut world = World::with(Policy { requests_per_minute: 2, lease_ms: 600_000, ..Policy::default() });
+    world.submit(vec![by("openai:m", "a"), by("openai:m", "b"), by("openai:m", "c"), by("offline", "d")]);
+    // Two of the model and the one without a server; of the model no more.
+    let given = world.grants("w", Stage::Proposal);
+    let names: Vec<String> = given.iter().map(|grant| grant.spec.key.scenario.to_string()).collect();
+    assert_eq!(names, ["a", "b", "d"]);
+    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    world.wait(29_000);
+    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    // When there is room again the workers are told so.
+    world.wait(1_100);
+    assert!(world.effects.iter().any(|effect| matches!(effect, Effect::Hint(Stage::Proposal))), "{:?}", world.effects);
+    assert_eq!(held_back(&mut world), None);
+}
+
+#[test]
+fn what_a_server_says_is_left_holds_for_every_worker() {
+    let mut world = World::new();
+    world.submit(vec![by("openai:m", "a"), by("openai:m", "b"), by("openai:other", "c")]);
+    let first = world.grant("w", Stage::Proposal);
+    let tokens = Some(Rate { limit: 10_000, left: 10, whole_in_ms: Some(60_000) });
+    world.send_report(Report { rates: Some(Rates { tokens, requests: None }), tokens: (900, 100), ..success(&first) });
+    // Another model has rates of its own.
+    let second = world.grant("another", Stage::Proposal);
+    assert_eq!(second.spec.settings["author"], "openai:other");
+    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    // A question took 1 000 tokens; 9 990 come back in a minute.
+    world.wait(6_100);
+    assert_eq!(world.grant("w", Stage::Proposal).spec.key.scenario.to_string(), "b");
+}
+
+#[test]
+fn a_pause_that_a_server_wants_is_its_own() {
+    let mut world = World::new();
+    world.submit(vec![by("openai:m", "a"), by("openai:m", "b"), by("vllm:x", "c")]);
+    let first = world.grant("w", Stage::Proposal);
+    let faults = vec![fault(FaultCode::T429, "slow down")];
+    let outcome = Outcome::Failed { class: FailureClass::Overload, faults, retry_after_ms: Some(20_000) };
+    world.send_report(report(&first, outcome));
+    assert_eq!(world.state_of(&first), JobState::Delayed);
+    assert_eq!(world.grant("w", Stage::Proposal).spec.settings["author"], "vllm:x");
+    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    world.wait(20_000);
+    assert_eq!(held_back(&mut world), None);
+}
+
+#[test]
+fn an_answer_that_is_cut_twice_in_a_row_is_given_up() {
+    let mut world = World::new();
+    world.submit(vec![spec("a")]);
+    world.pass(Stage::Proposal);
+    let cut = |world: &mut World| {
+        let grant = world.grant("w", Stage::Paths);
+        world.fail(&grant, FailureClass::Unparsable, vec![fault(FaultCode::ETrunc, "was cut")]);
+        grant
+    };
+    let first = cut(&mut world);
+    assert_eq!(world.state_of(&first), JobState::Ready);
+    let second = cut(&mut world);
+    assert_eq!(second.spec.feedback[0].code, FaultCode::ETrunc);
+    assert_eq!(world.state_of(&second), JobState::Dead);
+    // With something else in between it is asked once more.
+    let mut world = World::new();
+    world.submit(vec![spec("a")]);
+    world.pass(Stage::Proposal);
+    cut(&mut world);
+    let between = world.grant("w", Stage::Paths);
+    world.fail(&between, FailureClass::Unparsable, vec![fault(FaultCode::EJson, "no JSON")]);
+    assert_eq!(world.state_of(&between), JobState::Ready);
+}
