@@ -70,6 +70,10 @@ fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBeha
             Ok(HumanBehavior { tree, description: told(description, &rules, id, question) })
         }
         (None, Some(Value::String(tree))) => {
+            if let Some(foreign) = foreign(tree) {
+                let message = format!("holds {foreign}; write elements and attributes alone");
+                return Err(vec![Fault::new(FaultCode::BXml, format!("{id} tree"), message)]);
+            }
             Ok(HumanBehavior { tree: tree.clone(), description: told(description, &[], id, question) })
         }
         (None, Some(tree @ Value::Object(_))) => {
@@ -80,6 +84,12 @@ fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBeha
         (Some(_), Some(_)) => Err(fault(path, "expected either `rules` or `tree`, found both")),
         (None, None) => Err(fault(path, "expected `rules` (or `tree`), found neither")),
     }
+}
+
+/// What an author has no reason to put into a tree: orders to a program that reads it, and text that is read by nobody.
+fn foreign(tree: &str) -> Option<&'static str> {
+    let orders = tree.match_indices("<?").any(|(at, _)| !tree.get(at..).is_some_and(|rest| rest.starts_with("<?xml ")));
+    if orders { Some("a processing instruction") } else { tree.contains("<![CDATA[").then_some("a CDATA section") }
 }
 
 fn rules_of(value: &Value, path: &str) -> Result<Vec<Rule>, Vec<Fault>> {

@@ -35,12 +35,14 @@ mod vocabulary;
 mod ways;
 
 #[cfg(test)]
+mod hostile;
+#[cfg(test)]
 mod testing;
 
 pub use answer::{parse_paths, parse_proposal};
 pub use behaviors::parse_behaviors;
 pub use message::{Message, Picture, Role};
-pub use prompt::{Prompt, Template};
+pub use prompt::{Prompt, Template, too_long};
 pub use question::Question;
 pub use schema::answer_schema;
 pub use style::{BehaviorsForm, Image, MOST_VARIANTS, Mode, PathsForm, Style, Telling};

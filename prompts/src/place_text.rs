@@ -47,7 +47,7 @@ pub(crate) fn graph(location: &Location) -> String {
 }
 
 /// A, B, … Z, AA, AB, …
-fn letters_of(index: usize) -> String {
+pub(crate) fn letters_of(index: usize) -> String {
     const ALL: &[u8; 26] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ";
     let last = ALL.get(index % ALL.len()).copied().map_or('?', char::from);
     if index < ALL.len() { last.to_string() } else { format!("{}{last}", letters_of(index / ALL.len() - 1)) }
@@ -69,10 +69,10 @@ pub(crate) fn doors(location: &Location) -> String {
             }
             DoorOpens::Near(m) => format!("opens when somebody is within {m} m"),
             DoorOpens::RobotNear(m) => format!("opens when the robot is within {m} m"),
-            DoorOpens::OnEvent(event) => format!("opens on `{event}`"),
+            DoorOpens::OnEvent(event) => format!("opens on `{}`", label(event)),
             DoorOpens::Never => "never opens".to_owned(),
         };
-        text.push_str(&format!("`{}`: {opens}; behind it: {}\n", door.id, inside.join(", ")));
+        text.push_str(&format!("`{}`: {opens}; behind it: {}\n", label(&door.id), inside.join(", ")));
     }
     text
 }

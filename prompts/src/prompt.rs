@@ -20,6 +20,15 @@ const PATHS: &str = include_str!("../templates/paths.md");
 const BEHAVIORS: &str = include_str!("../templates/behaviors.md");
 const NAIVE: &str = include_str!("../templates/naive.md");
 
+/// Most characters of a user's words that a question shows.
+const CONTEXT: usize = 500;
+const TASK: usize = 300;
+const ROUGH: usize = 1_500;
+const PLACE: usize = 1_000;
+/// Most characters of an author's own words that come back in a later question.
+const DESCRIPTION: usize = 2_000;
+const BEHAVIOR: usize = 1_000;
+
 /// Which words were used.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Template {
@@ -153,14 +162,14 @@ impl Question {
             .reading
             .facts
             .iter()
-            .map(|fact| format!("{}: {}", fact.id, clean(&vocabulary::fact(&fact.kind))))
+            .map(|fact| format!("{}: {}", fact.id, clean(&vocabulary::fact(&fact.kind), BEHAVIOR)))
             .collect();
         let mut wish = json!({
-            "social_context": clean(&self.request.social_context),
-            "task": clean(&self.request.task),
-            "rough_scenario": self.request.rough_scenario.as_deref().map(clean),
+            "social_context": clean(&self.request.social_context, CONTEXT),
+            "task": clean(&self.request.task, TASK),
+            "rough_scenario": self.request.rough_scenario.as_deref().map(|text| clean(text, ROUGH)),
         });
-        let place = clean(self.request.location_description.as_deref().unwrap_or(&self.location.description));
+        let place = clean(self.request.location_description.as_deref().unwrap_or(&self.location.description), PLACE);
         if let Some(members) = wish.as_object_mut() {
             if !place.is_empty() {
                 members.insert("location".to_owned(), json!(place));
@@ -178,7 +187,7 @@ impl Question {
         let humans: Vec<Value> = self
             .humans(proposal)
             .iter()
-            .map(|human| json!({"id": human.id, "behavior": human.behavior, "rules": lines(&human.rules)}))
+            .map(|human| json!({"id": human.id, "behavior": clean(&human.behavior, BEHAVIOR), "rules": lines(&human.rules)}))
             .collect();
         let script: Vec<String> = proposal.robot.script.iter().map(vocabulary::script_line).collect();
         let mut outline = json!({"humans": humans, "robot_script": script});
@@ -219,13 +228,12 @@ fn paths_outline(proposal: &Proposal) -> String {
             told
         })
         .collect();
-    let mut robot = json!({"task": proposal.robot.task});
+    let mut robot = json!({"task": clean(&proposal.robot.task, TASK)});
     let ends = [("start", proposal.robot.start), ("goal", proposal.robot.goal)];
     if let Some(members) = robot.as_object_mut() {
         members.extend(ends.into_iter().filter_map(|(key, class)| Some((key.to_owned(), json!(class?)))));
     }
-    let outline =
-        json!({"description": proposal.description, "place": proposal.place, "humans": humans, "robot": robot});
+    let outline = json!({"description": clean(&proposal.description, DESCRIPTION), "place": proposal.place, "humans": humans, "robot": robot});
     format!("Scenario (data): {outline}\n")
 }
 
@@ -249,13 +257,31 @@ fn fill<const N: usize>(template: &str, values: [(&str, minijinja::Value); N]) -
     }
 }
 
-/// Text without control, direction and zero-width characters, which only serve to hide something.
-fn clean(text: &str) -> String {
+/// Which texts of a request are longer than a question shows, in words. A model would not see their ends.
+#[must_use]
+pub fn too_long(request: &socrates_model::Request) -> Vec<String> {
+    let texts = [
+        ("social_context", Some(&request.social_context), CONTEXT),
+        ("task", Some(&request.task), TASK),
+        ("rough_scenario", request.rough_scenario.as_ref(), ROUGH),
+        ("location_description", request.location_description.as_ref(), PLACE),
+    ];
+    texts
+        .into_iter()
+        .filter_map(|(name, text, most)| Some((name, text?.chars().count(), most)))
+        .filter(|(_, found, most)| found > most)
+        .map(|(name, found, most)| format!("`{name}` has {found} characters; a language model is shown {most}"))
+        .collect()
+}
+
+/// Text without control, direction and zero-width characters, which only serve to hide something, and no longer than `most`
+/// characters.
+fn clean(text: &str, most: usize) -> String {
     let hidden = |c: char| {
         c.is_control() && !matches!(c, '\n' | '\t')
             || matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
     };
-    text.chars().filter(|c| !hidden(*c)).collect()
+    text.chars().filter(|c| !hidden(*c)).take(most).collect()
 }
 
 #[cfg(test)]

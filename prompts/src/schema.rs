@@ -8,6 +8,7 @@ use socrates_model::proposal::Relation;
 use socrates_model::reading::FactKind;
 use socrates_model::{HumanId, PlaceClass, Rule};
 
+use crate::place_text;
 use crate::question::Question;
 use crate::style::{BehaviorsForm, PathsForm, Style};
 
@@ -151,13 +152,16 @@ fn paths(question: &Question, form: PathsForm) -> Value {
         PathsForm::Anchors => (way(None), way(Some(("meet", or_null(&one))))),
         // A map too large for a chain of its own is walked by name.
         PathsForm::Walk if few => {
-            defs.extend(graph.nodes.iter().map(|node| {
-                let mut next: Vec<Value> = graph.neighbors(&node.id).iter().map(walk_from).collect();
+            // A definition for each node under a name of a letter: the names are most of what such a schema costs.
+            let step = |id: &socrates_model::NodeId| ids.binary_search(&id.as_str()).ok().map(walk_from);
+            defs.extend(ids.iter().enumerate().filter_map(|(place, id)| {
+                let node = socrates_model::NodeId::new(*id).ok()?;
+                let mut next: Vec<Value> = graph.neighbors(&node).iter().filter_map(step).collect();
                 next.push(json!({"type": "null"}));
-                let step = object(&[("at", json!({"const": node.id})), ("next", json!({"anyOf": next}))]);
-                (format!("from_{}", node.id), step)
+                let here = object(&[("at", json!({"const": id})), ("next", json!({"anyOf": next}))]);
+                Some((place_text::letters_of(place), here))
             }));
-            let walk: Vec<Value> = graph.nodes.iter().map(|node| walk_from(&node.id)).collect();
+            let walk: Vec<Value> = (0..ids.len()).map(walk_from).collect();
             defs.push(("walk".to_owned(), json!({"anyOf": walk})));
             let walk = json!({"$ref": "#/$defs/walk"});
             (walk.clone(), object(&[("meet", or_null(&one)), ("walk", walk)]))
@@ -177,8 +181,9 @@ fn paths(question: &Question, form: PathsForm) -> Value {
     schema
 }
 
-fn walk_from(id: &socrates_model::NodeId) -> Value {
-    json!({"$ref": format!("#/$defs/from_{id}")})
+/// The walk that begins at the node of this place among the sorted ids.
+fn walk_from(place: usize) -> Value {
+    json!({"$ref": format!("#/$defs/{}", place_text::letters_of(place))})
 }
 
 fn behaviors(question: &Question, form: BehaviorsForm) -> Value {
@@ -367,8 +372,10 @@ mod tests {
     fn in_a_walk_only_a_neighbor_can_come_next() {
         let style = Style { paths: PathsForm::Walk, ..Style::default() };
         let schema = answer_schema(&question(Stage::Paths), &style);
-        let next = &schema["$defs"]["from_e"]["properties"]["next"]["anyOf"];
-        assert_eq!(*next, json!([{"$ref": "#/$defs/from_c"}, {"type": "null"}]));
+        // Sorted: c, e, n, w. From `e` one comes to `c` alone.
+        let here = &schema["$defs"]["B"]["properties"];
+        assert_eq!(here["at"], json!({"const": "e"}));
+        assert_eq!(here["next"]["anyOf"], json!([{"$ref": "#/$defs/A"}, {"type": "null"}]));
         let jump = json!({"at": "e", "next": {"at": "n", "next": null}});
         let step = json!({"at": "e", "next": {"at": "c", "next": null}});
         let wrong = |walk: &Value| {

@@ -70,9 +70,9 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
     let mut found: BTreeMap<(Stage, String), Vec<Exchange>> = BTreeMap::new();
     let mut reviewed = false;
     for job in list(&provenance, "jobs") {
-        let Some(stage) = job["job"]["stage"].as_str().and_then(|name| name.parse::<Stage>().ok()) else { continue };
-        reviewed |= stage == Stage::Review && job["state"] == "succeeded";
-        let inputs = job["inputs"].to_string();
+        let Some(stage) = word(&job, "/job/stage").and_then(|name| name.parse::<Stage>().ok()) else { continue };
+        reviewed |= stage == Stage::Review && word(&job, "/state") == Some("succeeded");
+        let inputs = job.get("inputs").map(Value::to_string).unwrap_or_default();
         // A job that was made anew after a run: what was taken before was not good enough.
         if !list(&job, "sent_back").is_empty()
             && let Some(earlier) = found.get_mut(&(stage, inputs.clone()))
@@ -163,15 +163,18 @@ impl Exchange {
         let words = |key: &str, of: fn(&Value) -> Option<&str>| -> Vec<String> {
             list(value, key).iter().filter_map(of).map(str::to_owned).collect()
         };
-        let name = |key: &str| value[key].as_str().filter(|name| !name.is_empty());
+        let name = |pointer: &str| word(value, pointer).filter(|name| !name.is_empty());
         Some(Self {
             answer,
             fate,
-            author: name("model").or_else(|| name("author")).unwrap_or("unknown").to_owned(),
-            faults: words("faults", |fault| fault["code"].as_str()),
+            author: name("/model").or_else(|| name("/author")).unwrap_or("unknown").to_owned(),
+            faults: words("faults", |fault| word(fault, "/code")),
             injected: words("injected", Value::as_str),
-            chosen: value["chosen"].as_u64().and_then(|place| usize::try_from(place).ok()),
-            messages: serde_json::from_value(value["messages"].clone()).unwrap_or_default(),
+            chosen: value.get("chosen").and_then(Value::as_u64).and_then(|place| usize::try_from(place).ok()),
+            messages: value
+                .get("messages")
+                .and_then(|messages| serde_json::from_value(messages.clone()).ok())
+                .unwrap_or_default(),
         })
     }
 
@@ -193,4 +196,8 @@ impl Exchange {
 
 fn list(value: &Value, key: &str) -> Vec<Value> {
     value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
+}
+
+fn word<'a>(value: &'a Value, pointer: &str) -> Option<&'a str> {
+    value.pointer(pointer)?.as_str()
 }

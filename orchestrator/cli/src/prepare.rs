@@ -142,6 +142,16 @@ pub(crate) fn prepare_text(
         }
     }
     let (author, mut author_note) = choose_author(&request.run.author, config)?;
+    let long = socrates_prompts::too_long(&request);
+    // Rules read the whole request; whoever is asked in messages would not see its end.
+    if author != "offline" && !long.is_empty() {
+        let mut complaint = Complaint::input(
+            format!("the request `{shown}` is too long for a language model"),
+            "shorten these texts, or take `--author offline`, which reads them whole",
+        );
+        complaint.causes = long.iter().map(|why| format!("J-REQUEST {why}")).collect();
+        return Err(complaint);
+    }
     let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
     if !injected.is_empty() {
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");

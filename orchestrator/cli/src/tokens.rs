@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use serde_json::json;
 use socrates_author::offline::Offline;
-use socrates_author::{Author, Desk, Papers, Says, Written, attempt, llm};
+use socrates_author::{Author as _, Desk, Papers, Says, Written, attempt, llm};
 use socrates_llm::estimate::{picture_tokens, png_size, request_tokens};
 use socrates_llm::{Detail, Dialect};
 use socrates_model::Request;

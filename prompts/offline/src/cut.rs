@@ -329,8 +329,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
-            if !(text(i) == "so" && matches!(before, "do"))
-                && !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
+            if text(i) != "so"
+                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly") =>
         {
             (Some(Joint::Comma), 1)
         }
@@ -343,10 +343,14 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::When), 1)
         }
+        "each" | "every" | "any" if text(i + 1) == "time" => (Some(Joint::When), 2),
+        "that" if i > 0 && sees(i - 1) && (stem(i + 1) == "robot" || stem(i + 2) == "robot") => (Some(Joint::Comma), 1),
         "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
-        "on" if matches!(text(i + 1), "this" | "that" | "the") && said(i + 2) => (Some(Joint::When), 1),
+        "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
+            (Some(Joint::When), 1)
+        }
         "on" if stem(i + 2) == "robot"
             && matches!(stem(i + 3), "approach" | "arrival" | "appearance" | "request" | "signal") =>
         {
@@ -371,7 +375,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "after" | "before"
             if !digit
                 && !matches!(text(i + 1), "a" | "half" | "you" | "some")
-                && !trails(&words.get(..i).unwrap_or_default()) =>
+                && (!trails(words.get(..i).unwrap_or_default())
+                    || matches!(text(i + 1), "it" | "he" | "she" | "they")
+                        && lexicon().verbs.contains(stem(i + 2))) =>
         {
             (Some(Joint::When), 1)
         }
@@ -401,7 +407,7 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let text = |k: usize| word(k).map_or("", |word| word.text.as_str());
     let temporal = matches!(open.joint, Joint::When | Joint::Until | Joint::While);
     let acts = open.words.iter().skip(1).any(|word| lex.verbs.contains(&word.stem));
-    if open.words.is_empty() || !acts && !(temporal && open.words.len() > 1) {
+    if open.words.is_empty() || !(acts || temporal && open.words.len() > 1) {
         return false;
     }
     let before = if i == 0 { "" } else { text(i - 1) };

@@ -13,8 +13,8 @@ const ASKS: &[&str] = &["ask", "request", "beg", "demand", "call"];
 const MUTE: &[(&[&str], Gesture)] = &[
     (&["beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
     (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
-    (&["thumb", "nod"], Gesture::Acknowledged),
-    (&["acknowledge"], Gesture::Acknowledged),
+    (&["thumb", "nod", "greet"], Gesture::Acknowledged),
+    (&["acknowledge", "thank"], Gesture::Acknowledged),
 ];
 
 /// A gesture needs a verb (or the word `gesture`) and a message near it; a raised hand and a horn are their own.
@@ -93,7 +93,7 @@ fn pointed(stretch: &Stretch, first: usize, last: usize) -> Option<(Gesture, usi
     let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)))?;
     let gesture = match stretch.words.get(next)?.text.as_str() {
         "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "forwards" | "closer" | "over"
-        | "onward" | "onwards" | "ahead" => Gesture::Proceed,
+        | "onward" | "onwards" | "ahead" | "in" | "inside" => Gesture::Proceed,
         "back" | "off" | "away" => Gesture::Wait,
         _ => return None,
     };

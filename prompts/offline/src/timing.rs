@@ -101,6 +101,11 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
             thread.subject = Subject::People(people);
         }
     }
+    // `when it is 80 cm behind her does she notice it`: what is noticed then is when it is there.
+    let known = thread.waiting.is_some() && !thread.vague;
+    if known && cue == Cue::Visible && !matches!(stretch.joint, Joint::When | Joint::While | Joint::Until) {
+        return;
+    }
     let Some(when) = trigger(cue, found, thread) else { return };
     if thread.made.is_empty() && !thread.went_on.is_empty() && !stretch.after_and {
         // `and goes on when it has stopped`
@@ -178,6 +183,15 @@ pub(crate) fn quiet(
         {
             people.clone_from(last);
         }
+    }
+    // `a second visitor, right behind the first, …`: only where the second is.
+    let placed =
+        found.mentions.first().and_then(|mention| mention.from.checked_sub(1)).and_then(|k| stretch.words.get(k));
+    let placed =
+        placed.is_some_and(|word| matches!(word.text.as_str(), "behind" | "beside" | "to" | "with" | "near" | "by"));
+    if placed && !thread.pending.is_empty() && stretch.joint == Joint::Comma {
+        thread.subject = Subject::People(std::mem::take(&mut thread.pending));
+        return;
     }
     if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
         let mut all = std::mem::take(&mut thread.pending);

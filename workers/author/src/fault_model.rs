@@ -233,13 +233,12 @@ impl FaultRates {
     /// Probability that a found fault comes again by itself.
     #[must_use]
     pub fn repeats(&self) -> f64 {
-        self.sticky.unwrap_or_else(|| {
-            1.0 - match self.told {
-                Telling::Named => self.fix_if_named,
-                Telling::Vague => self.fix_if_vague,
-                Telling::Silent => self.fix_if_none,
-            }
-        })
+        let mended = match self.told {
+            Telling::Named => self.fix_if_named,
+            Telling::Vague => self.fix_if_vague,
+            Telling::Silent => self.fix_if_none,
+        };
+        self.sticky.unwrap_or(1.0 - mended)
     }
 
     /// A draw that depends on experiment, question, attempt and kind alone: neither the number of workers nor their order

@@ -1,4 +1,5 @@
 //! The checks against the fault model, on the offline author's answers to every shipped request.
+#![cfg(test)]
 #![expect(clippy::print_stdout, reason = "the table is there to be read")]
 
 use std::collections::BTreeMap;

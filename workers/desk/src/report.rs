@@ -26,7 +26,7 @@ pub(crate) fn failure(refusal: JobRefusal) -> Failure {
     }
     if let Some(exchange) = refusal.exchange {
         failure = failure.tokens(exchange.tokens);
-        failure.rates = rates(&exchange);
+        failure.rates = rates(&exchange).map(Box::new);
         // An exchange that cannot be written is no reason to lose the reasons.
         if let Ok(output) = Output::json("exchange", &exchange) {
             failure = failure.with(output);

@@ -187,7 +187,7 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
         }
         Err(failure) => {
             let Failure { class, faults, artifacts, retry_after_ms, tokens, rates } = failure;
-            (report.tokens, report.rates) = (tokens, rates);
+            (report.tokens, report.rates) = (tokens, rates.map(|rates| *rates));
             report.outcome = Outcome::Failed { class, faults, retry_after_ms };
             artifacts
         }

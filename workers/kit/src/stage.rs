@@ -126,7 +126,7 @@ pub struct Failure {
     /// Tokens in and out.
     pub tokens: (u64, u64),
     /// Authoring: what the server said of its rates.
-    pub rates: Option<Rates>,
+    pub rates: Option<Box<Rates>>,
 }
 
 impl Failure {

@@ -116,8 +116,10 @@ impl Site {
             wall_ms: 1,
             tokens: (0, 0),
             remark: "fine".to_owned(),
+            rates: None,
             repair: None,
             anew: Vec::new(),
+            rates: None,
             verdict: Some(Verdict::Realised),
             rates: None,
         };
