@@ -119,9 +119,7 @@ impl Site {
             rates: None,
             repair: None,
             anew: Vec::new(),
-            rates: None,
             verdict: Some(Verdict::Realised),
-            rates: None,
         };
         self.ask(keys::REPORT, &report).await
     }
