@@ -16,7 +16,8 @@ fn taken_and_refused_answers_become_chats_and_pairs() {
     let inject = ["--author", "offline", "--inject", "gdisc=1,first_only=true", "--set", "author.variants=2"];
     let (finished, json) = make(folder, "kept", WAREHOUSE, &inject);
     assert_eq!(json["verdict"], "realised", "{}\n{}", finished.err, finished.out);
-    let done = socrates(folder, "export", &["--format", "json", "library", "export", "bundle-kept", "--chat-jsonl", "data"]);
+    let done =
+        socrates(folder, "export", &["--format", "json", "library", "export", "bundle-kept", "--chat-jsonl", "data"]);
     assert_eq!(done.code, 0, "{}", done.err);
     assert_eq!((&done.json()["answers"], &done.json()["pairs"]), (&3.into(), &1.into()), "{}", done.out);
     let chats = lines(folder, "chat.jsonl");
