@@ -124,6 +124,14 @@ pub(crate) fn people_deed(
     let moves = stretch.words.get(at).is_some_and(|word| word.stem == "move");
     let asked = matches!(thread.waiting, Some(Trigger::RobotSays(socrates_model::Gesture::ExcuseMe)));
     let act = if asked && moves && matches!(act, Act::Walk | Act::GoOn) { Act::GiveWay } else { act };
+    // `blocks it, waits ten seconds and leaves`: there is nothing that it could come out of.
+    let gone = act == Act::ComeOut
+        && found.places.is_empty()
+        && stretch.words.get(at).is_some_and(|word| word.stem == "leave")
+        && people.iter().all(|who| {
+            story.cast.people.get(*who).is_some_and(|person| !person.rules.is_empty() && person.start.is_none())
+        });
+    let act = if gone { Act::GoOn } else { act };
     // `gets a shock and runs`
     let flees = act == Act::Walk
         && at + 1 == stretch.words.len()

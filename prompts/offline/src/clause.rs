@@ -405,7 +405,7 @@ fn in_front(stretch: &mut Stretch, found: &mut Found) {
     let Some(at) = (0..count).find(|k| text(*k) == "in" && text(k + 1) == "front") else { return };
     let robot =
         text(at + 2) == "of" && (at + 3..at + 5).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot"));
-    if text(at + 2) != "" && !robot {
+    if !text(at + 2).is_empty() && !robot {
         return;
     }
     let walks = found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < at);

@@ -151,3 +151,26 @@ pub(crate) fn repeat(
         thread.subject = Subject::People(people);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clause;
+    use crate::cut::sentences;
+
+    #[test]
+    fn a_clause_without_its_verb_is_told_from_one_that_has_it() {
+        for (text, does) in [
+            ("the other does not", Some(false)),
+            ("the nurse will not either", Some(false)),
+            ("the second one does the same", Some(true)),
+            ("so does the intern", Some(true)),
+            ("one is there", None),
+            ("the nurse does not move", None),
+        ] {
+            let mut stretch = sentences(text).remove(0).remove(0);
+            let found = clause::read(&mut stretch);
+            assert_eq!(elided(&stretch, &found), does, "{text}");
+        }
+    }
+}

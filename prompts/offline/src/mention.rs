@@ -392,6 +392,7 @@ fn counted(
     if text(at) == "one"
         && matches!(text(at + 1), "after" | "by" | "behind")
         && (text(at + 2) != "the" || text(at + 3) == "other")
+        && (text(at + 1) != "behind" || matches!(text(at + 2), "another" | "the" | "each"))
     {
         return None;
     }

@@ -11,7 +11,7 @@ use crate::words::{Word, find};
 const ASKS: &[&str] = &["ask", "request", "beg", "demand", "call"];
 /// What a signal without words means.
 const MUTE: &[(&[&str], Gesture)] = &[
-    (&["beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
+    (&["request", "beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
     (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
     (&["thumb", "nod", "greet"], Gesture::Acknowledged),
     (&["acknowledge", "thank"], Gesture::Acknowledged),
@@ -68,6 +68,15 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
                 return;
             }
         }
+    }
+    // `the robot asks`: for nothing but its way.
+    let asks = stem(first) == "ask"
+        && last + 1 == stretch.words.len()
+        && first.checked_sub(1).is_some_and(|k| stem(k) == "robot");
+    if asks {
+        found.gesture = Some(Gesture::ExcuseMe);
+        mark_each(stretch, &verb);
+        return;
     }
     let mute = MUTE.iter().find(|(words, _)| verb.iter().any(|i| words.contains(&stem(*i))));
     if let Some((_, gesture)) = mute {
@@ -151,5 +160,36 @@ fn alone(stretch: &mut Stretch, found: &mut Found, temporal: bool) {
             }
             return;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::sentences;
+
+    fn said(text: &str) -> Option<Gesture> {
+        let mut stretch = sentences(text).remove(0).remove(0);
+        let mut found = Found::default();
+        message(&mut stretch, &mut found);
+        found.gesture
+    }
+
+    #[test]
+    fn who_asks_to_pass_asks_for_room_and_who_lets_pass_gives_it() {
+        for text in
+            ["the robot asks to pass", "it requests passage", "the robot honks", "she asks the robot to let her by"]
+        {
+            assert_eq!(said(text), Some(Gesture::ExcuseMe), "{text}");
+        }
+        for text in
+            ["the guard signals the robot to pass", "she waves it through", "he tells the robot that it may go on"]
+        {
+            assert_eq!(said(text), Some(Gesture::Proceed), "{text}");
+        }
+        for text in ["she puts her hand up", "he raises a hand", "a worker waves it back"] {
+            assert_eq!(said(text), Some(Gesture::Wait), "{text}");
+        }
+        assert_eq!(said("the robot was asked to follow the doctor"), None);
     }
 }

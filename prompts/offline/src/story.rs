@@ -150,7 +150,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
     if stretch.joint == Joint::Said {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
-    } else if stretch.joint == Joint::Opens && answers(&found) && thread.waiting.is_none() {
+    } else if answers(&found) && thread.waiting.is_none() && stretch.joint != Joint::Then {
         // `The robot says PROCEED. He walks on.`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
@@ -260,6 +260,13 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.not_until = false;
     let mut acts: Vec<(Act, usize, usize, bool)> =
         found.deeds.iter().map(|deed| (deed.act, deed.at, deed.to, deed.negated)).collect();
+    // `refuses to let it through for 20 seconds` blocks it so long.
+    for (act, at, _, negated) in &mut acts {
+        let lets = stretch.words.get(*at).is_some_and(|word| word.stem == "let");
+        if *act == Act::GiveWay && *negated && lets && found.lasts_s.is_some() {
+            (*act, *negated) = (Act::Block, false);
+        }
+    }
     if found.gesture.is_some() {
         acts.push((Act::Gesture, found.gesture_at, found.gesture_at, false));
         acts.sort_by_key(|(_, at, _, _)| *at);

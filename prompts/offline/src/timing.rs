@@ -168,6 +168,16 @@ pub(crate) fn quiet(
         }
     }
     let behind = stretch.words.iter().position(|word| word.text == "behind");
+    // `one behind it`, where the verb is left out
+    let of_robot = behind.filter(|at| {
+        stretch.words.iter().skip(at + 1).take(3).any(|word| word.stem == "robot")
+            && found.mentions.first().is_some_and(|mention| mention.to < *at)
+    });
+    if of_robot.is_some() {
+        for who in &people {
+            deed::relate(&mut story.cast, *who, socrates_model::Relation::Behind, quote);
+        }
+    }
     if let Some(behind) = behind.filter(|behind| robot_leads(found) && found.robots.iter().all(|robot| robot < behind))
     {
         // `the robot is behind him`
@@ -219,6 +229,18 @@ pub(crate) fn quiet(
             }
             if let (Some(secs), Some(last)) = (found.lasts_s, person.rules.last_mut()) {
                 last.rule.for_s = Some(secs);
+            }
+        }
+    }
+    // `on the left stands a doctor, on the right a nurse`: the nurse stands too.
+    let sides =
+        stretch.words.iter().any(|word| matches!(word.text.as_str(), "left" | "right" | "side" | "end" | "middle"));
+    let verb =
+        stretch.words.iter().any(|word| crate::lexicon::lexicon().verbs.contains(&word.stem) && word.stem != "left");
+    if sides && !verb && thread.doer.is_some() && matches!(stretch.joint, Joint::And | Joint::Comma) {
+        for (act, around) in thread.acts.clone() {
+            for who in &people {
+                let _rule = deed::apply(&mut story.cast, *who, act, &around);
             }
         }
     }
