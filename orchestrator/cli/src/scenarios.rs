@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use socrates_model::report::Standing;
-use socrates_model::{ClauseRole, Location, Request, Verdict};
+use socrates_model::{ClauseRole, Location, Report, Request, Verdict};
 use socrates_offline::{Card, catalog};
 
 use crate::args::ScenariosVerb;
@@ -187,6 +187,8 @@ pub(crate) struct Rate {
     pub(crate) realised: usize,
     /// What went wrong, with the seeds.
     pub(crate) failures: BTreeMap<String, Vec<u64>>,
+    /// What the judge says of each seed that was not realised.
+    pub(crate) verdicts: BTreeMap<u64, String>,
     /// Locations that were used.
     pub(crate) locations: Vec<String>,
 }
@@ -206,10 +208,15 @@ fn request(card: &Card, location: &str) -> Result<Request, Complaint> {
     .map_err(|why| Complaint::input(format!("the card `{}` makes no request: {why}", card.id), ""))
 }
 
+/// Whether the scenario happened, in time or late.
+const fn is_realised(report: &Report) -> bool {
+    matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate)
+}
+
 /// What is wrong with a scenario that was not realised; nothing where it was.
 fn failing(played: &Played) -> Option<String> {
     let report = &played.report;
-    if matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate) {
+    if is_realised(report) {
         return None;
     }
     let kind = |id: &str| {
@@ -244,6 +251,11 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
     while let Some(done) = waiting.join_next().await {
         let (seed, played) = done.map_err(|why| Complaint::input(format!("a run ended: {why}"), ""))?;
         rate.runs += 1;
+        if let Ok(played) = &played
+            && !is_realised(&played.report)
+        {
+            rate.verdicts.insert(seed, format!("{} · {}", played.report.verdict, played.report.verdict_text));
+        }
         let wrong = match &played {
             Ok(played) => failing(played),
             Err(faults) => {
@@ -325,7 +337,8 @@ async fn rate(
             failures.join("; ")
         ));
         rows.push(json!({ "id": card.id, "letter": card.letter, "runs": rate.runs, "realised": rate.realised,
-            "wilson_low": rate.low(), "failures": rate.failures, "locations": rate.locations }));
+            "wilson_low": rate.low(), "failures": rate.failures,
+            "verdicts": rate.verdicts, "locations": rate.locations }));
     }
     #[expect(clippy::cast_precision_loss, reason = "a few thousand runs")]
     let pooled = realised as f64 / runs.max(1) as f64;
@@ -364,6 +377,13 @@ mod tests {
         }
         println!("{realised} of {runs}\n{}", lines.join("\n"));
         assert!(realised * 100 >= runs * 97, "{}", lines.join("\n"));
+    }
+
+    #[tokio::test]
+    async fn nobody_makes_room_in_a_doorway_by_squeezing_past_the_robot() {
+        let (card, place) = (find("narrow_doorway").unwrap(), socrates_maps::shipped::load("office").unwrap());
+        let played = play(&request(card, "office").unwrap(), &place, 61).await.unwrap();
+        assert!(is_realised(&played.report), "{}", played.report.verdict_text);
     }
 
     #[test]

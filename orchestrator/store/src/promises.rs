@@ -109,6 +109,7 @@ fn work(state: &mut State) -> Vec<Row> {
         remark: "done".to_owned(),
         repair: None,
         anew: Vec::new(),
+        rates: None,
         verdict: Some(Verdict::Realised),
     };
     all.extend(rows(&step(state, Event::Report { report: Box::new(report), to: 0 }, 0)));

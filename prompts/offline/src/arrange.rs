@@ -62,6 +62,20 @@ fn apposed(mut found: Vec<Stretch>) -> Vec<Stretch> {
     counted(&mut found);
     let mut at = 0;
     while at + 1 < found.len() {
+        // `Lena, who is a lawyer, …`
+        let named = found.get(at).zip(found.get(at + 1)).is_some_and(|(name, who)| {
+            is_name(name)
+                && who.joint == Joint::Who
+                && who.words.first().is_some_and(|word| word.stem == "be")
+                && mentions(&who.words).first().is_some_and(|mention| mention.from == 1)
+        });
+        if named {
+            let mut who = found.remove(at + 1);
+            who.words.remove(0);
+            if let Some(name) = found.get_mut(at) {
+                name.also = std::mem::replace(&mut name.words, who.words);
+            }
+        }
         if let (Some(name), Some(other)) = (found.get(at), found.get(at + 1))
             && let Some(also) = apposition(name, other, found.get(at + 2))
         {
@@ -113,6 +127,12 @@ fn counted(found: &mut Vec<Stretch>) {
     }
 }
 
+/// Whether a clause is nothing but a name that no table has.
+fn is_name(name: &Stretch) -> bool {
+    let lex = lexicon();
+    matches!(name.words.as_slice(), [only] if only.capital && !lex.known.contains(&only.stem) && !lex.stop.contains(&only.text))
+}
+
 /// Which of two names is the one that stays.
 enum Also {
     First,
@@ -140,12 +160,16 @@ fn apposition(name: &Stretch, other: &Stretch, next: Option<&Stretch>) -> Option
     if told && other.joint == Joint::Comma && whole(&name.words) && next.is_some_and(goes_on) {
         return Some(Also::First);
     }
+    let numbered = matches!(mentions(&name.words).as_slice(), [only] if matches!(only.who, Who::Number(_)) && only.to + 1 == name.words.len());
+    if numbered && other.joint == Joint::Comma && other.words.len() == 1 && whole(&other.words) {
+        return Some(Also::Second);
+    }
     let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an"));
     let bare = other.words.len() == 1 && whole(&other.words);
     if other.joint != Joint::Comma || !(article && whole(&other.words) || bare) {
         return None;
     }
-    let called = matches!(name.words.as_slice(), [only] if only.capital && !lex.known.contains(&only.stem) && !lex.stop.contains(&only.text));
+    let called = is_name(name);
     let single = name
         .words
         .first()

@@ -49,6 +49,11 @@ pub(crate) fn subject_of(
         return people(some);
     }
     let robot = found.robots.iter().rev().find(|robot| **robot < at);
+    // `has the robot coming up behind him`: the robot is behind.
+    let after = found.mentions.iter().any(|mention| mention.from > to && mention.who == Who::Object);
+    if act == Act::Behind && after && robot.is_some_and(|robot| robot + 1 == at || robot + 2 == at) {
+        return Subject::Robot;
+    }
     let robotic = matches!(
         act,
         Act::Pass
@@ -115,6 +120,45 @@ pub(crate) fn people_deed(
     } else {
         act
     };
+    // `it says EXCUSE_ME, and she moves`: out of its way.
+    let moves = stretch.words.get(at).is_some_and(|word| word.stem == "move");
+    let asked = matches!(thread.waiting, Some(Trigger::RobotSays(socrates_model::Gesture::ExcuseMe)));
+    let act = if asked && moves && matches!(act, Act::Walk | Act::GoOn) { Act::GiveWay } else { act };
+    // `blocks it, waits ten seconds and leaves`: there is nothing that it could come out of.
+    let gone = act == Act::ComeOut
+        && found.places.is_empty()
+        && stretch.words.get(at).is_some_and(|word| word.stem == "leave")
+        && people.iter().all(|who| {
+            story.cast.people.get(*who).is_some_and(|person| !person.rules.is_empty() && person.start.is_none())
+        });
+    let act = if gone { Act::GoOn } else { act };
+    // `gets a shock and runs`
+    let flees = act == Act::Walk
+        && at + 1 == stretch.words.len()
+        && stretch
+            .words
+            .get(at)
+            .is_some_and(|word| matches!(word.stem.as_str(), "run" | "bolt" | "dash" | "sprint" | "rush"))
+        && people.iter().all(|who| {
+            story.cast.people.get(*who).is_some_and(|person| person.doings.iter().any(|doing| doing == "startled"))
+        });
+    let act = if flees { Act::RunAway } else { act };
+    // `is accompanied by a technician`
+    let beside = act == Act::Lead
+        && stretch.words.get(at).is_some_and(|word| word.stem == "accompany")
+        && !found.robots.is_empty()
+        && !meant.iter().any(|(from, _, some)| *from > to && some.iter().any(|i| !people.contains(i)));
+    let act = if beside { Act::Abreast } else { act };
+    // `waits 5 seconds and then goes in`: whatever it did, it goes on.
+    let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
+    if after && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {
+        for who in people {
+            let halted = story.cast.people.get_mut(*who).filter(|person| !person.rules.is_empty());
+            if let Some(person) = halted {
+                person.goes_on.get_or_insert_with(|| quote.to_owned());
+            }
+        }
+    }
     if act == Act::GoOn {
         thread.went_on.extend(people);
     }

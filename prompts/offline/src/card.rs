@@ -42,6 +42,9 @@ pub struct Card {
     /// Ways that meet in the meeting node, at least.
     #[serde(default)]
     pub arms: Option<usize>,
+    /// Verbs of robot tasks that this card is about (`guide`, `lead`): where nothing else is asked for, it comes first.
+    #[serde(default)]
+    pub tasks: Vec<String>,
     /// Where the robot starts, if the card says.
     #[serde(default)]
     pub start: Option<PlaceClass>,

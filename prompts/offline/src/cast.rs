@@ -37,6 +37,8 @@ pub(crate) struct Person {
     pub(crate) doings: Vec<String>,
     /// Whether something was said of this one that sets it apart.
     pub(crate) bound: bool,
+    /// What it is called.
+    pub(crate) name: Option<String>,
     /// Words that say that it walks on after all it did.
     pub(crate) goes_on: Option<String>,
     /// What was ruled out for it, with the words.
@@ -118,7 +120,7 @@ impl Cast {
                 pick.unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
             // `Ten, I said.`
-            Who::Bare(n) if declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
+            Who::Bare(n) if *n > 1 && declares && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) => {
                 self.latest()
             }
             Who::Bare(n) => {
@@ -134,7 +136,7 @@ impl Cast {
             }
             Who::More(n) => match self.pick_open(*n, mention) {
                 Some(found) if *n == 1 => found,
-                Some(_) | None => self.join(*n, mention, declares, quote),
+                Some(_) | None => self.join(*n, &self.alike(mention), declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
             Who::ToldApart => self.part_of(1, mention, quote),
@@ -164,16 +166,26 @@ impl Cast {
                     return members;
                 }
                 let sets = [self.last.clone(), self.latest()];
+                let everybody: Vec<usize> = (0..self.people.len()).collect();
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
                     .collect();
                 sets.into_iter()
-                    .chain([alike])
+                    .chain([alike, everybody])
                     .find(|set| fitting(set))
                     .unwrap_or_else(|| self.join(*n, mention, declares, quote))
             }
             Who::Other(count) => self.others(*count, mention, quote),
             Who::Ordinal(n) => {
+                // `three wait, two come out; the former …, the latter …`
+                let sets: Vec<&Vec<usize>> =
+                    self.sets.iter().map(|set| &set.members).filter(|members| members.len() > 1).collect();
+                if let [.., former, latter] = sets.as_slice()
+                    && matches!(mention.word.as_str(), "former" | "latter")
+                    && former.iter().all(|i| !latter.contains(i))
+                {
+                    return if *n == 0 { (*latter).clone() } else { (*former).clone() };
+                }
                 let set = self.latest();
                 let index = if *n == 0 { set.last() } else { set.get(usize::try_from(n - 1).unwrap_or(usize::MAX)) };
                 index.copied().map_or_else(|| self.join(1, mention, false, quote), |i| vec![i])
@@ -199,7 +211,7 @@ impl Cast {
             Who::Further(n) => {
                 let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
                 let open = if there { self.pick_open(1, mention) } else { None };
-                open.unwrap_or_else(|| self.join(1, mention, declares, quote))
+                open.unwrap_or_else(|| self.join(1, &self.alike(mention), declares, quote))
             }
             Who::AllBut(n) => {
                 let set = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
@@ -437,10 +449,15 @@ impl Cast {
         if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
             return rest;
         }
-        // `one visitor flees, the other looks`: another visitor.
+        self.join(count.unwrap_or(1), &self.alike(&Mention { word: "one".to_owned(), ..mention.clone() }), false, quote)
+    }
+
+    /// `one visitor flees, another one looks`: another visitor.
+    fn alike(&self, mention: &Mention) -> Mention {
         let alike = self.last.first().and_then(|i| self.people.get(*i)).map(|person| person.role.clone());
-        let role = mention.role.clone().or_else(|| alike.filter(|role| !role.is_empty()));
-        self.join(count.unwrap_or(1), &Mention { role, ..mention.clone() }, false, quote)
+        let alike =
+            alike.filter(|role| !role.is_empty() && mention.word == "one" && lexicon().roles.contains_key(role));
+        Mention { role: mention.role.clone().or(alike), ..mention.clone() }
     }
 
     fn definite(
@@ -461,6 +478,10 @@ impl Cast {
                 return members.clone();
             }
         }
+        let called = self.people.iter().position(|person| mention.role.is_some() && person.name == mention.role);
+        if let Some(who) = called.filter(|_| !plural) {
+            return vec![who];
+        }
         if let Some(role) = &mention.role {
             let same: Vec<usize> =
                 (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| p.role == *role)).collect();
@@ -469,6 +490,15 @@ impl Cast {
             }
             if !plural && let Some(first) = same.first() {
                 return vec![self.last.iter().copied().find(|i| same.contains(i)).unwrap_or(*first)];
+            }
+            // `a couple …; the husband …, his wife …`, `one of two guards …, his partner …`: of those who are there.
+            const OF_THEM: &[&str] =
+                &["husband", "wife", "partner", "companion", "colleague", "friend", "mate", "buddy", "coworker"];
+            if !plural
+                && OF_THEM.contains(&role.as_str())
+                && let Some(found) = self.pick_open(1, &Mention { role: None, ..mention.clone() })
+            {
+                return found;
             }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
             if !plural && plain(role) {

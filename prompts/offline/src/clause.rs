@@ -129,8 +129,17 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             // `corner of the warehouse` is an end of the map, no blind corner.
             let end = at.last().copied().unwrap_or(0);
             let of = stretch.words.get(end + 1).is_some_and(|word| word.text == "of");
+            // `the door opens`, `the doors open`; but somebody holds the door open.
+            let plural = stretch.words.get(end).is_some_and(|word| word.text.ends_with('s'));
             let opens = phrase.means != PlaceClass::Elevator
-                && stretch.words.get(end + 1).is_some_and(|word| word.stem == "open");
+                && stretch
+                    .words
+                    .get(end + 1)
+                    .is_some_and(|word| word.stem == "open" && (word.text != "open" || plural));
+            // `a ward sister` is no ward.
+            if found.mentions.iter().any(|mention| (mention.from..mention.to).contains(&end)) {
+                continue;
+            }
             // `makes room` is no room.
             let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
             // `leave room for it`, but `leave room 3`.
@@ -142,7 +151,7 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
                 && made.is_some_and(|word| {
                     matches!(
                         word.stem.as_str(),
-                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free"
+                        "make" | "enough" | "no" | "some" | "more" | "give" | "leave" | "for" | "free" | "have"
                     )
                 })
             {
@@ -252,12 +261,21 @@ fn negated(stretch: &Stretch, at: usize) -> bool {
     if before(1) == "stop" && matches!(before(2), "not" | "never") {
         return false;
     }
+    // `never turns round to look`, `does not want to move`
+    let to = before(1) == "to"
+        && (2..=5).any(|back| matches!(before(back), "not" | "never"))
+        && !(2..=5)
+            .take_while(|back| !matches!(before(*back), "not" | "never"))
+            .any(|back| before(back) == "robot" || before(back) == "until");
+    if to {
+        return true;
+    }
     // `never so much as glances`, `not even once looks`
     let reach = (1..=6)
         .find(|back| {
             !matches!(
                 before(*back),
-                "so" | "much" | "as" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually"
+                "so" | "much" | "as" | "a" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually"
             )
         })
         .unwrap_or(1);
@@ -294,7 +312,22 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             // Two who walk in opposite directions need not walk towards the robot.
             let apart = phrase.means == Act::Toward
                 && at.iter().any(|i| stretch.words.get(*i).is_some_and(|word| word.text == "directions"));
-            let of_place = apart
+            // `from behind the shelves` is not from behind the robot.
+            let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+            let elsewhere = phrase.means == Act::Behind
+                && text(last) == "behind"
+                && matches!(text(last + 1), "the" | "a" | "some" | "one")
+                && stretch.words.get(last + 2).is_some_and(|word| word.stem != "robot" && !word.label);
+            // `the guide signals`: a noun here.
+            let noun = at.len() == 1
+                && found.mentions.iter().any(|mention| {
+                    mention.to == first
+                        && mention.from < first
+                        && mention.role.as_deref() == stretch.words.get(first).map(|word| word.stem.as_str())
+                });
+            let of_place = noun
+                || elsewhere
+                || apart
                 || stretch.words.get(last).is_some_and(|word| word.text == "it")
                     && (first..last).any(|i| !at.contains(&i) && placed.get(i).copied().unwrap_or(false));
             if of_place {
@@ -322,6 +355,7 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             });
         }
     }
+    in_front(stretch, found);
     found.deeds.sort_by_key(|deed| deed.at);
     let has = |acts: &[Act]| found.deeds.iter().any(|deed| acts.contains(&deed.act) && !deed.negated);
     // The more telling word wins: `approaches from behind` is no coming up to the robot out of curiosity.
@@ -362,6 +396,31 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
     };
     let kept = found.deeds.iter().copied().filter(keep).collect();
     found.deeds = kept;
+}
+
+/// `walks four meters in front`, `…, a few steps in front of it`: ahead of the robot.
+fn in_front(stretch: &mut Stretch, found: &mut Found) {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let count = stretch.words.len();
+    let Some(at) = (0..count).find(|k| text(*k) == "in" && text(k + 1) == "front") else { return };
+    let robot =
+        text(at + 2) == "of" && (at + 3..at + 5).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot"));
+    if !text(at + 2).is_empty() && !robot {
+        return;
+    }
+    let walks = found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < at);
+    let manner = found.deeds.is_empty()
+        && found.mentions.is_empty()
+        && stretch.joint == Joint::Comma
+        && found.distance_m.is_some();
+    let other = found
+        .deeds
+        .iter()
+        .any(|deed| !matches!(deed.act, Act::Walk | Act::GoOn | Act::Ignore | Act::Talk | Act::WalkTogether));
+    if (walks || manner) && !other {
+        found.deeds.push(Deed { act: Act::Ahead, at, to: at + 1, negated: false });
+        mark(stretch, at, at + 1);
+    }
 }
 
 fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
@@ -409,6 +468,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             found.in_group = true;
             used.push(i);
         }
+        found.in_group |= text == "together" && i > 0;
         if text == "suddenly" || text == "together" {
             used.push(i);
         }

@@ -319,6 +319,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
             (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })
         }
+        "at" if (text(i + 1) == "its" && said(i + 2)) || stem(i + 2) == "robot" && said(i + 3) => {
+            (Some(Joint::When), 1)
+        }
         "by" if text(i + 1) == "the" && text(i + 2) == "time" => (Some(Joint::When), 3),
         "the"
             if matches!(text(i + 1), "moment" | "instant")
@@ -329,8 +332,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
-            if !(text(i) == "so" && matches!(before, "do"))
-                && !(text(i) == "so" && matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly")) =>
+            if text(i) != "so"
+                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly") =>
         {
             (Some(Joint::Comma), 1)
         }
@@ -343,10 +346,14 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::When), 1)
         }
+        "each" | "every" | "any" if text(i + 1) == "time" => (Some(Joint::When), 2),
+        "that" if i > 0 && sees(i - 1) && (stem(i + 1) == "robot" || stem(i + 2) == "robot") => (Some(Joint::Comma), 1),
         "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
-        "on" if matches!(text(i + 1), "this" | "that" | "the") && said(i + 2) => (Some(Joint::When), 1),
+        "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
+            (Some(Joint::When), 1)
+        }
         "on" if stem(i + 2) == "robot"
             && matches!(stem(i + 3), "approach" | "arrival" | "appearance" | "request" | "signal") =>
         {
@@ -371,7 +378,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "after" | "before"
             if !digit
                 && !matches!(text(i + 1), "a" | "half" | "you" | "some")
-                && !trails(&words.get(..i).unwrap_or_default()) =>
+                && (!trails(words.get(..i).unwrap_or_default())
+                    || matches!(text(i + 1), "it" | "he" | "she" | "they")
+                        && lexicon().verbs.contains(stem(i + 2))) =>
         {
             (Some(Joint::When), 1)
         }
@@ -401,7 +410,7 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let text = |k: usize| word(k).map_or("", |word| word.text.as_str());
     let temporal = matches!(open.joint, Joint::When | Joint::Until | Joint::While);
     let acts = open.words.iter().skip(1).any(|word| lex.verbs.contains(&word.stem));
-    if open.words.is_empty() || !acts && !(temporal && open.words.len() > 1) {
+    if open.words.is_empty() || !(acts || temporal && open.words.len() > 1) {
         return false;
     }
     let before = if i == 0 { "" } else { text(i - 1) };
@@ -521,6 +530,40 @@ mod tests {
             .map(|w| w.text)
             .collect();
         assert_eq!(words, ["within", "1.5", "m", "10000", "people", "do", "not", "human", "2"]);
+    }
+
+    #[test]
+    fn a_clause_begins_where_somebody_else_does_something() {
+        let cut = cuts("As soon as she sees the robot she signals it to wait");
+        assert_eq!(
+            cut,
+            [(Joint::When, "she sees the robot".to_owned()), (Joint::Comma, "she signals it to wait".to_owned())]
+        );
+        let cut = cuts("On seeing the robot halts a visitor");
+        assert_eq!(cut, [(Joint::When, "seeing the robot".to_owned()), (Joint::Comma, "halts a visitor".to_owned())]);
+    }
+
+    #[test]
+    fn manners_come_after_whose_they_are_and_names_beside_names() {
+        let cut = cuts("Walking ahead of the robot, a couple talks.");
+        assert_eq!(
+            cut,
+            [(Joint::Comma, "a couple talks".to_owned()), (Joint::Comma, "Walking ahead of the robot".to_owned())]
+        );
+        let text = "The cleaner, a shy man, stands still.";
+        let found = sentences(text);
+        assert_eq!(found[0].len(), 1);
+        let also: Vec<&str> = found[0][0].also.iter().map(|word| word.text.as_str()).collect();
+        assert_eq!(also, ["a", "shy", "man"]);
+        assert_eq!(cuts("A doctor, a nurse and a patient wait").len(), 3);
+    }
+
+    #[test]
+    fn numbers_of_headings_and_times_of_day_count_nothing() {
+        for text in ["Test case 14: a nurse waits", "Study 2: a nurse waits", "At 14:30 a nurse waits"] {
+            let counts = sentences(text).into_iter().flatten().flat_map(|s| s.words).filter(|w| w.count().is_some());
+            assert_eq!(counts.count(), 0, "{text}");
+        }
     }
 
     #[test]

@@ -156,7 +156,12 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     // Who walks along talks on the way.
     let walks =
         |person: &Person| person.relation.is_some() || person.doings.iter().any(|doing| doing.starts_with("walks"));
-    let on_the_way = act == Act::Talk && cast.people.get(who).is_some_and(walks);
+    let person = cast.people.get(who);
+    // `when 4 m away they form a line`: they came from where they came.
+    let then = relation(act) == Some(Relation::Static)
+        && around.trigger.is_some()
+        && person.is_some_and(|person| person.relation.is_some());
+    let on_the_way = act == Act::Talk && person.is_some_and(walks) || then;
     if let Some(relation) = relation(act).filter(|_| !on_the_way) {
         relate(cast, who, relation, &around.quote);
     }

@@ -5,6 +5,7 @@ use socrates_model::{GroupId, HumanId, Location, Reading, Request};
 
 use crate::card::{Card, card, catalog};
 use crate::draw::Draw;
+use crate::lexicon::lexicon;
 use crate::story::Story;
 use crate::understand::Extra;
 
@@ -74,8 +75,16 @@ pub(crate) fn people(
     (humans, extras)
 }
 
-/// A pattern for a request without a rough scenario: one that the map can hold, drawn by the seed.
-pub(crate) fn unguided(location: &Location, draw: &mut Draw) -> Option<&'static Card> {
+/// A pattern for a request without a rough scenario: one that the map can hold, drawn by the seed. A task that says what the
+/// robot does with people ("guide", "follow") is one of the patterns about that.
+pub(crate) fn unguided(task: &str, location: &Location, draw: &mut Draw) -> Option<&'static Card> {
     let fitting: Vec<&'static Card> = catalog().iter().filter(|card| card.fits(location)).collect();
-    draw.pick(&fitting).copied()
+    let verbs: Vec<String> = task
+        .split(|letter: char| !letter.is_alphabetic())
+        .filter(|word| !word.is_empty())
+        .map(|word| lexicon().stem(&word.to_lowercase()))
+        .collect();
+    let meant: Vec<&'static Card> =
+        fitting.iter().copied().filter(|card| card.tasks.iter().any(|task| verbs.contains(task))).collect();
+    draw.pick(if meant.is_empty() { &fitting } else { &meant }).copied()
 }

@@ -45,7 +45,9 @@ const LEFT: &[&str] = &[
 
 /// Whether the clause leaves its verb out, and whether its people do what was said before.
 pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
-    if found.mentions.is_empty() || found.acts() || found.cue.is_some() {
+    let same =
+        stretch.words.iter().any(|word| word.text == "same") && stretch.words.iter().any(|word| word.stem == "do");
+    if found.mentions.is_empty() && !same || found.acts() || found.cue.is_some() {
         return None;
     }
     let outside = stretch.words.iter().enumerate();
@@ -113,8 +115,22 @@ pub(crate) fn repeat(
     for word in &mut stretch.words {
         word.used = true;
     }
-    let people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
-    let acts = thread.acts.clone();
+    let mut acts = thread.acts.clone();
+    // `each time the robot stops, so does the intern`
+    if does && thread.made.is_empty() && thread.waiting == Some(Trigger::RobotStopped) {
+        acts.clear();
+        let around = Around { trigger: thread.waiting.clone(), quote: quote.to_owned(), ..Around::default() };
+        acts.push((Act::Stop, around));
+        thread.untaken = None;
+    }
+    // `the robot tells them to go ahead, which they do`
+    if does && acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
+        return;
+    }
+    let mut people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    if let (true, Subject::People(some)) = (people.is_empty(), &thread.subject) {
+        people.clone_from(some);
+    }
     for who in &people {
         for (act, around) in &acts {
             if does {
@@ -133,5 +149,28 @@ pub(crate) fn repeat(
     if !people.is_empty() {
         story.cast.last.clone_from(&people);
         thread.subject = Subject::People(people);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clause;
+    use crate::cut::sentences;
+
+    #[test]
+    fn a_clause_without_its_verb_is_told_from_one_that_has_it() {
+        for (text, does) in [
+            ("the other does not", Some(false)),
+            ("the nurse will not either", Some(false)),
+            ("the second one does the same", Some(true)),
+            ("so does the intern", Some(true)),
+            ("one is there", None),
+            ("the nurse does not move", None),
+        ] {
+            let mut stretch = sentences(text).remove(0).remove(0);
+            let found = clause::read(&mut stretch);
+            assert_eq!(elided(&stretch, &found), does, "{text}");
+        }
     }
 }

@@ -212,6 +212,12 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
     if let Some(gesture) = rule.gesture {
         says(list, "", id.into(), gesture);
     }
+    // Who walks on after what it did does what everybody does: nothing more is to be seen.
+    let before = human.rules.iter().position(|own| own == rule).and_then(|at| at.checked_sub(1));
+    let then = before.and_then(|at| human.rules.get(at)).is_some_and(|last| last.when == rule.when);
+    if rule.act == Action::Navigate && rule.gesture.is_none() && then {
+        return;
+    }
     let plain = seen.is_none();
     if let Some(predicate) = seen {
         list.setup(true, source, text, predicate);

@@ -67,7 +67,7 @@ pub(crate) struct Mention {
     pub(crate) who: Who,
     /// Role word, if it says more than `person`.
     pub(crate) role: Option<String>,
-    /// The pronoun that it is, if it is `he` or `she`.
+    /// The word that stands for a noun, if it is `he`, `she` or `one`.
     pub(crate) word: String,
     /// `a group of four`.
     pub(crate) group: bool,
@@ -123,6 +123,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             (0..=2).filter_map(|back| k.checked_sub(back)).map(&stem).find(|name| lex.roles.contains_key(*name));
         match named {
             Some(name) => lex.roles.get(name).filter(|word| !word.generic).map(|_| name.to_owned()),
+            None if matches!(text(k), "guide" | "escort") => Some(stem(k).to_owned()),
             None => {
                 Some(stem(k).to_owned()).filter(|name| !name.is_empty() && !lex.known.contains(name) && name != "robot")
             }
@@ -135,7 +136,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         if stem(k) != "of" {
             return None;
         }
-        if matches!(text(k + 1), "them" | "these" | "those" | "us") {
+        if matches!(text(k + 1), "them" | "these" | "those" | "us" | "whom" | "which") {
             return Some(Whole { end: k + 1, role: None, count: None });
         }
         let skip = if matches!(
@@ -265,7 +266,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let start = at + 2 + usize::from(text(at + 2) == "one");
             let end = noun(words, start, lex).unwrap_or(start - 1);
             let time = matches!(text(at + 2), "time" | "later" | "after");
-            return if time { None } else { made(Who::Further(number), role(end), end) };
+            let one = if end < start { "one" } else { "" };
+            let mention = made(Who::Further(number), role(end), end).filter(|_| !time);
+            return mention.map(|mention| Mention { word: one.to_owned(), ..mention });
         }
         "someone" | "somebody" => return made(Who::New { count: Some(1), article: true }, None, at),
         _ => {}
@@ -293,6 +296,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         return made(Who::Number(number), role(at), at + 1);
     }
     let acts = |k: usize| words.get(k).is_some_and(|word| lex.verbs.contains(&word.stem));
+    // `A walks off`: no article stands before such a verb.
+    let finite = words.get(at + 1).is_some_and(|next| {
+        next.text.ends_with('s')
+            && next.text != next.stem
+            && !lex.roles.contains_key(&next.stem)
+            && !lex.things.contains(&next.stem)
+    });
+    if letter(at) == Some(1) && finite && acts(at + 1) {
+        return made(Who::Number(1), None, at);
+    }
     if let Some(number) =
         letter(at).filter(|number| *number > 1 && (acts(at + 1) || at + 1 == words.len() && (0..at).any(acts)))
     {
@@ -340,7 +353,8 @@ fn counted(
         let around = matches!(text(k + 1), "around" | "round" | "about" | "up" | "in" | "the");
         let bare = at == 0 && k == 0 && words.len() > 1 && !around
             || text(k + 1) == "of" && words.get(k + 2).is_some_and(|word| word.count().is_some());
-        if k >= at && !counts && band(words, k).is_some() && (article || the || count.is_some() || bare) {
+        let compound = words.get(k + 1).is_some_and(|next| lex.roles.contains_key(&next.stem));
+        if k >= at && !counts && !compound && band(words, k).is_some() && (article || the || count.is_some() || bare) {
             return group(words, at, k, count.filter(|_| k >= next), the, lex, role);
         }
     }
@@ -378,6 +392,7 @@ fn counted(
     if text(at) == "one"
         && matches!(text(at + 1), "after" | "by" | "behind")
         && (text(at + 2) != "the" || text(at + 3) == "other")
+        && (text(at + 1) != "behind" || matches!(text(at + 2), "another" | "the" | "each"))
     {
         return None;
     }
@@ -398,6 +413,13 @@ fn counted(
     // `left one gives way`, where people leave articles out.
     if at == 0 && text(1) == "one" && lex.adjectives.contains(text(0)) && stem(words, 0) != "robot" {
         return made(Who::ToldApart, None, false, 1);
+    }
+    // `the slower of the two`
+    if the && lex.adjectives.contains(text(at + 1)) && text(at + 2) == "of" {
+        let two = text(at + 3) == "the" && matches!(text(at + 4), "two" | "pair" | "three" | "four");
+        if two || text(at + 3) == "them" {
+            return made(Who::ToldApart, None, false, at + if two { 4 } else { 3 });
+        }
     }
     // `his mother`, `her colleague`: known or new.
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
@@ -433,12 +455,14 @@ fn counted(
     }
     // A number alone speaks of people only where it can stand for them: `2 leave`, `one stays`, `two more`.
     let n = count?;
-    let label =
-        lex.labels.contains(before) || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot");
+    let label = lex.labels.contains(before) && (words.get(next - 1).is_some_and(Word::is_digits))
+        || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot");
     let unit = words.get(next).is_some_and(|word| {
         matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "pm" | "am")
     });
-    let counts = thing(words, next);
+    // `two or three meters`
+    let range = text(next) == "or" && words.get(next + 1).is_some_and(|word| word.count().is_some());
+    let counts = thing(words, next) || range;
     let verb = words.get(next).is_none_or(|word| lex.known.contains(&word.stem) && !lex.labels.contains(&word.stem));
     if label || unit || counts || !verb || article || text(at).contains('.') || n == 0 {
         return None;

@@ -11,10 +11,10 @@ use crate::words::{Word, find};
 const ASKS: &[&str] = &["ask", "request", "beg", "demand", "call"];
 /// What a signal without words means.
 const MUTE: &[(&[&str], Gesture)] = &[
-    (&["beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
+    (&["request", "beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
     (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
-    (&["thumb", "nod"], Gesture::Acknowledged),
-    (&["acknowledge"], Gesture::Acknowledged),
+    (&["thumb", "nod", "greet"], Gesture::Acknowledged),
+    (&["acknowledge", "thank"], Gesture::Acknowledged),
 ];
 
 /// A gesture needs a verb (or the word `gesture`) and a message near it; a raised hand and a horn are their own.
@@ -69,6 +69,15 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
             }
         }
     }
+    // `the robot asks`: for nothing but its way.
+    let asks = stem(first) == "ask"
+        && last + 1 == stretch.words.len()
+        && first.checked_sub(1).is_some_and(|k| stem(k) == "robot");
+    if asks {
+        found.gesture = Some(Gesture::ExcuseMe);
+        mark_each(stretch, &verb);
+        return;
+    }
     let mute = MUTE.iter().find(|(words, _)| verb.iter().any(|i| words.contains(&stem(*i))));
     if let Some((_, gesture)) = mute {
         found.gesture = Some(*gesture);
@@ -93,7 +102,7 @@ fn pointed(stretch: &Stretch, first: usize, last: usize) -> Option<(Gesture, usi
     let next = (last + 1..stretch.words.len()).find(|i| stretch.words.get(*i).is_some_and(|word| !robot(word)))?;
     let gesture = match stretch.words.get(next)?.text.as_str() {
         "on" | "through" | "past" | "by" | "along" | "across" | "forward" | "forwards" | "closer" | "over"
-        | "onward" | "onwards" | "ahead" => Gesture::Proceed,
+        | "onward" | "onwards" | "ahead" | "in" | "inside" => Gesture::Proceed,
         "back" | "off" | "away" => Gesture::Wait,
         _ => return None,
     };
@@ -151,5 +160,36 @@ fn alone(stretch: &mut Stretch, found: &mut Found, temporal: bool) {
             }
             return;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cut::sentences;
+
+    fn said(text: &str) -> Option<Gesture> {
+        let mut stretch = sentences(text).remove(0).remove(0);
+        let mut found = Found::default();
+        message(&mut stretch, &mut found);
+        found.gesture
+    }
+
+    #[test]
+    fn who_asks_to_pass_asks_for_room_and_who_lets_pass_gives_it() {
+        for text in
+            ["the robot asks to pass", "it requests passage", "the robot honks", "she asks the robot to let her by"]
+        {
+            assert_eq!(said(text), Some(Gesture::ExcuseMe), "{text}");
+        }
+        for text in
+            ["the guard signals the robot to pass", "she waves it through", "he tells the robot that it may go on"]
+        {
+            assert_eq!(said(text), Some(Gesture::Proceed), "{text}");
+        }
+        for text in ["she puts her hand up", "he raises a hand", "a worker waves it back"] {
+            assert_eq!(said(text), Some(Gesture::Wait), "{text}");
+        }
+        assert_eq!(said("the robot was asked to follow the doctor"), None);
     }
 }

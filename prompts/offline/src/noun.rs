@@ -79,7 +79,9 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
             break;
         }
         let of_things = !placed
-            && (lex.things.contains(&word.stem) || lex.labels.contains(&word.text))
+            && (lex.things.contains(&word.stem)
+                || lex.labels.contains(&word.text)
+                || lex.places.iter().any(|place| place.items == [Item::Word(word.text.clone())]))
             && words.get(i + 1).is_some_and(|next| lex.roles.contains_key(&next.stem));
         let describes = lex.adjectives.contains(&word.text)
             || of_things
@@ -163,11 +165,22 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
                 )
         })
     };
+    // `the guide` is who guides.
+    if words.get(at).is_some_and(|word| matches!(word.text.as_str(), "guide" | "escort"))
+        && words
+            .get(at + 1)
+            .is_none_or(|next| lex.verbs.contains(&next.stem) || matches!(next.text.as_str(), "and" | "who" | "of"))
+    {
+        return Some(at);
+    }
     // The last of at most three words, so that `a sales assistant waits` is an assistant.
     let describes = |k: usize| unknown(k) || words.get(k).is_some_and(|word| lex.adjectives.contains(&word.text));
     for end in at..at + 3 {
-        if !(at..end).all(describes) || !unknown(end) {
+        if !describes(end) {
             break;
+        }
+        if !unknown(end) {
+            continue;
         }
         let acts = does(end + 1) || between(end + 1) && does(end + 2);
         // Whoever is led, followed or accompanied is somebody too.

@@ -23,7 +23,9 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         Draw::new(question.seed.wrapping_add(u64::try_from(question.feedback.len()).unwrap_or(0)), "proposal");
     let mut found = reading.pattern.as_deref().and_then(card);
     let (read, extras, by_card) = if reading.humans.is_empty() {
-        found = found.filter(|card| card.fits(location)).or_else(|| default_cast::unguided(location, &mut draw));
+        found = found
+            .filter(|card| card.fits(location))
+            .or_else(|| default_cast::unguided(&request.task, location, &mut draw));
         let (people, extras) =
             found.map(|card| default_cast::people(card, request.expect.humans, &mut draw, request)).unwrap_or_default();
         (people, extras, true)

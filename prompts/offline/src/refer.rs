@@ -34,7 +34,9 @@ pub(crate) fn others(
             let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
             let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
             let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;
-            made(Who::More(several.unwrap_or(1)), role(end), end)
+            let one = if end < start && several.is_none() { "one" } else { "" };
+            let mention = made(Who::More(several.unwrap_or(1)), role(end), end);
+            mention.map(|mention| Mention { word: one.to_owned(), ..mention })
         }
         "others" | "rest" | "remaining" => {
             let several = count(at + the + 1);
@@ -74,8 +76,17 @@ pub(crate) fn others(
                 return made(Who::OrdinalOf { number, count: of }, role(end), end);
             }
             let end = noun(words, start, lex).unwrap_or(start - 1);
-            let bare = end == at + the && (the == 0 || thing(words, start));
-            if bare { None } else { made(Who::Ordinal(number), role(end), end) }
+            // `First waits, second looks`, where people leave articles out.
+            let verb = words.get(start).is_some_and(|word| lex.verbs.contains(&word.stem) && at == 0);
+            let bare = end == at + the && (the == 0 && !verb || thing(words, start));
+            if bare {
+                None
+            } else if matches!(word, "former" | "latter") {
+                let mention = made(Who::Ordinal(number), None, end);
+                mention.map(|mention| Mention { word: word.to_owned(), ..mention })
+            } else {
+                made(Who::Ordinal(number), role(end), end)
+            }
         }
         _ => None,
     }
@@ -100,6 +111,10 @@ pub(crate) fn group(
     let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming" | "into"))
         && text(group + 1) != "of";
     if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {
+        return None;
+    }
+    // `a group consisting of a doctor and two students` is those whom it lists.
+    if matches!(text(group + 1), "consisting" | "comprising" | "composed" | "made") {
         return None;
     }
     let listed = text(group + 1) == "of";

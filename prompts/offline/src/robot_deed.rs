@@ -20,6 +20,8 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         }
     };
     match act {
+        // Who has the robot behind walks ahead of it.
+        Act::Behind => set(story, Relation::Ahead),
         Act::Follow => {
             story.robot_part = Some("robot_following");
             set(story, Relation::Ahead);
@@ -49,7 +51,6 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         | Act::Look
         | Act::Approach
         | Act::Toward
-        | Act::Behind
         | Act::Ahead
         | Act::Cross
         | Act::Stay

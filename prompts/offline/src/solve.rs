@@ -68,7 +68,11 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
             former.as_ref().is_none_or(|former| written(&net, solution, proposal).robot != former.robot)
         };
         let different: Vec<&Solution> = best.iter().copied().filter(others).collect();
-        best = if different.is_empty() { best } else { different };
+        // The robot still has to get where its task says: the best answer knows where that is.
+        let goal = best.first().and_then(|top| top.route.nodes.last());
+        let there: Vec<&Solution> =
+            different.iter().copied().filter(|other| other.route.nodes.last() == goal).collect();
+        best = [there, different, best].into_iter().find(|some| !some.is_empty())?;
     }
     let top = best.first()?.score;
     let alike = best.iter().filter(|solution| solution.score >= top - ALIKE).count();

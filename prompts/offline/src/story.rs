@@ -150,7 +150,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
     if stretch.joint == Joint::Said {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
-    } else if stretch.joint == Joint::Opens && answers(&found) && thread.waiting.is_none() {
+    } else if answers(&found) && thread.waiting.is_none() && stretch.joint != Joint::Then {
         // `The robot says PROCEED. He walks on.`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
@@ -184,6 +184,18 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     // `two people: a nurse who …, and a visitor who …` lists those two.
     if stretch.words.first().is_some_and(|word| word.after_colon) {
         story.cast.lists();
+    }
+    let nobody = found.mentions.iter().any(|mention| mention.who == Who::Nobody && mention.role.is_none());
+    if nobody && found.declares && next != Some(Joint::Except) && !story.cast.people.is_empty() {
+        let first = story.cast.count_quote.clone().unwrap_or_default();
+        story.problems.push(Fault::new(
+            FaultCode::PContra,
+            "rough_scenario",
+            format!(
+                "`{first}` speaks of {}, but `{quote}` says that nobody is there; correct one of the two",
+                story.cast.people.len()
+            ),
+        ));
     }
     // Whom the mentions mean, in order.
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
@@ -248,6 +260,13 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.not_until = false;
     let mut acts: Vec<(Act, usize, usize, bool)> =
         found.deeds.iter().map(|deed| (deed.act, deed.at, deed.to, deed.negated)).collect();
+    // `refuses to let it through for 20 seconds` blocks it so long.
+    for (act, at, _, negated) in &mut acts {
+        let lets = stretch.words.get(*at).is_some_and(|word| word.stem == "let");
+        if *act == Act::GiveWay && *negated && lets && found.lasts_s.is_some() {
+            (*act, *negated) = (Act::Block, false);
+        }
+    }
     if found.gesture.is_some() {
         acts.push((Act::Gesture, found.gesture_at, found.gesture_at, false));
         acts.sort_by_key(|(_, at, _, _)| *at);
@@ -402,7 +421,7 @@ fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
             | Act::Gesture
     );
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let by = (at..to + 2).find(|k| text(*k) == "by");
+    let by = (at..to + 3).find(|k| text(*k) == "by");
     does && by.is_some_and(|by| (by + 1..by + 4).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot")))
 }
 
@@ -425,6 +444,16 @@ fn only_says(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, gest
 /// `the third one, a security guard`: the role by which somebody is also called.
 fn also_called(story: &mut Story, meant: &[(usize, usize, Vec<usize>)], stretch: &mut Stretch) {
     let Some((_, _, people)) = meant.first() else { return };
+    if let ([name], [who]) = (stretch.also.as_mut_slice(), people.as_slice())
+        && name.capital
+        && !lexicon().known.contains(&name.stem)
+    {
+        name.used = true;
+        if let Some(person) = story.cast.people.get_mut(*who) {
+            person.name = Some(name.stem.clone());
+        }
+        return;
+    }
     let named = crate::mention::mentions(&stretch.also).into_iter().next();
     let Some(role) = named.as_ref().and_then(|mention| mention.role.clone()) else {
         // A name: nothing is lost where only the role counts.

@@ -545,5 +545,22 @@ fn a_person_who_wants_other_paths_gets_others() {
         };
         let others = parsed(socrates_prompts::parse_paths(&Offline::answer(&again), &again));
         assert_ne!(others.robot, first.robot, "seed {seed}");
+        assert_eq!(others.robot.last(), first.robot.last(), "the task stays");
+    }
+}
+
+#[test]
+fn a_task_with_people_is_a_pattern_about_it() {
+    let location = map("office");
+    for (task, patterns) in [
+        ("Guide the visitors to the exit", ["leading", "evacuation_guide"]),
+        ("Follow the nurse", ["robot_following", "robot_following"]),
+        ("Accompanies a guest to the kitchen", ["accompanying", "accompanying"]),
+    ] {
+        for seed in 0..10 {
+            let ask = question(Stage::Proposal, &request(task, None), &location, seed);
+            let found = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
+            assert!(patterns.contains(&found.pattern.as_str()), "{task}: {}", found.pattern);
+        }
     }
 }

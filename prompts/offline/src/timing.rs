@@ -101,6 +101,11 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
             thread.subject = Subject::People(people);
         }
     }
+    // `when it is 80 cm behind her does she notice it`: what is noticed then is when it is there.
+    let known = thread.waiting.is_some() && !thread.vague;
+    if known && cue == Cue::Visible && !matches!(stretch.joint, Joint::When | Joint::While | Joint::Until) {
+        return;
+    }
     let Some(when) = trigger(cue, found, thread) else { return };
     if thread.made.is_empty() && !thread.went_on.is_empty() && !stretch.after_and {
         // `and goes on when it has stopped`
@@ -163,6 +168,16 @@ pub(crate) fn quiet(
         }
     }
     let behind = stretch.words.iter().position(|word| word.text == "behind");
+    // `one behind it`, where the verb is left out
+    let of_robot = behind.filter(|at| {
+        stretch.words.iter().skip(at + 1).take(3).any(|word| word.stem == "robot")
+            && found.mentions.first().is_some_and(|mention| mention.to < *at)
+    });
+    if of_robot.is_some() {
+        for who in &people {
+            deed::relate(&mut story.cast, *who, socrates_model::Relation::Behind, quote);
+        }
+    }
     if let Some(behind) = behind.filter(|behind| robot_leads(found) && found.robots.iter().all(|robot| robot < behind))
     {
         // `the robot is behind him`
@@ -178,6 +193,15 @@ pub(crate) fn quiet(
         {
             people.clone_from(last);
         }
+    }
+    // `a second visitor, right behind the first, …`: only where the second is.
+    let placed =
+        found.mentions.first().and_then(|mention| mention.from.checked_sub(1)).and_then(|k| stretch.words.get(k));
+    let placed =
+        placed.is_some_and(|word| matches!(word.text.as_str(), "behind" | "beside" | "to" | "with" | "near" | "by"));
+    if placed && !thread.pending.is_empty() && stretch.joint == Joint::Comma {
+        thread.subject = Subject::People(std::mem::take(&mut thread.pending));
+        return;
     }
     if !thread.pending.is_empty() && matches!(stretch.joint, Joint::And | Joint::Comma) {
         let mut all = std::mem::take(&mut thread.pending);
@@ -205,6 +229,18 @@ pub(crate) fn quiet(
             }
             if let (Some(secs), Some(last)) = (found.lasts_s, person.rules.last_mut()) {
                 last.rule.for_s = Some(secs);
+            }
+        }
+    }
+    // `on the left stands a doctor, on the right a nurse`: the nurse stands too.
+    let sides =
+        stretch.words.iter().any(|word| matches!(word.text.as_str(), "left" | "right" | "side" | "end" | "middle"));
+    let verb =
+        stretch.words.iter().any(|word| crate::lexicon::lexicon().verbs.contains(&word.stem) && word.stem != "left");
+    if sides && !verb && thread.doer.is_some() && matches!(stretch.joint, Joint::And | Joint::Comma) {
+        for (act, around) in thread.acts.clone() {
+            for who in &people {
+                let _rule = deed::apply(&mut story.cast, *who, act, &around);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request,
+    Action, FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request,
 };
 
 use crate::lexicon::lexicon;
@@ -273,6 +273,10 @@ fn facts(story: &Story, task: &Task, reading: &mut Reading) {
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
         }
         for read in &person.rules {
+            // That somebody walks on after all it did is no demand of its own.
+            if !read.stated && read.rule.act == Action::Navigate && read.rule.gesture.is_none() {
+                continue;
+            }
             match read.rule.gesture {
                 Some(gesture) => facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture })),
                 None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),

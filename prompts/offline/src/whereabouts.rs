@@ -44,7 +44,18 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             story.robot_enters = Some((class, quote.to_owned()));
             continue;
         }
+        // A way leads through corridors and crossings; it ends in rooms.
+        let transit = matches!(
+            class,
+            PlaceClass::Corridor
+                | PlaceClass::Intersection
+                | PlaceClass::Doorway
+                | PlaceClass::BlindCorner
+                | PlaceClass::NarrowPassage
+        );
+        let named = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "goal" | "destination" | "target"));
         match part(*at, found, stretch, subject) {
+            Part::Goal | Part::Start if transit && !named => {}
             Part::Goal => {
                 story.robot_enters = Some((class, quote.to_owned()));
                 continue;
@@ -169,6 +180,16 @@ fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, s
                     && !story.cast.people.iter().any(inside);
             if car { PlaceClass::ElevatorLobby } else { class }
         }
-        _ => class,
+        PlaceClass::Elevator
+        | PlaceClass::OpenArea
+        | PlaceClass::ElevatorLobby
+        | PlaceClass::Corridor
+        | PlaceClass::NarrowPassage
+        | PlaceClass::Intersection
+        | PlaceClass::BlindCorner
+        | PlaceClass::Doorway
+        | PlaceClass::Room
+        | PlaceClass::Exit
+        | PlaceClass::Plain => class,
     }
 }

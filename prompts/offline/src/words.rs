@@ -67,8 +67,15 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
         if c.is_ascii_digit() {
             let start = i;
             let mut digits = String::new();
+            let mut clock = false;
             while let Some(c) = at(i) {
                 let between = at(i + 1).is_some_and(|d| d.is_ascii_digit());
+                // `14:30` is a time and counts nobody.
+                if c == ':' && between && digits.len() <= 2 && !clock {
+                    clock = true;
+                    i += 1;
+                    continue;
+                }
                 if c.is_ascii_digit() || c == '.' && between && !digits.contains('.') {
                     digits.push(c);
                 } else if !(c == ',' && (1..=3).all(|k| at(i + k).is_some_and(|d| d.is_ascii_digit()))) {
@@ -76,7 +83,7 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 }
                 i += 1;
             }
-            out.push(Piece::Word(word(digits, byte(start), byte(i))));
+            out.push(Piece::Word(Word { label: clock, ..word(digits, byte(start), byte(i)) }));
         } else if c.is_alphabetic() {
             let start = i;
             while at(i).is_some_and(char::is_alphabetic) {

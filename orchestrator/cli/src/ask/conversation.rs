@@ -8,7 +8,7 @@ use socrates_checks::check_proposal;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_model::report::Repair;
-use socrates_model::{Fault, FaultCode, HumanBehavior, HumanId};
+use socrates_model::{Fault, FaultCode, HumanBehavior, HumanId, Proposal};
 use socrates_offline::{Draft, edit};
 use socrates_prompts::Question;
 
@@ -64,6 +64,8 @@ pub(super) struct Look {
     pub(super) about: About,
     /// What the authors made of it, with what the person left before.
     pub(super) came: Version,
+    /// Every proposal that the author made, where it made several.
+    pub(super) others: Vec<Proposal>,
     /// Why it was made again.
     pub(super) reasons: Vec<Fault>,
     /// Request, location and seed; the rest of it is filled in for each edit.
@@ -159,12 +161,43 @@ impl Conversation<'_> {
             self.all(Tone::Quiet, &named("because", &words));
         }
         self.show();
+        self.list();
         let came = self.now();
         // What was not there before is no change; what was there and is made again is.
         if let Some(before) = before.filter(|before| self.look.about == About::Proposal || before.paths.is_some()) {
             self.difference(before, &came);
         }
         self.help_short();
+    }
+
+    /// The proposals to choose from, where there are several.
+    fn list(&mut self) {
+        let now = self.now();
+        for (number, other) in (1..).zip(&self.look.others) {
+            // Whoever wrote it, what is proposed is the same.
+            let shown = Proposal { author: now.proposal.author.clone(), ..other.clone() } == now.proposal;
+            let humans = crate::prepare::plural(other.humans.len(), "human");
+            let words = format!("{} · {humans} · {}{}", other.title, other.place, if shown { " (shown)" } else { "" });
+            self.all(Tone::Plain, &named(&format!("take {number}"), &words));
+        }
+    }
+
+    fn take(&mut self, number: u32) {
+        let place = usize::try_from(number).ok().and_then(|number| number.checked_sub(1));
+        match place.and_then(|place| self.look.others.get(place)) {
+            Some(other) if self.look.about == About::Proposal => {
+                let now = self.now();
+                let proposal = Proposal { author: now.proposal.author.clone(), ..other.clone() };
+                self.changed(&format!("proposal {number} taken"), Version { proposal, ..now });
+            }
+            Some(_) | None => {
+                let have = self.look.others.len();
+                self.say(
+                    Tone::Bad,
+                    &format!("there is no proposal {number} to take, of {have}; `again` has others made"),
+                );
+            }
+        }
     }
 
     fn show(&mut self) {
@@ -227,12 +260,13 @@ impl Conversation<'_> {
     }
 
     fn help(&mut self) {
-        const HELP: [(&str, &str); 11] = [
+        const HELP: [(&str, &str); 12] = [
             ("a sentence", "changes what it speaks of: \"human_2 walks slower\", \"make the robot's path longer\""),
             ("accept", "goes on with what is shown; what no longer fits a changed proposal is made again"),
             ("again", "has it made again; `again paths because …` one stage only, the others are kept"),
             ("reject", "the same as `again`"),
             ("edit", "opens it in $EDITOR; `edit proposal`, `edit paths`, `edit human_1` (its tree)"),
+            ("take 2", "takes another of several proposals (`--set author.variants=3`)"),
             ("undo", "takes the last change back, an `again` included"),
             ("back", "shows the proposal once more; `back` again returns"),
             ("show", "shows everything again"),
@@ -264,9 +298,7 @@ impl Conversation<'_> {
             Command::Back => self.back(),
             Command::Edit(what) => self.by_hand(what),
             Command::Words(words) => self.in_words(words),
-            Command::Take(number) => {
-                self.say(Tone::Bad, &format!("there is no proposal {number} to take; `again` has another made"));
-            }
+            Command::Take(number) => self.take(*number),
             Command::Again(stage, why) => return self.again(*stage, why),
             Command::Accept => return self.accept(),
             Command::Quit => return Next::Leave,

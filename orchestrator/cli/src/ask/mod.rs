@@ -23,10 +23,11 @@ use std::path::Path;
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex, PoisonError};
 
+use socrates_author::{Exchange, variants};
 use socrates_kit::{Blobs, Done, Failure, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig};
 use socrates_link::Bus;
 use socrates_model::job;
-use socrates_model::{FailureClass, Fault, FaultCode};
+use socrates_model::{FailureClass, Fault, FaultCode, Proposal};
 use socrates_orchestrator::pipeline::DRAFT_LOOK;
 use socrates_prompts::Question;
 use tokio::sync::{oneshot, watch};
@@ -202,6 +203,7 @@ impl Reviewer {
         Ok(Look {
             job: spec.key.to_string(),
             about: if draft { About::Draft } else { About::Proposal },
+            others: if draft { Vec::new() } else { others(job.json_if_there("exchange")?, &question) },
             came,
             reasons: spec.feedback.clone(),
             question,
@@ -209,6 +211,14 @@ impl Reviewer {
             pinned: self.pinned.clone(),
         })
     }
+}
+
+/// Every proposal of an answer that held several.
+fn others(exchange: Option<Exchange>, question: &Question) -> Vec<Proposal> {
+    let Some(exchange) = exchange.filter(|exchange| exchange.variants.len() > 1) else { return Vec::new() };
+    // What was read once can be read again; an answer in another form holds no others.
+    let variants = variants::read(&exchange.answer, question).unwrap_or_default();
+    variants.into_iter().filter_map(|variant| variant.proposal).collect()
 }
 
 /// What a person left, as the outputs of the job: only what differs from what came.

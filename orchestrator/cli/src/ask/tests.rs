@@ -95,6 +95,7 @@ fn look(about: About) -> Look {
             behaviors: draft.then(|| parse_behaviors(&Offline::answer(&behaviors), &behaviors).unwrap()),
             reading: prepared.reading,
         },
+        others: Vec::new(),
         reasons: Vec::new(),
         question,
         author: "offline".to_owned(),
@@ -264,6 +265,18 @@ fn what_is_wrong_is_not_accepted_and_what_no_longer_fits_is_made_again() {
     person.editor = Some(Box::new(|_| Ok("<root>".to_owned())));
     assert_eq!(talk(&pinned, &mut person).0, None, "nobody is asked for what is pinned");
     assert!(person.heard("not accepted"), "{}", person.text());
+}
+
+#[test]
+fn another_of_several_proposals_can_be_taken() {
+    let mut look = look(About::Proposal);
+    let mut other = look.came.proposal.clone();
+    "Another".clone_into(&mut other.title);
+    look.others = vec![look.came.proposal.clone(), other];
+    let mut person = Script::of(&["take 2", "undo", "take 2", "accept"]);
+    let (decision, _) = talk(&look, &mut person);
+    assert_eq!(decision.unwrap().left.proposal.title, "Another");
+    assert!(person.heard("(shown)") && person.heard("take 2     Another"), "{}", person.text());
 }
 
 #[test]

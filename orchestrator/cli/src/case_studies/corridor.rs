@@ -2,7 +2,7 @@
 
 use socrates_model::{AgentState, Point, Relation, Vector};
 
-use super::{Case, STOPPED_MPS, Wrong, check, longest, off_heading, secs, study};
+use super::{Case, STOPPED_MPS, Wrong, check, longest, off_heading, secs, study, tick};
 
 /// At every tick where the follower is on the way that the robot has come: gap along it, distance from it, and the
 /// angle between its heading and the way on towards the robot.
@@ -28,6 +28,32 @@ fn trail_gaps(robot: &[AgentState], follower: &[AgentState]) -> Vec<(f64, f64, f
         let (index, (at, point)) = near.unwrap();
         let on = recent.get(index + 10).map_or_else(|| r.point(), |(_, point)| *point);
         found.push((now - at, (point - h.point()).norm(), off_heading(h, &on)));
+    }
+    found
+}
+
+/// Where the robot shifts by 0.4 m sideways within 2 s while somebody blocks it, and whether that one shifts the same way
+/// within 2 s of it.
+fn shifts(robot: &[AgentState], other: &[AgentState], blocks: &[bool]) -> Vec<(f64, bool)> {
+    let two = tick(2.0);
+    let mut found = Vec::new();
+    let mut k = 0;
+    while k < robot.len() {
+        let way = other[k].point() - robot[k].point();
+        let left = Vector::new(-way.y, way.x) / way.norm();
+        let moved = |j: usize| left.dot(&(robot[j].point() - robot[k].point()));
+        let mut span = (k..(k + two).min(robot.len())).take_while(|j| blocks[*j]);
+        let Some(j) = span.find(|j| moved(*j).abs() >= 0.4) else {
+            k += 10;
+            continue;
+        };
+        let along = |m: usize| left.dot(&(other[m].point() - other[k].point())) * moved(j).signum();
+        let goes = (k..(j + two).min(other.len())).any(|m| along(m) >= 0.2);
+        // Whoever stops blocking before the 2 s are over owes no answer.
+        if goes || blocks.get(j + two).is_some_and(|blocks| *blocks) {
+            found.push((secs(j), goes));
+        }
+        k = j + 1;
     }
     found
 }
@@ -86,7 +112,8 @@ fn items(case: &Case<'_>) -> Wrong {
             check(&mut wrong, gap >= 0.5, || format!("S3: {gap:.2} m behind a robot that stands"));
         }
     }
-    // S4: somebody else ahead in the way for three seconds.
+    // S4: somebody else ahead in the way for three seconds. Nearer than 0.6 m to the line, a person leaves less than the
+    // robot's width and 0.3 m on it, whatever there is beside.
     let mut blocked = Vec::new();
     for id in case.people.keys().filter(|id| *id != follower) {
         let other = case.person(*id);
@@ -111,13 +138,22 @@ fn items(case: &Case<'_>) -> Wrong {
     check(&mut wrong, angle.is_some_and(|angle| angle <= 30.0), || {
         format!("S4: {id} first comes near at {angle:?} degrees")
     });
+    let (first, last) = (tick(*begun), tick(begun + lasts));
+    // S5: who blocks by a rule goes along with a robot that shifts, at least once.
+    let leaves = &case.scenario.run.header.leaves;
+    let blocks = |state: &AgentState| leaves.get(usize::from(state.leaf())).is_some_and(|leaf| leaf == "BlockRobot");
+    let blocking: Vec<bool> = case.person(*id).iter().map(blocks).collect();
+    check(&mut wrong, blocking.contains(&true), || format!("S5: {id} never blocks by its rule"));
+    let shifts = shifts(robot, case.person(*id), &blocking);
+    check(&mut wrong, shifts.is_empty() || shifts.iter().any(|(_, along)| *along), || {
+        format!("S5: {id} goes along with none of the robot's shifts: {shifts:?}")
+    });
     // S6: following for three seconds before, and both together for two.
-    let first = (*begun / super::TICK_SECS) as usize;
     let (_, before) = longest((0..first).map(about));
     check(&mut wrong, secs(before) >= 3.0, || {
         format!("S6: follows for {:.1} s before {id} is in the way", secs(before))
     });
-    let together = (first..first + (*lasts / super::TICK_SECS) as usize).filter(|k| about(*k)).count();
+    let together = (first..last).filter(|k| about(*k)).count();
     check(&mut wrong, secs(together) >= 2.0, || format!("S6: both together for {:.1} s", secs(together)));
     // S7: the way opens within 30 s, and the robot arrives.
     check(&mut wrong, *lasts <= 30.0, || format!("S7: in the way for {lasts:.1} s"));

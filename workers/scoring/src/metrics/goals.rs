@@ -7,7 +7,7 @@ use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_
 use crate::tracks::Sample;
 
 /// Weight of a detour in the belief, 1/m (`spec/evaluation` §2.5: default 1).
-const BETA_PER_M: f64 = 1.0;
+pub(super) const BETA_PER_M: f64 = 1.0;
 /// Belief from which a watcher is taken to be sure.
 const SURE: f64 = 0.5;
 /// Candidate goals are at least this far from each other and from the start, m: nearer ones are one place.

@@ -28,6 +28,7 @@ mod rates;
 mod response;
 mod scene;
 mod shape;
+mod sides;
 mod smoothness;
 mod space;
 mod speeds;
@@ -170,6 +171,7 @@ pub const CATALOG: &[Family] = &[
     passing::FAMILY,
     response::FAMILY,
     goals::FAMILY,
+    sides::FAMILY,
     comfort::FAMILY,
     twin::FAMILY,
     counterfactual::FAMILY,

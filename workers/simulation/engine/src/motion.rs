@@ -32,6 +32,9 @@ const BERTH_M: f64 = 0.45;
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
 const ASIDE_M: f64 = 1.0;
+/// Gap, surface to surface, at which somebody who makes room goes by a robot that stands, m: in a doorway less is no way
+/// out.
+const BY_ROBOT_M: f64 = 0.25;
 
 /// Face to face with a robot that stands, somebody on its way lets it through after so long, s.
 const PATIENCE_S: f64 = 3.0;
@@ -404,6 +407,8 @@ pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) 
         let way = robot.at() - human.at;
         way / way.norm().max(0.1)
     });
+    // A robot that drives has gone on by then.
+    let berth = scene.robot.map_or(0.0, |robot| if robot.velocity.norm() < 0.1 { BY_ROBOT_M } else { 0.0 });
     // In a doorway the body has less room than it would like; what it has is enough to step out of it.
     let room = human.radius_m.min(scene.floor.wall_clearance_m(&human.at) - 0.02).max(0.1);
     for ring in 1..=12_u32 {
@@ -415,10 +420,10 @@ pub(crate) fn aside_spot(human: &Human, scene: &Scene<'_>, off: &dyn Fn(&Point) 
                     && other.id != Some(human.id)
                     && (other.at - spot).norm() < other.radius_m + human.radius_m + 0.1
             });
-            // Nor through the robot to behind it.
+            // Nor through the robot to behind it, nor so close by it that its forces push whoever tries back again.
             let through = scene.robot.is_some_and(|robot| {
                 nearest_on_segment(&robot.at(), &human.at, &spot).0
-                    < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m) - 0.01
+                    < (robot.at() - human.at).norm().min(human.radius_m + robot.model.radius_m + berth) - 0.01
             });
             if crowded
                 || through
