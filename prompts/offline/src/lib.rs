@@ -1,8 +1,8 @@
 //! The offline author: same questions as a language model, answers by rules, no network, no weights.
 //!
 //! ```text
-//! request text ─► words ─► clause ─► story ─► reading ──► proposal ──► paths, rules
-//!                 lexicon.toml        cast     + problems   catalog/*.toml   scene graph
+//! request text ─► words ─► cut ─► clause ─► story ─► reading ──► proposal ──► paths, rules
+//!                 lexicon.toml     mention    cast     + problems   catalog/*.toml   scene graph
 //! ```
 //!
 //! What stands can be edited in words ([`edit`]): the same grammar, with the people of the proposal as those of whom was spoken.
@@ -20,20 +20,23 @@ mod aside;
 mod lexicon;
 mod words;
 
+mod noun;
+
+mod mention;
+mod refer;
+
 mod arrange;
 mod cut;
-mod mention;
-mod noun;
-mod refer;
+
+mod clause;
+mod measure;
+mod message;
 
 mod bind;
 mod cast;
-mod clause;
 mod deed;
 mod ellipsis;
 mod finish;
-mod measure;
-mod message;
 mod robot_deed;
 mod story;
 mod task;

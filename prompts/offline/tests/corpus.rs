@@ -180,11 +180,11 @@ fn what_was_kept_aside_once_is_read() {
 }
 
 /// Written by somebody who did not know the grammar, and unread by whoever works on it: only the figure is told, 67 of 99
-/// at the first look. 95 in 100 are aimed at.
+/// at the first look, 72 after open-3 to open-5 had been mended. 95 in 100 are aimed at.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
     let (right, all, _unread) = judge(include_str!("../corpus/sealed-2.toml"));
     println!("kept aside: {right} of {all} facts");
-    assert!(right >= 67, "{right} of {all} facts");
+    assert!(right >= 72, "{right} of {all} facts");
 }
