@@ -13,18 +13,17 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     for node in tree.nodes.iter() {
         let ports = tree.ports(node);
         match node.sheet.role {
-            Role::Asks(means) => match means(&ports).and_then(|trigger| trigger.awaits()) {
-                Some((AgentId::Robot, gesture)) => {
-                    hear(AgentId::Robot, gesture, ctx.robot_says, node, ctx, &mut faults);
+            Role::Asks(means) => {
+                let Some((who, gesture)) = means(&ports).and_then(|trigger| trigger.awaits()) else { continue };
+                let made = match who {
+                    AgentId::Robot => Some(ctx.robot_says),
+                    AgentId::Human(id) => target(id, node, ctx, &mut faults)
+                        .then(|| ctx.human_says.get(&id).map_or(&[][..], Vec::as_slice)),
+                };
+                if let Some(made) = made {
+                    hear(who, gesture, made, node, ctx, &mut faults);
                 }
-                Some((AgentId::Human(id), gesture)) => {
-                    if target(id, node, ctx, &mut faults) {
-                        let made = ctx.human_says.get(&id).map_or(&[][..], Vec::as_slice);
-                        hear(AgentId::Human(id), gesture, made, node, ctx, &mut faults);
-                    }
-                }
-                None => {}
-            },
+            }
             Role::Moves(means) => {
                 if let Some(Action::FollowHuman(id)) = means(&ports) {
                     target(id, node, ctx, &mut faults);
