@@ -92,7 +92,7 @@ fault_kinds! {
     Brange "brange" BRange "A distance is out of range.";
     Barity "barity" BArity "A decorator has no child.";
     Bnav "bnav" BNav "Nothing walks along the path.";
-    Btimer "btimer" BTimer "A timer lost its inverter.";
+    Btimer "btimer" BTimer "A timer comes after the motion that it should end.";
     Border "border" BOrder "A motion comes before its condition.";
     Bdead "bdead" BDead "A rule can never run.";
     Bmove2 "bmove2" BMove2 "A reaction has two motions.";

@@ -117,8 +117,9 @@ fn in_tree(kind: FaultKind, tree: &str) -> Option<String> {
             let (opens, motion) = reaction?;
             let within = lines.get(opens..motion)?;
             let timer = opens + within.iter().position(|line| line.contains("<TimeExpiredCondition"))?;
-            lines.remove(timer + 1);
-            lines.remove(timer.checked_sub(1)?);
+            // After the motion that it should limit; its `Inverter` goes with it.
+            let from = timer.checked_sub(1)?;
+            lines.get_mut(from..=motion)?.rotate_left(3);
             whole(&lines)
         }
         FaultKind::Border => {
