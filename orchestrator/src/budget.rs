@@ -1,4 +1,6 @@
-//! What the authoring of one scenario may cost, in tokens and in time of authors. Who asks for more ends with what there is.
+//! What the authoring of one scenario may cost, in tokens, money and time of authors. Who asks for more ends with what there is.
+
+use std::collections::BTreeMap;
 
 use socrates_model::fault::{Fault, FaultCode};
 use socrates_model::job::{JobKey, Stage};
@@ -11,23 +13,32 @@ use crate::turn::Turn;
 impl Turn<'_> {
     /// Why the author of this scenario is asked no more, where its budget is spent.
     pub(crate) fn spent(&self, id: &ScenarioId) -> Option<Fault> {
-        let (tokens_limit, ms_limit) =
-            (self.state.policy.tokens_per_scenario, self.state.policy.author_ms_per_scenario);
-        if tokens_limit == 0 && ms_limit == 0 {
+        let policy = &self.state.policy;
+        let (tokens_limit, ms_limit, money_limit) =
+            (policy.tokens_per_scenario, policy.author_ms_per_scenario, policy.money_per_scenario);
+        if tokens_limit == 0 && ms_limit == 0 && money_limit == 0 {
             return None;
         }
         let first = JobKey { scenario: id.clone(), stage: Stage::Proposal, item: String::new(), revision: 0 };
         let own = self.state.jobs.range(first..).take_while(|(key, _)| key.scenario == *id);
         let attempts = own.filter(|(key, _)| pipeline::is_authored(key.stage)).flat_map(|(_, job)| &job.attempts);
-        let (tokens, ms) = attempts.fold((0_u64, 0_u64), |(tokens, ms), attempt| {
-            let both = attempt.tokens.0.saturating_add(attempt.tokens.1);
-            (tokens.saturating_add(both), ms.saturating_add(attempt.wall_ms))
+        let (input, output, ms) = attempts.fold((0_u64, 0_u64, 0_u64), |(input, output, ms), attempt| {
+            let (asked, answered) = attempt.tokens;
+            (input.saturating_add(asked), output.saturating_add(answered), ms.saturating_add(attempt.wall_ms))
         });
+        let tokens = input.saturating_add(output);
+        let author = self.scenario(id).and_then(|scenario| scenario.spec.settings.get("author"));
+        let price = author.and_then(|author| price(&policy.prices, author)).unwrap_or_default();
+        let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
+        let money = u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX);
         let over = |spent: u64, limit: u64| limit > 0 && spent >= limit;
         let message = if over(tokens, tokens_limit) {
             format!(
                 "{tokens} tokens were spent, {tokens_limit} are allowed; `orchestrator.tokens_per_scenario` sets it"
             )
+        } else if over(money, money_limit) {
+            let (spent, limit) = (money / 10_000, money_limit / 10_000);
+            format!("authors cost {spent} cents, {limit} are allowed; `orchestrator.cents_per_scenario` sets it")
         } else if over(ms, ms_limit) {
             let (spent, limit) = (ms / 1_000, ms_limit / 1_000);
             format!("authors took {spent} s, {limit} s are allowed; `orchestrator.author_s_per_scenario` sets it")
@@ -47,4 +58,11 @@ impl Turn<'_> {
         self.move_to(key, JobState::Failed, reason);
         true
     }
+}
+
+/// The price of an author: of `openai:gpt-4o`, or of `gpt-4o`; of an author that is recorded or replayed as of itself.
+fn price(prices: &BTreeMap<String, (u64, u64)>, author: &str) -> Option<(u64, u64)> {
+    let author = author.rsplit_once('=').map_or(author, |(_, author)| author);
+    let model = author.split_once(':').map_or(author, |(_, model)| model);
+    prices.get(author).or_else(|| prices.get(model)).copied()
 }

@@ -58,6 +58,10 @@ pub struct Policy {
     pub tokens_per_scenario: u64,
     /// Time that the authors of one scenario may take, ms; 0 sets no limit. Default 0.
     pub author_ms_per_scenario: u64,
+    /// Money that the authors of one scenario may cost, in millionths; 0 sets no limit. Default 0.
+    pub money_per_scenario: u64,
+    /// Prices of a million tokens in and out by model, in millionths; an author without one costs nothing.
+    pub prices: std::collections::BTreeMap<String, (u64, u64)>,
     /// Tokens that one author's server is asked for in a minute, in and out; 0 leaves it to what the server says. Default 0.
     pub tokens_per_minute: u64,
     /// Questions that one author's server is asked in a minute; 0 leaves it to what the server says. Default 0.
@@ -94,6 +98,8 @@ impl Default for Policy {
             author_slots: 256,
             tokens_per_scenario: 0,
             author_ms_per_scenario: 0,
+            money_per_scenario: 0,
+            prices: std::collections::BTreeMap::new(),
             tokens_per_minute: 0,
             requests_per_minute: 0,
             code_version: String::new(),

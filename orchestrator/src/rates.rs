@@ -122,6 +122,32 @@ fn a_scenario_whose_tokens_are_spent_is_asked_about_no_more() {
 }
 
 #[test]
+fn a_scenario_whose_money_is_spent_is_asked_about_no_more() {
+    // 2 and 10 a million tokens: 100 000 in and 20 000 out cost 40 cents.
+    let prices = std::collections::BTreeMap::from([("gpt-x".to_owned(), (2_000_000, 10_000_000))]);
+    for (author, cents, state) in [
+        ("openai:gpt-x", 50, JobState::Ready),
+        ("openai:gpt-x", 40, JobState::Failed),
+        ("record:tape=openai:gpt-x", 40, JobState::Failed),
+        ("offline", 1, JobState::Ready),
+    ] {
+        let policy = Policy { prices: prices.clone(), money_per_scenario: cents * 10_000, ..Policy::default() };
+        let mut world = World::with(policy);
+        let mut asked = spec("a");
+        asked.settings.insert("author".to_owned(), author.to_owned());
+        world.submit(vec![asked]);
+        let grant = world.grant("w", Stage::Proposal);
+        let outcome = Outcome::Failed {
+            class: FailureClass::Semantic,
+            faults: vec![fault(FaultCode::PCount, "two of three")],
+            retry_after_ms: None,
+        };
+        world.send_report(Report { tokens: (100_000, 20_000), ..report(&grant, outcome) });
+        assert_eq!(world.state_of(&grant), state, "{author} {cents}");
+    }
+}
+
+#[test]
 fn a_spent_budget_does_not_take_back_what_is_there() {
     let mut world = World::with(Policy { author_ms_per_scenario: 1, ..Policy::default() });
     world.submit(vec![spec("a")]);

@@ -21,6 +21,7 @@ mod people;
 mod places;
 mod proposal;
 mod relations;
+mod repeats;
 mod routes;
 mod timing;
 mod verify;
@@ -31,6 +32,7 @@ mod testing;
 
 pub use behaviors::check_behaviors;
 pub use proposal::check_proposal;
+pub use repeats::{Signature, check_repeats, signature};
 pub use routes::check_paths;
 
 use socrates_model::{Behaviors, Fault, Location, Paths, Proposal, Reading};

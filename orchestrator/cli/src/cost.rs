@@ -123,6 +123,35 @@ fn money(model: &str, sum: &Sum, prices: &BTreeMap<String, Price>) -> Option<(f6
     Some((sum.cost(price), price.currency.clone()))
 }
 
+/// Prices of a million tokens in and out by model, in millionths, of the table that the configuration names; none without one.
+pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>, Complaint> {
+    let named = config.text("author.prices");
+    if named.is_empty() {
+        return Ok(BTreeMap::new());
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "read_prices takes no negative one")]
+    let millionths = |price: f64| (price * 1e6).round() as u64;
+    let prices = read_prices(Path::new(&named))?;
+    Ok(prices.into_iter().map(|(model, price)| (model, (millionths(price.input), millionths(price.output)))).collect())
+}
+
+/// A limit of money holds only where the author has a price.
+pub(crate) fn check_limit(config: &Config, author: &str) -> Result<(), Complaint> {
+    let limit = config.number("orchestrator.cents_per_scenario");
+    let model = author.rsplit_once('=').map_or(author, |(_, author)| author);
+    let Some((_, name)) = model.split_once(':').filter(|(kind, _)| limit > 0 && *kind != "cassette") else {
+        return Ok(());
+    };
+    let prices = prices_of(config)?;
+    if prices.contains_key(model) || prices.contains_key(name) {
+        return Ok(());
+    }
+    Err(Complaint::input(
+        format!("`orchestrator.cents_per_scenario` is {limit}, but `{name}` has no price"),
+        "`author.prices` names a table of prices; a model without one would be asked without a limit",
+    ))
+}
+
 fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
     let hint = "each table is a model: [\"gpt-4o\"] with input, output, perhaps cached_input, currency, valid_from";
     let text = std::fs::read_to_string(file)

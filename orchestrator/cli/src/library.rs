@@ -1,16 +1,20 @@
 //! The list of a library: one file at the root of a folder of bundles.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use socrates_model::{Digest, Reading, ScenarioId};
+use socrates_checks::{Signature, check_repeats, signature};
+use socrates_model::{Digest, Proposal, Reading, ScenarioId};
 
 use crate::args::RunOptions;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
 
+/// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
+/// for ten thousand million comparisons.
+const COMPARED: usize = 500;
 /// File that lists a library.
 const FILE: &str = "library.json";
 
@@ -23,6 +27,9 @@ pub(crate) struct Row {
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
     pub(crate) verdict: String,
+    /// The earlier scenario that it repeats (P-DUP).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) repeats: Option<ScenarioId>,
 }
 
 /// A finished library.
@@ -53,6 +60,26 @@ pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
     })
 }
 
+/// Finds scenarios that repeat earlier ones.
+#[derive(Debug, Default)]
+pub(crate) struct Repeats(BTreeMap<Signature, VecDeque<(ScenarioId, Proposal)>>);
+
+impl Repeats {
+    /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
+    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: Proposal) -> Option<ScenarioId> {
+        let alike = self.0.entry(signature(&proposal)).or_default();
+        let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
+        if let Some((other, _)) = earlier {
+            return Some(other.clone());
+        }
+        if alike.len() == COMPARED {
+            alike.pop_front();
+        }
+        alike.push_back((id.clone(), proposal));
+        None
+    }
+}
+
 /// Prints what a library holds.
 pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<Code, Complaint> {
     let library = read(root)
@@ -64,6 +91,10 @@ pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<C
     let realised = verdicts.get("realised").copied().unwrap_or(0);
     let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
     talk.line(&format!("made       {} of {} · {}", library.scenarios.len(), library.count, words.join(" · ")));
+    let again = library.scenarios.iter().filter(|row| row.repeats.is_some()).count();
+    if again > 0 {
+        talk.line(&format!("alike      {again} repeat an earlier proposal (P-DUP); the request leaves little open"));
+    }
     talk.line(&format!("look       {}", root.join("report.html").display()));
     let whole = realised == library.count;
     talk.result(&json!({

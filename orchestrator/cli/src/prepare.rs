@@ -142,6 +142,7 @@ pub(crate) fn prepare_text(
         }
     }
     let (author, mut author_note) = choose_author(&request.run.author, config)?;
+    crate::cost::check_limit(config, &author)?;
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.
     if author != "offline" && !long.is_empty() {

@@ -101,6 +101,8 @@ pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions)
             config.number("orchestrator.tokens_per_scenario"),
             config.number("orchestrator.author_s_per_scenario").saturating_mul(1_000),
         ),
+        cents_per_scenario: config.number("orchestrator.cents_per_scenario"),
+        prices: crate::cost::prices_of(config)?,
         durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
         code_version: CODE_VERSION.to_owned(),
     };

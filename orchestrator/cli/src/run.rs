@@ -234,21 +234,24 @@ async fn batch(
     }
     let made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
     let mut rows = Vec::new();
+    let mut repeats = library::Repeats::default();
     for status in &made.statuses {
         let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };
         let dir = root.join(want.id.as_str());
         let known = bundle::manifest(&dir).filter(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
-        let verdict = match known {
-            Some(manifest) => manifest.verdict.to_string(),
-            None => match conclude(&dir, want.prepared, want.seed, status, &made) {
-                Ok(bundle) => bundle.manifest.verdict.to_string(),
-                Err(why) => {
-                    talk.warn(&format!("{}: {why}", want.id));
-                    "failed".to_owned()
-                }
-            },
+        let made = match known {
+            Some(manifest) => bundle::read_some(&dir, |_, _| false).map(|bundle| (manifest.verdict, bundle.proposal)),
+            None => conclude(&dir, want.prepared, want.seed, status, &made)
+                .map(|bundle| (bundle.manifest.verdict, bundle.proposal)),
         };
-        rows.push(library::Row { scenario: want.id.clone(), bundle: dir.display().to_string(), verdict });
+        let (verdict, repeats) = match made {
+            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, proposal)),
+            Err(why) => {
+                talk.warn(&format!("{}: {why}", want.id));
+                ("failed".to_owned(), None)
+            }
+        };
+        rows.push(library::Row { scenario: want.id.clone(), bundle: dir.display().to_string(), verdict, repeats });
     }
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;

@@ -37,6 +37,17 @@ impl Written {
         }
     }
 
+    /// Trees that an author wrote as XML are written anew from what was read and checked: nothing that the checks did not see,
+    /// such as a comment, goes on.
+    fn rewrite(&mut self) {
+        let Self::Behaviors(behaviors) = self else { return };
+        for human in behaviors.humans.values_mut() {
+            if let Ok(tree) = socrates_bt::Tree::parse(&human.tree) {
+                human.tree = tree.to_xml(tree.format());
+            }
+        }
+    }
+
     fn sign(&mut self, author: &str) {
         let place = match self {
             Self::Proposal(proposal) => &mut proposal.author,
@@ -170,6 +181,9 @@ pub async fn attempt(author: &dyn Author, question: &Question) -> Result<Made, R
     match written {
         Some(mut written) if hard(&faults).is_empty() => {
             written.sign(&model);
+            if exchange.answer.contains('<') {
+                written.rewrite();
+            }
             Ok(Made { written, exchange })
         }
         Some(_) | None => {

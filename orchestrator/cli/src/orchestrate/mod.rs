@@ -52,6 +52,10 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) author_rates: (u64, u64),
     /// Tokens and time in ms that the authors of one scenario may take; 0 sets no limit.
     pub(crate) author_budget: (u64, u64),
+    /// Money that the authors of one scenario may cost, hundredths; 0 sets no limit.
+    pub(crate) cents_per_scenario: u64,
+    /// Prices of a million tokens in and out by model, in millionths.
+    pub(crate) prices: std::collections::BTreeMap<String, (u64, u64)>,
     /// What a commit of the job store outlives.
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
@@ -78,6 +82,8 @@ pub(crate) async fn serve(
         code_version: config.code_version,
         tokens_per_scenario: config.author_budget.0,
         author_ms_per_scenario: config.author_budget.1,
+        money_per_scenario: config.cents_per_scenario.saturating_mul(10_000),
+        prices: config.prices,
         tokens_per_minute: config.author_rates.0,
         requests_per_minute: config.author_rates.1,
         ..Policy::default().asking_again(config.asks_again)

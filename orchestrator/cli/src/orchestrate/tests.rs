@@ -39,6 +39,8 @@ async fn open(dir: &Path) -> Site {
         asks_again: 3,
         author_rates: (0, 0),
         author_budget: (0, 0),
+        cents_per_scenario: 0,
+        prices: std::collections::BTreeMap::new(),
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
     };
@@ -234,6 +236,8 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         asks_again: 3,
         author_rates: (0, 0),
         author_budget: (0, 0),
+        cents_per_scenario: 0,
+        prices: std::collections::BTreeMap::new(),
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
     };
