@@ -136,13 +136,11 @@ impl Turn<'_> {
             .iter()
             .filter_map(|(stage, item)| {
                 // A new proposal makes reasons against the old paths and behaviors void; whoever looks is told all of them.
-                let reasons = match stage {
-                    Stage::Review => targets.values().flatten().cloned().collect(),
-                    _ => targets
-                        .get(stage)
-                        .filter(|_| first.is_none_or(|first| first == stage))
-                        .cloned()
-                        .unwrap_or_default(),
+                let reasons = if *stage == Stage::Review {
+                    targets.values().flatten().cloned().collect()
+                } else {
+                    let own = targets.get(stage).filter(|_| first.is_none_or(|first| first == stage));
+                    own.cloned().unwrap_or_default()
                 };
                 let reasons = feedback(&reasons, &[]);
                 self.make(id, (*stage, item), run(*stage), revision, &reasons)

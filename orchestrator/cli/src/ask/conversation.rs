@@ -108,7 +108,7 @@ pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> R
         match next {
             Next::Ask => {}
             Next::Leave => return Ok(None),
-            Next::Decide(decision) => return Ok(Some(decision)),
+            Next::Decide(decision) => return Ok(Some(*decision)),
         }
     }
 }
@@ -116,7 +116,7 @@ pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> R
 enum Next {
     Ask,
     Leave,
-    Decide(Decision),
+    Decide(Box<Decision>),
 }
 
 struct Conversation<'a> {
@@ -395,7 +395,7 @@ impl Conversation<'_> {
         }
         let why = if why.is_empty() { "a person wants another one" } else { why };
         let repair = |stage: Stage| Repair { stage, faults: vec![Fault::new(FaultCode::PPerson, stage, why)] };
-        Next::Decide(self.decision(stages.into_iter().map(repair).collect()))
+        Next::Decide(Box::new(self.decision(stages.into_iter().map(repair).collect())))
     }
 
     fn accept(&mut self) -> Next {
@@ -411,7 +411,7 @@ impl Conversation<'_> {
             !faults.is_empty() && (*stage == Stage::Proposal || self.look.about == About::Draft)
         });
         if found.is_empty() {
-            return Next::Decide(self.decision(Vec::new()));
+            return Next::Decide(Box::new(self.decision(Vec::new())));
         }
         let stuck = found.keys().find(|stage| **stage == Stage::Proposal || self.look.pinned.contains(stage)).copied();
         for fault in found.values().flatten() {
@@ -425,7 +425,7 @@ impl Conversation<'_> {
         let stages: Vec<&str> = found.keys().map(|stage| stage.name()).collect();
         self.say(Tone::Quiet, &format!("{} no longer fit and are made again", stages.join(" and ")));
         let anew = found.into_iter().map(|(stage, faults)| Repair { stage, faults }).collect();
-        Next::Decide(self.decision(anew))
+        Next::Decide(Box::new(self.decision(anew)))
     }
 
     fn by_hand(&mut self, what: &str) {
@@ -434,7 +434,7 @@ impl Conversation<'_> {
         let stage = match (what, self.page) {
             ("", About::Proposal) => Some(Stage::Proposal),
             ("", About::Draft) => Some(Stage::Paths),
-            (what, _) => stage_named(what).or(human.map(|_| Stage::Behaviors)),
+            (what, _) => stage_named(what).or_else(|| human.map(|_| Stage::Behaviors)),
         };
         let mut version = now.clone();
         let done = match (stage, now.paths, now.behaviors) {

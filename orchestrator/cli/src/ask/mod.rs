@@ -68,7 +68,7 @@ impl Asking {
     ) -> Result<Self, Complaint> {
         let mut terminal = Terminal::new(*talk, work)?;
         let mut log = terminal.log()?;
-        let (looks, brought) = mpsc::channel::<(Look, oneshot::Sender<Decision>)>();
+        let (looks, brought) = mpsc::sync_channel::<(Look, oneshot::Sender<Decision>)>(1);
         let (leave, left) = watch::channel(None);
         let looking = Arc::new(Mutex::new(false));
         let busy = Arc::clone(&looking);
@@ -151,7 +151,7 @@ fn set(flag: &Mutex<bool>, value: bool) {
 
 /// The stage that a person does.
 struct Reviewer {
-    looks: mpsc::Sender<(Look, oneshot::Sender<Decision>)>,
+    looks: mpsc::SyncSender<(Look, oneshot::Sender<Decision>)>,
     author: String,
     pinned: Vec<job::Stage>,
 }

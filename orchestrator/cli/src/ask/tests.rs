@@ -23,11 +23,14 @@ social_context = "A quiet afternoon"
 rough_scenario = "A visitor comes towards the robot in the corridor. When the robot is within 2 m, she stops and looks at it."
 "#;
 
+/// What an editor does with a text.
+type Editor = Box<dyn FnMut(&str) -> Result<String, String>>;
+
 /// A person with a list of lines, and an editor that does what the test says.
 #[derive(Default)]
 struct Script {
     lines: VecDeque<String>,
-    editor: Option<Box<dyn FnMut(&str) -> Result<String, String>>>,
+    editor: Option<Editor>,
     heard: Vec<(Tone, String)>,
     pictures: usize,
     kept: usize,
@@ -147,7 +150,7 @@ fn an_edit_changes_what_the_result_is_held_against() {
     let look = look(About::Proposal);
     let mut person = Script::of(&["the visitor gives way when the robot is within 3 m", "accept"]);
     let (decision, _) = talk(&look, &mut person);
-    let left = decision.expect(&person.text()).left;
+    let left = decision.unwrap_or_else(|| panic!("{}", person.text())).left;
     assert_ne!(left.reading, look.came.reading, "{}", person.text());
     assert!(left.proposal.humans[0].rules.iter().any(|rule| rule.act == socrates_model::Action::GiveWay));
 }
@@ -246,7 +249,7 @@ fn what_is_written_by_hand_wins_over_the_request() {
     }));
     let (decision, _) = talk(&look, &mut person);
     assert!(person.heard("is no longer asked for"), "{}", person.text());
-    assert!(decision.expect(&person.text()).left.proposal.humans[0].rules.is_empty());
+    assert!(decision.unwrap_or_else(|| panic!("{}", person.text())).left.proposal.humans[0].rules.is_empty());
 }
 
 #[test]
