@@ -204,6 +204,20 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             }
             continue;
         }
+        // `three people stand there - no, make that four`
+        let word = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        let made = word(i) == "make" && matches!(word(i + 1), "that" | "it") && words.get(i + 2).is_some_and(count);
+        if let Some(at) = out.iter().rposition(count).filter(|_| made) {
+            if let (Some(place), Some(number)) = (out.get_mut(at), words.get(i + 2)) {
+                place.clone_from(number);
+            }
+            let idle = |item: &Option<Word>| item.as_ref().is_none_or(|word| CORRECTS.contains(&word.text.as_str()));
+            while out.last().is_some_and(idle) {
+                out.pop();
+            }
+            i += 3;
+            continue;
+        }
         let mut item = item.clone();
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
@@ -302,8 +316,11 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     // `seeing the robot, …`, `having noticed it, …`
     let opens = i == 0 || words.get(i - 1).is_some_and(Option::is_none) || before == "and" || before == "then";
     let seeing = |k: usize| (sees(k) || stem(k) == "hear") && text(k).ends_with("ing");
+    let counted = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     match text(i) {
         "and" => (Some(Joint::And), 1),
+        // `all but two`, `all except one`, `everyone save two`
+        "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),
         "but" if before == "all" => (None, 1),
         "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
         "besides" => (Some(Joint::Except), 1),

@@ -309,6 +309,11 @@ pub(crate) fn except(cast: &mut Cast, who: usize, rules: &[usize]) {
 pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
     person.never.push((act, quote.to_owned()));
+    if act == Act::ComeOut && person.relation.is_none() {
+        // `nobody gets out`
+        relate(cast, who, Relation::Staying, quote);
+        return;
+    }
     let Some((action, ..)) = manner(act) else { return };
     if let Some(read) = person.rules.iter().find(|read| read.rule.act == action) {
         let said = read.quote.clone();

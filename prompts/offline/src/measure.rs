@@ -117,6 +117,15 @@ fn span(stretch: &Stretch) -> Option<(usize, f64)> {
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
     (0..stretch.words.len()).find_map(|at| {
         let half = text(at) == "half" && matches!(text(at + 1), "a" | "an");
+        // `a quarter of a minute`, `three quarters of a minute`
+        let quarters = match (text(at), text(at + 1), text(at + 2)) {
+            ("a", "quarter", "of") => Some(1.0),
+            ("three", "quarters", "of") => Some(3.0),
+            _ => None,
+        };
+        if let Some(unit) = quarters.filter(|_| text(at + 3) == "a").and_then(|_| unit_s(stretch, at + 4)) {
+            return Some((at, unit * quarters? / 4.0));
+        }
         let start = at + usize::from(half);
         if !matches!(text(start), "a" | "an") {
             return None;

@@ -198,12 +198,15 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let of = of_them(at + 1)?;
             return made(Who::AllOf(of.count?), of.role, of.end);
         }
+        "all" | "everyone" | "everybody"
+            if matches!(text(at + 1), "but" | "except" | "save")
+                && words.get(at + 2).is_some_and(|word| word.count().is_some()) =>
+        {
+            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, at + 2);
+        }
         "they" | "them" | "everyone" | "everybody" | "none" => {
             let end = of_them(at + 1).map_or(at, |of| of.end);
             return made(Who::All, None, end);
-        }
-        "all" if text(at + 1) == "but" && words.get(at + 2).is_some_and(|word| word.count().is_some()) => {
-            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, at + 2);
         }
         "all" | "each" => {
             if let Some(of) = of_them(at + 1) {

@@ -85,9 +85,18 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
         return;
     }
+    // `if it moves they wait, if it stops they walk on`: what has its own time already is not timed by what comes after it.
+    let timed = thread.made.iter().all(|(who, rule)| {
+        let read = story.cast.people.get(*who).and_then(|person| person.rules.get(*rule));
+        read.is_some_and(|read| {
+            read.stated && matches!(read.rule.when[..], [Trigger::RobotMoving | Trigger::RobotStopped])
+        })
+    });
+    let fronted = matches!(cue, Cue::Stopped | Cue::Moving) && timed;
     let back = matches!(stretch.joint, Joint::When | Joint::While | Joint::Until)
         && !thread.made.is_empty()
-        && !stretch.after_and;
+        && !stretch.after_and
+        && !fronted;
     // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
     for mention in found
         .mentions
