@@ -365,7 +365,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "each" | "every" | "any" if text(i + 1) == "time" => (Some(Joint::When), 2),
         "that" if i > 0 && sees(i - 1) && (stem(i + 1) == "robot" || stem(i + 2) == "robot") => (Some(Joint::Comma), 1),
-        "when" | "whenever" | "upon" | "if" | "unless" => (Some(Joint::When), 1),
+        "when" | "whenever" | "upon" | "if" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
         "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
@@ -401,7 +401,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::When), 1)
         }
-        "until" | "till" => (Some(Joint::Until), 1),
+        // `does not move unless the robot asks` is `… until it asks`.
+        "until" | "till" | "unless" => (Some(Joint::Until), 1),
         "who" | "whom" | "which" if before != "of" => (Some(Joint::Who), 1),
         "that" if person => (Some(Joint::Who), 1),
         "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 1),

@@ -202,7 +202,8 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             if matches!(text(at + 1), "but" | "except" | "save")
                 && words.get(at + 2).is_some_and(|word| word.count().is_some()) =>
         {
-            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, at + 2);
+            let end = noun(words, at + 3, lex).unwrap_or(at + 2);
+            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, end);
         }
         "they" | "them" | "everyone" | "everybody" | "none" => {
             let end = of_them(at + 1).map_or(at, |of| of.end);
