@@ -392,6 +392,17 @@ fn counted(
     if text(at) == "one" && text(at + 1) == "on" && matches!(text(at + 2), "each" | "either" | "every" | "both") {
         return None;
     }
+    // `one of the meeting rooms` is a place.
+    if text(at) == "one" && text(at + 1) == "of" {
+        let place = |k: usize| {
+            let named = Item::Word(stem(words, k).to_owned());
+            lex.labels.contains(stem(words, k)) || lex.places.iter().any(|place| place.items == [named.clone()])
+        };
+        let ends = (at + 2..at + 6).find(|k| place(*k) || lex.roles.contains_key(stem(words, *k)));
+        if ends.is_some_and(place) {
+            return None;
+        }
+    }
     // `one after another`, `one by one` say how, not who.
     if text(at) == "one"
         && matches!(text(at + 1), "after" | "by" | "behind")

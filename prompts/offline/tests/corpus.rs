@@ -4,6 +4,9 @@
 use serde::Deserialize;
 use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Trigger};
 
+/// Facts of the requests kept aside that were right when the test saw them first.
+const FIRST_LOOK: usize = 107;
+
 #[derive(Deserialize)]
 struct Corpus {
     request: Vec<Case>,
@@ -172,10 +175,10 @@ fn what_goes_through_the_kinds_of_wishes_is_read() {
     reads("open, fifth", include_str!("../corpus/open-5.toml"), 96);
 }
 
-/// Written by somebody who did not know the grammar: the figure is that of the first look.
+/// Written by somebody who did not know the grammar: 352 of 379 at the first look.
 #[test]
 fn what_a_sixth_hand_writes_is_read() {
-    reads("open, sixth", include_str!("../corpus/open-6.toml"), 50);
+    reads("open, sixth", include_str!("../corpus/open-6.toml"), 94);
 }
 
 /// Written before the grammar was worked on: 78 of 91 at the first look. Its misses were read then, and the grammar was
@@ -185,12 +188,18 @@ fn what_was_kept_aside_once_is_read() {
     reads("kept aside once", include_str!("../corpus/sealed.toml"), 95);
 }
 
-/// Written by somebody who did not know the grammar, and unread by whoever works on it: only the figure is told, 67 of 99
-/// at the first look, 72 after open-3 to open-5 had been mended. 95 in 100 are aimed at.
+/// Kept aside for a while: 67 of 99 at the first look, 72 after open-3 to open-5 had been mended; then its misses were read.
+#[test]
+fn what_was_kept_aside_later_is_read() {
+    reads("kept aside later", include_str!("../corpus/sealed-2.toml"), 82);
+}
+
+/// Written by somebody who did not know the grammar, and unread by whoever works on it: only the figure is told, 107
+/// of 117 at the first look. 95 in 100 are aimed at.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
-    let (right, all, _unread) = judge(include_str!("../corpus/sealed-2.toml"));
+    let (right, all, _unread) = judge(include_str!("../corpus/sealed-3.toml"));
     println!("kept aside: {right} of {all} facts");
-    assert!(right >= 72, "{right} of {all} facts");
+    assert!(right >= FIRST_LOOK, "{right} of {all} facts");
 }
