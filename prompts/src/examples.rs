@@ -39,14 +39,13 @@ pub fn worked(stage: Stage, style: &Style) -> Vec<(Question, Value)> {
             let answer = answer(&example, stage, style);
             let question = Question {
                 stage,
-                request: example.request,
-                reading: Reading { facts: example.facts, ..Reading::default() },
-                location: location(),
                 proposal: (stage != Stage::Proposal).then_some(example.proposal),
-                only: Vec::new(),
-                feedback: Vec::new(),
-                refused: None,
-                seed: 1,
+                ..Question::first(
+                    example.request,
+                    Reading { facts: example.facts, ..Reading::default() },
+                    location(),
+                    1,
+                )
             };
             (question, answer)
         })

@@ -34,6 +34,13 @@ pub struct Question {
 }
 
 impl Question {
+    /// The first question of a scenario: a proposal is asked for, and nothing was refused yet.
+    #[must_use]
+    pub const fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
+        let (only, feedback) = (Vec::new(), Vec::new());
+        Self { stage: Stage::Proposal, request, reading, location, proposal: None, only, feedback, refused: None, seed }
+    }
+
     /// The question as it is put to an author who is told so much of its refused answer. Where it is told nothing the
     /// question is the first one again; where it is told vaguely, the refused answer stays and its reasons go.
     #[must_use]

@@ -88,13 +88,7 @@ pub(crate) fn question(stage: Stage) -> Question {
     .unwrap();
     Question {
         stage,
-        request,
-        reading: Reading::default(),
-        location: tee_map(),
         proposal: (stage != Stage::Proposal).then(proposal),
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 1,
+        ..Question::first(request, Reading::default(), tee_map(), 1)
     }
 }

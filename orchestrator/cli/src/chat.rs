@@ -92,14 +92,8 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
     }
     let question = |stage: Stage| Question {
         stage,
-        request: whole.request.clone(),
-        reading: whole.reading.clone(),
-        location: whole.location.clone(),
         proposal: (stage != Stage::Proposal).then(|| whole.proposal.clone()),
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: whole.manifest.seed,
+        ..Question::first(whole.request.clone(), whole.reading.clone(), whole.location.clone(), whole.manifest.seed)
     };
     let mut asked = Vec::new();
     for ((stage, _), exchanges) in found {

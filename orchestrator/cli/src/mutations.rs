@@ -170,14 +170,14 @@ async fn author(prepared: &Prepared, seed: u64, feedback: &mut BTreeMap<Stage, V
     for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
         let question = socrates_prompts::Question {
             stage,
-            request: prepared.request.clone(),
-            reading: prepared.reading.clone(),
-            location: prepared.location.clone(),
             proposal: proposal.clone(),
-            only: Vec::new(),
             feedback: feedback.get(&stage).cloned().unwrap_or_default(),
-            refused: None,
-            seed,
+            ..socrates_prompts::Question::first(
+                prepared.request.clone(),
+                prepared.reading.clone(),
+                prepared.location.clone(),
+                seed,
+            )
         };
         match socrates_author::attempt(&Offline, &question).await {
             Ok(answer) => match answer.written {

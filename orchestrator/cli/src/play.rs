@@ -35,16 +35,9 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
     let desk = Desk::default();
     let papers = |stage, proposal| Papers {
         stage,
-        request: request.clone(),
-        reading: reading.clone(),
-        location: location.clone(),
         proposal,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed,
         settings: [("author".to_owned(), "offline".to_owned())].into(),
-        attempt: 1,
+        ..Papers::first(request.clone(), reading.clone(), location.clone(), seed)
     };
     let Written::Proposal(proposal) = ask(&desk, papers(Stage::Proposal, None)).await? else { return wrong() };
     let Written::Paths(paths) = ask(&desk, papers(Stage::Paths, Some(proposal.clone()))).await? else { return wrong() };

@@ -74,17 +74,8 @@ async fn questions() -> Result<Vec<Question>, Complaint> {
         socrates_maps::shipped::load(&request.location).map_err(|_faults| ours("a shipped location is broken"))?;
     let reading = socrates_offline::read(&request, &location);
     let mut papers = Papers {
-        stage: Stage::Proposal,
-        request,
-        reading,
-        location,
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 1,
         settings: BTreeMap::from([("author".to_owned(), "offline".to_owned())]),
-        attempt: 1,
+        ..Papers::first(request, reading, location, 1)
     };
     let answer =
         Desk::default().answer(papers.clone()).await.map_err(|_refusal| ours("the offline author has no answer"))?;

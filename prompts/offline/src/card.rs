@@ -331,17 +331,8 @@ mod tests {
             "location": location.name, "social_context": "", "task": "Deliver mail", "expect": { "pattern": card.id },
         }))
         .unwrap();
-        socrates_prompts::Question {
-            stage: socrates_model::job::Stage::Proposal,
-            reading: crate::read(&request, location),
-            request,
-            location: location.clone(),
-            proposal: None,
-            only: Vec::new(),
-            feedback: Vec::new(),
-            refused: None,
-            seed,
-        }
+        let reading = crate::read(&request, location);
+        socrates_prompts::Question::first(request, reading, location.clone(), seed)
     }
 
     #[test]

@@ -48,17 +48,7 @@ fn small_warehouse() -> Option<Location> {
 }
 
 fn question(stage: Stage, request: &Request, location: &Location, seed: u64) -> Question {
-    Question {
-        stage,
-        request: request.clone(),
-        reading: read(request, location),
-        location: location.clone(),
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed,
-    }
+    Question { stage, ..Question::first(request.clone(), read(request, location), location.clone(), seed) }
 }
 
 fn parsed<T>(found: Result<T, Vec<socrates_model::Fault>>) -> T {

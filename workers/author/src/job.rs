@@ -38,6 +38,24 @@ pub struct Papers {
 }
 
 impl Papers {
+    /// The papers of the first question of a scenario: a proposal is asked for at the first attempt, with no settings.
+    #[must_use]
+    pub const fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
+        Self {
+            stage: Stage::Proposal,
+            request,
+            reading,
+            location,
+            proposal: None,
+            only: Vec::new(),
+            feedback: Vec::new(),
+            refused: None,
+            seed,
+            settings: BTreeMap::new(),
+            attempt: 1,
+        }
+    }
+
     /// The question to the author.
     #[must_use]
     pub fn question(self) -> Question {

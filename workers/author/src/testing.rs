@@ -1,7 +1,5 @@
 //! A question with a known good answer, and an author that says what it is told.
 
-use std::collections::BTreeMap;
-
 use async_trait::async_trait;
 use socrates_model::job::Stage;
 use socrates_model::{
@@ -141,16 +139,8 @@ pub(crate) fn papers(stage: Stage) -> Papers {
     .unwrap();
     Papers {
         stage,
-        request,
-        reading: reading(),
-        location: plus_map(),
         proposal: (stage != Stage::Proposal).then(proposal),
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 11,
-        settings: BTreeMap::new(),
-        attempt: 1,
+        ..Papers::first(request, reading(), plus_map(), 11)
     }
 }
 

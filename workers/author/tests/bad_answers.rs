@@ -2,12 +2,9 @@
 //! what can be simulated, and none ends the program.
 #![cfg(test)]
 
-use std::collections::BTreeMap;
-
 use serde_json::{Value, json};
 use socrates_author::offline::Offline;
 use socrates_author::{Author as _, Papers, Refused, Says, attempt};
-use socrates_model::job::Stage;
 use socrates_model::{Fault, Request};
 use socrates_prompts::Question;
 
@@ -16,19 +13,8 @@ async fn asked() -> Vec<(Question, Value)> {
     let name = socrates_maps::shipped::names()[0];
     let location = socrates_maps::shipped::load(name).expect("a shipped location loads");
     let request: Request = toml::from_str(socrates_maps::shipped::requests(name)[0].1).expect("a shipped request");
-    let papers = Papers {
-        stage: Stage::Proposal,
-        reading: socrates_offline::read(&request, &location),
-        request,
-        location,
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 1,
-        settings: BTreeMap::new(),
-        attempt: 1,
-    };
+    let reading = socrates_offline::read(&request, &location);
+    let papers = Papers::first(request, reading, location, 1);
     let answers = socrates_author::confusion::answers(&Offline, &papers).await;
     assert_eq!(answers.len(), 3);
     answers.into_iter().map(|clean| (clean.question, serde_json::from_str(&clean.answer).expect("JSON"))).collect()

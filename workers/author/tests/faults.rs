@@ -2,13 +2,10 @@
 #![cfg(test)]
 #![expect(clippy::print_stdout, reason = "the table is there to be read")]
 
-use std::collections::BTreeMap;
-
 use socrates_author::confusion::{Confusion, answers, confusion};
 use socrates_author::offline::Offline;
 use socrates_author::{FaultKind, Papers};
 use socrates_model::Request;
-use socrates_model::job::Stage;
 
 /// Seeds that every request is answered with.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=3;
@@ -21,19 +18,7 @@ async fn table() -> Confusion {
             let request: Request = toml::from_str(text).expect("a shipped request is read");
             let reading = socrates_offline::read(&request, &location);
             for seed in SEEDS {
-                let papers = Papers {
-                    stage: Stage::Proposal,
-                    request: request.clone(),
-                    reading: reading.clone(),
-                    location: location.clone(),
-                    proposal: None,
-                    only: Vec::new(),
-                    feedback: Vec::new(),
-                    refused: None,
-                    seed,
-                    settings: BTreeMap::new(),
-                    attempt: 1,
-                };
+                let papers = Papers::first(request.clone(), reading.clone(), location.clone(), seed);
                 all.extend(answers(&Offline, &papers).await);
             }
         }

@@ -21,16 +21,9 @@ fn papers(
 ) -> Papers {
     Papers {
         stage,
-        request: request.clone(),
-        reading: reading.clone(),
-        location: location.clone(),
         proposal: proposal.cloned(),
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: derive_seed(seed, &[stage.name()]),
         settings: BTreeMap::from([("author".to_owned(), "offline".to_owned())]),
-        attempt: 1,
+        ..Papers::first(request.clone(), reading.clone(), location.clone(), derive_seed(seed, &[stage.name()]))
     }
 }
 

@@ -184,17 +184,7 @@ impl Reviewer {
             behaviors: job.json_if_there("behaviors")?,
             reading: job.json("reading")?,
         };
-        let question = Question {
-            stage: job::Stage::Proposal,
-            request: job.json("request")?,
-            reading: came.reading.clone(),
-            location: job.json("location")?,
-            proposal: None,
-            only: Vec::new(),
-            feedback: Vec::new(),
-            refused: None,
-            seed: spec.seed,
-        };
+        let question = Question::first(job.json("request")?, came.reading.clone(), job.json("location")?, spec.seed);
         let draft = spec.key.item == DRAFT_LOOK;
         if draft && (came.paths.is_none() || came.behaviors.is_none()) {
             let why = "is a look at a draft without paths or behaviors";

@@ -72,17 +72,8 @@ impl Person for Script {
 fn look(about: About) -> Look {
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
     let prepared = prepare_text("look", REQUEST, "look", Path::new("."), Some(&RunOptions::plain(1)), &config).unwrap();
-    let mut question = Question {
-        stage: Stage::Proposal,
-        request: prepared.request.clone(),
-        reading: prepared.reading.clone(),
-        location: prepared.location.clone(),
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 1,
-    };
+    let mut question =
+        Question::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), 1);
     let proposal = parse_proposal(&Offline::answer(&question), &question).unwrap();
     let asked = Question { proposal: Some(proposal.clone()), ..question.clone() };
     let draft = about == About::Draft;

@@ -19,19 +19,8 @@ const STAMP: &str = "injected faults, not a model's";
 pub(super) async fn table(cases: &[(Prepared, u64)]) -> Confusion {
     let mut all = Vec::new();
     for (prepared, seed) in cases {
-        let papers = Papers {
-            stage: Stage::Proposal,
-            request: prepared.request.clone(),
-            reading: prepared.reading.clone(),
-            location: prepared.location.clone(),
-            proposal: None,
-            only: Vec::new(),
-            feedback: Vec::new(),
-            refused: None,
-            seed: *seed,
-            settings: BTreeMap::new(),
-            attempt: 1,
-        };
+        let papers =
+            Papers::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), *seed);
         all.extend(answers(&Offline, &papers).await);
     }
     confusion(&all).await

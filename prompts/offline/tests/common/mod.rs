@@ -1,6 +1,5 @@
 //! What the tests of whole questions share.
 
-use socrates_model::job::Stage;
 use socrates_prompts::Question;
 
 /// The question for a proposal on a shipped map, as the stages would ask it; without a text it is unguided.
@@ -11,15 +10,5 @@ pub(crate) fn question<'a>(on: &str, rough: impl Into<Option<&'a str>>) -> Quest
     .unwrap();
     let location = socrates_maps::shipped::load(on).unwrap();
     let reading = socrates_offline::read(&request, &location);
-    Question {
-        stage: Stage::Proposal,
-        request,
-        reading,
-        location,
-        proposal: None,
-        only: Vec::new(),
-        feedback: Vec::new(),
-        refused: None,
-        seed: 3,
-    }
+    Question::first(request, reading, location, 3)
 }
