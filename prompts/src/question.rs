@@ -36,7 +36,7 @@ pub struct Question {
 impl Question {
     /// The first question of a scenario: a proposal is asked for, and nothing was refused yet.
     #[must_use]
-    pub const fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
+    pub fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
         let (only, feedback) = (Vec::new(), Vec::new());
         Self { stage: Stage::Proposal, request, reading, location, proposal: None, only, feedback, refused: None, seed }
     }

@@ -323,8 +323,25 @@ fn errand(task: &Task, reading: &mut Reading) {
     }
 }
 
+/// Words that want a deed more than once; what somebody does is played once.
+const OFTEN: &[&str] =
+    &["again and again", "over and over", "time and again", "repeatedly", "several times", "many times"];
+
+/// Says that what shall happen often is played once.
+fn often(request: &Request, reading: &mut Reading) {
+    let rough = request.rough_scenario.as_deref().unwrap_or_default().to_lowercase();
+    for words in OFTEN.iter().filter(|words| rough.contains(**words)) {
+        reading.problems.push(Fault::new(
+            FaultCode::PRead,
+            "rough_scenario",
+            format!("`{words}`: what somebody does is played once; ask for somebody more who does it, or for how long it lasts"),
+        ));
+    }
+}
+
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     errand(task, reading);
+    often(request, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
