@@ -6,7 +6,6 @@ use socrates_author::confusion::{Confusion, Row, answers, confusion};
 use socrates_author::offline::Offline;
 use socrates_author::{FaultKind, Papers};
 use socrates_model::FaultCode;
-use socrates_model::job::Stage;
 use socrates_stats::{Z_95, wilson};
 
 use super::spec::Spec;
@@ -143,6 +142,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use socrates_model::job::Stage;
 
     #[test]
     fn every_line_is_stamped_and_every_class_has_its_row() {
