@@ -3,7 +3,7 @@
 //! Later stages first, then the order of submission; a bounded number of scenarios is under way.
 //! The same question gets the same answer, so a lost reply costs time only.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::Digest;
 use socrates_model::job::{JobKey, Stage};
@@ -95,6 +95,7 @@ impl Turn<'_> {
             return Err(("paused", None));
         }
         for stage in pipeline::URGENCY.into_iter().filter(|stage| ask.stages.contains(stage)) {
+            let mut held: BTreeSet<&str> = BTreeSet::new();
             for (_, _, key) in state.ready.get(&stage).into_iter().flatten() {
                 if chosen.len() >= most {
                     return Ok(chosen);
@@ -109,10 +110,16 @@ impl Turn<'_> {
                     break;
                 }
                 let server = server_of(&job.spec);
+                if server.is_some_and(|server| held.contains(server)) {
+                    why = "throttled";
+                    continue;
+                }
                 let asked = server.and_then(|server| questions.get(server)).copied().unwrap_or_default();
                 let asks = server.map(|server| self.asks(server, stage, asked));
-                if let Some((from, _)) = asks.filter(|(from, _)| *from > self.now) {
+                if let Some((server, (from, _))) = server.zip(asks).filter(|(_, (from, _))| *from > self.now) {
                     (why, wake) = ("throttled", wake.min(from));
+                    // Nothing that is handed out in this reply makes it sooner: no other job of the stage need be looked at.
+                    held.insert(server);
                     continue;
                 }
                 let begins = !scenario.started && !scenario.spec.review;
@@ -150,8 +157,14 @@ impl Turn<'_> {
     /// From when on a server may be asked one more question of this stage, beside those already put to it in this reply; and
     /// how much all of them are.
     fn asks(&self, server: &str, stage: Stage, asked: (u64, u64)) -> (Millis, (u64, u64)) {
-        let new = || Bucket::new(&self.state.policy, self.now);
-        let bucket = self.state.servers.get(server).cloned().unwrap_or_else(new);
+        let new;
+        let bucket = match self.state.servers.get(server) {
+            Some(bucket) => bucket,
+            None => {
+                new = Bucket::new(&self.state.policy, self.now);
+                &new
+            }
+        };
         let tokens = bucket.typical(stage);
         (bucket.from(self.now, asked, tokens), (asked.0 + 1, asked.1.saturating_add(tokens)))
     }

@@ -6,6 +6,7 @@ use socrates_model::fault::{Fault, FaultCode};
 use socrates_model::job::{JobKey, Stage};
 use socrates_model::{ScenarioId, job};
 
+use crate::bucket::asked_by;
 use crate::pipeline;
 use crate::state::JobState;
 use crate::turn::Turn;
@@ -28,7 +29,8 @@ impl Turn<'_> {
         });
         let tokens = input.saturating_add(output);
         let author = self.scenario(id).and_then(|scenario| scenario.spec.settings.get("author"));
-        let price = author.and_then(|author| price(&policy.prices, author)).unwrap_or_default();
+        let server = author.and_then(|author| asked_by(author));
+        let price = server.and_then(|server| price_of(&policy.prices, server)).unwrap_or_default();
         let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
         let money = u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX);
         let over = |spent: u64, limit: u64| limit > 0 && spent >= limit;
@@ -60,9 +62,9 @@ impl Turn<'_> {
     }
 }
 
-/// The price of an author: of `openai:gpt-4o`, or of `gpt-4o`; of an author that is recorded or replayed as of itself.
-fn price(prices: &BTreeMap<String, (u64, u64)>, author: &str) -> Option<(u64, u64)> {
-    let author = author.rsplit_once('=').map_or(author, |(_, author)| author);
-    let model = author.split_once(':').map_or(author, |(_, model)| model);
-    prices.get(author).or_else(|| prices.get(model)).copied()
+/// The price of a server with its model, `openai:gpt-4o`, or else of the model alone.
+#[must_use]
+pub fn price_of(prices: &BTreeMap<String, (u64, u64)>, server: &str) -> Option<(u64, u64)> {
+    let model = server.split_once(':').map_or(server, |(_, model)| model);
+    prices.get(server).or_else(|| prices.get(model)).copied()
 }

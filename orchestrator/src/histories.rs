@@ -31,7 +31,8 @@ impl Dice {
     }
 }
 
-const ALL: [Stage; 6] = crate::pipeline::ORDER;
+const ALL: [Stage; 6] =
+    [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation, Stage::Scoring];
 
 fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
     let faults = |dice: &mut Dice| {

@@ -45,6 +45,7 @@ mod rules;
 #[cfg(test)]
 mod world;
 
+pub use budget::price_of;
 pub use event::{Answer, Effect, Event, Row, Token};
 pub use fsck::fsck;
 pub use policy::Policy;

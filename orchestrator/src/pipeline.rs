@@ -20,10 +20,6 @@ pub const REFERENCE: &str = "reference";
 /// The planner that is no robot: the twin run.
 pub const NO_ROBOT: &str = "none";
 
-/// The stages in pipeline order.
-pub const ORDER: [Stage; 6] =
-    [Stage::Proposal, Stage::Review, Stage::Paths, Stage::Behaviors, Stage::Simulation, Stage::Scoring];
-
 /// The stages as they are handed out: later ones first, so that started scenarios get finished.
 pub const URGENCY: [Stage; 6] =
     [Stage::Scoring, Stage::Simulation, Stage::Behaviors, Stage::Paths, Stage::Review, Stage::Proposal];

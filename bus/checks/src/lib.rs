@@ -32,7 +32,7 @@ mod testing;
 
 pub use behaviors::check_behaviors;
 pub use proposal::check_proposal;
-pub use repeats::{Signature, check_repeats, signature};
+pub use repeats::{Likeness, Signature, check_repeats};
 pub use routes::check_paths;
 
 use socrates_model::{Behaviors, Fault, Location, Paths, Proposal, Reading};

@@ -10,24 +10,34 @@ const ALIKE: f64 = 0.9;
 /// What makes two scenarios the same kind of scenario: pattern, place, and how everybody stands to the robot's way.
 pub type Signature = (String, PlaceClass, Vec<Relation>);
 
-/// The signature of a proposal.
-#[must_use]
-pub fn signature(proposal: &Proposal) -> Signature {
-    let mut relations: Vec<Relation> = proposal.humans.iter().map(|human| human.relation).collect();
-    relations.sort_unstable();
-    (proposal.pattern.clone(), proposal.place, relations)
+/// What of a proposal is compared: taken once, however many it is compared with.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Likeness {
+    /// Its kind.
+    pub signature: Signature,
+    words: BTreeSet<String>,
 }
 
-/// P-DUP, a warning, where a proposal repeats the one of the scenario `id`: the same [`signature`], and more than nine tenths of
+impl Likeness {
+    /// The likeness of a proposal.
+    #[must_use]
+    pub fn of(proposal: &Proposal) -> Self {
+        let mut relations: Vec<Relation> = proposal.humans.iter().map(|human| human.relation).collect();
+        relations.sort_unstable();
+        Self { signature: (proposal.pattern.clone(), proposal.place, relations), words: words(&proposal.description) }
+    }
+}
+
+/// P-DUP, a warning, where a proposal repeats the one of the scenario `id`: the same [`Signature`], and more than nine tenths of
 /// the words of both descriptions in common (Jaccard index over lower-case words).
 #[must_use]
-pub fn check_repeats(proposal: &Proposal, id: &ScenarioId, earlier: &Proposal) -> Option<Fault> {
-    if signature(proposal) != signature(earlier) {
+pub fn check_repeats(proposal: &Likeness, id: &ScenarioId, earlier: &Likeness) -> Option<Fault> {
+    if proposal.signature != earlier.signature {
         return None;
     }
-    let (new, old) = (words(&proposal.description), words(&earlier.description));
+    let (new, old) = (&proposal.words, &earlier.words);
     #[expect(clippy::cast_precision_loss, reason = "words of a description")]
-    let (both, any) = (new.intersection(&old).count() as f64, new.union(&old).count() as f64);
+    let (both, any) = (new.intersection(old).count() as f64, new.union(old).count() as f64);
     if any == 0.0 || both <= ALIKE * any {
         return None;
     }
@@ -53,6 +63,9 @@ mod tests {
     fn the_same_again_is_a_repetition_and_another_place_or_story_is_none() {
         let id = ScenarioId::new("first").unwrap();
         let first = crossing_proposal();
+        let check_repeats = |new: &Proposal, id: &ScenarioId, earlier: &Proposal| {
+            check_repeats(&Likeness::of(new), id, &Likeness::of(earlier))
+        };
         let fault = check_repeats(&first, &id, &first).unwrap();
         assert_eq!(fault.code, FaultCode::PDup);
         assert!(fault.is_soft() && fault.message.contains("`first`: 100 %"), "{fault}");

@@ -2,8 +2,9 @@
 
 use socrates_model::{AgentId, Location, NodeId, Paths, Point};
 
-use crate::label::{Area, Labels, text_width, wrapped};
+use crate::label::{Area, Labels, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
+use crate::marks::{draw_arrow, draw_label, draw_legend, draw_line, legend_px};
 use crate::palette;
 use crate::svg::Svg;
 
@@ -23,16 +24,15 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
         std::iter::once(AgentId::Robot).chain(paths.humans.keys().copied().map(AgentId::Human)).collect();
     let way = |agent: AgentId| paths.of(agent).map(|nodes| location.graph.polyline(nodes)).unwrap_or_default();
     let all: Vec<Point> = agents.iter().flat_map(|agent| way(*agent)).collect();
-    let frame = Frame::focused(location, &all, 1160.0, 800.0, (20.0, HEAD_PX));
+    let mut frame = Frame::focused(location, &all, 1160.0, 800.0, (20.0, HEAD_PX));
     let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, HEAD_PX)).cells;
     let (w, h) = frame.size();
     let width = (w + 40.0).max(760.0);
     let head = if focused { 118.0 } else { HEAD_PX };
-    let frame = Frame::focused(location, &all, 1160.0, 800.0, (20.0, head));
-    #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-    let rows = agents.len().div_ceil(4) as f64;
-    let mut svg = Svg::new(width, head + h + 40.0 + rows * 24.0 + 14.0);
-    svg.rect((0.0, 0.0), (width, head + h + 40.0 + rows * 24.0 + 14.0), "fill=\"#ffffff\"");
+    frame.at.1 = head;
+    let height = head + h + 40.0 + legend_px(agents.len()) + 14.0;
+    let mut svg = Svg::new(width, height);
+    svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     let words = if focused {
         draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, (190.0, 96.0));
         width - 250.0
@@ -67,13 +67,14 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
     draw_encounters(&mut svg, location, &frame, paths, &mut labels);
     for (agent, line) in &lines {
         if let Some(start) = line.first() {
-            label(&mut svg, &mut labels, *start, &agent.to_string(), palette::agent_words(agent.number()), 15.0, 11.0);
+            let ink = (palette::agent_words(agent.number()), 15.0);
+            draw_label(&mut svg, &mut labels, *start, &agent.to_string(), ink, 11.0);
         }
     }
     for node in nodes_of(paths) {
         let Some(at) = location.graph.node(node).map(|node| frame.px(location, &node.at)) else { continue };
         svg.circle(at, 2.2, &format!("fill=\"{}\"", palette::QUIET));
-        label(&mut svg, &mut labels, at, node.as_str(), palette::QUIET, 12.0, 5.0);
+        draw_label(&mut svg, &mut labels, at, node.as_str(), (palette::QUIET, 12.0), 5.0);
     }
     svg.end_clip();
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
@@ -83,15 +84,10 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
         "ring: start · disc: end · diamond: encounter · small words: nodes",
         &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
-    for (index, agent) in agents.iter().enumerate() {
-        #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-        let (column, row) = ((index % 4) as f64, (index / 4) as f64);
-        let (x, y) = (27.0 + column * (width - 40.0) / 4.0, head + h + 54.0 + row * 24.0);
-        svg.circle((x, y - 5.0), 6.5, &format!("fill=\"{}\"", palette::agent(agent.number())));
-        let role = roles.iter().find(|(of, _)| of == agent).map(|(_, role)| format!(" ({role})")).unwrap_or_default();
-        let text = wrapped(&format!("{agent}{role}"), (width - 40.0) / 4.0 - 24.0, 15.0, 1).concat();
-        svg.heading((x + 13.0, y), &text, 15.0, palette::INK);
-    }
+    let role = |agent: &AgentId| roles.iter().find(|(of, _)| of == agent).map(|(_, role)| format!(" ({role})"));
+    let legend: Vec<(u32, String)> =
+        agents.iter().map(|agent| (agent.number(), format!("{agent}{}", role(agent).unwrap_or_default()))).collect();
+    draw_legend(&mut svg, &legend, width, head + h + 54.0);
     svg.finish()
 }
 
@@ -114,11 +110,7 @@ fn nodes_of(paths: &Paths) -> Vec<&NodeId> {
 }
 
 fn draw_way(svg: &mut Svg, line: &[(f64, f64)], color: &str) {
-    svg.polyline(line, "stroke=\"#ffffff\" stroke-width=\"6.5\" stroke-linejoin=\"round\" opacity=\"0.8\"");
-    svg.polyline(
-        line,
-        &format!("stroke=\"{color}\" stroke-width=\"3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\""),
-    );
+    draw_line(svg, line, color);
     let mut until = ARROWS_PX / 2.0;
     for pair in line.windows(2) {
         let [from, to] = pair else { continue };
@@ -129,12 +121,8 @@ fn draw_way(svg: &mut Svg, line: &[(f64, f64)], color: &str) {
         }
         let mut at = until;
         while at < length {
-            let (x, y) = (from.0 + dx * at / length, from.1 + dy * at / length);
-            svg.raw(&format!(
-                "<path d=\"M8 0L-6 6.5L-3 0L-6 -6.5z\" transform=\"translate({x:.1} {y:.1}) rotate({:.1})\" \
-                 fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>",
-                dy.atan2(dx).to_degrees()
-            ));
+            let place = (from.0 + dx * at / length, from.1 + dy * at / length);
+            draw_arrow(svg, place, dy.atan2(dx).to_degrees(), color);
             at += ARROWS_PX;
         }
         until = at - length;
@@ -166,11 +154,6 @@ fn draw_encounters(svg: &mut Svg, location: &Location, frame: &Frame, paths: &Pa
     }
 }
 
-fn label(svg: &mut Svg, labels: &mut Labels, at: (f64, f64), text: &str, color: &str, size_px: f64, gap: f64) {
-    let area = labels.place(at, (text_width(text, size_px) + 6.0, size_px + 3.0), gap);
-    svg.label((area.x + area.w / 2.0, area.y + size_px - 1.0), text, size_px, color);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -189,7 +172,7 @@ mod tests {
         assert_eq!(text.matches("<path").count(), 2, "{text}");
         let mut labels = Labels::within(Area { x: 0.0, y: 0.0, w: 100.0, h: 100.0 });
         let mut svg = Svg::part();
-        label(&mut svg, &mut labels, (10.0, 10.0), crate::fixture::EVIL, "#000000", 12.0, 5.0);
+        draw_label(&mut svg, &mut labels, (10.0, 10.0), crate::fixture::EVIL, ("#000000", 12.0), 5.0);
         assert!(!svg.text_so_far().contains("<script"));
     }
 }

@@ -22,6 +22,7 @@ pub mod gif;
 pub mod label;
 pub mod label_page;
 pub mod map_layer;
+mod marks;
 pub mod page;
 mod page_data;
 pub mod palette;

@@ -4,6 +4,7 @@ use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Repo
 
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
+use crate::marks::{draw_arrow, draw_label, draw_legend, draw_line, legend_px};
 use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
@@ -39,9 +40,7 @@ pub fn run_picture(
     let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, head)).cells;
     let (w, h) = frame.size();
     let width = (w + 40.0).max(760.0);
-    #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-    let rows = recording.header.agents.len().div_ceil(4) as f64;
-    let height = head + h + 40.0 + rows * 24.0 + 14.0;
+    let height = head + h + 40.0 + legend_px(recording.header.agents.len()) + 14.0;
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     let mut words = width - 40.0;
@@ -76,7 +75,14 @@ pub fn run_picture(
         if let Some(first) = recording.track(*agent).find(|state| there.is(state)) {
             let gap = radius_px(location, recording, &frame, *agent) + 3.0;
             let color = palette::agent_words(agent.number());
-            label(&mut svg, &mut labels, frame.px(location, &first.point()), &agent.to_string(), color, gap);
+            draw_label(
+                &mut svg,
+                &mut labels,
+                frame.px(location, &first.point()),
+                &agent.to_string(),
+                (color, 15.0),
+                gap,
+            );
         }
     }
     svg.end_clip();
@@ -88,19 +94,20 @@ pub fn run_picture(
         &format!("ring: start · disc: end · arrow: every {MARK_SECS:.0} s{more}"),
         &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
-    for (index, info) in recording.header.agents.iter().enumerate() {
-        #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-        let (column, row) = ((index % 4) as f64, (index / 4) as f64);
-        let (x, y) = (27.0 + column * (width - 40.0) / 4.0, head + h + 54.0 + row * 24.0);
-        svg.circle((x, y - 5.0), 6.5, &format!("fill=\"{}\"", palette::agent(info.agent.number())));
-        let text = if info.agent == AgentId::Robot {
-            format!("robot ({})", recording.header.planner)
-        } else {
-            format!("{} ({})", info.agent, info.role)
-        };
-        let text = wrapped(&text, (width - 40.0) / 4.0 - 24.0, 15.0, 1).concat();
-        svg.heading((x + 13.0, y), &text, 15.0, palette::INK);
-    }
+    let legend: Vec<(u32, String)> = recording
+        .header
+        .agents
+        .iter()
+        .map(|info| {
+            let text = if info.agent == AgentId::Robot {
+                format!("robot ({})", recording.header.planner)
+            } else {
+                format!("{} ({})", info.agent, info.role)
+            };
+            (info.agent.number(), text)
+        })
+        .collect();
+    draw_legend(&mut svg, &legend, width, head + h + 54.0);
     svg.finish()
 }
 
@@ -153,16 +160,9 @@ fn draw_track(
         }
     }
     labels.avoid_line(&line);
-    svg.polyline(&line, "stroke=\"#ffffff\" stroke-width=\"6.5\" stroke-linejoin=\"round\" opacity=\"0.8\"");
-    svg.polyline(
-        &line,
-        &format!("stroke=\"{color}\" stroke-width=\"3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\""),
-    );
-    for ((x, y), degrees) in marks {
-        svg.raw(&format!(
-            "<path d=\"M8 0L-6 6.5L-3 0L-6 -6.5z\" transform=\"translate({x:.1} {y:.1}) rotate({degrees:.1})\" \
-             fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>"
-        ));
+    draw_line(svg, &line, color);
+    for (at, degrees) in marks {
+        draw_arrow(svg, at, degrees, color);
     }
 }
 
@@ -213,11 +213,6 @@ fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, fr
             palette::human(human.number())
         ));
         labels.block(Area { x: x - 8.0, y: y - 8.0, w: 16.0, h: 16.0 });
-        label(svg, labels, (x, y), &format!("{:.1} s", event.time.secs()), palette::INK, 11.0);
+        draw_label(svg, labels, (x, y), &format!("{:.1} s", event.time.secs()), (palette::INK, 15.0), 11.0);
     }
-}
-
-fn label(svg: &mut Svg, labels: &mut Labels, at: (f64, f64), text: &str, color: &str, gap: f64) {
-    let area = labels.place(at, (text_width(text, 15.0) + 6.0, 18.0), gap);
-    svg.label((area.x + area.w / 2.0, area.y + 14.0), text, 15.0, color);
 }

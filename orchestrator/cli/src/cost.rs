@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde_json::{Value, json};
+use socrates_orchestrator::bucket::asked_by;
+use socrates_orchestrator::price_of;
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -138,16 +140,13 @@ pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>,
 /// A limit of money holds only where the author has a price.
 pub(crate) fn check_limit(config: &Config, author: &str) -> Result<(), Complaint> {
     let limit = config.number("orchestrator.cents_per_scenario");
-    let model = author.rsplit_once('=').map_or(author, |(_, author)| author);
-    let Some((_, name)) = model.split_once(':').filter(|(kind, _)| limit > 0 && *kind != "cassette") else {
-        return Ok(());
-    };
-    let prices = prices_of(config)?;
-    if prices.contains_key(model) || prices.contains_key(name) {
+    let Some(server) = asked_by(author).filter(|_| limit > 0) else { return Ok(()) };
+    if price_of(&prices_of(config)?, server).is_some() {
         return Ok(());
     }
+    let model = server.split_once(':').map_or(server, |(_, model)| model);
     Err(Complaint::input(
-        format!("`orchestrator.cents_per_scenario` is {limit}, but `{name}` has no price"),
+        format!("`orchestrator.cents_per_scenario` is {limit}, but `{model}` has no price"),
         "`author.prices` names a table of prices; a model without one would be asked without a limit",
     ))
 }
@@ -168,7 +167,6 @@ fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
     Ok(prices)
 }
 
-/// The folder itself where it is a bundle, else the bundles inside, in order of their names.
 /// The bundles among these folders and in them.
 pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
     let mut bundles = Vec::new();
@@ -185,6 +183,7 @@ pub(crate) fn bundles_in(what: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
     Ok(bundles)
 }
 
+/// The folder itself where it is a bundle, else the bundles inside, in order of their names.
 fn inside(path: &Path) -> Vec<PathBuf> {
     let is_bundle = |dir: &Path| dir.join("details/provenance.json").is_file();
     if is_bundle(path) {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
-use socrates_checks::{Signature, check_repeats, signature};
+use socrates_checks::{Likeness, Signature, check_repeats};
 use socrates_model::{Digest, Proposal, Reading, ScenarioId};
 
 use crate::args::RunOptions;
@@ -62,12 +62,13 @@ pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
 
 /// Finds scenarios that repeat earlier ones.
 #[derive(Debug, Default)]
-pub(crate) struct Repeats(BTreeMap<Signature, VecDeque<(ScenarioId, Proposal)>>);
+pub(crate) struct Repeats(BTreeMap<Signature, VecDeque<(ScenarioId, Likeness)>>);
 
 impl Repeats {
     /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
-    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: Proposal) -> Option<ScenarioId> {
-        let alike = self.0.entry(signature(&proposal)).or_default();
+    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: &Proposal) -> Option<ScenarioId> {
+        let proposal = Likeness::of(proposal);
+        let alike = self.0.entry(proposal.signature.clone()).or_default();
         let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
         if let Some((other, _)) = earlier {
             return Some(other.clone());

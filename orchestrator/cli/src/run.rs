@@ -245,7 +245,7 @@ async fn batch(
                 .map(|bundle| (bundle.manifest.verdict, bundle.proposal)),
         };
         let (verdict, repeats) = match made {
-            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, proposal)),
+            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal)),
             Err(why) => {
                 talk.warn(&format!("{}: {why}", want.id));
                 ("failed".to_owned(), None)

@@ -55,6 +55,16 @@ pub(super) enum About {
     Draft,
 }
 
+impl About {
+    /// Its place among the two looks.
+    pub(super) const fn number(self) -> u8 {
+        match self {
+            Self::Proposal => 1,
+            Self::Draft => 2,
+        }
+    }
+}
+
 /// One look at what was made.
 #[derive(Debug, Clone)]
 pub(super) struct Look {
@@ -98,8 +108,7 @@ pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> R
     talk.greet(before.as_ref());
     talk.person.keep(talk.log)?;
     loop {
-        let number = if look.about == About::Proposal { 1 } else { 2 };
-        let Some(line) = talk.person.ask(&format!("look {number}> ")) else { return Ok(None) };
+        let Some(line) = talk.person.ask(&format!("look {}> ", look.about.number())) else { return Ok(None) };
         if !line.trim().is_empty() {
             talk.log.said.push(line.trim().to_owned());
         }
@@ -152,10 +161,11 @@ impl Conversation<'_> {
     /// The first words of a look.
     fn greet(&mut self, before: Option<&Version>) {
         let about = match self.look.about {
-            About::Proposal => "look 1 of 2  the proposal",
-            About::Draft => "look 2 of 2  paths and behaviors",
+            About::Proposal => "the proposal",
+            About::Draft => "paths and behaviors",
         };
-        self.say(Tone::Head, &format!("{about}, by {}", self.look.author));
+        let number = self.look.about.number();
+        self.say(Tone::Head, &format!("look {number} of 2  {about}, by {}", self.look.author));
         for reason in &self.look.reasons.clone() {
             let words = if reason.code == FaultCode::PPerson { reason.message.clone() } else { reason.to_string() };
             self.all(Tone::Quiet, &named("because", &words));

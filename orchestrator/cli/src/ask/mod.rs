@@ -52,7 +52,7 @@ pub(crate) struct Asking {
 /// How a person left.
 #[derive(Debug, Clone)]
 struct Left {
-    look: &'static str,
+    look: u8,
     /// What went wrong; empty where the person wanted to leave.
     why: String,
 }
@@ -89,8 +89,7 @@ impl Asking {
                     Ok(None) => String::new(),
                     Err(complaint) => complaint.to_string(),
                 };
-                let look = if look.about == About::Proposal { "look 1" } else { "look 2" };
-                leave.send_replace(Some(Left { look, why }));
+                leave.send_replace(Some(Left { look: look.about.number(), why }));
                 return;
             }
         });
@@ -127,8 +126,11 @@ impl Asking {
         };
         let Some(left) = left else { return std::future::pending().await };
         if left.why.is_empty() {
-            Complaint::input(format!("left at {}; nothing is lost", left.look), "the same command comes back to it")
-                .with_code(Code::Waits)
+            Complaint::input(
+                format!("left at look {}; nothing is lost", left.look),
+                "the same command comes back to it",
+            )
+            .with_code(Code::Waits)
         } else {
             Complaint::input(left.why, "").with_code(Code::Ours)
         }

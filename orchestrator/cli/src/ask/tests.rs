@@ -72,14 +72,12 @@ impl Person for Script {
 fn look(about: About) -> Look {
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
     let prepared = prepare_text("look", REQUEST, "look", Path::new("."), Some(&RunOptions::plain(1)), &config).unwrap();
-    let mut question =
-        Question::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), 1);
+    let question = Question::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), 1);
     let proposal = parse_proposal(&Offline::answer(&question), &question).unwrap();
     let asked = Question { proposal: Some(proposal.clone()), ..question.clone() };
     let draft = about == About::Draft;
     let paths = Question { stage: Stage::Paths, ..asked.clone() };
     let behaviors = Question { stage: Stage::Behaviors, ..asked };
-    question.proposal = None;
     Look {
         job: format!("look {about:?}"),
         about,
