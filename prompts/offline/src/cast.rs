@@ -153,7 +153,10 @@ impl Cast {
                 let fitting =
                     |set: &[usize]| set.len() == wanted && set.iter().all(|i| self.fits(*i, mention.role.as_ref()));
                 let total = self.sets.iter().find(|set| set.total && set.members.len() != wanted);
-                if let Some(set) = total.filter(|_| mention.role.is_none()) {
+                let same = |set: &Together| {
+                    mention.role.is_none() || set.members.iter().all(|i| self.fits(*i, mention.role.as_ref()))
+                };
+                if let Some(set) = total.filter(|set| same(set)) {
                     let (members, first) = (set.members.clone(), set.quote.clone());
                     self.problems.push(Fault::new(
                         FaultCode::PContra,
@@ -186,11 +189,24 @@ impl Cast {
                 {
                     return if *n == 0 { (*latter).clone() } else { (*former).clone() };
                 }
+                self.beyond(*n, quote);
                 let set = self.latest();
                 let index = if *n == 0 { set.last() } else { set.get(usize::try_from(n - 1).unwrap_or(usize::MAX)) };
                 index.copied().map_or_else(|| self.join(1, mention, false, quote), |i| vec![i])
             }
+            Who::Some { first, count } => {
+                let set = self.latest();
+                let wanted = usize::try_from(*count).unwrap_or(usize::MAX);
+                if wanted > set.len() {
+                    self.join(*count, mention, declares, quote)
+                } else if *first {
+                    set.into_iter().take(wanted).collect()
+                } else {
+                    set.iter().skip(set.len() - wanted).copied().collect()
+                }
+            }
             Who::Number(n) => {
+                self.beyond(*n, quote);
                 let wanted = usize::try_from((*n).max(1)).unwrap_or(usize::MAX);
                 if wanted > self.people.len() {
                     let missing = u32::try_from(wanted - self.people.len()).unwrap_or(u32::MAX);
@@ -245,6 +261,7 @@ impl Cast {
                     | Who::Further(_)
                     | Who::Other(_)
                     | Who::Ordinal(_)
+                    | Who::Some { .. }
                     | Who::Number(_)
                     | Who::More(_)
             );
@@ -263,6 +280,22 @@ impl Cast {
             }
         }
         found
+    }
+
+    /// The third of exactly two, said of everybody who is there.
+    fn beyond(&mut self, n: u32, quote: &str) {
+        let last = self.sets.iter().rev().find(|set| set.members.len() > 1).filter(|set| set.total);
+        let Some((first, members)) = last
+            .filter(|set| usize::try_from(n).is_ok_and(|n| n > set.members.len()) && set.members.len() == self.people.len())
+            .map(|set| (set.quote.clone(), set.members.len()))
+        else {
+            return;
+        };
+        self.problems.push(Fault::new(
+            FaultCode::PContra,
+            "rough_scenario",
+            format!("`{first}` gives {members} humans, but `{quote}` speaks of one more; correct one of the two"),
+        ));
     }
 
     /// Whom `he` or `she` means: one of those spoken of last whom the word fits.

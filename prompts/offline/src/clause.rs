@@ -244,6 +244,15 @@ fn echoes(stretch: &mut Stretch) -> bool {
         |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue" | "order");
     let at = (0..count).find(|k| {
         matches!(text(*k), "this" | "that" | "the" | "his" | "her" | "its" | "such") && noun(k + 1)
+            // `once it has said that`, `as soon as she does so`, `if it does ask`
+            || matches!(text(*k), "so" | "that" | "this")
+                && k + 1 == count
+                && *k > 0
+                && matches!(stem(k - 1), "do" | "say" | "ask" | "signal" | "request" | "tell")
+            || matches!(stem(*k), "ask" | "say" | "signal" | "request" | "tell" | "gesture")
+                && *k > 0
+                && stem(k - 1) == "do"
+                && k + 2 >= count
             || matches!(text(*k), "that" | "this")
                 && k + 1 == count
                 && *k > 0
@@ -284,6 +293,11 @@ fn negated(stretch: &Stretch, at: usize) -> bool {
             || before(back) == "of" && before(back + 1) == "instead"
             || before(back) == "than" && before(back + 1) == "rather"
     }) || (0..at).any(|i| stretch.words.get(i).is_some_and(|word| matches!(word.text.as_str(), "neither" | "none")))
+        // `at no point does she look`
+        || (0..at).any(|i| {
+            let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+            text(i) == "no" && matches!(text(i + 1), "point" | "time" | "moment" | "circumstances" | "way" | "case")
+        })
 }
 
 fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &[bool]) {
@@ -325,6 +339,18 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                         && mention.from < first
                         && mention.role.as_deref() == stretch.words.get(first).map(|word| word.stem.as_str())
                 });
+            // `staring at his phone` sees no robot.
+            let aside = phrase.means == Act::Look && aside(stretch, last);
+            if aside {
+                mark_each(stretch, &at);
+                for i in &at {
+                    if let Some(flag) = taken.get_mut(*i) {
+                        *flag = true;
+                    }
+                }
+                found.deeds.push(Deed { act: Act::Ignore, at: first, to: last, negated: false });
+                continue;
+            }
             let of_place = noun
                 || elsewhere
                 || apart
@@ -366,7 +392,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
     });
     let follows = has(&[Act::Follow]);
     let stands = has(&[Act::Block, Act::Look]);
+    let rear = stretch.words.iter().any(|word| matches!(word.text.as_str(), "behind" | "rear"));
     let keep = |deed: &Deed| match deed.act {
+        // `walks behind the robot in the same direction`, `across the intersection in front of it`
+        Act::Ahead => !(follows || has(&[Act::Behind]) && rear || has(&[Act::Cross])),
+        // `walks past it in the opposite direction`
+        Act::Overtake => rear || !has(&[Act::Toward]),
         // `a curious visitor follows` goes after the robot, not up to it.
         Act::Approach if follows => !directed && deed.at != deed.to,
         Act::Approach => !directed,
@@ -378,10 +409,8 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
         | Act::Block
         | Act::Look
         | Act::Toward
-        | Act::Overtake
         | Act::Behind
         | Act::Abreast
-        | Act::Ahead
         | Act::Follow
         | Act::Cross
         | Act::ComeOut
@@ -396,6 +425,17 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
     };
     let kept = found.deeds.iter().copied().filter(keep).collect();
     found.deeds = kept;
+}
+
+/// Whether somebody looks at a thing that he holds or passes, and not at the robot: `at his phone`.
+fn aside(stretch: &Stretch, last: usize) -> bool {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let from = if matches!(text(last), "at" | "into" | "out" | "on" | "down") { last } else { last + 1 };
+    let to = from + usize::from(matches!(text(from), "down" | "up" | "intently" | "only" | "straight"));
+    matches!(text(to), "at" | "into" | "out" | "on")
+        && (to + 1..to + 5)
+            .take_while(|k| stretch.words.get(*k).is_some_and(|word| word.stem != "robot"))
+            .any(|k| matches!(text(k), "phone" | "smartphone" | "mobile" | "tablet" | "watch" | "screen" | "display" | "book" | "newspaper" | "magazine" | "clipboard" | "map" | "laptop" | "shoes" | "feet" | "floor" | "ground" | "papers" | "paper" | "notes" | "poster" | "ceiling" | "file" | "list" | "chart" | "charts"))
 }
 
 /// `walks four meters in front`, `…, a few steps in front of it`: ahead of the robot.

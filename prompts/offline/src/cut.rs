@@ -1,5 +1,6 @@
 //! Words into sentences and clauses.
 
+use crate::headings::{described, labels, titled};
 use crate::arrange::arranged;
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
@@ -66,112 +67,16 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
                 words.push(None);
                 colon = true;
             }
-            Piece::Stop => found.push(arranged(stretches(settled(std::mem::take(&mut words))))),
-        }
-    }
-    found.push(arranged(stretches(settled(words))));
-    found.retain(|sentence| !sentence.is_empty());
-    found
-}
-
-/// What a heading speaks of.
-const HEADS: &[&str] =
-    &["scenario", "test", "condition", "case", "study", "experiment", "trial", "setup", "run", "variant", "setting"];
-
-/// Headings that say nothing by themselves.
-const LISTS: &[&str] = &[
-    "participants",
-    "participant",
-    "people",
-    "persons",
-    "humans",
-    "human",
-    "agents",
-    "actors",
-    "roles",
-    "who",
-    "and",
-    "pedestrians",
-];
-
-/// A number right before a colon names what comes: `test case 14:`, `study 2:`, `scenario for 3 planners:`.
-fn labels(words: &mut [Option<Word>]) {
-    let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
-    let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
-    let whole = words.iter().skip(start).flatten();
-    let list = |word: &Word| {
-        LISTS.contains(&word.text.as_str()) || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
-    };
-    if whole.clone().count() <= 2 && whole.clone().all(list) {
-        for word in words.iter_mut().skip(start).flatten() {
-            (word.label, word.used) = (true, true);
-        }
-    }
-    let purpose = words.iter().skip(start).position(|word| word.as_ref().is_some_and(|word| word.text == "for"));
-    if let Some(purpose) = purpose.filter(|_| heading) {
-        for word in words.iter_mut().skip(start + purpose).flatten() {
-            word.label = true;
-        }
-    }
-    if let [.., Some(noun), Some(number)] = words
-        && number.count().is_some()
-        && !lexicon().verbs.contains(&noun.stem)
-        && !lexicon().roles.contains_key(&noun.stem)
-    {
-        number.label = true;
-    }
-}
-
-/// Words before the robot's name that only describe it: `the little delivery robot`.
-const OF_ROBOT: &[&str] = &[
-    "delivery",
-    "mobile",
-    "service",
-    "little",
-    "small",
-    "big",
-    "large",
-    "white",
-    "approaching",
-    "moving",
-    "passing",
-    "cleaning",
-    "transport",
-    "autonomous",
-    "new",
-    "slow",
-    "waiting",
-    "stopped",
-    "humanoid",
-    "guide",
-    "hospital",
-    "office",
-    "warehouse",
-    "logistics",
-    "mail",
-    "coming",
-    "incoming",
-    "same",
-    "strange",
-    "stationary",
-    "social",
-    "assistive",
-];
-
-/// Marks what only describes the robot.
-fn described(words: &mut [Option<Word>]) {
-    for at in 1..words.len() {
-        let named = |word: &Word| word.stem == "robot" && !matches!(word.text.as_str(), "it" | "its" | "itself");
-        if !words.get(at).and_then(Option::as_ref).is_some_and(named) {
-            continue;
-        }
-        for back in (0..at).rev() {
-            match words.get_mut(back) {
-                Some(Some(word)) if OF_ROBOT.contains(&word.text.as_str()) => (word.label, word.used) = (true, true),
-                Some(_) | None => break,
+            Piece::Stop => {
+                titled(&mut words);
+                found.push(arranged(stretches(settled(std::mem::take(&mut words)))));
             }
         }
     }
+    titled(&mut words);
+    found.push(arranged(stretches(settled(words))));
+    found.retain(|sentence| !sentence.is_empty());
+    found
 }
 
 /// Words with which people take back a number that they have just given.
@@ -318,6 +223,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     let seeing = |k: usize| (sees(k) || stem(k) == "hear") && text(k).ends_with("ing");
     let counted = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     match text(i) {
+        "and" if text(i + 1) == "a" && text(i + 2) == "half" => (None, 1),
+        "at" if text(i + 1) == "that" && matches!(text(i + 2), "he" | "she" | "they" | "it") => (Some(Joint::Said), 2),
+        "having" if opens && matches!(stem(i + 1), "reach" | "arrive") => (Some(Joint::When), 1),
         "and" => (Some(Joint::And), 1),
         // `all but two`, `all except one`, `everyone save two`
         "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),
@@ -350,7 +258,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
             if text(i) != "so"
-                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly") =>
+                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly" | "much") =>
         {
             (Some(Joint::Comma), 1)
         }

@@ -158,7 +158,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         |person: &Person| person.relation.is_some() || person.doings.iter().any(|doing| doing.starts_with("walks"));
     let person = cast.people.get(who);
     // `when 4 m away they form a line`: they came from where they came.
-    let then = relation(act) == Some(Relation::Static)
+    let then = matches!(relation(act), Some(Relation::Static | Relation::Ahead))
         && around.trigger.is_some()
         && person.is_some_and(|person| person.relation.is_some());
     let on_the_way = act == Act::Talk && person.is_some_and(walks) || then;
@@ -177,7 +177,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
             matches!(
                 trigger,
                 Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped | Trigger::AfterSecs(_)
-            )
+            ) || act == Act::GoOn && *trigger == Trigger::RobotMoving
         };
         if let Some(trigger) = around.trigger.clone().filter(answers) {
             walk_on(cast, who, trigger, &around.quote);

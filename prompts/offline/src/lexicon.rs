@@ -53,6 +53,8 @@ pub(crate) enum Cue {
     /// What was said before.
     Echo,
     Goal,
+    /// Where they meet.
+    Meet,
 }
 
 /// A word for people.

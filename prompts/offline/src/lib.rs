@@ -61,6 +61,7 @@ mod edit_wish;
 
 mod answer;
 mod draw;
+mod headings;
 mod humans;
 mod mended;
 mod routes;

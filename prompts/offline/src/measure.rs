@@ -16,6 +16,11 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
         else {
             continue;
         };
+        // `one and a half meters`
+        let half = |k: usize| {
+            ["and", "a", "half"].iter().enumerate().all(|(n, word)| stretch.words.get(k + n).is_some_and(|at| at.text == *word))
+        };
+        let (number, i) = if half(i + 1) { (number + 0.5, i + 3) } else { (number, i) };
         // `a couple of meters`
         let of = stretch.words.get(i + 1).is_some_and(|word| word.text == "of");
         let unit_at = i + 1 + usize::from(of && !stretch.words.get(i).is_some_and(|word| word.is_digits()));
@@ -84,7 +89,14 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
         });
         if let Some(at) = at {
             let half = at >= 2 && text(at - 2) == "half";
-            found.distance_m = Some(if half { 0.5 } else { 1.0 });
+            let more = text(at + 1) == "and" && text(at + 2) == "a" && text(at + 3) == "half";
+            found.distance_m = Some(if half {
+                0.5
+            } else if more {
+                1.5
+            } else {
+                1.0
+            });
             found.distance_is_when = true;
             mark(stretch, at, at);
         }

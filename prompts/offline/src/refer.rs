@@ -68,7 +68,22 @@ pub(crate) fn others(
                 _ => None,
             };
             let number = lex.ordinals.get(word).copied().or_else(|| named(word))?;
+            // `the first two`, `the last two of them`
+            if the == 1
+                && number <= 1
+                && word != "former"
+                && word != "latter"
+                && let Some(some) = count(at + 2).filter(|some| *some > 1)
+            {
+                let of = text(at + 3) == "of" && matches!(text(at + 4), "them" | "these" | "those");
+                let end = noun(words, at + 3, lex).filter(|_| !of).unwrap_or(if of { at + 4 } else { at + 2 });
+                return made(Who::Some { first: number == 1, count: some }, role(end).filter(|_| !of), end);
+            }
             let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
+            // `the last of them`
+            if text(start) == "of" && matches!(text(start + 1), "them" | "these" | "those") {
+                return made(Who::Ordinal(number), None, start + 1);
+            }
             if text(start) == "of"
                 && let Some(of) = count(start + 1).filter(|of| *of >= number.max(1))
                 && let Some(end) = noun(words, start + 2, lex)

@@ -272,8 +272,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         acts.sort_by_key(|(_, at, _, _)| *at);
     }
     for (act, at, to, negated) in acts {
-        let passive = stretch.words.get(to + 1).is_some_and(|word| word.text == "by")
-            && meant.iter().any(|(from, _, _)| *from > to);
+        // `is overtaken by a visitor`, `is overtaken in the corridor by a visitor`
+        let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+        let being = at.checked_sub(1).is_some_and(|k| stretch.words.get(k).is_some_and(|word| word.stem == "be"));
+        let by = (to + 1..to + if being { 7 } else { 2 }).find(|k| text(*k) == "by");
+        let passive = by.is_some_and(|by| meant.iter().any(|(from, _, _)| *from > by));
         // `is overtaken by the robot`: whom the robot overtakes stands before the verb.
         let by_robot = !passive && done_by_robot(stretch, act, at, to);
         let object: Vec<usize> = if by_robot {
@@ -304,6 +307,15 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 // `robot stops, worker stops`
                 if thread.waiting.is_none() && next == Some(Joint::Comma) && act == Act::Stop && !negated {
                     (thread.waiting, thread.vague) = (Some(Trigger::RobotStopped), false);
+                }
+                // `a nurse with a trolley and the robot meet head-on`
+                if act == Act::Toward
+                    && stretch.joint == Joint::And
+                    && let Subject::People(people) = &previous
+                {
+                    for who in people {
+                        deed::relate(&mut story.cast, *who, socrates_model::Relation::Frontal, quote);
+                    }
                 }
                 robot_deed(story, act, &found, &object, quote);
                 // `The robot asks to be let through and the first one gives way`: what comes next answers it.

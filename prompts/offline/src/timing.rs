@@ -26,6 +26,7 @@ pub(crate) fn trigger(cue: Cue, found: &Found, thread: &Thread) -> Option<Trigge
         Cue::Stopped => Trigger::RobotStopped,
         Cue::Moving => Trigger::RobotMoving,
         Cue::Goal => Trigger::GoalReached,
+        Cue::Meet => Trigger::AtEncounter,
         Cue::Says => found.gesture.map_or(Trigger::RobotNear(3.0), Trigger::RobotSays),
         Cue::Told | Cue::Echo => thread.said.clone()?,
     })

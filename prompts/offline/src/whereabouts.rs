@@ -11,6 +11,7 @@ use crate::story::{Story, Subject};
 /// Words before a place that make it the end of a way, its beginning, or what somebody stands beside.
 const TO: &[&str] = &["to", "towards", "toward", "for", "into", "reach", "reaches", "is", "be"];
 const FROM: &[&str] = &["from", "leaves", "leave", "leaving", "of"];
+const IN: &[&str] = &["in", "inside", "at", "from", "outside"];
 const BESIDE: &[&str] = &["at", "by", "near", "outside", "beside", "before", "front", "for", "facing"];
 
 /// What a place has to do with the clause that names it.
@@ -143,6 +144,7 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
                 | "set"
                 | "run"
                 | "proceed"
+                | "begin"
         )
     };
     let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
@@ -150,7 +152,11 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
     let along = people
         && robot
         && found.deeds.iter().any(|deed| matches!(deed.act, Act::Follow | Act::Abreast | Act::Behind) && deed.at < at);
-    if (own || along) && before(at, stretch, TO) {
+    // `starts in a room`
+    let starts = (0..at).rev().find(|k| moves(*k)).is_some_and(|k| matches!(stem(k), "start" | "begin" | "set"));
+    if own && starts && before(at, stretch, IN) {
+        Part::Start
+    } else if (own || along) && before(at, stretch, TO) {
         Part::Goal
     } else if own && before(at, stretch, FROM) {
         Part::Start

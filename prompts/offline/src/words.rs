@@ -83,7 +83,23 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 }
                 i += 1;
             }
-            out.push(Piece::Word(Word { label: clock, ..word(digits, byte(start), byte(i)) }));
+            // `2.3.1`, `#882`, `R-31` and `4B` name something.
+            let version = at(i) == Some('.') && at(i + 1).is_some_and(|d| d.is_ascii_digit());
+            while version && at(i).is_some_and(|c| c == '.' && at(i + 1).is_some_and(|d| d.is_ascii_digit()) || c.is_ascii_digit()) {
+                i += 1;
+            }
+            let back = |k: usize| start.checked_sub(k).and_then(&at);
+            let tagged = back(1) == Some('#') || back(1) == Some('-') && back(2).is_some_and(char::is_uppercase);
+            let lettered = at(i).is_some_and(|c| c.is_uppercase() && c != 'M' && c != 'S')
+                && !at(i + 1).is_some_and(char::is_alphanumeric);
+            let label = clock || version || tagged || lettered;
+            out.push(Piece::Word(Word { label, ..word(digits, byte(start), byte(i)) }));
+            i += usize::from(lettered);
+        } else if let Some(mark) = listed(&at, i, out.last()) {
+            out.push(Piece::Stop);
+            i = mark;
+        } else if let Some(end) = identifier(&at, i) {
+            i = end;
         } else if c.is_alphabetic() {
             let start = i;
             while at(i).is_some_and(char::is_alphabetic) {
@@ -95,6 +111,12 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 && at(i).is_some_and(|c| c.is_ascii_digit())
             {
                 i += 1;
+            }
+            let name: String = chars.get(start..i).unwrap_or_default().iter().map(|(_, c)| c.to_ascii_lowercase()).collect();
+            if let Some(number) = name.strip_prefix("ped").filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
+                out.push(Piece::Word(word("pedestrian".to_owned(), byte(start), byte(i))));
+                out.push(Piece::Word(word(number.to_owned(), byte(start), byte(i))));
+                continue;
             }
             let lower: String =
                 chars.get(start..i).unwrap_or_default().iter().flat_map(|(_, c)| c.to_lowercase()).collect();
@@ -112,6 +134,13 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 '.' | '!' | '?' | ';' => out.push(Piece::Stop),
                 ':' => out.push(Piece::Colon),
                 ',' | '(' | ')' | '[' | ']' | '–' | '—' | '•' => out.push(Piece::Comma),
+                '|' => out.push(Piece::Stop),
+                '/' if at(i + 1).is_some_and(char::is_whitespace) => out.push(Piece::Stop),
+                '+' if at(i + 1).is_some_and(char::is_whitespace) => {
+                    out.push(Piece::Word(word("and".to_owned(), byte(i), byte(i + 1))));
+                }
+                '>' => out.push(Piece::Comma),
+                '-' if at(i + 1) == Some('-') => out.push(Piece::Comma),
                 '\n' if at(i + 1) == Some('\n') => out.push(Piece::Stop),
                 '-' if at(i + 1).is_some_and(char::is_whitespace) => out.push(Piece::Comma),
                 _ => {}
@@ -120,6 +149,28 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
         }
     }
     out
+}
+
+/// `(1)`, `(b)` and `2)` before an item of a list: where the item begins.
+fn listed(at: &dyn Fn(usize) -> Option<char>, i: usize, before: Option<&Piece>) -> Option<usize> {
+    if at(i) != Some('(') || matches!(before, Some(Piece::Word(_))) {
+        return None;
+    }
+    let number = (i + 1..i + 3).take_while(|k| at(*k).is_some_and(|c| c.is_ascii_digit())).count();
+    let letter = usize::from(number == 0 && at(i + 1).is_some_and(|c| c.is_ascii_lowercase()));
+    let end = i + 1 + number + letter;
+    if number + letter > 0 && at(end) == Some(')') { Some(end + 1) } else { None }
+}
+
+/// `TC_PED_07`: the name of something else than a person; where it ends.
+fn identifier(at: &dyn Fn(usize) -> Option<char>, i: usize) -> Option<usize> {
+    if !at(i).is_some_and(char::is_uppercase) {
+        return None;
+    }
+    let end = (i..).find(|k| !at(*k).is_some_and(|c| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_'))?;
+    let inside = |wanted: &dyn Fn(char) -> bool| (i..end).any(|k| at(k).is_some_and(wanted));
+    let joined = inside(&|c| c == '_') && inside(&|c| c.is_ascii_digit());
+    if joined && !at(end).is_some_and(char::is_alphabetic) { Some(end) } else { None }
 }
 
 /// Pushes a word and what its apostrophe hides (`don't` is `do not`, `robot's` is `robot`); says how many characters it took.

@@ -1,0 +1,164 @@
+//! Headings and labels: words and numbers that name something and count nobody.
+
+use crate::lexicon::lexicon;
+use crate::words::Word;
+
+/// What a heading speaks of.
+const HEADS: &[&str] = &[
+    "scenario", "test", "condition", "case", "study", "experiment", "trial", "setup", "run", "variant", "setting",
+    "criterion", "requirement", "protocol", "pilot", "session", "block", "item", "feature", "bug", "issue", "ticket",
+    "step", "manipulation", "paradigm", "script", "note", "outline", "expected", "input", "check", "task",
+    "benchmark", "reproduction", "acceptance", "phase", "part",
+];
+
+/// Words that count no people, but how often, how long ago or what hour it is.
+const COUNTED: &[&str] = &[
+    "runs", "times", "trials", "tries", "attempts", "repetitions", "repeats", "episodes", "cases", "percent", "years", "days",
+    "weeks", "months", "am", "pm", "oclock", "degrees", "points", "conditions", "sessions", "blocks", "sentences", "steps",
+];
+
+/// Headings that say nothing by themselves.
+const LISTS: &[&str] = &[
+    "participants",
+    "participant",
+    "people",
+    "persons",
+    "humans",
+    "human",
+    "agents",
+    "actors",
+    "roles",
+    "who",
+    "and",
+    "pedestrians",
+];
+
+/// `Turn-taking, block 2, trial 14.`: a title without anybody in it counts nothing; nor do `10 of 10 runs`.
+pub(crate) fn titled(words: &mut [Option<Word>]) {
+    let all = || words.iter().flatten();
+    let head = |word: &Word| HEADS.contains(&word.text.as_str());
+    let somebody = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot" || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who");
+    if all().count() <= 9 && all().any(head) && !all().any(somebody) {
+        for word in words.iter_mut().flatten() {
+            (word.label, word.used) = (true, true);
+        }
+        return;
+    }
+    let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    let number = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
+    let mut labels = Vec::new();
+    for at in 0..words.len() {
+        // `half past three`
+        if text(at) == "past" && number(at + 1) {
+            labels.extend([at.saturating_sub(1), at + 1]);
+        }
+        if !number(at) {
+            continue;
+        }
+        let of = text(at + 1) == "of" && number(at + 2);
+        let noun = at + if of { 3 } else { 1 };
+        let several = words.get(at).and_then(Option::as_ref).and_then(Word::count).is_some_and(|n| n > 1);
+        if several && COUNTED.contains(&text(noun)) {
+            labels.extend([at, noun]);
+            labels.extend(Some(at + 2).filter(|_| of));
+        }
+    }
+    for at in labels {
+        if let Some(Some(word)) = words.get_mut(at) {
+            (word.label, word.used) = (true, true);
+        }
+    }
+}
+
+/// A number right before a colon names what comes: `test case 14:`, `study 2:`, `scenario for 3 planners:`.
+pub(crate) fn labels(words: &mut [Option<Word>]) {
+    let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
+    let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
+    let whole = words.iter().skip(start).flatten();
+    let person = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot";
+    let counts = |word: &Word| word.count().is_some() || matches!(word.text.as_str(), "one" | "someone" | "somebody");
+    let placed = whole.clone().next().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
+    // `Explicit signalling condition:`, `Reproduction steps for #882:` name what comes, and nobody in it.
+    if !placed && (heading || !whole.clone().any(person)) && !whole.clone().any(|word| person(word) && counts(word)) && (heading || !whole.clone().any(counts)) {
+        let people = whole.clone().any(|word| person(word) && word.stem != "robot");
+        if !people {
+            for word in words.iter_mut().skip(start).flatten() {
+                (word.label, word.used) = (true, true);
+            }
+            return;
+        }
+    }
+    let list = |word: &Word| {
+        LISTS.contains(&word.text.as_str()) || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
+    };
+    if whole.clone().count() <= 2 && whole.clone().all(list) {
+        for word in words.iter_mut().skip(start).flatten() {
+            (word.label, word.used) = (true, true);
+        }
+    }
+    let purpose = words.iter().skip(start).position(|word| word.as_ref().is_some_and(|word| word.text == "for"));
+    if let Some(purpose) = purpose.filter(|_| heading) {
+        for word in words.iter_mut().skip(start + purpose).flatten() {
+            word.label = true;
+        }
+    }
+    if let [.., Some(noun), Some(number)] = words
+        && number.count().is_some()
+        && !lexicon().verbs.contains(&noun.stem)
+        && !lexicon().roles.contains_key(&noun.stem)
+    {
+        number.label = true;
+    }
+}
+
+/// Words before the robot's name that only describe it: `the little delivery robot`.
+const OF_ROBOT: &[&str] = &[
+    "delivery",
+    "mobile",
+    "service",
+    "little",
+    "small",
+    "big",
+    "large",
+    "white",
+    "approaching",
+    "moving",
+    "passing",
+    "cleaning",
+    "transport",
+    "autonomous",
+    "new",
+    "slow",
+    "waiting",
+    "stopped",
+    "humanoid",
+    "guide",
+    "hospital",
+    "office",
+    "warehouse",
+    "logistics",
+    "mail",
+    "coming",
+    "incoming",
+    "same",
+    "strange",
+    "stationary",
+    "social",
+    "assistive",
+];
+
+/// Marks what only describes the robot.
+pub(crate) fn described(words: &mut [Option<Word>]) {
+    for at in 1..words.len() {
+        let named = |word: &Word| word.stem == "robot" && !matches!(word.text.as_str(), "it" | "its" | "itself");
+        if !words.get(at).and_then(Option::as_ref).is_some_and(named) {
+            continue;
+        }
+        for back in (0..at).rev() {
+            match words.get_mut(back) {
+                Some(Some(word)) if OF_ROBOT.contains(&word.text.as_str()) => (word.label, word.used) = (true, true),
+                Some(_) | None => break,
+            }
+        }
+    }
+}
