@@ -70,6 +70,8 @@ pub(crate) struct Cast {
     pub(crate) count_quote: Option<String>,
     /// Somebody was said not to be there.
     pub(crate) nobody: Option<String>,
+    /// Names that the text gives to people.
+    pub(crate) names: std::collections::BTreeSet<String>,
     /// A colon stood before: what comes lists those who are there.
     pub(crate) listing: bool,
     overflow: bool,
@@ -509,6 +511,22 @@ impl Cast {
             let last = self.groups.last().map(|(_, members, _)| members);
             if let Some(members) = named.clone().find(fits).or_else(|| last.filter(|_| wanted.is_none())) {
                 return members.clone();
+            }
+        }
+        // `Two students come. Mia moves aside, Ben does not.`
+        if mention.word == "name"
+            && let Some(name) = &mention.role
+            && !self.people.iter().any(|person| person.name.as_ref() == Some(name) || person.role == *name)
+        {
+            let nameless = |i: &usize| {
+                self.people.get(*i).is_some_and(|person| person.name.is_none() && (person.role.is_empty() || lexicon().roles.contains_key(&person.role)))
+            };
+            let set = self.sets.iter().rev().find(|set| set.members.len() > 1 && set.members.len() == self.names.len());
+            if let Some(who) = set.and_then(|set| set.members.iter().copied().find(nameless)) {
+                if let Some(person) = self.people.get_mut(who) {
+                    person.name = Some(name.clone());
+                }
+                return vec![who];
             }
         }
         let called = self.people.iter().position(|person| mention.role.is_some() && person.name == mention.role);

@@ -1,6 +1,6 @@
 //! Words into sentences and clauses.
 
-use crate::headings::{described, labels, titled};
+use crate::headings::{described, labels, names, titled, totals};
 use crate::arrange::arranged;
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
@@ -56,7 +56,10 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut found = Vec::new();
     let mut words: Vec<Option<Word>> = Vec::new();
     let mut colon = false;
-    for piece in pieces(text) {
+    let mut pieces = pieces(text);
+    totals(&mut pieces);
+    names(&mut pieces);
+    for piece in pieces {
         match piece {
             Piece::Word(word) => {
                 words.push(Some(Word { after_colon: std::mem::take(&mut colon), ..word }));

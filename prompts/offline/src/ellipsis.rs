@@ -116,6 +116,12 @@ pub(crate) fn repeat(
         word.used = true;
     }
     let mut acts = thread.acts.clone();
+    // `the first one does not stop; the other two do`
+    if does && acts.is_empty() && thread.made.is_empty() {
+        let around = Around { quote: quote.to_owned(), ..Around::default() };
+        acts.extend(thread.denied.map(|act| (act, around)));
+    }
+    let fresh = thread.acts.is_empty() && !acts.is_empty();
     // `each time the robot stops, so does the intern`
     if does && thread.made.is_empty() && thread.waiting == Some(Trigger::RobotStopped) {
         acts.clear();
@@ -134,7 +140,9 @@ pub(crate) fn repeat(
     for who in &people {
         for (act, around) in &acts {
             if does {
-                let _rule = deed::apply(&mut story.cast, *who, *act, around);
+                if let Some(rule) = deed::apply(&mut story.cast, *who, *act, around).filter(|_| fresh) {
+                    thread.made.push((*who, rule));
+                }
             } else {
                 deed::rule_out(&mut story.cast, *who, *act, quote);
             }

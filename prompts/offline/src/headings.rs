@@ -1,7 +1,7 @@
 //! Headings and labels: words and numbers that name something and count nobody.
 
 use crate::lexicon::lexicon;
-use crate::words::Word;
+use crate::words::{Piece, Word};
 
 /// What a heading speaks of.
 const HEADS: &[&str] = &[
@@ -79,7 +79,7 @@ pub(crate) fn labels(words: &mut [Option<Word>]) {
     let counts = |word: &Word| word.count().is_some() || matches!(word.text.as_str(), "one" | "someone" | "somebody");
     let placed = whole.clone().next().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
     // `Explicit signalling condition:`, `Reproduction steps for #882:` name what comes, and nobody in it.
-    if !placed && (heading || !whole.clone().any(person)) && !whole.clone().any(|word| person(word) && counts(word)) && (heading || !whole.clone().any(counts)) {
+    if !placed && (heading || !whole.clone().any(person)) && !whole.clone().any(|word| person(word) && counts(word)) && (heading || whole.clone().count() > 3 || !whole.clone().any(counts)) {
         let people = whole.clone().any(|word| person(word) && word.stem != "robot");
         if !people {
             for word in words.iter_mut().skip(start).flatten() {
@@ -159,6 +159,77 @@ pub(crate) fn described(words: &mut [Option<Word>]) {
                 Some(Some(word)) if OF_ROBOT.contains(&word.text.as_str()) => (word.label, word.used) = (true, true),
                 Some(_) | None => break,
             }
+        }
+    }
+}
+
+/// `pedestrians: 2` and `humans=4` give a number of people: `exactly 2 pedestrians`.
+pub(crate) fn totals(pieces: &mut Vec<Piece>) {
+    let mut at = 0;
+    while at < pieces.len() {
+        let found = {
+            let word = |k: usize| match pieces.get(k) {
+                Some(Piece::Word(word)) => Some(word),
+                Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => None,
+            };
+            let noun = word(at).filter(|word| lexicon().roles.contains_key(&word.stem));
+            let counted = word(at + 1).is_some_and(|word| word.text == "count");
+            let several = noun.is_some_and(crate::noun::plural) || counted;
+            let next = at + 1 + usize::from(counted);
+            let colon = usize::from(matches!(pieces.get(next), Some(Piece::Colon)));
+            let number = word(next + colon).filter(|word| word.is_digits() && word.count().is_some());
+            let ends = !matches!(pieces.get(next + colon + 1), Some(Piece::Word(_)));
+            match (noun, number) {
+                (Some(noun), Some(number)) if several && ends => Some((noun.clone(), number.clone(), next + colon)),
+                _ => None,
+            }
+        };
+        if let Some((noun, number, end)) = found {
+            let from = (0..at).rev().take_while(|k| matches!(pieces.get(*k), Some(Piece::Word(_)))).last().unwrap_or(at);
+            let exactly = Word { text: "exactly".to_owned(), stem: "exactly".to_owned(), ..number.clone() };
+            let _before: Vec<Piece> = pieces
+                .splice(from..=end, [Piece::Word(exactly), Piece::Word(number), Piece::Word(noun), Piece::Stop])
+                .collect();
+            at = from + 3;
+        }
+        at += 1;
+    }
+}
+
+/// Marks names everywhere, once one place shows that they are names: `Anna follows Tom. Tom stops.`
+pub(crate) fn names(pieces: &mut [Piece]) {
+    let lex = lexicon();
+    let word = |k: usize| match pieces.get(k) {
+        Some(Piece::Word(word)) => Some(word),
+        Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => None,
+    };
+    let strange = |word: &Word| {
+        word.capital
+            && word.text.len() > 1
+            && word.text.chars().all(char::is_alphabetic)
+            && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives, &lex.things]
+                .iter()
+                .any(|table| table.contains(&word.stem) || table.contains(&word.text))
+    };
+    let does = |k: usize| {
+        word(k).is_some_and(|word| {
+            lex.verbs.contains(&word.stem) && !word.capital || matches!(word.text.as_str(), "who" | "both" | "then" | "just")
+        })
+    };
+    let begins = |k: usize| k == 0 || !matches!(pieces.get(k - 1), Some(Piece::Word(_))) || word(k - 1).is_some_and(|word| matches!(word.text.as_str(), "and" | "when" | "while" | "whereas" | "but" | "if" | "then" | "as" | "once" | "until"));
+    let mut found: Vec<String> = Vec::new();
+    for k in 0..pieces.len() {
+        let Some(name) = word(k).filter(|word| strange(word)) else { continue };
+        // `Anna and Ben both cross`
+        let pair = word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && does(k + 3);
+        if begins(k) && (does(k + 1) || pair) {
+            found.push(name.text.clone());
+            found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));
+        }
+    }
+    for piece in pieces {
+        if let Piece::Word(word) = piece {
+            word.name = word.capital && found.contains(&word.text);
         }
     }
 }

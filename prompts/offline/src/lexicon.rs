@@ -319,7 +319,10 @@ impl Lexicon {
             ("s", &[""]),
             ("ly", &[""]),
         ] {
-            let Some(cut) = word.strip_suffix(end) else { continue };
+            // `friendly` is no friend.
+            let Some(cut) = word.strip_suffix(end).filter(|cut| end != "ly" || !self.roles.contains_key(*cut)) else {
+                continue;
+            };
             tries.extend(puts.iter().map(|put| format!("{cut}{put}")));
             let mut letters = cut.chars().rev();
             if let (Some(last), Some(before)) = (letters.next(), letters.next())

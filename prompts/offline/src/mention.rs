@@ -458,6 +458,10 @@ fn counted(
         let many = words.get(end).is_some_and(plural);
         return made(Who::Definite { plural: many, count: None }, role(end), false, end);
     }
+    if next == at && count.is_none() && words.get(at).is_some_and(|word| word.name && !word.label) {
+        let mention = made(Who::Definite { plural: false, count: None }, role(at), false, at);
+        return mention.map(|mention| Mention { word: "name".to_owned(), ..mention });
+    }
     // `Maria follows the robot`: somebody by name, whoever is called so later is the same.
     if next == at
         && count.is_none()

@@ -76,8 +76,11 @@ pub(crate) fn others(
                 && let Some(some) = count(at + 2).filter(|some| *some > 1)
             {
                 let of = text(at + 3) == "of" && matches!(text(at + 4), "them" | "these" | "those");
-                let end = noun(words, at + 3, lex).filter(|_| !of).unwrap_or(if of { at + 4 } else { at + 2 });
-                return made(Who::Some { first: number == 1, count: some }, role(end).filter(|_| !of), end);
+                let last = if of { at + 4 } else { at + 2 };
+                // `the first four of them patients`
+                let named = noun(words, last + 1, lex);
+                let role = named.and_then(role);
+                return made(Who::Some { first: number == 1, count: some }, role, named.unwrap_or(last));
             }
             let start = at + the + 1 + usize::from(text(at + the + 1) == "one");
             // `the last of them`

@@ -64,6 +64,8 @@ pub(crate) struct Thread {
     pub(crate) not_until: bool,
     /// What ended the deed before: `until it asks`.
     pub(crate) ended: Option<Trigger>,
+    /// What was said not to be done: `the first does not stop; the others do`.
+    pub(crate) denied: Option<Act>,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -90,8 +92,11 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         speaks: false,
         not_until: false,
         ended: None,
+        denied: None,
         went_on: Vec::new(),
     };
+    let named = sentences.iter().flatten().flat_map(|stretch| &stretch.words).filter(|word| word.name);
+    story.cast.names = named.map(|word| word.stem.clone()).collect();
     for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
         story.cast.listing = false;
@@ -271,6 +276,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         acts.push((Act::Gesture, found.gesture_at, found.gesture_at, false));
         acts.sort_by_key(|(_, at, _, _)| *at);
     }
+    // Whom the robot spoke to in this clause: `who is told to follow it by the robot walks after it`.
+    let mut told: Vec<usize> = Vec::new();
     for (act, at, to, negated) in acts {
         // `is overtaken by a visitor`, `is overtaken in the corridor by a visitor`
         let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
@@ -293,6 +300,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         } else {
             subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast)
         };
+        let answers = !told.is_empty() && !by_robot && subject == Subject::Robot;
+        let subject = if answers { Subject::People(told.clone()) } else { subject };
+        if by_robot && act == Act::Gesture {
+            told.clone_from(&object);
+        }
         // Whoever is led goes where the one who leads goes.
         let subject = match (subject, &thread.led) {
             (Subject::People(people), Some((leaders, followers))) if people == *followers => {
@@ -336,6 +348,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 for who in people {
                     deed::rule_out(&mut story.cast, *who, act, quote);
                 }
+                thread.denied = Some(act);
                 let people: Vec<String> = people.iter().map(|i| format!("human_{}", i + 1)).collect();
                 story
                     .cast
@@ -433,7 +446,9 @@ fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
             | Act::Gesture
     );
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let by = (at..to + 3).find(|k| text(*k) == "by");
+    // `is told "follow me" by the robot`
+    let reach = if act == Act::Gesture && at > 0 && stretch.words.get(at - 1).is_some_and(|word| word.stem == "be") { 8 } else { 3 };
+    let by = (at..to + reach).find(|k| text(*k) == "by");
     does && by.is_some_and(|by| (by + 1..by + 4).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot")))
 }
 

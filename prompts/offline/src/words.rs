@@ -21,6 +21,8 @@ pub(crate) struct Word {
     pub(crate) label: bool,
     /// Whether a colon stands right before it.
     pub(crate) after_colon: bool,
+    /// Somebody's name, told by a place where it can be nothing else.
+    pub(crate) name: bool,
 }
 
 impl Word {
@@ -112,12 +114,6 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             {
                 i += 1;
             }
-            let name: String = chars.get(start..i).unwrap_or_default().iter().map(|(_, c)| c.to_ascii_lowercase()).collect();
-            if let Some(number) = name.strip_prefix("ped").filter(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
-                out.push(Piece::Word(word("pedestrian".to_owned(), byte(start), byte(i))));
-                out.push(Piece::Word(word(number.to_owned(), byte(start), byte(i))));
-                continue;
-            }
             let lower: String =
                 chars.get(start..i).unwrap_or_default().iter().flat_map(|(_, c)| c.to_lowercase()).collect();
             let capital = at(start).is_some_and(char::is_uppercase);
@@ -131,6 +127,7 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             let owns = matches!(c, '\'' | '’') && at(i + 1) == Some('s') && !at(i + 2).is_some_and(char::is_alphabetic);
             i += usize::from(owns);
             match c {
+                '.' if abbreviated(out.last()) => {}
                 '.' | '!' | '?' | ';' => out.push(Piece::Stop),
                 ':' => out.push(Piece::Colon),
                 ',' | '(' | ')' | '[' | ']' | '–' | '—' | '•' => out.push(Piece::Comma),
@@ -149,6 +146,12 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
         }
     }
     out
+}
+
+/// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.
+fn abbreviated(before: Option<&Piece>) -> bool {
+    let short = ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min"];
+    matches!(before, Some(Piece::Word(word)) if short.contains(&word.text.as_str()))
 }
 
 /// `(1)`, `(b)` and `2)` before an item of a list: where the item begins.
@@ -232,7 +235,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
         | "droid" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false, capital: false, label: false, after_colon: false }
+    Word { text, stem, from, to, used: false, capital: false, label: false, after_colon: false, name: false }
 }
 
 /// Where a phrase stands in the words at or after `start`: its first and last index, and the indices of its own words.
