@@ -71,7 +71,9 @@ pub(crate) fn subject_of(
             | Act::Stand
             | Act::Toward
             | Act::Cross
-    );
+    ) || act == Act::Approach && !found.robots.iter().any(|robot| *robot > at);
+    // `out of the room that the robot drives into and nods to it`: what is nodded to nods not.
+    let object_robot = act == Act::Gesture && found.robots.iter().any(|robot| *robot > at) && found.robots.iter().all(|robot| *robot > at);
     match (before, robot) {
         (Some((from, _, some)), Some(robot)) if robotic && robot > from => {
             // The robot between a person and the deed is the object of an earlier one, unless it opens a clause of its own.
@@ -90,7 +92,7 @@ pub(crate) fn subject_of(
                 return Subject::People(joined.to_vec());
             }
             match previous {
-                Subject::Robot if robotic => Subject::Robot,
+                Subject::Robot if robotic && !(object_robot && cast.last.len() == 1) => Subject::Robot,
                 Subject::Robot | Subject::Nobody => match meant.first() {
                     Some((_, _, some)) if !some.is_empty() => people(some),
                     Some(_) | None if !cast.last.is_empty() => Subject::People(cast.last.clone()),
@@ -164,8 +166,8 @@ pub(crate) fn people_deed(
     }
     let object = meant
         .iter()
-        .find(|(from, _, some)| *from > to && some.iter().all(|i| !people.contains(i)))
-        .and_then(|(_, _, some)| some.first());
+        .find(|(from, _, some)| *from > to && some.iter().any(|i| !people.contains(i)))
+        .and_then(|(_, _, some)| some.iter().find(|i| !people.contains(i)));
     if act == Act::Lead {
         let followers: Vec<usize> =
             meant.iter().find(|(from, _, _)| *from > to).map(|(_, _, some)| some.clone()).unwrap_or_default();

@@ -39,6 +39,8 @@ pub(crate) struct Person {
     pub(crate) bound: bool,
     /// What it is called.
     pub(crate) name: Option<String>,
+    /// `participant`, `bystander`: a word that says no more than that somebody is there.
+    pub(crate) called: Option<String>,
     /// Words that say that it walks on after all it did.
     pub(crate) goes_on: Option<String>,
     /// What was ruled out for it, with the words.
@@ -70,6 +72,8 @@ pub(crate) struct Cast {
     pub(crate) count_quote: Option<String>,
     /// Somebody was said not to be there.
     pub(crate) nobody: Option<String>,
+    /// Whom the text spoke of before [`Self::last`].
+    pub(crate) before: Vec<usize>,
     /// Names that the text gives to people.
     pub(crate) names: std::collections::BTreeSet<String>,
     /// A colon stood before: what comes lists those who are there.
@@ -84,6 +88,37 @@ const READ_AT_MOST: usize = 40;
 fn plain(role: &str) -> bool {
     matches!(role, "man" | "woman" | "guy" | "lady" | "gentleman" | "boy" | "girl" | "adult")
 }
+
+const WOMEN: &[&str] = &[
+    "woman",
+    "lady",
+    "girl",
+    "mother",
+    "wife",
+    "sister",
+    "aunt",
+    "grandmother",
+    "grandma",
+    "daughter",
+    "mom",
+    "waitress",
+    "niece",
+];
+const MEN: &[&str] = &[
+    "man",
+    "gentleman",
+    "boy",
+    "father",
+    "husband",
+    "brother",
+    "uncle",
+    "grandfather",
+    "grandpa",
+    "son",
+    "dad",
+    "guy",
+    "nephew",
+];
 
 impl Cast {
     /// A cast of people of whom was spoken before.
@@ -302,36 +337,6 @@ impl Cast {
 
     /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
     fn single(&self, word: &str) -> Vec<usize> {
-        const WOMEN: &[&str] = &[
-            "woman",
-            "lady",
-            "girl",
-            "mother",
-            "wife",
-            "sister",
-            "aunt",
-            "grandmother",
-            "grandma",
-            "daughter",
-            "mom",
-            "waitress",
-            "niece",
-        ];
-        const MEN: &[&str] = &[
-            "man",
-            "gentleman",
-            "boy",
-            "father",
-            "husband",
-            "brother",
-            "uncle",
-            "grandfather",
-            "grandpa",
-            "son",
-            "dad",
-            "guy",
-            "nephew",
-        ];
         let of =
             |i: usize, words: &[&str]| self.people.get(i).is_some_and(|person| words.contains(&person.role.as_str()));
         if self.last.is_empty() {
@@ -346,6 +351,14 @@ impl Cast {
             && !of(*only, other)
         {
             return self.last.clone();
+        }
+        // `a manager shows three visitors around …; she …`
+        if let ([only], true) = (self.before.as_slice(), self.last.len() > 1)
+            && !self.last.contains(only)
+            && !of(*only, other)
+            && !self.last.iter().any(|i| of(*i, own))
+        {
+            return vec![*only];
         }
         let near = || self.last.iter().copied().chain((0..self.people.len()).rev());
         let found =
@@ -551,9 +564,21 @@ impl Cast {
             {
                 return found;
             }
+            // `waves his colleague through`: the other one of two.
+            if !plural && OF_THEM.contains(&role.as_str()) && self.people.len() == 2 {
+                if let [only] = self.last.as_slice() {
+                    return vec![1 - only.min(&1)];
+                }
+            }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
             if !plural && plain(role) {
-                let may = |i: &usize| self.people.get(*i).is_some_and(|person| !plain(&person.role));
+                let men = MEN.contains(&role.as_str());
+                let other = if men { WOMEN } else { MEN };
+                let may = |i: &usize| {
+                    self.people.get(*i).is_some_and(|person| {
+                        !plain(&person.role) && !(men || WOMEN.contains(&role.as_str())) || !plain(&person.role) && !other.contains(&person.role.as_str())
+                    })
+                };
                 let who = self.last.iter().chain(&self.latest()).copied().find(may);
                 if let Some(who) = who {
                     return vec![who];

@@ -332,6 +332,14 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 && text(last) == "behind"
                 && matches!(text(last + 1), "the" | "a" | "some" | "one")
                 && stretch.words.get(last + 2).is_some_and(|word| word.stem != "robot" && !word.label);
+            // `in this run` nobody runs.
+            let named = first.checked_sub(1).map_or("", text);
+            let trip = at.len() == 1
+                && matches!(text(first), "run" | "walk" | "drive" | "trip" | "test" | "pass")
+                && matches!(named, "this" | "that" | "the" | "each" | "every" | "whole" | "entire" | "a" | "same" | "per" | "one");
+            if trip {
+                continue;
+            }
             // `the guide signals`: a noun here.
             let noun = at.len() == 1
                 && found.mentions.iter().any(|mention| {

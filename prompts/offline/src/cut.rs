@@ -126,6 +126,14 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             i += 3;
             continue;
         }
+        // `three people stand there, plus two people …`
+        if word(i) == "plus" && words.get(i + 1).is_some_and(count) {
+            out.extend(words.get(i + 1).cloned());
+            let more = words.get(i).cloned().flatten().map(|word| crate::words::Word { text: "more".to_owned(), stem: "more".to_owned(), ..word });
+            out.push(more);
+            i += 2;
+            continue;
+        }
         let mut item = item.clone();
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
@@ -368,8 +376,11 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 | "does"
                 | "do"
                 | "did"
+                | "point"
         ),
-        "does" | "do" | "did" => matches!(text(i + 1), "he" | "she" | "they"),
+        "does" | "do" | "did" => {
+            matches!(text(i + 1), "he" | "she" | "they") && !matches!(before, "point" | "time" | "moment" | "circumstances")
+        }
         "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three" if temporal => {
             let closes = matches!(
                 before,

@@ -73,6 +73,21 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
 /// A number right before a colon names what comes: `test case 14:`, `study 2:`, `scenario for 3 planners:`.
 pub(crate) fn labels(words: &mut [Option<Word>]) {
     let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
+    // `Field notes, ward 7, day 2:`
+    let article = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot");
+    let role = |word: &Word| lexicon().roles.contains_key(&word.stem);
+    let counted = words.windows(2).any(|pair| matches!(pair, [Some(number), Some(noun)] if number.count().is_some() && role(noun)));
+    let title = words.iter().flatten().count() <= 9
+        && start > 0
+        && words.iter().flatten().any(|word| HEADS.contains(&word.text.as_str()) || HEADS.contains(&word.stem.as_str()))
+        && !(0..words.len()).any(article)
+        && !counted;
+    if title {
+        for word in words.iter_mut().flatten() {
+            (word.label, word.used) = (true, true);
+        }
+        return;
+    }
     let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
     let whole = words.iter().skip(start).flatten();
     let person = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot";
@@ -216,7 +231,8 @@ pub(crate) fn names(pieces: &mut [Piece]) {
             lex.verbs.contains(&word.stem) && !word.capital || matches!(word.text.as_str(), "who" | "both" | "then" | "just")
         })
     };
-    let begins = |k: usize| k == 0 || !matches!(pieces.get(k - 1), Some(Piece::Word(_))) || word(k - 1).is_some_and(|word| matches!(word.text.as_str(), "and" | "when" | "while" | "whereas" | "but" | "if" | "then" | "as" | "once" | "until"));
+    let title = |k: usize| word(k).is_some_and(|word| matches!(word.text.as_str(), "mr" | "mrs" | "ms" | "miss" | "prof"));
+    let begins = |k: usize| k == 0 || title(k - 1) || !matches!(pieces.get(k - 1), Some(Piece::Word(_))) || word(k - 1).is_some_and(|word| matches!(word.text.as_str(), "and" | "when" | "while" | "whereas" | "but" | "if" | "then" | "as" | "once" | "until"));
     let mut found: Vec<String> = Vec::new();
     for k in 0..pieces.len() {
         let Some(name) = word(k).filter(|word| strange(word)) else { continue };
@@ -227,9 +243,21 @@ pub(crate) fn names(pieces: &mut [Piece]) {
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));
         }
     }
-    for piece in pieces {
-        if let Piece::Word(word) = piece {
+    for k in 0..pieces.len() {
+        let titles = title_before_name(pieces, k, &found);
+        if let Some(Piece::Word(word)) = pieces.get_mut(k) {
             word.name = word.capital && found.contains(&word.text);
+            word.label |= titles;
+            word.used |= titles;
         }
     }
+}
+
+/// `Mr.` in `Mr. Hartmann`.
+fn title_before_name(pieces: &[Piece], at: usize, names: &[String]) -> bool {
+    let word = |k: usize| match pieces.get(k) {
+        Some(Piece::Word(word)) => word.text.as_str(),
+        Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => "",
+    };
+    matches!(word(at), "mr" | "mrs" | "ms" | "miss") && names.iter().any(|name| name == word(at + 1))
 }

@@ -74,6 +74,10 @@ pub(crate) fn others(
                 && word != "former"
                 && word != "latter"
                 && let Some(some) = count(at + 2).filter(|some| *some > 1)
+                && !thing(words, at + 3)
+                && !words.get(at + 3).is_some_and(|word| {
+                    matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "time")
+                })
             {
                 let of = text(at + 3) == "of" && matches!(text(at + 4), "them" | "these" | "those");
                 let last = if of { at + 4 } else { at + 2 };

@@ -70,6 +70,9 @@ pub(crate) struct Thread {
     pub(crate) went_on: Vec<usize>,
 }
 
+/// Words for people that only say that they are there.
+const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
+
 /// Reads the text.
 pub(crate) fn read(text: &str) -> Story {
     read_on(Story::default(), sentences(text), text)
@@ -214,6 +217,14 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
         let mut people =
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
+        let weak = words.iter().find(|word| CALLED.contains(&word.stem.as_str()));
+        if let Some(weak) = weak.filter(|_| mention.role.is_none()) {
+            for i in &people {
+                if let Some(person) = story.cast.people.get_mut(*i) {
+                    person.called.get_or_insert_with(|| weak.stem.clone());
+                }
+            }
+        }
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
@@ -223,8 +234,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             meant.push((mention.from, mention.to, people));
             continue;
         }
-        if !people.is_empty() {
-            story.cast.last.clone_from(&people);
+        if !people.is_empty() && story.cast.last != people {
+            story.cast.before = std::mem::replace(&mut story.cast.last, people.clone());
         }
         meant.push((mention.from, mention.to, people));
     }
@@ -370,7 +381,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 format!("`{quote}` does not say who does it"),
             )),
         }
-        if subject != Subject::Nobody && !(by_robot && matches!(previous, Subject::People(_))) {
+        if by_robot && act == Act::Gesture && !object.is_empty() {
+            thread.subject = Subject::People(object);
+        } else if subject != Subject::Nobody && !(by_robot && matches!(previous, Subject::People(_))) {
             thread.subject = subject;
         }
     }

@@ -83,6 +83,10 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
                 read.rule.for_s = Some(10.0);
             }
         }
+        // `notices nothing until it is 1 m away; he then freezes`
+        if thread.made.is_empty() {
+            thread.ended = trigger(cue, found, thread);
+        }
         story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
         return;
     }
@@ -256,7 +260,7 @@ pub(crate) fn quiet(
     }
     // `a nurse and …`: only bare mentions wait for the deed of the next clause.
     let bare = stretch.words.iter().enumerate().all(|(i, word)| {
-        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i)) || matches!(word.text.as_str(), "both" | "either")
+        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i)) || matches!(word.text.as_str(), "both" | "either" | "only" | "just" | "exactly" | "simply" | "perhaps" | "maybe")
     });
     if bare && matches!(next, Some(Joint::And | Joint::Comma | Joint::When | Joint::While)) {
         thread.pending.clone_from(&people);

@@ -243,7 +243,7 @@ fn people(request: &Request, story: &Story, reading: &mut Reading) {
         let number = u32::try_from(i + 1).unwrap_or(u32::MAX);
         let generic = person.role.is_empty();
         let role =
-            if generic { from_context.clone().unwrap_or_else(|| "person".to_owned()) } else { person.role.clone() };
+            if generic { person.called.clone().or_else(|| from_context.clone()).unwrap_or_else(|| "person".to_owned()) } else { person.role.clone() };
         reading.humans.push(ReadHuman {
             id: HumanId::new(number),
             role,
