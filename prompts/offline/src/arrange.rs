@@ -6,8 +6,89 @@ use crate::mention::{Who, mentions};
 use crate::words::Word;
 
 /// The clauses in the order in which they are read: what stands before who does it comes after, and names go together.
-pub(crate) fn arranged(found: Vec<Stretch>) -> Vec<Stretch> {
+pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
+    measured(&mut found);
+    parted(&mut found);
+    named(&mut found);
     fronted(apposed(found))
+}
+
+/// `when it is close (1 m)`: a measure alone belongs to the clause before it.
+fn measured(found: &mut Vec<Stretch>) {
+    let unit = |word: &Word| matches!(word.stem.as_str(), "meter" | "centimeter" | "second");
+    let number = |word: &Word| word.is_digits() || word.count().is_some();
+    let about = |word: &Word| matches!(word.text.as_str(), "about" | "approx" | "roughly" | "ca" | "around" | "circa" | "for" | "away");
+    for at in (1..found.len()).rev() {
+        let alone = found.get(at).is_some_and(|measure| {
+            measure.joint == Joint::Comma
+                && measure.words.len() <= 4
+                && measure.words.iter().any(unit)
+                && measure.words.iter().any(number)
+                && measure.words.iter().all(|word| unit(word) || number(word) || about(word))
+        });
+        let free = found.get(at - 1).is_some_and(|before| {
+            !before.words.iter().any(unit) && before.words.iter().any(|word| lexicon().verbs.contains(&word.stem))
+        });
+        if alone && free {
+            let measure = found.remove(at);
+            if let Some(before) = found.get_mut(at - 1) {
+                before.words.extend(measure.words);
+            }
+        }
+    }
+}
+
+/// `the robot asks two loaders, who stand in its way, to make room`: what is asked goes with who asks.
+fn parted(found: &mut Vec<Stretch>) {
+    for at in 2..found.len() {
+        let rest = found.get(at).is_some_and(|rest| {
+            rest.joint == Joint::Comma
+                && rest.words.first().is_some_and(|word| word.text == "to")
+                && rest.words.get(1).is_some_and(|word| lexicon().known.contains(&word.stem))
+        });
+        let Some(who) = (1..at).rev().find(|k| found.get(*k).is_some_and(|who| who.joint == Joint::Who)) else { continue };
+        let asks = found.get(who - 1).is_some_and(|asks| {
+            asks.words.iter().any(|word| {
+                matches!(word.stem.as_str(), "ask" | "tell" | "signal" | "order" | "request" | "beckon" | "instruct" | "motion" | "gesture")
+            })
+        });
+        if rest && asks {
+            let rest = found.remove(at);
+            if let Some(asks) = found.get_mut(who - 1) {
+                asks.words.extend(rest.words);
+            }
+            return;
+        }
+    }
+}
+
+/// `two doctors, Dr. Meyer and Dr. Santos, stroll out`: names of those who were counted already.
+fn named(found: &mut Vec<Stretch>) {
+    let name = |stretch: &Stretch| {
+        stretch.words.len() <= 2
+            && stretch.words.last().is_some_and(|word| word.capital && !lexicon().known.contains(&word.stem) && !lexicon().stop.contains(&word.text))
+            && stretch.words.iter().all(|word| word.capital || word.label)
+            && matches!(stretch.joint, Joint::Comma | Joint::And)
+    };
+    for at in 1..found.len() {
+        let count = found.get(at - 1).and_then(|before| {
+            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| match last.who {
+                Who::New { count: Some(n), .. } | Who::Definite { count: Some(n), .. } => usize::try_from(n).ok(),
+                _ => None,
+            })
+        });
+        let Some(count) = count.filter(|count| (2..=4).contains(count)) else { continue };
+        let all = found.get(at..at + count).is_some_and(|names| names.iter().all(name));
+        if all && found.len() > at + count {
+            let _names: Vec<Stretch> = found.drain(at..at + count).collect();
+            // The verb after the names is theirs.
+            let rest = found.remove(at);
+            if let Some(before) = found.get_mut(at - 1) {
+                before.words.extend(rest.words);
+            }
+            return;
+        }
+    }
 }
 
 /// `Walking ahead of the robot, a couple …`: a manner before who it is of is read after it.

@@ -73,7 +73,9 @@ pub(crate) fn subject_of(
             | Act::Cross
     ) || act == Act::Approach && !found.robots.iter().any(|robot| *robot > at);
     // `out of the room that the robot drives into and nods to it`: what is nodded to nods not.
-    let object_robot = act == Act::Gesture && found.robots.iter().any(|robot| *robot > at) && found.robots.iter().all(|robot| *robot > at);
+    let object_robot = act == Act::Gesture
+        && found.robots.first().is_some_and(|robot| *robot > to && *robot <= to + 3)
+        && !found.mentions.iter().any(|mention| mention.from > to);
     match (before, robot) {
         (Some((from, _, some)), Some(robot)) if robotic && robot > from => {
             // The robot between a person and the deed is the object of an earlier one, unless it opens a clause of its own.
@@ -211,8 +213,11 @@ pub(crate) fn people_deed(
         object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
         place,
         startled,
-        stands: stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
+        stands: stretch.words.get(to).is_some_and(|word| word.stem == "stand") && to > at && thread.waiting.is_none()
+            || stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
             && stretch.words.get(at + 1).is_some_and(|word| word.text != "still"),
+        gives_up: act == Act::GoOn
+            && stretch.words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "give" | "lose" | "get")),
         then: stretch.joint == Joint::Then,
         goes_on: thread.doer.as_deref() == Some(people),
         quote: quote.to_owned(),

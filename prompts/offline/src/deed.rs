@@ -26,6 +26,8 @@ pub(crate) struct Around {
     pub(crate) then: bool,
     /// `stands there`: it was there already.
     pub(crate) stands: bool,
+    /// `gives up`, `loses interest`
+    pub(crate) gives_up: bool,
     pub(crate) quote: String,
 }
 
@@ -153,6 +155,16 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     {
         relate(cast, who, Relation::Static, &around.quote);
     }
+    // `walks behind the robot, in its direction`; `just stands in the doorway`
+    let same_way = act == Act::Ahead
+        && around.quote.contains("direction")
+        && !["ahead", "front"].iter().any(|word| around.quote.contains(word))
+        && cast.people.get(who).is_some_and(|person| {
+            person.relation.is_some() || person.rules.iter().any(|read| read.rule.act == Action::FollowRobot)
+        });
+    if same_way {
+        return None;
+    }
     // Who walks along talks on the way.
     let walks =
         |person: &Person| person.relation.is_some() || person.doings.iter().any(|doing| doing.starts_with("walks"));
@@ -188,6 +200,13 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     let person = cast.people.get_mut(who)?;
     let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether);
     person.bound |= moves;
+    // `gives up after 10 seconds of following`
+    if let (true, Some(Trigger::AfterSecs(secs))) = (around.gives_up, &around.trigger)
+        && let Some(last) = person.rules.last_mut().filter(|last| matches!(last.rule.act, Action::FollowRobot | Action::FollowHuman(_)))
+    {
+        (last.rule.for_s, last.lasts) = (Some(*secs), true);
+        return None;
+    }
     if act == Act::Gesture {
         return gesture(person, around);
     }

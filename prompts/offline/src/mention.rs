@@ -305,6 +305,10 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
     }
     // `person A`, `pedestrian B`; alone only where it cannot be an article.
     let letter = |k: usize| {
+        // `lift B` is a lift.
+        if k.checked_sub(1).and_then(|k| words.get(k)).is_some_and(|word| lex.labels.contains(&word.text)) {
+            return None;
+        }
         let word = words.get(k).filter(|word| word.capital && word.text.len() == 1)?;
         "abcdef".find(word.text.as_str()).and_then(|place| u32::try_from(place + 1).ok())
     };

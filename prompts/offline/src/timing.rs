@@ -166,6 +166,11 @@ pub(crate) fn quiet(
     quote: &str,
     next: Option<Joint>,
 ) {
+    // `The robot, in its friendly voice, asks her …`
+    if stretch.words.iter().all(|word| word.label || word.text == "the" || word.text == "this" || word.stem == "robot") {
+        thread.subject = Subject::Robot;
+        return;
+    }
     let mut people: Vec<usize> = Vec::new();
     for (_, _, some) in meant {
         people.extend(some.iter().filter(|i| !people.contains(i)).copied().collect::<Vec<_>>());
