@@ -153,6 +153,21 @@ pub(crate) fn people_deed(
         && !found.robots.is_empty()
         && !meant.iter().any(|(from, _, some)| *from > to && some.iter().any(|i| !people.contains(i)));
     let act = if beside { Act::Abreast } else { act };
+    // `walks next to her`
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let joins = act == Act::Walk
+        && meant.iter().any(|(from, _, some)| {
+            *from > to
+                && *from <= to + 4
+                && !some.is_empty()
+                && some.iter().all(|i| !people.contains(i))
+                && from.checked_sub(1).is_some_and(|k| {
+                    matches!(text(k), "beside" | "alongside")
+                        || text(k) == "to" && k > 0 && text(k - 1) == "next"
+                        || text(k) == "with" && k > 0 && matches!(text(k - 1), "together" | "along")
+                })
+        });
+    let act = if joins { Act::WalkTogether } else { act };
     // `waits 5 seconds and then goes in`: whatever it did, it goes on.
     let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
     if after && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {
@@ -237,6 +252,7 @@ pub(crate) fn people_deed(
     let partner = |from: usize| {
         let before = from.checked_sub(1).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str());
         act == Act::Talk && matches!(before, "to" | "with")
+            || act == Act::WalkTogether && matches!(before, "with" | "beside" | "alongside" | "to" | "of")
     };
     let others: Vec<usize> = meant
         .iter()

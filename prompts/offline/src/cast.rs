@@ -74,6 +74,10 @@ pub(crate) struct Cast {
     pub(crate) nobody: Option<String>,
     /// Whom the text spoke of before [`Self::last`].
     pub(crate) before: Vec<usize>,
+    /// The sentence only supposes something: `What if a nurse …?`, `Sometimes a nurse …`.
+    pub(crate) supposed: bool,
+    /// Whom such sentences spoke of, who may be spoken of again as somebody new.
+    supposed_people: Vec<usize>,
     /// Names that the text gives to people.
     pub(crate) names: std::collections::BTreeSet<String>,
     /// A colon stood before: what comes lists those who are there.
@@ -145,6 +149,11 @@ impl Cast {
                 if mention.parts > 1 && self.latest().len() == usize::try_from(*n).unwrap_or(usize::MAX) =>
             {
                 self.latest()
+            }
+            Who::New { count: Some(n), .. } if self.supposes(*n, mention).is_some() => {
+                let found = self.supposes(*n, mention).unwrap_or_default();
+                self.supposed_people.retain(|i| !found.contains(i));
+                found
             }
             Who::New { count: Some(n), article } => {
                 let pick = if self.listing {
@@ -319,6 +328,17 @@ impl Cast {
         found
     }
 
+    /// `Sometimes a patient follows it. Make a patient follow it …`: the same one, of whom it is now said what is wanted.
+    fn supposes(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
+        if self.supposed {
+            return None;
+        }
+        let wanted = usize::try_from(n).ok()?;
+        let fitting = |i: &usize| self.fits(*i, mention.role.as_ref());
+        let found: Vec<usize> = self.supposed_people.iter().copied().filter(fitting).take(wanted).collect();
+        if found.len() == wanted { Some(found) } else { None }
+    }
+
     /// The third of exactly two, said of everybody who is there.
     fn beyond(&mut self, n: u32, quote: &str) {
         let last = self.sets.iter().rev().find(|set| set.members.len() > 1).filter(|set| set.total);
@@ -382,7 +402,7 @@ impl Cast {
 
     /// From here to the end of the sentence, people are those of the newest set of whom nothing is known yet.
     pub(crate) fn lists(&mut self) {
-        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty() && !person.bound);
+        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| !person.bound);
         self.listing = self.sets.last().is_some_and(|set| set.members.len() > 1 && set.members.iter().all(plain));
     }
 
@@ -471,6 +491,17 @@ impl Cast {
             return found;
         }
         let mut set = self.latest();
+        // `Those people who wait there: give me three of them.`
+        if let Some(first) = set.first().copied().filter(|_| self.supposed_people.len() == set.len() && wanted > set.len()) {
+            let model = self.people.get(first).cloned().unwrap_or_default();
+            while set.len() < wanted {
+                set.push(self.people.len());
+                self.people.push(model.clone());
+            }
+            self.supposed_people.clear();
+            self.together(&set, quote);
+            return set;
+        }
         if !set.is_empty() && wanted <= set.len() {
             // `the taller one follows the other; the shorter one …`: rather somebody else than who did the last thing.
             set.sort_by_key(|i| self.last.contains(i));
@@ -640,6 +671,9 @@ impl Cast {
             });
         }
         let members: Vec<usize> = (from..self.people.len()).collect();
+        if self.supposed {
+            self.supposed_people.extend(&members);
+        }
         if members.len() > 1 || declares {
             self.sets.push(Together {
                 members: members.clone(),

@@ -251,6 +251,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "whereupon" | "thereupon" => (Some(Joint::Said), 1),
         "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
         "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
+        "in" if text(i + 1) == "that" && text(i + 2) == "case" => (Some(Joint::Then), 3),
         "not" if text(i + 1) == "until" => (Some(Joint::When), 2),
         "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
             (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })

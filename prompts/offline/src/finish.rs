@@ -12,6 +12,11 @@ const CIRCLE_M: f64 = 2.8;
 impl Story {
     /// Fills relations that follow from the deeds, and finds wishes that exclude each other.
     pub(crate) fn finish(&mut self) {
+        let inside = self.cast.people.iter().any(|p| is(p, Relation::Leaving) || is(p, Relation::Staying));
+        match self.weak_place.take() {
+            Some(weak) if self.place.is_none() || inside && weak.0 == PlaceClass::Elevator => self.place = Some(weak),
+            Some(_) | None => {}
+        }
         let elevator = self.place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::Elevator);
         let leaving = self.cast.people.iter().any(|p| is(p, Relation::Leaving));
         for who in 0..self.cast.people.len() {

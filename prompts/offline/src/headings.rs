@@ -44,7 +44,20 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
         }
         return;
     }
+    let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
+    let robot = all().any(|word| word.stem == "robot");
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    // `As the safety officer here I need …`; `My professor asked for two conditions.`
+    let speaker = (text(0) == "as" && matches!(text(1), "the" | "a" | "an"))
+        .then(|| (3..8).find(|k| matches!(text(*k), "i" | "we")))
+        .flatten();
+    let asker = matches!(text(0), "my" | "our")
+        && !robot
+        && (2..5).any(|k| {
+            matches!(stem(k), "ask" | "want" | "tell" | "say" | "think" | "suggest" | "require" | "insist" | "need")
+                && matches!(text(k + 1), "for" | "me" | "us" | "that" | "to" | "whether" | "if")
+        });
+    let silent = speaker.unwrap_or(if asker { words.len() } else { 0 });
     let number = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     let mut labels = Vec::new();
     for at in 0..words.len() {
@@ -63,6 +76,7 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
             labels.extend(Some(at + 2).filter(|_| of));
         }
     }
+    labels.extend(0..silent);
     for at in labels {
         if let Some(Some(word)) = words.get_mut(at) {
             (word.label, word.used) = (true, true);

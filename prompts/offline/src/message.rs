@@ -20,6 +20,17 @@ const MUTE: &[(&[&str], Gesture)] = &[
 /// A gesture needs a verb (or the word `gesture`) and a message near it; a raised hand and a horn are their own.
 pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
     let temporal = matches!(stretch.joint, Joint::When | Joint::Until | Joint::While);
+    // `lets it go first with a warm wave of her hand`
+    let stems: Vec<&str> = stretch.words.iter().map(|word| word.stem.as_str()).collect();
+    let lets = stems.iter().position(|stem| *stem == "let");
+    let with = lets.and_then(|lets| (lets..stems.len()).find(|k| stems.get(*k) == Some(&"with")));
+    if let Some(with) = with
+        && let Some(at) = (with + 1..stems.len().min(with + 5)).find(|k| matches!(stems.get(*k), Some(&("wave" | "gesture" | "sign" | "signal" | "motion"))))
+    {
+        (found.gesture, found.gesture_at) = (Some(Gesture::Proceed), at);
+        mark(stretch, with, stretch.words.len().saturating_sub(1));
+        return;
+    }
     let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
     let verb = verbs
         .filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true))

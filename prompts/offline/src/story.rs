@@ -8,7 +8,7 @@ use crate::clause::{self, Found};
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
-use crate::lexicon::{Act, lexicon};
+use crate::lexicon::{Act, Cue, lexicon};
 use crate::mention::Who;
 use crate::robot_deed::robot_deed;
 use crate::timing::{quiet, robot_first, timing, trigger};
@@ -19,6 +19,8 @@ use crate::whereabouts::place_of;
 pub(crate) struct Story {
     pub(crate) cast: Cast,
     pub(crate) place: Option<(PlaceClass, String)>,
+    /// A place in a heading, or in words about nobody: it counts where no other is named.
+    pub(crate) weak_place: Option<(PlaceClass, String)>,
     pub(crate) robot_says: Vec<(Gesture, String)>,
     /// Card that the robot's own part asks for: it leads, follows or overtakes somebody.
     pub(crate) robot_part: Option<&'static str>,
@@ -64,6 +66,8 @@ pub(crate) struct Thread {
     pub(crate) not_until: bool,
     /// What ended the deed before: `until it asks`.
     pub(crate) ended: Option<Trigger>,
+    /// The clause before is a condition in which somebody does something.
+    pub(crate) condition: bool,
     /// What was said not to be done: `the first does not stop; the others do`.
     pub(crate) denied: Option<Act>,
     /// Who walked on in the clause before, which a later `when` may still time.
@@ -96,6 +100,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         not_until: false,
         ended: None,
         denied: None,
+        condition: false,
         went_on: Vec::new(),
     };
     let named = sentences.iter().flatten().flat_map(|stretch| &stretch.words).filter(|word| word.name);
@@ -103,6 +108,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
     for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
         story.cast.listing = false;
+        story.cast.supposed = supposes(&sentence);
         thread.made.clear();
         thread.pending.clear();
         let count = sentence.len();
@@ -129,6 +135,19 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         }
     }
     story
+}
+
+/// Whether a sentence only supposes something, or tells what happens at times.
+fn supposes(sentence: &[Stretch]) -> bool {
+    let words: Vec<&str> = sentence.iter().flat_map(|stretch| &stretch.words).map(|word| word.text.as_str()).take(4).collect();
+    matches!(
+        words.as_slice(),
+        ["sometimes" | "often" | "usually" | "normally" | "typically", ..]
+            | ["you", "know", ..]
+            | ["what", "happens" | "if", ..]
+            | ["is", "it", "possible", ..]
+            | ["what", "does", ..]
+    )
 }
 
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
@@ -161,12 +180,31 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     } else if answers(&found) && thread.waiting.is_none() && stretch.joint != Joint::Then {
         // `The robot says PROCEED. He walks on.`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
+    } else if found.gesture == Some(Gesture::Acknowledged)
+        && found.deeds.is_empty()
+        && found.robots.is_empty()
+        && thread.waiting.is_none()
+        && matches!(thread.fresh, Some(Trigger::RobotSays(_)))
+    {
+        // `The robot tells him to go first. He nods and goes.`
+        (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
         // `blocks its way until it asks; then he steps aside`
         (thread.waiting, thread.vague) = (thread.ended.take(), false);
     }
     if found.acts() {
         thread.fresh = None;
+    }
+    // `when a picker crosses and the robot is in her way, …`
+    let condition = std::mem::replace(&mut thread.condition, stretch.joint == Joint::When && found.acts());
+    if condition && stretch.joint == Joint::And && found.deeds.is_empty() && robot_first(&found) {
+        stretch.joint = Joint::When;
+        let again = clause::read(stretch);
+        if let Some((cue @ (Cue::Blocking | Cue::Near | Cue::Stopped), _)) = again.cue {
+            (thread.waiting, thread.vague) = (trigger(cue, &again, thread), again.distance_m.is_none());
+            return;
+        }
+        stretch.joint = Joint::And;
     }
     let cue_only = found.cue.is_some()
         && (found.deeds.is_empty() || matches!(stretch.joint, Joint::When | Joint::Until) && robot_first(&found));
@@ -209,6 +247,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
     let spoken_of = story.cast.last.clone();
     for mention in &found.mentions {
+        // `my staff get grumpy` tells of whoever asks.
+        let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
+        let told = stretch.words.get(mention.to + 1).is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
+        if !found.acts() && told && owner(mention.from) && !matches!(next, Some(Joint::Who | Joint::And)) {
+            continue;
+        }
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
         let from = words.first().map_or(0, |word| word.from);
         let to = words.last().map_or(0, |word| word.to);
@@ -410,12 +454,16 @@ fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) -> bool {
     let count = match found.mentions.first().map(|mention| &mention.who) {
         Some(Who::Bare(n) | Who::PartOf(n)) => usize::try_from(*n).unwrap_or(usize::MAX),
         Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => usize::try_from(*n).unwrap_or(usize::MAX),
+        Some(Who::Ordinal(n)) if *n > 0 => 1,
         _ => return false,
     };
     if count == 0 || count >= doers.len() {
         return false;
     }
-    let out: Vec<usize> = doers.iter().rev().take(count).rev().copied().collect();
+    let out: Vec<usize> = match found.mentions.first().map(|mention| &mention.who) {
+        Some(Who::Ordinal(n)) => usize::try_from(*n).ok().and_then(|n| doers.get(n.checked_sub(1)?)).copied().into_iter().collect(),
+        _ => doers.iter().rev().take(count).rev().copied().collect(),
+    };
     for who in &out {
         let rules: Vec<usize> = thread.made.iter().filter(|(of, _)| of == who).map(|(_, rule)| *rule).collect();
         deed::except(&mut story.cast, *who, &rules);

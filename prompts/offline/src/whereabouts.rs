@@ -68,6 +68,12 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             Part::Origin => continue,
             Part::There => {}
         }
+        let heading = stretch.words.get(*at).is_some_and(|word| word.label);
+        let idle = found.mentions.is_empty() && found.robots.is_empty() && class == PlaceClass::Room;
+        if heading || idle {
+            story.weak_place.get_or_insert_with(|| (class, quote.to_owned()));
+            continue;
+        }
         let enters = found.deeds.iter().all(|deed| deed.act != Act::ComeOut && deed.act != Act::Stay);
         // The room that people come out of is where they start, not where they are met.
         let source = comes_out.is_some_and(|deed| *at > deed)
