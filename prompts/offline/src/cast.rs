@@ -39,6 +39,8 @@ pub(crate) struct Person {
     pub(crate) bound: bool,
     /// What it is called.
     pub(crate) name: Option<String>,
+    /// `he` or `she`, once one was used.
+    pub(crate) pronoun: Option<String>,
     /// `participant`, `bystander`: a word that says no more than that somebody is there.
     pub(crate) called: Option<String>,
     /// Words that say that it walks on after all it did.
@@ -123,6 +125,9 @@ const MEN: &[&str] = &[
     "guy",
     "nephew",
 ];
+
+/// Words for people that only say that they are there.
+const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
 
 impl Cast {
     /// A cast of people of whom was spoken before.
@@ -268,7 +273,15 @@ impl Cast {
                     self.latest()
                 }
             }
-            Who::Same => self.single(&mention.word),
+            Who::Same => {
+                let found = self.single(&mention.word);
+                if let ([only], "he" | "she") = (found.as_slice(), mention.word.as_str())
+                    && let Some(person) = self.people.get_mut(*only)
+                {
+                    person.pronoun.get_or_insert_with(|| mention.word.clone());
+                }
+                found
+            }
             Who::Object => self.last.clone(),
             Who::Further(n) => {
                 let there = self.people.len() >= usize::try_from(*n).unwrap_or(usize::MAX);
@@ -357,8 +370,12 @@ impl Cast {
 
     /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
     fn single(&self, word: &str) -> Vec<usize> {
-        let of =
-            |i: usize, words: &[&str]| self.people.get(i).is_some_and(|person| words.contains(&person.role.as_str()));
+        let of = |i: usize, words: &[&str]| {
+            let own = if words == WOMEN { "she" } else { "he" };
+            self.people.get(i).is_some_and(|person| {
+                person.pronoun.as_deref().map_or_else(|| words.contains(&person.role.as_str()), |said| said == own)
+            })
+        };
         if self.last.is_empty() {
             return Vec::new();
         }
@@ -384,6 +401,17 @@ impl Cast {
         let found =
             near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !of(*i, other) && self.last.len() == 1));
         found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
+    }
+
+    /// Remembers `participant` and its like, which say no more than that somebody is there.
+    pub(crate) fn call(&mut self, mention: &Mention, words: &[crate::words::Word], people: &[usize]) {
+        let weak = words.iter().find(|word| CALLED.contains(&word.stem.as_str())).filter(|_| mention.role.is_none());
+        let Some(weak) = weak else { return };
+        for i in people {
+            if let Some(person) = self.people.get_mut(*i) {
+                person.called.get_or_insert_with(|| weak.stem.clone());
+            }
+        }
     }
 
     /// Makes a group of these people.

@@ -407,6 +407,11 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
         // `walks past it in the opposite direction`
         Act::Overtake => rear || !has(&[Act::Toward]),
         // `a curious visitor follows` goes after the robot, not up to it.
+        // `gives up after 10 seconds of following`
+        Act::Follow => {
+            !(deed.at.checked_sub(1).and_then(|k| stretch.words.get(k)).is_some_and(|word| word.text == "of")
+                && stretch.words.get(deed.at).is_some_and(|word| word.text.ends_with("ing")))
+        }
         Act::Approach if follows => !directed && deed.at != deed.to,
         Act::Approach => !directed,
         Act::Walk | Act::Pass => !telling || deed.negated,
@@ -419,7 +424,6 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
         | Act::Toward
         | Act::Behind
         | Act::Abreast
-        | Act::Follow
         | Act::Cross
         | Act::ComeOut
         | Act::Stay

@@ -172,7 +172,10 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     // `when 4 m away they form a line`: they came from where they came.
     let then = matches!(relation(act), Some(Relation::Static | Relation::Ahead))
         && around.trigger.is_some()
-        && person.is_some_and(|person| person.relation.is_some());
+        && person.is_some_and(|person| {
+            person.relation.is_some()
+                || act == Act::Ahead && person.rules.iter().any(|read| read.rule.act == Action::FollowRobot)
+        });
     let on_the_way = act == Act::Talk && person.is_some_and(walks) || then;
     if let Some(relation) = relation(act).filter(|_| !on_the_way) {
         relate(cast, who, relation, &around.quote);

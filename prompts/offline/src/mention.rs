@@ -421,6 +421,10 @@ fn counted(
             return None;
         }
     }
+    // `In this one an intern …`: a scenario.
+    if text(at) == "one" && at > 0 && matches!(text(at - 1), "this" | "that") && at > 1 && matches!(text(at - 2), "in" | "for") {
+        return None;
+    }
     // `one after another`, `one by one` say how, not who.
     if text(at) == "one"
         && matches!(text(at + 1), "after" | "by" | "behind")
@@ -439,7 +443,7 @@ fn counted(
         if text(at + 1) == "one" {
             return made(Who::ToldApart, None, false, at + 1);
         }
-        if text(at + 2) == "one" && plain(at + 1) && stem(words, at + 1) != "robot" {
+        if text(at + 2) == "one" && (plain(at + 1) || text(at + 1) == "only") && stem(words, at + 1) != "robot" {
             return made(Who::ToldApart, None, false, at + 2);
         }
     }
@@ -457,7 +461,12 @@ fn counted(
     // `his mother`, `her colleague`: known or new.
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && let Some(end) =
-            noun(words, at + 1, lex).filter(|end| lex.roles.get(stem(words, *end)).is_some_and(|role| !role.generic))
+            noun(words, at + 1, lex).filter(|end| {
+            // `our porter Dennis`
+            let named = words.get(*end).is_some_and(|word| word.capital) && *end > at + 1;
+            let noun = if named && !lex.roles.contains_key(stem(words, *end)) { end - 1 } else { *end };
+            lex.roles.get(stem(words, noun)).is_some_and(|role| !role.generic)
+        })
     {
         let many = words.get(end).is_some_and(plural);
         return made(Who::Definite { plural: many, count: None }, role(end), false, end);

@@ -28,6 +28,7 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         && let Some(at) = (with + 1..stems.len().min(with + 5)).find(|k| matches!(stems.get(*k), Some(&("wave" | "gesture" | "sign" | "signal" | "motion"))))
     {
         (found.gesture, found.gesture_at) = (Some(Gesture::Proceed), at);
+        found.mentions.retain(|mention| mention.from < with);
         mark(stretch, with, stretch.words.len().saturating_sub(1));
         return;
     }
@@ -82,7 +83,9 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
     }
     // `the robot asks`: for nothing but its way.
     let asks = stem(first) == "ask"
-        && last + 1 == stretch.words.len()
+        && stretch.words.iter().skip(last + 1).all(|word| {
+            matches!(word.text.as_str(), "once" | "twice" | "again" | "politely" | "nicely" | "kindly" | "loudly")
+        })
         && first.checked_sub(1).is_some_and(|k| stem(k) == "robot");
     if asks {
         found.gesture = Some(Gesture::ExcuseMe);

@@ -68,14 +68,13 @@ pub(crate) struct Thread {
     pub(crate) ended: Option<Trigger>,
     /// The clause before is a condition in which somebody does something.
     pub(crate) condition: bool,
+    /// To whom the last gesture was made.
+    pub(crate) addressed: Vec<usize>,
     /// What was said not to be done: `the first does not stop; the others do`.
     pub(crate) denied: Option<Act>,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
-
-/// Words for people that only say that they are there.
-const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
 
 /// Reads the text.
 pub(crate) fn read(text: &str) -> Story {
@@ -99,6 +98,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         speaks: false,
         not_until: false,
         ended: None,
+        addressed: Vec::new(),
         denied: None,
         condition: false,
         went_on: Vec::new(),
@@ -144,7 +144,7 @@ fn supposes(sentence: &[Stretch]) -> bool {
         words.as_slice(),
         ["sometimes" | "often" | "usually" | "normally" | "typically", ..]
             | ["you", "know", ..]
-            | ["what", "happens" | "if", ..]
+            | ["what", "happens" | "if" | "about", ..]
             | ["is", "it", "possible", ..]
             | ["what", "does", ..]
     )
@@ -261,14 +261,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
         let mut people =
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
-        let weak = words.iter().find(|word| CALLED.contains(&word.stem.as_str()));
-        if let Some(weak) = weak.filter(|_| mention.role.is_none()) {
-            for i in &people {
-                if let Some(person) = story.cast.people.get_mut(*i) {
-                    person.called.get_or_insert_with(|| weak.stem.clone());
-                }
-            }
-        }
+        story.cast.call(mention, words, &people);
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
@@ -367,6 +360,20 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             }
             (subject, _) => subject,
         };
+        // `waves his colleague through, and at that he walks on`: whoever was waved at.
+        let own = |people: &[usize]| {
+            matches!((&thread.waiting, people), (Some(Trigger::HumanSays(id, _)), [only])
+                if usize::try_from(id.number()) == Ok(only + 1) && act != Act::Gesture && stretch.joint == Joint::Said)
+        };
+        let subject = match subject {
+            Subject::People(people) if own(&people) && !thread.addressed.is_empty() => {
+                Subject::People(thread.addressed.clone())
+            }
+            subject => subject,
+        };
+        if act == Act::Gesture {
+            thread.addressed = meant.iter().filter(|(from, _, _)| *from > at).flat_map(|(_, _, some)| some.clone()).collect();
+        }
         let quote = quote.as_str();
         thread.untaken = None;
         match &subject {
@@ -395,7 +402,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 }
             }
             // `does not move aside until the robot asks`: it does then.
-            Subject::People(people) if negated && next == Some(Joint::Until) && deed::manner(act).is_some() => {
+            Subject::People(people)
+                if negated
+                    && next == Some(Joint::Until)
+                    && (deed::manner(act).is_some() || matches!(act, Act::GoOn | Act::Walk | Act::Pass)) =>
+            {
+                let act = if deed::manner(act).is_some() { act } else { Act::GoOn };
                 people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote);
                 thread.not_until = true;
             }
@@ -487,7 +499,7 @@ fn mark(stretch: &mut Stretch, at: &[usize]) {
 fn answers(found: &Found) -> bool {
     let answer = |act: Act| matches!(act, Act::GoOn | Act::GiveWay);
     found.distance_m.is_none()
-        && found.robots.is_empty()
+        && found.robots.iter().all(|robot| found.deeds.first().is_some_and(|deed| deed.at < *robot))
         && found.gesture.is_none()
         && found.deeds.first().is_some_and(|deed| answer(deed.act) && !deed.negated)
 }

@@ -101,7 +101,9 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
     let back = matches!(stretch.joint, Joint::When | Joint::While | Joint::Until)
         && !thread.made.is_empty()
         && !stretch.after_and
-        && !fronted;
+        && !fronted
+        // `then the nurse steps aside, while the doctor signals`: each does something of its own.
+        && !(stretch.joint == Joint::While && cue == Cue::Told && already_timed(story, thread));
     // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
     for mention in found
         .mentions
@@ -109,6 +111,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         .filter(|mention| cue != Cue::Told && !(back && matches!(mention.who, Who::All | Who::Same)))
     {
         let people = story.cast.resolve(mention, false, quote);
+        story.cast.call(mention, stretch.words.get(mention.from..=mention.to).unwrap_or_default(), &people);
         // `the latter, once the former has …, clears the way`: the latter does.
         if !people.is_empty() && thread.pending.is_empty() {
             story.cast.last.clone_from(&people);
@@ -151,6 +154,13 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
     }
 }
 
+/// Whether the text said before when the last deeds are done.
+fn already_timed(story: &Story, thread: &Thread) -> bool {
+    thread.made.iter().all(|(who, rule)| {
+        story.cast.people.get(*who).and_then(|person| person.rules.get(*rule)).is_some_and(|read| read.stated)
+    })
+}
+
 /// Whether the robot is named before anybody else.
 fn robot_leads(found: &Found) -> bool {
     found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
@@ -174,6 +184,16 @@ pub(crate) fn quiet(
     let mut people: Vec<usize> = Vec::new();
     for (_, _, some) in meant {
         people.extend(some.iter().filter(|i| !people.contains(i)).copied().collect::<Vec<_>>());
+    }
+    if let Some(secs) = found.after_s.filter(|_| people.is_empty() && next.is_none() && !thread.made.is_empty()) {
+        // `only the last one looks at it, namely after 8 seconds`
+        for (who, rule) in &thread.made {
+            let read = story.cast.people.get_mut(*who).and_then(|person| person.rules.get_mut(*rule));
+            if let Some(read) = read.filter(|read| !read.stated) {
+                (read.rule.when, read.stated, read.exact) = (vec![Trigger::AfterSecs(secs)], true, true);
+            }
+        }
+        return;
     }
     if let Some(secs) = found.after_s {
         thread.waiting = Some(Trigger::AfterSecs(secs));

@@ -69,7 +69,7 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             Part::There => {}
         }
         let heading = stretch.words.get(*at).is_some_and(|word| word.label);
-        let idle = found.mentions.is_empty() && found.robots.is_empty() && class == PlaceClass::Room;
+        let idle = found.mentions.is_empty() && !found.acts() && class == PlaceClass::Room;
         if heading || idle {
             story.weak_place.get_or_insert_with(|| (class, quote.to_owned()));
             continue;

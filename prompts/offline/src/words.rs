@@ -191,7 +191,12 @@ fn apostrophe(
     let taken = if mark && !tail.is_empty() { 1 + tail.chars().count() } else { 0 };
     let to = byte(i + taken);
     if tail == "t" && lower.ends_with('n') {
-        let verb = lower.strip_suffix('n').filter(|verb| *verb != "ca").unwrap_or("can");
+        let verb = match lower.strip_suffix('n') {
+            Some("wo") => "will",
+            Some("sha") => "shall",
+            Some("ca") | None => "can",
+            Some(verb) => verb,
+        };
         out.push(Piece::Word(word(verb.to_owned(), from, to)));
         out.push(Piece::Word(word("not".to_owned(), from, to)));
     } else {
