@@ -39,6 +39,8 @@ pub(crate) struct Person {
     pub(crate) bound: bool,
     /// What it is called.
     pub(crate) name: Option<String>,
+    /// Words by which it stands still all of the time.
+    pub(crate) still: Option<String>,
     /// `he` or `she`, once one was used.
     pub(crate) pronoun: Option<String>,
     /// `participant`, `bystander`: a word that says no more than that somebody is there.
@@ -76,6 +78,8 @@ pub(crate) struct Cast {
     pub(crate) nobody: Option<String>,
     /// Whom the text spoke of before [`Self::last`].
     pub(crate) before: Vec<usize>,
+    /// The sentence makes an exception: `only when …`, `until …`.
+    pub(crate) excepting: bool,
     /// The sentence only supposes something: `What if a nurse …?`, `Sometimes a nurse …`.
     pub(crate) supposed: bool,
     /// Whom such sentences spoke of, who may be spoken of again as somebody new.

@@ -200,7 +200,20 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
             goes_on(cast, who, around);
         }
     }
+    let excepting = cast.excepting;
     let person = cast.people.get_mut(who)?;
+    // `stands there for the whole run`, and moves all the same
+    let still = person.still.clone().filter(|_| !excepting && (goes(act) || matches!(act, Act::Follow | Act::GoOn | Act::Walk | Act::Approach)));
+    let never_walks = person.never.iter().find(|(never, quote)| {
+        matches!(never, Act::Walk | Act::GoOn) && matches!(act, Act::Walk | Act::GoOn) && !excepting && always(quote)
+    });
+    if let Some(first) = still.or_else(|| never_walks.map(|(_, quote)| quote.clone())) {
+        cast.problems.push(contradiction(who, &first, &around.quote));
+        return None;
+    }
+    if matches!(act, Act::Stop | Act::Stand) && whole(&around.quote) {
+        person.still = Some(around.quote.clone());
+    }
     let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether);
     person.bound |= moves;
     // `gives up after 10 seconds of following`
@@ -214,8 +227,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         return gesture(person, around);
     }
     let (action, usual, lasts, latched) = manner(act)?;
-    // `only when it asks does he move` is no contradiction to `he does not move`.
-    let never = person.never.iter().find(|(other, _)| *other == act && around.trigger.is_none());
+    // `only when it asks does he move` is no contradiction to `he does not move`; to `he never moves` it is.
+    let never = person.never.iter().find(|(other, quote)| *other == act && (around.trigger.is_none() || !excepting && always(quote)));
     if let Some((_, never)) = never {
         let never = never.clone();
         cast.problems.push(contradiction(who, &never, &around.quote));
@@ -273,6 +286,19 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         return Some(person.rules.len() - 1);
     }
     Some(once(person, read))
+}
+
+/// Whether the words leave no exception.
+fn always(quote: &str) -> bool {
+    let lower = quote.to_lowercase();
+    whole(&lower) || ["never", "at any time", "at no ", "under no ", "at all", "any point"].iter().any(|words| lower.contains(words))
+}
+
+/// Whether the words mean all of the time.
+fn whole(quote: &str) -> bool {
+    ["the whole run", "the whole time", "the entire", "throughout", "all the time", "at all times", "from beginning to end", "from start to finish", "the whole scenario", "the complete run", "during the whole"]
+        .iter()
+        .any(|words| quote.contains(words))
 }
 
 /// Deeds by which somebody gets somewhere.

@@ -468,7 +468,8 @@ fn counted(
             lex.roles.get(stem(words, noun)).is_some_and(|role| !role.generic)
         })
     {
-        let many = words.get(end).is_some_and(plural);
+        let called = words.get(end).is_some_and(|word| word.capital && !lex.roles.contains_key(&word.stem));
+        let many = words.get(if called { end - 1 } else { end }).is_some_and(plural);
         return made(Who::Definite { plural: many, count: None }, role(end), false, end);
     }
     if next == at && count.is_none() && words.get(at).is_some_and(|word| word.name && !word.label) {

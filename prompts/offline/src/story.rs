@@ -68,6 +68,8 @@ pub(crate) struct Thread {
     pub(crate) ended: Option<Trigger>,
     /// The clause before is a condition in which somebody does something.
     pub(crate) condition: bool,
+    /// Who was named before `and`, beside other words.
+    pub(crate) listed: Vec<usize>,
     /// To whom the last gesture was made.
     pub(crate) addressed: Vec<usize>,
     /// What was said not to be done: `the first does not stop; the others do`.
@@ -99,6 +101,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         not_until: false,
         ended: None,
         addressed: Vec::new(),
+        listed: Vec::new(),
         denied: None,
         condition: false,
         went_on: Vec::new(),
@@ -109,6 +112,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         (thread.waiting, thread.doer) = (None, None);
         story.cast.listing = false;
         story.cast.supposed = supposes(&sentence);
+        story.cast.excepting = excepts(&sentence);
         thread.made.clear();
         thread.pending.clear();
         let count = sentence.len();
@@ -137,14 +141,24 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
     story
 }
 
+/// Whether a sentence makes an exception from what was said before.
+fn excepts(sentence: &[Stretch]) -> bool {
+    sentence.iter().any(|stretch| {
+        matches!(stretch.joint, Joint::Until | Joint::Except)
+            || stretch.words.iter().any(|word| matches!(word.text.as_str(), "only" | "except" | "but" | "unless" | "just"))
+    })
+}
+
 /// Whether a sentence only supposes something, or tells what happens at times.
 fn supposes(sentence: &[Stretch]) -> bool {
     let words: Vec<&str> = sentence.iter().flat_map(|stretch| &stretch.words).map(|word| word.text.as_str()).take(4).collect();
-    matches!(
+    let condition = sentence.get(1).is_some_and(|stretch| stretch.joint == Joint::When);
+    matches!(words.first(), Some(&"what")) && condition
+        || matches!(
         words.as_slice(),
         ["sometimes" | "often" | "usually" | "normally" | "typically", ..]
             | ["you", "know", ..]
-            | ["what", "happens" | "if" | "about", ..]
+            | ["what", "happens" | "about", ..]
             | ["is", "it", "possible", ..]
             | ["what", "does", ..]
     )
@@ -250,7 +264,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         // `my staff get grumpy` tells of whoever asks.
         let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
         let told = stretch.words.get(mention.to + 1).is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
-        if !found.acts() && told && owner(mention.from) && !matches!(next, Some(Joint::Who | Joint::And)) {
+        if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
             continue;
         }
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
@@ -302,6 +316,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
     let previous = thread.subject.clone();
     let mut joined = std::mem::take(&mut thread.pending);
+    let listed = std::mem::take(&mut thread.listed);
+    let shared = |to: usize| stretch.words.get(to + 1).is_some_and(|word| word.text.ends_with("ing"));
+    if joined.is_empty() && stretch.joint == Joint::And && found.mentions.first().is_some_and(|first| first.from == 0 && shared(first.to)) {
+        joined = listed;
+    }
     // `Five people: two follow the robot`: some of those who wait for a deed, not others beside them.
     if meant.iter().any(|(_, _, some)| !some.is_empty() && some.iter().all(|i| joined.contains(i))) {
         joined.clear();

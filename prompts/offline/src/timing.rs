@@ -290,6 +290,10 @@ pub(crate) fn quiet(
     if bare && matches!(next, Some(Joint::And | Joint::Comma | Joint::When | Joint::While)) {
         thread.pending.clone_from(&people);
     }
+    // `there should be a doctor and a nurse standing together`
+    if !bare && next == Some(Joint::And) && meant.last().is_some_and(|(_, to, _)| to + 1 == stretch.words.len()) {
+        thread.listed.clone_from(&people);
+    }
     story.cast.last.clone_from(&people);
     thread.subject = Subject::People(people);
 }
