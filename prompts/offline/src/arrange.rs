@@ -7,10 +7,86 @@ use crate::words::Word;
 
 /// The clauses in the order in which they are read: what stands before who does it comes after, and names go together.
 pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
+    if let Some(first) = found.first_mut() {
+        asked(first);
+    }
     measured(&mut found);
+    pair(&mut found);
+    resumed(&mut found);
     parted(&mut found);
     named(&mut found);
     fronted(apposed(found))
+}
+
+/// `Asked by the robot to wait, the packer stops`: when the robot asks.
+fn asked(first: &mut Stretch) {
+    let asks = first.words.first().is_some_and(|word| {
+        matches!(word.stem.as_str(), "ask" | "tell" | "signal" | "request" | "order" | "instruct" | "urge" | "invite")
+            && word.text != word.stem
+    });
+    let by = first.words.get(1).is_some_and(|word| word.text == "by");
+    let robot = (2..5).find(|k| first.words.get(*k).is_some_and(|word| word.stem == "robot"));
+    if let Some(robot) = robot.filter(|_| asks && by) {
+        let mut agent: Vec<Word> = first.words.drain(1..=robot).collect();
+        agent.remove(0);
+        first.words.splice(0..0, agent);
+        first.joint = Joint::When;
+    }
+}
+
+/// `Anna and Ben, two interns, stand there`, `Ana and Bruno, both of them consultants, …`: so many, who have names.
+fn pair(found: &mut Vec<Stretch>) {
+    let lex = lexicon();
+    let last_name = |stretch: &Stretch| stretch.words.last().is_some_and(|word| word.name);
+    for at in 1..found.len() {
+        let names = found.get(at - 1).is_some_and(last_name)
+            && found.get(at).is_some_and(|ben| ben.joint == Joint::And && ben.words.len() == 1 && last_name(ben));
+        let both = |words: &[Word]| {
+            let skip = match words.first().map(|word| word.text.as_str()) {
+                Some("both") if words.get(1).is_some_and(|word| word.text == "of") => 3,
+                Some("both" | "two") => 1,
+                _ => return None,
+            };
+            let role = words.iter().skip(skip).any(|word| lex.roles.contains_key(&word.stem));
+            (role && words.len() <= skip + 3).then_some(skip)
+        };
+        let Some(skip) = found.get(at + 1).filter(|_| names).and_then(|also| both(&also.words)) else { continue };
+        let (Some(rest), true) = (found.get(at + 2).cloned(), found.len() > at + 2) else { continue };
+        let mut noun = found.remove(at + 1).words;
+        let from = noun.first().cloned();
+        noun.drain(0..skip);
+        let _names = found.drain(at..=at + 1).count();
+        if let (Some(head), Some(word)) = (found.get_mut(at - 1), from) {
+            head.words.pop();
+            head.words.push(Word { text: "two".to_owned(), stem: "two".to_owned(), ..word });
+            head.words.extend(noun);
+            head.words.extend(rest.words);
+        }
+        return;
+    }
+}
+
+/// `Neither of the two visitors who come towards the robot gives way`: what they do stands behind who they are.
+fn resumed(found: &mut Vec<Stretch>) {
+    for at in 1..found.len() {
+        let head = found.get(at - 1).filter(|head| {
+            head.words.first().is_some_and(|word| matches!(word.text.as_str(), "neither" | "none" | "each" | "nobody"))
+        });
+        let Some(who) = found.get(at).filter(|who| who.joint == Joint::Who && head.is_some()) else { continue };
+        let verb = |word: &Word| {
+            word.text != word.stem && word.text.ends_with('s') && lexicon().verbs.contains(&word.stem) && !lexicon().things.contains(&word.text)
+        };
+        let first = who.words.iter().position(|word| lexicon().verbs.contains(&word.stem) || lexicon().known.contains(&word.stem));
+        let again = (first.unwrap_or(0) + 2..who.words.len()).find(|k| who.words.get(*k).is_some_and(verb));
+        let Some((again, head)) = again.zip(head.cloned()) else { continue };
+        if let Some(who) = found.get_mut(at) {
+            let rest = who.words.split_off(again);
+            let mut words = head.words;
+            words.extend(rest);
+            found.insert(at + 1, Stretch { joint: Joint::Comma, after_and: false, words, also: Vec::new() });
+        }
+        return;
+    }
 }
 
 /// `when it is close (1 m)`: a measure alone belongs to the clause before it.

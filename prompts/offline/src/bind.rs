@@ -79,7 +79,9 @@ pub(crate) fn subject_of(
     match (before, robot) {
         (Some((from, _, some)), Some(robot)) if robotic && robot > from => {
             // The robot between a person and the deed is the object of an earlier one, unless it opens a clause of its own.
-            if found.deeds.iter().any(|deed| deed.at > *from && deed.at < *robot) {
+            // `out of the room the robot wants to enter`
+            let own = act == Act::Enter && found.places.iter().any(|(_, place)| (place + 1..place + 4).contains(robot));
+            if !own && found.deeds.iter().any(|deed| deed.at > *from && deed.at < *robot) {
                 people(some)
             } else {
                 Subject::Robot
@@ -175,6 +177,7 @@ pub(crate) fn people_deed(
             let halted = story.cast.people.get_mut(*who).filter(|person| !person.rules.is_empty());
             if let Some(person) = halted {
                 person.goes_on.get_or_insert_with(|| quote.to_owned());
+                thread.went_on.push(*who);
             }
         }
     }
@@ -228,7 +231,10 @@ pub(crate) fn people_deed(
         object: object.and_then(|i| u32::try_from(i + 1).ok()).map(HumanId::new),
         place,
         startled,
-        stands: stretch.words.get(to).is_some_and(|word| word.stem == "stand") && to > at && thread.waiting.is_none()
+        stands: to > at
+            && thread.waiting.is_none()
+            && found.lasts_s.is_none()
+            && (at..=to).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "stand"))
             || stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
             && stretch.words.get(at + 1).is_some_and(|word| word.text != "still"),
         gives_up: act == Act::GoOn

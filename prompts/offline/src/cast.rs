@@ -84,8 +84,8 @@ pub(crate) struct Cast {
     pub(crate) supposed: bool,
     /// Whom such sentences spoke of, who may be spoken of again as somebody new.
     supposed_people: Vec<usize>,
-    /// Names that the text gives to people.
-    pub(crate) names: std::collections::BTreeSet<String>,
+    /// Names that the text gives to people, in order.
+    pub(crate) names: Vec<String>,
     /// A colon stood before: what comes lists those who are there.
     pub(crate) listing: bool,
     overflow: bool,
@@ -195,6 +195,10 @@ impl Cast {
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
             Who::ToldApart => self.part_of(1, mention, quote),
+            // `two stay; one of the two looks`
+            Who::PartOfNew(n, of) if mention.role.is_none() && self.last.len() == usize::try_from(*of).unwrap_or(0) => {
+                self.last.iter().copied().take(usize::try_from(*n).unwrap_or(1)).collect()
+            }
             Who::PartOfNew(n, of) => {
                 let known = self.latest().len() == usize::try_from(*of).unwrap_or(usize::MAX)
                     && self.latest().iter().all(|i| self.fits(*i, mention.role.as_ref()));
@@ -598,7 +602,8 @@ impl Cast {
                 self.people.get(*i).is_some_and(|person| person.name.is_none() && (person.role.is_empty() || lexicon().roles.contains_key(&person.role)))
             };
             let set = self.sets.iter().rev().find(|set| set.members.len() > 1 && set.members.len() == self.names.len());
-            if let Some(who) = set.and_then(|set| set.members.iter().copied().find(nameless)) {
+            let place = self.names.iter().position(|known| known == name).unwrap_or(0);
+            if let Some(who) = set.and_then(|set| set.members.get(place).copied().filter(nameless)) {
                 if let Some(person) = self.people.get_mut(who) {
                     person.name = Some(name.clone());
                 }

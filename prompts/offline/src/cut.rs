@@ -270,7 +270,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
             if text(i) != "so"
-                || before != "do" && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly" | "much") =>
+                || !matches!(before, "do" | "say" | "tell" | "ask") && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly" | "much") =>
         {
             (Some(Joint::Comma), 1)
         }
@@ -288,6 +288,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "when" | "whenever" | "upon" | "if" => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
+        "on" if text(i + 1) == "being" => (Some(Joint::When), 1),
         "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
             (Some(Joint::When), 1)
         }

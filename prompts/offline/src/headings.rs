@@ -242,7 +242,7 @@ pub(crate) fn names(pieces: &mut [Piece]) {
     };
     let does = |k: usize| {
         word(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !word.capital || matches!(word.text.as_str(), "who" | "both" | "then" | "just")
+            lex.verbs.contains(&word.stem) && !word.capital || matches!(word.text.as_str(), "who" | "both" | "then" | "just" | "only" | "never" | "also" | "always")
         })
     };
     let title = |k: usize| word(k).is_some_and(|word| matches!(word.text.as_str(), "mr" | "mrs" | "ms" | "miss" | "prof"));

@@ -167,11 +167,10 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         }
         let count = words.get(skip).and_then(Word::count).filter(|n| *n > 1);
         let start = skip + usize::from(count.is_some());
-        noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex)).map(|end| Whole {
-            end,
-            role: role(end),
-            count,
-        })
+        let named = noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex));
+        // `none of the five`
+        let bare = count.filter(|_| start > skip && text(k + 1) == "the").map(|_| Whole { end: skip, role: None, count });
+        named.map(|end| Whole { end, role: role(end), count }).or(bare)
     };
     // `neither of the others`, `both of the rest`: those who are left.
     let left = matches!(text(at), "both" | "neither" | "none" | "each" | "all" | "any")
@@ -421,6 +420,13 @@ fn counted(
             return None;
         }
     }
+    // `Can you do one where …`
+    let makes = |k: usize| {
+        matches!(stem(words, k), "do" | "make" | "create" | "simulate" | "run" | "try" | "generate" | "build" | "write")
+    };
+    if text(at) == "one" && at + 1 == words.len() && at > 0 && makes(at - 1) {
+        return None;
+    }
     // `In this one an intern …`: a scenario.
     if text(at) == "one" && at > 0 && matches!(text(at - 1), "this" | "that") && at > 1 && matches!(text(at - 2), "in" | "for") {
         return None;
@@ -518,7 +524,10 @@ fn counted(
     // `two or three meters`
     let range = text(next) == "or" && words.get(next + 1).is_some_and(|word| word.count().is_some());
     let counts = thing(words, next) || range;
-    let verb = words.get(next).is_none_or(|word| lex.known.contains(&word.stem) && !lex.labels.contains(&word.stem));
+    let verb = words.get(next).is_none_or(|word| {
+        let does = lex.verbs.contains(&word.stem) && word.text != word.stem;
+        lex.known.contains(&word.stem) && (does || !lex.labels.contains(&word.stem))
+    });
     if label || unit || counts || !verb || article || text(at).contains('.') || n == 0 {
         return None;
     }

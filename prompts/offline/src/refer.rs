@@ -74,7 +74,6 @@ pub(crate) fn others(
                 && word != "former"
                 && word != "latter"
                 && let Some(some) = count(at + 2).filter(|some| *some > 1)
-                && !thing(words, at + 3)
                 && !words.get(at + 3).is_some_and(|word| {
                     matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "time")
                 })

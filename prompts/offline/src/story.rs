@@ -107,7 +107,11 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         went_on: Vec::new(),
     };
     let named = sentences.iter().flatten().flat_map(|stretch| &stretch.words).filter(|word| word.name);
-    story.cast.names = named.map(|word| word.stem.clone()).collect();
+    for word in named {
+        if !story.cast.names.contains(&word.stem) {
+            story.cast.names.push(word.stem.clone());
+        }
+    }
     for mut sentence in sentences {
         (thread.waiting, thread.doer) = (None, None);
         story.cast.listing = false;
@@ -191,7 +195,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
     if stretch.joint == Joint::Said {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
-    } else if answers(&found) && thread.waiting.is_none() && stretch.joint != Joint::Then {
+    } else if answers(&found, thread.fresh.as_ref()) && thread.waiting.is_none() && stretch.joint != Joint::Then {
         // `The robot says PROCEED. He walks on.`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if found.gesture == Some(Gesture::Acknowledged)
@@ -316,6 +320,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
     let previous = thread.subject.clone();
     let mut joined = std::mem::take(&mut thread.pending);
+    // `Inside are a doctor and a patient: the doctor leaves`
+    if stretch.words.first().is_some_and(|word| word.after_colon) {
+        joined.clear();
+    }
     let listed = std::mem::take(&mut thread.listed);
     let shared = |to: usize| stretch.words.get(to + 1).is_some_and(|word| word.text.ends_with("ing"));
     if joined.is_empty() && stretch.joint == Joint::And && found.mentions.first().is_some_and(|first| first.from == 0 && shared(first.to)) {
@@ -442,7 +450,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                     .push(format!("`{quote}` rules something out for {}; no reaction is added", people.join(" and ")));
             }
             Subject::People(people) => {
-                people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote)
+                // `he walks off, followed by a trainee`
+                let mut around = meant.clone();
+                if let (true, Act::Follow, Subject::People(led)) = (passive && found.robots.is_empty(), act, &previous) {
+                    around.push((stretch.words.len(), stretch.words.len(), led.clone()));
+                }
+                people_deed(story, thread, (act, at, to), people, &found, &around, stretch, quote)
             }
             Subject::Nobody if found.mentions.iter().any(|mention| mention.who == Who::Nobody) => {
                 for who in 0..story.cast.people.len() {
@@ -515,8 +528,13 @@ fn mark(stretch: &mut Stretch, at: &[usize]) {
 }
 
 /// Whether the clause is an answer to what the robot said just before.
-fn answers(found: &Found) -> bool {
-    let answer = |act: Act| matches!(act, Act::GoOn | Act::GiveWay);
+fn answers(found: &Found, said: Option<&Trigger>) -> bool {
+    let answer = |act: Act| match act {
+        Act::GoOn | Act::GiveWay => true,
+        Act::Follow => said == Some(&Trigger::RobotSays(Gesture::FollowMe)),
+        Act::Stop => said == Some(&Trigger::RobotSays(Gesture::Wait)),
+        _ => false,
+    };
     found.distance_m.is_none()
         && found.robots.iter().all(|robot| found.deeds.first().is_some_and(|deed| deed.at < *robot))
         && found.gesture.is_none()
@@ -581,9 +599,11 @@ fn also_called(story: &mut Story, meant: &[(usize, usize, Vec<usize>)], stretch:
         }
         return;
     };
+    // `Dr. Meyer, a surgeon`
+    let titled = stretch.words.first().is_some_and(|word| word.text == "dr");
     for who in people {
         if let Some(person) = story.cast.people.get_mut(*who)
-            && (person.role.is_empty() || !lexicon().roles.contains_key(&person.role))
+            && (person.role.is_empty() || !lexicon().roles.contains_key(&person.role) || titled && person.role == "doctor")
         {
             person.role.clone_from(&role);
         }

@@ -206,6 +206,9 @@ pub(crate) fn quiet(
             return;
         }
     }
+    if people.is_empty() && robot_leads(found) && found.mentions.is_empty() {
+        thread.subject = Subject::Robot;
+    }
     let behind = stretch.words.iter().position(|word| word.text == "behind");
     // `one behind it`, where the verb is left out
     let of_robot = behind.filter(|at| {

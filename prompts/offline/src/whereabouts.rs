@@ -55,9 +55,17 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
                 | PlaceClass::NarrowPassage
         );
         let named = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "goal" | "destination" | "target"));
+        // `from the corridor to a room`
+        let both = found.places.len() == 2
+            && before(*at, stretch, &["from"])
+            && found.places.iter().any(|(_, other)| other > at && before(*other, stretch, &["to", "into"]));
         match part(*at, found, stretch, subject) {
-            Part::Goal | Part::Start if transit && !named => {}
+            Part::Goal | Part::Start if transit && !named && !both => {}
             Part::Goal => {
+                // Who gets into an elevator meets people there.
+                if class == PlaceClass::Elevator {
+                    story.weak_place.get_or_insert_with(|| (class, quote.to_owned()));
+                }
                 story.robot_enters = Some((class, quote.to_owned()));
                 continue;
             }
@@ -151,6 +159,7 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
                 | "run"
                 | "proceed"
                 | "begin"
+                | "get"
         )
     };
     let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
