@@ -321,7 +321,7 @@ fn apposition(name: &Stretch, other: &Stretch, next: Option<&Stretch>) -> Option
     if numbered && other.joint == Joint::Comma && other.words.len() == 1 && whole(&other.words) {
         return Some(Also::Second);
     }
-    let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an"));
+    let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "her" | "his" | "their"));
     let bare = other.words.len() == 1 && whole(&other.words);
     if other.joint != Joint::Comma || !(article && whole(&other.words) || bare) {
         return None;

@@ -11,6 +11,17 @@ const HEADS: &[&str] = &[
     "benchmark", "reproduction", "acceptance", "phase", "part",
 ];
 
+/// Of these, verbs and nouns of the story where no number follows.
+const ALSO_DEEDS: &[&str] = &["step", "run", "check", "block", "part", "item", "task", "note", "input", "test", "bug", "issue", "phase", "expected"];
+
+/// Whether a heading speaks of it at this place: `block 2`, `test case`, `Setup:`.
+fn head(words: &[&Word], at: usize) -> bool {
+    let Some(word) = words.get(at) else { return false };
+    let known = HEADS.contains(&word.text.as_str()) || HEADS.contains(&word.stem.as_str());
+    let deed = ALSO_DEEDS.contains(&word.stem.as_str());
+    known && (!deed || words.len() <= 2 || words.get(at + 1).is_some_and(|next| next.count().is_some()) || word.capital && at == 0 || words.get(at + 1).is_none() && !word.text.ends_with("ing"))
+}
+
 /// Words that count no people, but how often, how long ago or what hour it is.
 const COUNTED: &[&str] = &[
     "runs", "times", "trials", "tries", "attempts", "repetitions", "repeats", "episodes", "cases", "percent", "years", "days",
@@ -36,9 +47,10 @@ const LISTS: &[&str] = &[
 /// `Turn-taking, block 2, trial 14.`: a title without anybody in it counts nothing; nor do `10 of 10 runs`.
 pub(crate) fn titled(words: &mut [Option<Word>]) {
     let all = || words.iter().flatten();
-    let head = |word: &Word| HEADS.contains(&word.text.as_str());
+    let whole: Vec<&Word> = all().collect();
+    let titled = (0..whole.len()).any(|k| head(&whole, k));
     let somebody = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot" || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who");
-    if all().count() <= 9 && all().any(head) && !all().any(somebody) {
+    if whole.len() <= 9 && titled && !all().any(somebody) {
         for word in words.iter_mut().flatten() {
             (word.label, word.used) = (true, true);
         }
@@ -93,7 +105,10 @@ pub(crate) fn labels(words: &mut [Option<Word>]) {
     let counted = words.windows(2).any(|pair| matches!(pair, [Some(number), Some(noun)] if number.count().is_some() && role(noun)));
     let title = words.iter().flatten().count() <= 9
         && start > 0
-        && words.iter().flatten().any(|word| HEADS.contains(&word.text.as_str()) || HEADS.contains(&word.stem.as_str()))
+        && {
+            let whole: Vec<&Word> = words.iter().flatten().collect();
+            (0..whole.len()).any(|k| head(&whole, k))
+        }
         && !(0..words.len()).any(article)
         && !counted;
     if title {
@@ -102,7 +117,10 @@ pub(crate) fn labels(words: &mut [Option<Word>]) {
         }
         return;
     }
-    let heading = words.iter().skip(start).flatten().take(3).any(|word| HEADS.contains(&word.text.as_str()));
+    let heading = {
+        let whole: Vec<&Word> = words.iter().skip(start).flatten().collect();
+        (0..whole.len().min(3)).any(|k| head(&whole, k))
+    };
     let whole = words.iter().skip(start).flatten();
     let person = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot";
     let counts = |word: &Word| word.count().is_some() || matches!(word.text.as_str(), "one" | "someone" | "somebody");

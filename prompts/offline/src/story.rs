@@ -210,7 +210,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         // `blocks its way until it asks; then he steps aside`
         (thread.waiting, thread.vague) = (thread.ended.take(), false);
     }
-    if found.acts() {
+    // Who somebody is, is no answer.
+    if found.acts() && stretch.joint != Joint::Who {
         thread.fresh = None;
     }
     // `when a picker crosses and the robot is in her way, …`
@@ -325,7 +326,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         joined.clear();
     }
     let listed = std::mem::take(&mut thread.listed);
-    let shared = |to: usize| stretch.words.get(to + 1).is_some_and(|word| word.text.ends_with("ing"));
+    // `… standing together`, `have an operator and a trainee stroll`
+    let shared = |to: usize| {
+        stretch.words.get(to + 1).is_some_and(|word| {
+            word.text.ends_with("ing") || word.text == word.stem && lexicon().verbs.contains(&word.stem) && word.stem != "be"
+        })
+    };
     if joined.is_empty() && stretch.joint == Joint::And && found.mentions.first().is_some_and(|first| first.from == 0 && shared(first.to)) {
         joined = listed;
     }

@@ -86,6 +86,8 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         // `notices nothing until it is 1 m away; he then freezes`
         if thread.made.is_empty() {
             thread.ended = trigger(cue, found, thread);
+            // `and only then gets out of its way`
+            thread.said.clone_from(&thread.ended);
         }
         story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
         return;

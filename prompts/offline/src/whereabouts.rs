@@ -186,7 +186,11 @@ fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, s
     let moves = found.deeds.iter().any(|deed| matches!(deed.act, Act::ComeOut | Act::Enter));
     let stands = found.deeds.iter().any(|deed| matches!(deed.act, Act::Stop | Act::Stand | Act::Talk));
     match class {
-        PlaceClass::Elevator if (stands || !moves) && before(at, stretch, BESIDE) => PlaceClass::ElevatorLobby,
+        // `heads for the elevator` is no waiting for it.
+        PlaceClass::Elevator
+            if (stands || !moves)
+                && before(at, stretch, BESIDE)
+                && !(0..at).any(|k| text(k + 1) == "for" && stretch.words.get(k).is_some_and(|word| word.stem == "head")) => PlaceClass::ElevatorLobby,
         PlaceClass::Elevator if (0..at).any(|k| text(k) == "lobby") => PlaceClass::ElevatorLobby,
         PlaceClass::OpenArea if text(at) == "lobby" => {
             let inside = |person: &crate::cast::Person| {
