@@ -55,9 +55,10 @@ fn pair(found: &mut Vec<Stretch>) {
         let mut noun = found.remove(at + 1).words;
         let from = noun.first().cloned();
         noun.drain(0..skip);
-        let _names = found.drain(at..=at + 1).count();
+        let second: Vec<Word> = found.drain(at..=at + 1).take(1).flat_map(|name| name.words).collect();
         if let (Some(head), Some(word)) = (found.get_mut(at - 1), from) {
-            head.words.pop();
+            head.also.extend(head.words.pop());
+            head.also.extend(second);
             head.words.push(Word { text: "two".to_owned(), stem: "two".to_owned(), ..word });
             head.words.extend(noun);
             head.words.extend(rest.words);
@@ -69,15 +70,24 @@ fn pair(found: &mut Vec<Stretch>) {
 /// `Neither of the two visitors who come towards the robot gives way`: what they do stands behind who they are.
 fn resumed(found: &mut Vec<Stretch>) {
     for at in 1..found.len() {
+        let verbless = |head: &Stretch| {
+            !head.words.iter().any(|word| lexicon().verbs.contains(&word.stem) && !lexicon().roles.contains_key(&word.stem))
+                && matches!(mentions(&head.words).as_slice(), [only] if only.to + 1 == head.words.len())
+        };
         let head = found.get(at - 1).filter(|head| {
             head.words.first().is_some_and(|word| matches!(word.text.as_str(), "neither" | "none" | "each" | "nobody"))
+                || head.words.first().is_some_and(|word| word.text == "the") && verbless(head)
         });
         let Some(who) = found.get(at).filter(|who| who.joint == Joint::Who && head.is_some()) else { continue };
         let verb = |word: &Word| {
             word.text != word.stem && word.text.ends_with('s') && lexicon().verbs.contains(&word.stem) && !lexicon().things.contains(&word.text)
         };
         let first = who.words.iter().position(|word| lexicon().verbs.contains(&word.stem) || lexicon().known.contains(&word.stem));
-        let again = (first.unwrap_or(0) + 2..who.words.len()).find(|k| who.words.get(*k).is_some_and(verb));
+        // A verb behind `and`, `it` or `to` is no second one.
+        let free = |k: usize| {
+            !who.words.get(k - 1).is_some_and(|word| matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her" | "a" | "that" | "and" | "or" | "it"))
+        };
+        let again = (first.unwrap_or(0) + 2..who.words.len()).find(|k| who.words.get(*k).is_some_and(verb) && free(*k));
         let Some((again, head)) = again.zip(head.cloned()) else { continue };
         if let Some(who) = found.get_mut(at) {
             let rest = who.words.split_off(again);

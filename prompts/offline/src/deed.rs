@@ -471,7 +471,7 @@ fn leaves(person: &Person) -> bool {
 /// Whether the words say that it happens right in front of the robot.
 fn before_robot(quote: &str) -> bool {
     let lower = quote.to_lowercase();
-    ["front of the robot", "front of it", "the robot's path", "the robot's way"]
+    ["front of the robot", "front of it", "before the robot", "before it", "the robot's path", "the robot's way"]
         .iter()
         .any(|words| lower.contains(words))
 }

@@ -80,6 +80,14 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
         if !number(at) {
             continue;
         }
+        // `between racks 7 and 8`
+        let numbered = at >= 3
+            && matches!(text(at - 1), "and" | "or" | "to")
+            && words.get(at - 2).and_then(Option::as_ref).is_some_and(Word::is_digits)
+            && lexicon().labels.contains(stem(at - 3));
+        if numbered {
+            labels.push(at);
+        }
         let of = text(at + 1) == "of" && number(at + 2);
         let noun = at + if of { 3 } else { 1 };
         let several = words.get(at).and_then(Option::as_ref).and_then(Word::count).is_some_and(|n| n > 1);
@@ -136,7 +144,9 @@ pub(crate) fn labels(words: &mut [Option<Word>]) {
         }
     }
     let list = |word: &Word| {
-        LISTS.contains(&word.text.as_str()) || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
+        LISTS.contains(&word.text.as_str())
+            || lexicon().adjectives.contains(&word.text)
+            || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
     };
     if whole.clone().count() <= 2 && whole.clone().all(list) {
         for word in words.iter_mut().skip(start).flatten() {

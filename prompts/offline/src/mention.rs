@@ -367,6 +367,10 @@ fn counted(
     if count.is_some() {
         next += 1;
     }
+    // `some visitor`
+    if text(at) == "some" && noun(words, next, lex).is_some_and(|end| !words.get(end).is_some_and(plural)) {
+        count = Some(1);
+    }
     // `an old couple`, `the pair`: words that are numbers too, but not where they count others.
     let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
     for k in [described, next.saturating_sub(usize::from(count.is_some()))] {

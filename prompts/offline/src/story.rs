@@ -106,7 +106,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         condition: false,
         went_on: Vec::new(),
     };
-    let named = sentences.iter().flatten().flat_map(|stretch| &stretch.words).filter(|word| word.name);
+    let named = sentences.iter().flatten().flat_map(|stretch| stretch.also.iter().chain(&stretch.words)).filter(|word| word.name);
     for word in named {
         if !story.cast.names.contains(&word.stem) {
             story.cast.names.push(word.stem.clone());

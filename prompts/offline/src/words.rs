@@ -102,6 +102,8 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             i = mark;
         } else if let Some(end) = identifier(&at, i) {
             i = end;
+        } else if let Some(end) = chained(&chars, i) {
+            i = end;
         } else if c.is_alphabetic() {
             let start = i;
             while at(i).is_some_and(char::is_alphabetic) {
@@ -174,6 +176,18 @@ fn identifier(at: &dyn Fn(usize) -> Option<char>, i: usize) -> Option<usize> {
     let inside = |wanted: &dyn Fn(char) -> bool| (i..end).any(|k| at(k).is_some_and(wanted));
     let joined = inside(&|c| c == '_') && inside(&|c| c.is_ascii_digit());
     if joined && !at(end).is_some_and(char::is_alphabetic) { Some(end) } else { None }
+}
+
+/// `Bring-your-child day`, and the tail of `brother-in-law`: hyphens make people into something else; where that ends.
+fn chained(chars: &[(usize, char)], i: usize) -> Option<usize> {
+    let letter = |k: usize| chars.get(k).is_some_and(|(_, c)| c.is_alphabetic());
+    let hyphen = |k: usize| chars.get(k).is_some_and(|(_, c)| *c == '-');
+    let begins = i == 0 || !letter(i - 1) && !hyphen(i - 1);
+    let end = (i..).find(|k| !letter(*k) && !(hyphen(*k) && letter(k + 1)))?;
+    let text: String = chars.get(i..end)?.iter().flat_map(|(_, c)| c.to_lowercase()).collect();
+    let parts: Vec<&str> = text.split('-').collect();
+    let people = parts.iter().skip(1).any(|part| lexicon().roles.contains_key(&lexicon().stem(part)));
+    if begins && parts.len() >= 3 && people { Some(end) } else { None }
 }
 
 /// Pushes a word and what its apostrophe hides (`don't` is `do not`, `robot's` is `robot`); says how many characters it took.
