@@ -71,7 +71,10 @@ fn pair(found: &mut Vec<Stretch>) {
 fn resumed(found: &mut Vec<Stretch>) {
     for at in 1..found.len() {
         let verbless = |head: &Stretch| {
-            !head.words.iter().any(|word| lexicon().verbs.contains(&word.stem) && !lexicon().roles.contains_key(&word.stem))
+            !head
+                .words
+                .iter()
+                .any(|word| lexicon().verbs.contains(&word.stem) && !lexicon().roles.contains_key(&word.stem))
                 && matches!(mentions(&head.words).as_slice(), [only] if only.to + 1 == head.words.len())
         };
         let head = found.get(at - 1).filter(|head| {
@@ -80,12 +83,20 @@ fn resumed(found: &mut Vec<Stretch>) {
         });
         let Some(who) = found.get(at).filter(|who| who.joint == Joint::Who && head.is_some()) else { continue };
         let verb = |word: &Word| {
-            word.text != word.stem && word.text.ends_with('s') && lexicon().verbs.contains(&word.stem) && !lexicon().things.contains(&word.text)
+            word.text != word.stem
+                && word.text.ends_with('s')
+                && lexicon().verbs.contains(&word.stem)
+                && !lexicon().things.contains(&word.text)
         };
-        let first = who.words.iter().position(|word| lexicon().verbs.contains(&word.stem) || lexicon().known.contains(&word.stem));
+        let first = who
+            .words
+            .iter()
+            .position(|word| lexicon().verbs.contains(&word.stem) || lexicon().known.contains(&word.stem));
         // A verb behind `and`, `it` or `to` is no second one.
         let free = |k: usize| {
-            !who.words.get(k - 1).is_some_and(|word| matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her" | "a" | "that" | "and" | "or" | "it"))
+            !who.words.get(k - 1).is_some_and(|word| {
+                matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her" | "a" | "that" | "and" | "or" | "it")
+            })
         };
         let again = (first.unwrap_or(0) + 2..who.words.len()).find(|k| who.words.get(*k).is_some_and(verb) && free(*k));
         let Some((again, head)) = again.zip(head.cloned()) else { continue };
@@ -103,7 +114,9 @@ fn resumed(found: &mut Vec<Stretch>) {
 fn measured(found: &mut Vec<Stretch>) {
     let unit = |word: &Word| matches!(word.stem.as_str(), "meter" | "centimeter" | "second");
     let number = |word: &Word| word.is_digits() || word.count().is_some();
-    let about = |word: &Word| matches!(word.text.as_str(), "about" | "approx" | "roughly" | "ca" | "around" | "circa" | "for" | "away");
+    let about = |word: &Word| {
+        matches!(word.text.as_str(), "about" | "approx" | "roughly" | "ca" | "around" | "circa" | "for" | "away")
+    };
     for at in (1..found.len()).rev() {
         let alone = found.get(at).is_some_and(|measure| {
             measure.joint == Joint::Comma
@@ -132,10 +145,15 @@ fn parted(found: &mut Vec<Stretch>) {
                 && rest.words.first().is_some_and(|word| word.text == "to")
                 && rest.words.get(1).is_some_and(|word| lexicon().known.contains(&word.stem))
         });
-        let Some(who) = (1..at).rev().find(|k| found.get(*k).is_some_and(|who| who.joint == Joint::Who)) else { continue };
+        let Some(who) = (1..at).rev().find(|k| found.get(*k).is_some_and(|who| who.joint == Joint::Who)) else {
+            continue;
+        };
         let asks = found.get(who - 1).is_some_and(|asks| {
             asks.words.iter().any(|word| {
-                matches!(word.stem.as_str(), "ask" | "tell" | "signal" | "order" | "request" | "beckon" | "instruct" | "motion" | "gesture")
+                matches!(
+                    word.stem.as_str(),
+                    "ask" | "tell" | "signal" | "order" | "request" | "beckon" | "instruct" | "motion" | "gesture"
+                )
             })
         });
         if rest && asks {
@@ -152,13 +170,17 @@ fn parted(found: &mut Vec<Stretch>) {
 fn named(found: &mut Vec<Stretch>) {
     let name = |stretch: &Stretch| {
         stretch.words.len() <= 2
-            && stretch.words.last().is_some_and(|word| word.capital && !lexicon().known.contains(&word.stem) && !lexicon().stop.contains(&word.text))
+            && stretch.words.last().is_some_and(|word| {
+                word.capital && !lexicon().known.contains(&word.stem) && !lexicon().stop.contains(&word.text)
+            })
             && stretch.words.iter().all(|word| word.capital || word.label)
             && matches!(stretch.joint, Joint::Comma | Joint::And)
     };
     for at in 1..found.len() {
         let count = found.get(at - 1).and_then(|before| {
-            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| match last.who {
+            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| match last
+                .who
+            {
                 Who::New { count: Some(n), .. } | Who::Definite { count: Some(n), .. } => usize::try_from(n).ok(),
                 _ => None,
             })
@@ -331,7 +353,8 @@ fn apposition(name: &Stretch, other: &Stretch, next: Option<&Stretch>) -> Option
     if numbered && other.joint == Joint::Comma && other.words.len() == 1 && whole(&other.words) {
         return Some(Also::Second);
     }
-    let article = other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "her" | "his" | "their"));
+    let article =
+        other.words.first().is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "her" | "his" | "their"));
     let bare = other.words.len() == 1 && whole(&other.words);
     if other.joint != Joint::Comma || !(article && whole(&other.words) || bare) {
         return None;

@@ -236,7 +236,7 @@ pub(crate) fn people_deed(
             && found.lasts_s.is_none()
             && (at..=to).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "stand"))
             || stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
-            && stretch.words.get(at + 1).is_none_or(|word| word.text != "still"),
+                && stretch.words.get(at + 1).is_none_or(|word| word.text != "still"),
         gives_up: act == Act::GoOn
             && stretch.words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "give" | "lose" | "get")),
         then: stretch.joint == Joint::Then,

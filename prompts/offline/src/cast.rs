@@ -53,11 +53,11 @@ pub(crate) struct Person {
 
 /// People who were introduced together.
 #[derive(Debug, Clone, PartialEq)]
-struct Together {
-    members: Vec<usize>,
+pub(crate) struct Together {
+    pub(crate) members: Vec<usize>,
     /// `there are 3 people`: this is everybody.
-    total: bool,
-    quote: String,
+    pub(crate) total: bool,
+    pub(crate) quote: String,
     /// Who was told apart by a bare number since: `four get out: two turn left, two turn right`.
     counted: Vec<usize>,
 }
@@ -67,7 +67,7 @@ struct Together {
 pub(crate) struct Cast {
     pub(crate) people: Vec<Person>,
     pub(crate) groups: Vec<(GroupId, Vec<usize>, String)>,
-    sets: Vec<Together>,
+    pub(crate) sets: Vec<Together>,
     /// Whom the last clause spoke of.
     pub(crate) last: Vec<usize>,
     pub(crate) notes: Vec<String>,
@@ -83,7 +83,7 @@ pub(crate) struct Cast {
     /// The sentence only supposes something: `What if a nurse …?`, `Sometimes a nurse …`.
     pub(crate) supposed: bool,
     /// Whom such sentences spoke of, who may be spoken of again as somebody new.
-    supposed_people: Vec<usize>,
+    pub(crate) supposed_people: Vec<usize>,
     /// Names that the text gives to people, in order.
     pub(crate) names: Vec<String>,
     /// A colon stood before: what comes lists those who are there.
@@ -95,40 +95,9 @@ pub(crate) struct Cast {
 const READ_AT_MOST: usize = 40;
 
 /// Words for people that only say man or woman, old or young: another word may have named them before.
-fn plain(role: &str) -> bool {
+pub(crate) fn plain(role: &str) -> bool {
     matches!(role, "man" | "woman" | "guy" | "lady" | "gentleman" | "boy" | "girl" | "adult")
 }
-
-const WOMEN: &[&str] = &[
-    "woman",
-    "lady",
-    "girl",
-    "mother",
-    "wife",
-    "sister",
-    "aunt",
-    "grandmother",
-    "grandma",
-    "daughter",
-    "mom",
-    "waitress",
-    "niece",
-];
-const MEN: &[&str] = &[
-    "man",
-    "gentleman",
-    "boy",
-    "father",
-    "husband",
-    "brother",
-    "uncle",
-    "grandfather",
-    "grandpa",
-    "son",
-    "dad",
-    "guy",
-    "nephew",
-];
 
 /// Words for people that only say that they are there.
 const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
@@ -349,68 +318,6 @@ impl Cast {
         found
     }
 
-    /// `Sometimes a patient follows it. Make a patient follow it …`: the same one, of whom it is now said what is wanted.
-    fn supposes(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
-        if self.supposed {
-            return None;
-        }
-        let wanted = usize::try_from(n).ok()?;
-        let fitting = |i: &usize| self.fits(*i, mention.role.as_ref());
-        let found: Vec<usize> = self.supposed_people.iter().copied().filter(fitting).take(wanted).collect();
-        if found.len() == wanted { Some(found) } else { None }
-    }
-
-    /// The third of exactly two, said of everybody who is there.
-    fn beyond(&mut self, n: u32, quote: &str) {
-        let last = self.sets.iter().rev().find(|set| set.members.len() > 1).filter(|set| set.total);
-        let Some((first, members)) = last
-            .filter(|set| usize::try_from(n).is_ok_and(|n| n > set.members.len()) && set.members.len() == self.people.len())
-            .map(|set| (set.quote.clone(), set.members.len()))
-        else {
-            return;
-        };
-        self.problems.push(Fault::new(
-            FaultCode::PContra,
-            "rough_scenario",
-            format!("`{first}` gives {members} humans, but `{quote}` speaks of one more; correct one of the two"),
-        ));
-    }
-
-    /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
-    fn single(&self, word: &str) -> Vec<usize> {
-        let of = |i: usize, words: &[&str]| {
-            let own = if words == WOMEN { "she" } else { "he" };
-            self.people.get(i).is_some_and(|person| {
-                person.pronoun.as_deref().map_or_else(|| words.contains(&person.role.as_str()), |said| said == own)
-            })
-        };
-        if self.last.is_empty() {
-            return Vec::new();
-        }
-        let (own, other) = match word {
-            "she" => (WOMEN, MEN),
-            "he" => (MEN, WOMEN),
-            _ => return self.last.clone(),
-        };
-        if let [only] = self.last.as_slice()
-            && !of(*only, other)
-        {
-            return self.last.clone();
-        }
-        // `a manager shows three visitors around …; she …`
-        if let ([only], true) = (self.before.as_slice(), self.last.len() > 1)
-            && !self.last.contains(only)
-            && !of(*only, other)
-            && !self.last.iter().any(|i| of(*i, own))
-        {
-            return vec![*only];
-        }
-        let near = || self.last.iter().copied().chain((0..self.people.len()).rev());
-        let found =
-            near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !of(*i, other) && self.last.len() == 1));
-        found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
-    }
-
     /// Remembers `participant` and its like, which say no more than that somebody is there.
     pub(crate) fn call(&mut self, mention: &Mention, words: &[crate::words::Word], people: &[usize]) {
         let weak = words.iter().find(|word| CALLED.contains(&word.stem.as_str())).filter(|_| mention.role.is_none());
@@ -455,7 +362,7 @@ impl Cast {
     }
 
     /// The newest set of more than one, else everybody.
-    fn latest(&self) -> Vec<usize> {
+    pub(crate) fn latest(&self) -> Vec<usize> {
         self.sets
             .iter()
             .rev()
@@ -463,20 +370,20 @@ impl Cast {
             .map_or_else(|| (0..self.people.len()).collect(), |set| set.members.clone())
     }
 
-    fn declared_open(&self) -> bool {
+    pub(crate) fn declared_open(&self) -> bool {
         self.sets.last().is_some_and(|set| set.total && self.open(set).next().is_some())
     }
 
-    fn open<'a>(&'a self, set: &'a Together) -> impl Iterator<Item = usize> + 'a {
+    pub(crate) fn open<'a>(&'a self, set: &'a Together) -> impl Iterator<Item = usize> + 'a {
         set.members.iter().copied().filter(|i| self.people.get(*i).is_some_and(|person| !person.bound))
     }
 
-    fn fits(&self, i: usize, role: Option<&String>) -> bool {
+    pub(crate) fn fits(&self, i: usize, role: Option<&String>) -> bool {
         role.is_none_or(|role| self.people.get(i).is_some_and(|person| person.role.is_empty() || person.role == *role))
     }
 
     /// Some of the open people of the newest set that fit.
-    fn pick_open(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
+    pub(crate) fn pick_open(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
         let wanted = usize::try_from(n).ok()?;
         self.sets.iter().rev().find_map(|set| {
             let open: Vec<usize> = self.open(set).filter(|i| self.fits(*i, mention.role.as_ref())).collect();
@@ -489,7 +396,7 @@ impl Cast {
     }
 
     /// As [`Self::pick_open`]; says so where a total that was given is too small.
-    fn pick(&mut self, n: u32, mention: &Mention, quote: &str) -> Option<Vec<usize>> {
+    pub(crate) fn pick(&mut self, n: u32, mention: &Mention, quote: &str) -> Option<Vec<usize>> {
         if let Some(found) = self.pick_open(n, mention) {
             return Some(found);
         }
@@ -510,7 +417,7 @@ impl Cast {
     }
 
     /// So many of the newest set who were not counted apart yet, though all of them did something already.
-    fn counted(&mut self, n: u32) -> Option<Vec<usize>> {
+    pub(crate) fn counted(&mut self, n: u32) -> Option<Vec<usize>> {
         let wanted = usize::try_from(n).ok()?;
         let set = self.sets.last_mut().filter(|set| set.members.len() > wanted)?;
         let open: Vec<usize> = set.members.iter().copied().filter(|i| !set.counted.contains(i)).take(wanted).collect();
@@ -519,163 +426,6 @@ impl Cast {
         }
         set.counted.extend(&open);
         Some(open)
-    }
-
-    fn part_of(&mut self, n: u32, mention: &Mention, quote: &str) -> Vec<usize> {
-        let wanted = usize::try_from(n).unwrap_or(usize::MAX);
-        if let Some(found) = self.pick_open(n, mention) {
-            return found;
-        }
-        let mut set = self.latest();
-        // `Those people who wait there: give me three of them.`
-        if let Some(first) = set.first().copied().filter(|_| self.supposed_people.len() == set.len() && wanted > set.len()) {
-            let model = self.people.get(first).cloned().unwrap_or_default();
-            while set.len() < wanted {
-                set.push(self.people.len());
-                self.people.push(model.clone());
-            }
-            self.supposed_people.clear();
-            self.together(&set, quote);
-            return set;
-        }
-        if !set.is_empty() && wanted <= set.len() {
-            // `the taller one follows the other; the shorter one …`: rather somebody else than who did the last thing.
-            set.sort_by_key(|i| self.last.contains(i));
-            return set.into_iter().take(wanted).collect();
-        }
-        self.join(n, mention, false, quote)
-    }
-
-    fn others(&mut self, count: Option<u32>, mention: &Mention, quote: &str) -> Vec<usize> {
-        let open: Vec<usize> = self
-            .sets
-            .iter()
-            .rev()
-            .map(|set| self.open(set).filter(|i| !self.last.contains(i)).collect::<Vec<_>>())
-            .find(|open| !open.is_empty())
-            .unwrap_or_default();
-        let wanted = count.map_or(open.len(), |n| usize::try_from(n).unwrap_or(usize::MAX));
-        if wanted > 0 && open.len() >= wanted {
-            return open.into_iter().take(wanted).collect();
-        }
-        // `the other` of two who were both spoken of already: whoever is not the last one.
-        let set = self.latest();
-        let rest: Vec<usize> = set.iter().copied().filter(|i| !self.last.contains(i)).collect();
-        if set.len() > 1 && count.is_none_or(|_| rest.len() == wanted) && !rest.is_empty() {
-            return rest;
-        }
-        self.join(count.unwrap_or(1), &self.alike(&Mention { word: "one".to_owned(), ..mention.clone() }), false, quote)
-    }
-
-    /// `one visitor flees, another one looks`: another visitor.
-    fn alike(&self, mention: &Mention) -> Mention {
-        let alike = self.last.first().and_then(|i| self.people.get(*i)).map(|person| person.role.clone());
-        let alike =
-            alike.filter(|role| !role.is_empty() && mention.word == "one" && lexicon().roles.contains_key(role));
-        Mention { role: mention.role.clone().or(alike), ..mention.clone() }
-    }
-
-    fn definite(
-        &mut self,
-        plural: bool,
-        count: Option<u32>,
-        mention: &Mention,
-        declares: bool,
-        quote: &str,
-    ) -> Vec<usize> {
-        if mention.group && !self.groups.is_empty() {
-            // `the pair` and `the group` of those that there are.
-            let wanted = count.and_then(|n| usize::try_from(n).ok());
-            let fits = |members: &&Vec<usize>| wanted.map_or(members.len() > 2, |n| members.len() == n);
-            let named = self.groups.iter().rev().map(|(_, members, _)| members);
-            let last = self.groups.last().map(|(_, members, _)| members);
-            if let Some(members) = named.clone().find(fits).or_else(|| last.filter(|_| wanted.is_none())) {
-                return members.clone();
-            }
-        }
-        // `Two students come. Mia moves aside, Ben does not.`
-        if mention.word == "name"
-            && let Some(name) = &mention.role
-            && !self.people.iter().any(|person| person.name.as_ref() == Some(name) || person.role == *name)
-        {
-            let nameless = |i: &usize| {
-                self.people.get(*i).is_some_and(|person| person.name.is_none() && (person.role.is_empty() || lexicon().roles.contains_key(&person.role)))
-            };
-            let set = self.sets.iter().rev().find(|set| set.members.len() > 1 && set.members.len() == self.names.len());
-            let place = self.names.iter().position(|known| known == name).unwrap_or(0);
-            if let Some(who) = set.and_then(|set| set.members.get(place).copied().filter(nameless)) {
-                if let Some(person) = self.people.get_mut(who) {
-                    person.name = Some(name.clone());
-                }
-                return vec![who];
-            }
-        }
-        let called = self.people.iter().position(|person| mention.role.is_some() && person.name == mention.role);
-        if let Some(who) = called.filter(|_| !plural) {
-            return vec![who];
-        }
-        if let Some(role) = &mention.role {
-            let same: Vec<usize> =
-                (0..self.people.len()).filter(|i| self.people.get(*i).is_some_and(|p| p.role == *role)).collect();
-            if plural && same.len() > 1 && count.is_none_or(|n| usize::try_from(n) == Ok(same.len())) {
-                return same;
-            }
-            if !plural && let Some(first) = same.first() {
-                return vec![self.last.iter().copied().find(|i| same.contains(i)).unwrap_or(*first)];
-            }
-            // `a couple …; the husband …, his wife …`, `one of two guards …, his partner …`: of those who are there.
-            const OF_THEM: &[&str] =
-                &["husband", "wife", "partner", "companion", "colleague", "friend", "mate", "buddy", "coworker"];
-            if !plural
-                && OF_THEM.contains(&role.as_str())
-                && let Some(found) = self.pick_open(1, &Mention { role: None, ..mention.clone() })
-            {
-                return found;
-            }
-            // `waves his colleague through`: the other one of two.
-            if !plural && OF_THEM.contains(&role.as_str()) && self.people.len() == 2 {
-                if let [only] = self.last.as_slice() {
-                    return vec![1 - only.min(&1)];
-                }
-            }
-            // `the man` may be the visitor of whom was spoken; he is not the woman.
-            if !plural && plain(role) {
-                let men = MEN.contains(&role.as_str());
-                let other = if men { WOMEN } else { MEN };
-                let may = |i: &usize| {
-                    self.people.get(*i).is_some_and(|person| {
-                        !plain(&person.role) && !(men || WOMEN.contains(&role.as_str())) || !plain(&person.role) && !other.contains(&person.role.as_str())
-                    })
-                };
-                let who = self.last.iter().chain(&self.latest()).copied().find(may);
-                if let Some(who) = who {
-                    return vec![who];
-                }
-            }
-        } else if !self.people.is_empty() {
-            if plural {
-                let set = self.latest();
-                return count.and_then(|n| self.pick_open(n, mention)).unwrap_or(set);
-            }
-            return self
-                .last
-                .first()
-                .copied()
-                .or_else(|| self.latest().first().copied())
-                .map(|i| vec![i])
-                .unwrap_or_default();
-        }
-        let n = count.unwrap_or(if !plural {
-            1
-        } else if mention.group {
-            3
-        } else {
-            2
-        });
-        if plural && count.is_none() {
-            self.notes.push(format!("`{quote}` names no number; it was read as {n} humans"));
-        }
-        self.join(n, mention, declares, quote)
     }
 
     /// New people.

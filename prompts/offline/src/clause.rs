@@ -336,7 +336,10 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             let named = first.checked_sub(1).map_or("", text);
             let trip = at.len() == 1
                 && matches!(text(first), "run" | "walk" | "drive" | "trip" | "test" | "pass")
-                && matches!(named, "this" | "that" | "the" | "each" | "every" | "whole" | "entire" | "a" | "same" | "per" | "one");
+                && matches!(
+                    named,
+                    "this" | "that" | "the" | "each" | "every" | "whole" | "entire" | "a" | "same" | "per" | "one"
+                );
             if trip {
                 continue;
             }
@@ -445,9 +448,37 @@ fn aside(stretch: &Stretch, last: usize) -> bool {
     let from = if matches!(text(last), "at" | "into" | "out" | "on" | "down") { last } else { last + 1 };
     let to = from + usize::from(matches!(text(from), "down" | "up" | "intently" | "only" | "straight"));
     matches!(text(to), "at" | "into" | "out" | "on")
-        && (to + 1..to + 5)
-            .take_while(|k| stretch.words.get(*k).is_some_and(|word| word.stem != "robot"))
-            .any(|k| matches!(text(k), "phone" | "smartphone" | "mobile" | "tablet" | "watch" | "screen" | "display" | "book" | "newspaper" | "magazine" | "clipboard" | "map" | "laptop" | "shoes" | "feet" | "floor" | "ground" | "papers" | "paper" | "notes" | "poster" | "ceiling" | "file" | "list" | "chart" | "charts"))
+        && (to + 1..to + 5).take_while(|k| stretch.words.get(*k).is_some_and(|word| word.stem != "robot")).any(|k| {
+            matches!(
+                text(k),
+                "phone"
+                    | "smartphone"
+                    | "mobile"
+                    | "tablet"
+                    | "watch"
+                    | "screen"
+                    | "display"
+                    | "book"
+                    | "newspaper"
+                    | "magazine"
+                    | "clipboard"
+                    | "map"
+                    | "laptop"
+                    | "shoes"
+                    | "feet"
+                    | "floor"
+                    | "ground"
+                    | "papers"
+                    | "paper"
+                    | "notes"
+                    | "poster"
+                    | "ceiling"
+                    | "file"
+                    | "list"
+                    | "chart"
+                    | "charts"
+            )
+        })
 }
 
 /// `walks four meters in front`, `…, a few steps in front of it`: ahead of the robot.

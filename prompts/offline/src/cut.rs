@@ -1,7 +1,7 @@
 //! Words into sentences and clauses.
 
-use crate::headings::{described, labels, names, titled, totals};
 use crate::arrange::arranged;
+use crate::headings::{described, labels, names, titled, totals};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
 use crate::words::{Piece, Word, pieces};
@@ -129,7 +129,11 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         // `three people stand there, plus two people …`
         if word(i) == "plus" && words.get(i + 1).is_some_and(count) {
             out.extend(words.get(i + 1).cloned());
-            let more = words.get(i).cloned().flatten().map(|word| crate::words::Word { text: "more".to_owned(), stem: "more".to_owned(), ..word });
+            let more = words.get(i).cloned().flatten().map(|word| crate::words::Word {
+                text: "more".to_owned(),
+                stem: "more".to_owned(),
+                ..word
+            });
             out.push(more);
             i += 2;
             continue;
@@ -270,7 +274,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "as" | "so" if text(i + 1) == "long" && text(i + 2) == "as" => (Some(Joint::While), 3),
         "but" | "so" | "because" | "since" | "although" | "though" | "however" | "meanwhile" | "yet"
             if text(i) != "so"
-                || !matches!(before, "do" | "say" | "tell" | "ask") && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly" | "much") =>
+                || !matches!(before, "do" | "say" | "tell" | "ask")
+                    && !matches!(stem(i + 1), "do" | "be" | "that" | "will" | "slow" | "slowly" | "much") =>
         {
             (Some(Joint::Comma), 1)
         }
@@ -381,7 +386,8 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 | "point"
         ),
         "does" | "do" | "did" => {
-            matches!(text(i + 1), "he" | "she" | "they") && !matches!(before, "point" | "time" | "moment" | "circumstances")
+            matches!(text(i + 1), "he" | "she" | "they")
+                && !matches!(before, "point" | "time" | "moment" | "circumstances")
         }
         "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three" if temporal => {
             let closes = matches!(

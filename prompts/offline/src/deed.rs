@@ -203,7 +203,10 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     let excepting = cast.excepting;
     let person = cast.people.get_mut(who)?;
     // `stands there for the whole run`, and moves all the same
-    let still = person.still.clone().filter(|_| !excepting && (goes(act) || matches!(act, Act::Follow | Act::GoOn | Act::Walk | Act::Approach)));
+    let still = person
+        .still
+        .clone()
+        .filter(|_| !excepting && (goes(act) || matches!(act, Act::Follow | Act::GoOn | Act::Walk | Act::Approach)));
     let never_walks = person.never.iter().find(|(never, quote)| {
         matches!(never, Act::Walk | Act::GoOn) && matches!(act, Act::Walk | Act::GoOn) && !excepting && always(quote)
     });
@@ -218,7 +221,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     person.bound |= moves;
     // `gives up after 10 seconds of following`
     if let (true, Some(Trigger::AfterSecs(secs))) = (around.gives_up, &around.trigger)
-        && let Some(last) = person.rules.last_mut().filter(|last| matches!(last.rule.act, Action::FollowRobot | Action::FollowHuman(_)))
+        && let Some(last) =
+            person.rules.last_mut().filter(|last| matches!(last.rule.act, Action::FollowRobot | Action::FollowHuman(_)))
     {
         (last.rule.for_s, last.lasts) = (Some(*secs), true);
         return None;
@@ -228,7 +232,10 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     }
     let (action, usual, lasts, latched) = manner(act)?;
     // `only when it asks does he move` is no contradiction to `he does not move`; to `he never moves` it is.
-    let never = person.never.iter().find(|(other, quote)| *other == act && (around.trigger.is_none() || !excepting && always(quote)));
+    let never = person
+        .never
+        .iter()
+        .find(|(other, quote)| *other == act && (around.trigger.is_none() || !excepting && always(quote)));
     if let Some((_, never)) = never {
         let never = never.clone();
         cast.problems.push(contradiction(who, &never, &around.quote));
@@ -291,14 +298,29 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
 /// Whether the words leave no exception.
 fn always(quote: &str) -> bool {
     let lower = quote.to_lowercase();
-    whole(&lower) || ["never", "at any time", "at no ", "under no ", "at all", "any point"].iter().any(|words| lower.contains(words))
+    whole(&lower)
+        || ["never", "at any time", "at no ", "under no ", "at all", "any point"]
+            .iter()
+            .any(|words| lower.contains(words))
 }
 
 /// Whether the words mean all of the time.
 fn whole(quote: &str) -> bool {
-    ["the whole run", "the whole time", "the entire", "throughout", "all the time", "at all times", "from beginning to end", "from start to finish", "the whole scenario", "the complete run", "during the whole"]
-        .iter()
-        .any(|words| quote.contains(words))
+    [
+        "the whole run",
+        "the whole time",
+        "the entire",
+        "throughout",
+        "all the time",
+        "at all times",
+        "from beginning to end",
+        "from start to finish",
+        "the whole scenario",
+        "the complete run",
+        "during the whole",
+    ]
+    .iter()
+    .any(|words| quote.contains(words))
 }
 
 /// Deeds by which somebody gets somewhere.

@@ -5,27 +5,90 @@ use crate::words::{Piece, Word};
 
 /// What a heading speaks of.
 const HEADS: &[&str] = &[
-    "scenario", "test", "condition", "case", "study", "experiment", "trial", "setup", "run", "variant", "setting",
-    "criterion", "requirement", "protocol", "pilot", "session", "block", "item", "feature", "bug", "issue", "ticket",
-    "step", "manipulation", "paradigm", "script", "note", "outline", "expected", "input", "check", "task",
-    "benchmark", "reproduction", "acceptance", "phase", "part",
+    "scenario",
+    "test",
+    "condition",
+    "case",
+    "study",
+    "experiment",
+    "trial",
+    "setup",
+    "run",
+    "variant",
+    "setting",
+    "criterion",
+    "requirement",
+    "protocol",
+    "pilot",
+    "session",
+    "block",
+    "item",
+    "feature",
+    "bug",
+    "issue",
+    "ticket",
+    "step",
+    "manipulation",
+    "paradigm",
+    "script",
+    "note",
+    "outline",
+    "expected",
+    "input",
+    "check",
+    "task",
+    "benchmark",
+    "reproduction",
+    "acceptance",
+    "phase",
+    "part",
 ];
 
 /// Of these, verbs and nouns of the story where no number follows.
-const ALSO_DEEDS: &[&str] = &["step", "run", "check", "block", "part", "item", "task", "note", "input", "test", "bug", "issue", "phase", "expected"];
+const ALSO_DEEDS: &[&str] = &[
+    "step", "run", "check", "block", "part", "item", "task", "note", "input", "test", "bug", "issue", "phase",
+    "expected",
+];
 
 /// Whether a heading speaks of it at this place: `block 2`, `test case`, `Setup:`.
 fn head(words: &[&Word], at: usize) -> bool {
     let Some(word) = words.get(at) else { return false };
     let known = HEADS.contains(&word.text.as_str()) || HEADS.contains(&word.stem.as_str());
     let deed = ALSO_DEEDS.contains(&word.stem.as_str());
-    known && (!deed || words.len() <= 2 || words.get(at + 1).is_some_and(|next| next.count().is_some()) || word.capital && at == 0 || words.get(at + 1).is_none() && !word.text.ends_with("ing"))
+    known
+        && (!deed
+            || words.len() <= 2
+            || words.get(at + 1).is_some_and(|next| next.count().is_some())
+            || word.capital && at == 0
+            || words.get(at + 1).is_none() && !word.text.ends_with("ing"))
 }
 
 /// Words that count no people, but how often, how long ago or what hour it is.
 const COUNTED: &[&str] = &[
-    "runs", "times", "trials", "tries", "attempts", "repetitions", "repeats", "episodes", "cases", "percent", "years", "days",
-    "weeks", "months", "am", "pm", "oclock", "degrees", "points", "conditions", "sessions", "blocks", "sentences", "steps",
+    "runs",
+    "times",
+    "trials",
+    "tries",
+    "attempts",
+    "repetitions",
+    "repeats",
+    "episodes",
+    "cases",
+    "percent",
+    "years",
+    "days",
+    "weeks",
+    "months",
+    "am",
+    "pm",
+    "oclock",
+    "degrees",
+    "points",
+    "conditions",
+    "sessions",
+    "blocks",
+    "sentences",
+    "steps",
 ];
 
 /// Headings that say nothing by themselves.
@@ -49,7 +112,11 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
     let all = || words.iter().flatten();
     let whole: Vec<&Word> = all().collect();
     let titled = (0..whole.len()).any(|k| head(&whole, k));
-    let somebody = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot" || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who");
+    let somebody = |word: &Word| {
+        lexicon().roles.contains_key(&word.stem)
+            || word.stem == "robot"
+            || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who")
+    };
     if whole.len() <= 9 && titled && !all().any(somebody) {
         for word in words.iter_mut().flatten() {
             (word.label, word.used) = (true, true);
@@ -91,7 +158,9 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
         let of = text(at + 1) == "of" && number(at + 2);
         let noun = at + if of { 3 } else { 1 };
         let several = words.get(at).and_then(Option::as_ref).and_then(Word::count).is_some_and(|n| n > 1);
-        if several && COUNTED.contains(&text(noun)) {
+        // `human 2 runs away`
+        let somebody = at > 0 && lexicon().roles.contains_key(stem(at - 1));
+        if several && !somebody && COUNTED.contains(&text(noun)) {
             labels.extend([at, noun]);
             labels.extend(Some(at + 2).filter(|_| of));
         }
@@ -108,9 +177,16 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
 pub(crate) fn labels(words: &mut [Option<Word>]) {
     let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
     // `Field notes, ward 7, day 2:`
-    let article = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot");
+    let article = |k: usize| {
+        words
+            .get(k)
+            .and_then(Option::as_ref)
+            .is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot")
+    };
     let role = |word: &Word| lexicon().roles.contains_key(&word.stem);
-    let counted = words.windows(2).any(|pair| matches!(pair, [Some(number), Some(noun)] if number.count().is_some() && role(noun)));
+    let counted = words
+        .windows(2)
+        .any(|pair| matches!(pair, [Some(number), Some(noun)] if number.count().is_some() && role(noun)));
     let title = words.iter().flatten().count() <= 9
         && start > 0
         && {
@@ -132,9 +208,14 @@ pub(crate) fn labels(words: &mut [Option<Word>]) {
     let whole = words.iter().skip(start).flatten();
     let person = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot";
     let counts = |word: &Word| word.count().is_some() || matches!(word.text.as_str(), "one" | "someone" | "somebody");
-    let placed = whole.clone().next().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
+    let placed =
+        whole.clone().next().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
     // `Explicit signalling condition:`, `Reproduction steps for #882:` name what comes, and nobody in it.
-    if !placed && (heading || !whole.clone().any(person)) && !whole.clone().any(|word| person(word) && counts(word)) && (heading || whole.clone().count() > 3 || !whole.clone().any(counts)) {
+    if !placed
+        && (heading || !whole.clone().any(person))
+        && !whole.clone().any(|word| person(word) && counts(word))
+        && (heading || whole.clone().count() > 3 || !whole.clone().any(counts))
+    {
         let people = whole.clone().any(|word| person(word) && word.stem != "robot");
         if !people {
             for word in words.iter_mut().skip(start).flatten() {
@@ -242,7 +323,8 @@ pub(crate) fn totals(pieces: &mut Vec<Piece>) {
             }
         };
         if let Some((noun, number, end)) = found {
-            let from = (0..at).rev().take_while(|k| matches!(pieces.get(*k), Some(Piece::Word(_)))).last().unwrap_or(at);
+            let from =
+                (0..at).rev().take_while(|k| matches!(pieces.get(*k), Some(Piece::Word(_)))).last().unwrap_or(at);
             let exactly = Word { text: "exactly".to_owned(), stem: "exactly".to_owned(), ..number.clone() };
             let _before: Vec<Piece> = pieces
                 .splice(from..=end, [Piece::Word(exactly), Piece::Word(number), Piece::Word(noun), Piece::Stop])
@@ -270,16 +352,29 @@ pub(crate) fn names(pieces: &mut [Piece]) {
     };
     let does = |k: usize| {
         word(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !word.capital || matches!(word.text.as_str(), "who" | "both" | "then" | "just" | "only" | "never" | "also" | "always")
+            lex.verbs.contains(&word.stem) && !word.capital
+                || matches!(word.text.as_str(), "who" | "both" | "then" | "just" | "only" | "never" | "also" | "always")
         })
     };
-    let title = |k: usize| word(k).is_some_and(|word| matches!(word.text.as_str(), "mr" | "mrs" | "ms" | "miss" | "prof"));
-    let begins = |k: usize| k == 0 || title(k - 1) || !matches!(pieces.get(k - 1), Some(Piece::Word(_))) || word(k - 1).is_some_and(|word| matches!(word.text.as_str(), "and" | "when" | "while" | "whereas" | "but" | "if" | "then" | "as" | "once" | "until"));
+    let title =
+        |k: usize| word(k).is_some_and(|word| matches!(word.text.as_str(), "mr" | "mrs" | "ms" | "miss" | "prof"));
+    let begins = |k: usize| {
+        k == 0
+            || title(k - 1)
+            || !matches!(pieces.get(k - 1), Some(Piece::Word(_)))
+            || word(k - 1).is_some_and(|word| {
+                matches!(
+                    word.text.as_str(),
+                    "and" | "when" | "while" | "whereas" | "but" | "if" | "then" | "as" | "once" | "until"
+                )
+            })
+    };
     let mut found: Vec<String> = Vec::new();
     for k in 0..pieces.len() {
         let Some(name) = word(k).filter(|word| strange(word)) else { continue };
         // `Anna and Ben both cross`
-        let pair = word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && does(k + 3);
+        let pair =
+            word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && does(k + 3);
         if begins(k) && (does(k + 1) || pair) {
             found.push(name.text.clone());
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));

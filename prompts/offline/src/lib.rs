@@ -25,6 +25,7 @@ mod noun;
 mod mention;
 mod refer;
 
+mod around;
 mod arrange;
 mod cut;
 
@@ -42,6 +43,7 @@ mod story;
 mod task;
 mod timing;
 mod whereabouts;
+mod whom;
 
 mod default_cast;
 mod pattern;

@@ -18,7 +18,10 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
         };
         // `one and a half meters`
         let half = |k: usize| {
-            ["and", "a", "half"].iter().enumerate().all(|(n, word)| stretch.words.get(k + n).is_some_and(|at| at.text == *word))
+            ["and", "a", "half"]
+                .iter()
+                .enumerate()
+                .all(|(n, word)| stretch.words.get(k + n).is_some_and(|at| at.text == *word))
         };
         let (number, i) = if half(i + 1) { (number + 0.5, i + 3) } else { (number, i) };
         // `a couple of meters`

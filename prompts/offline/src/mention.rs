@@ -169,7 +169,8 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         let start = skip + usize::from(count.is_some());
         let named = noun(words, start, lex).or_else(|| stranger(words, start, count.is_some(), lex));
         // `none of the five`
-        let bare = count.filter(|_| start > skip && text(k + 1) == "the").map(|_| Whole { end: skip, role: None, count });
+        let bare =
+            count.filter(|_| start > skip && text(k + 1) == "the").map(|_| Whole { end: skip, role: None, count });
         named.map(|end| Whole { end, role: role(end), count }).or(bare)
     };
     // `neither of the others`, `both of the rest`: those who are left.
@@ -432,7 +433,12 @@ fn counted(
         return None;
     }
     // `In this one an intern …`: a scenario.
-    if text(at) == "one" && at > 0 && matches!(text(at - 1), "this" | "that") && at > 1 && matches!(text(at - 2), "in" | "for") {
+    if text(at) == "one"
+        && at > 0
+        && matches!(text(at - 1), "this" | "that")
+        && at > 1
+        && matches!(text(at - 2), "in" | "for")
+    {
         return None;
     }
     // `one after another`, `one by one` say how, not who.
@@ -470,8 +476,7 @@ fn counted(
     }
     // `his mother`, `her colleague`: known or new.
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
-        && let Some(end) =
-            noun(words, at + 1, lex).filter(|end| {
+        && let Some(end) = noun(words, at + 1, lex).filter(|end| {
             // `our porter Dennis`
             let named = words.get(*end).is_some_and(|word| word.capital) && *end > at + 1;
             let noun = if named && !lex.roles.contains_key(stem(words, *end)) { end - 1 } else { *end };
@@ -529,7 +534,7 @@ fn counted(
     let range = text(next) == "or" && words.get(next + 1).is_some_and(|word| word.count().is_some());
     let counts = thing(words, next) || range;
     let verb = words.get(next).is_none_or(|word| {
-        let does = lex.verbs.contains(&word.stem) && word.text != word.stem;
+        let does = lex.verbs.contains(&word.stem);
         lex.known.contains(&word.stem) && (does || !lex.labels.contains(&word.stem))
     });
     if label || unit || counts || !verb || article || text(at).contains('.') || n == 0 {

@@ -25,7 +25,8 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
     let lets = stems.iter().position(|stem| *stem == "let");
     let with = lets.and_then(|lets| (lets..stems.len()).find(|k| stems.get(*k) == Some(&"with")));
     if let Some(with) = with
-        && let Some(at) = (with + 1..stems.len().min(with + 5)).find(|k| matches!(stems.get(*k), Some(&("wave" | "gesture" | "sign" | "signal" | "motion"))))
+        && let Some(at) = (with + 1..stems.len().min(with + 5))
+            .find(|k| matches!(stems.get(*k), Some(&("wave" | "gesture" | "sign" | "signal" | "motion"))))
     {
         (found.gesture, found.gesture_at) = (Some(Gesture::Proceed), at);
         found.mentions.retain(|mention| mention.from < with);

@@ -26,7 +26,7 @@ const THINGS: &[&str] = &[
 pub(crate) fn thing(words: &[Word], at: usize) -> bool {
     words.get(at).is_some_and(|word| {
         THINGS.contains(&word.text.as_str())
-            || lexicon().labels.contains(&word.text)
+            || lexicon().labels.contains(&word.text) && !lexicon().verbs.contains(&word.stem)
             || lexicon().things.contains(&word.stem) && !lexicon().verbs.contains(&word.stem)
     })
 }

@@ -2,9 +2,10 @@
 
 use socrates_model::{Fault, FaultCode, Gesture, PlaceClass, Trigger};
 
+use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
-use crate::clause::{self, Found};
+use crate::clause;
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
@@ -106,7 +107,11 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         condition: false,
         went_on: Vec::new(),
     };
-    let named = sentences.iter().flatten().flat_map(|stretch| stretch.also.iter().chain(&stretch.words)).filter(|word| word.name);
+    let named = sentences
+        .iter()
+        .flatten()
+        .flat_map(|stretch| stretch.also.iter().chain(&stretch.words))
+        .filter(|word| word.name);
     for word in named {
         if !story.cast.names.contains(&word.stem) {
             story.cast.names.push(word.stem.clone());
@@ -143,29 +148,6 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         }
     }
     story
-}
-
-/// Whether a sentence makes an exception from what was said before.
-fn excepts(sentence: &[Stretch]) -> bool {
-    sentence.iter().any(|stretch| {
-        matches!(stretch.joint, Joint::Until | Joint::Except)
-            || stretch.words.iter().any(|word| matches!(word.text.as_str(), "only" | "except" | "but" | "unless" | "just"))
-    })
-}
-
-/// Whether a sentence only supposes something, or tells what happens at times.
-fn supposes(sentence: &[Stretch]) -> bool {
-    let words: Vec<&str> = sentence.iter().flat_map(|stretch| &stretch.words).map(|word| word.text.as_str()).take(4).collect();
-    let condition = sentence.get(1).is_some_and(|stretch| stretch.joint == Joint::When);
-    matches!(words.first(), Some(&"what")) && condition
-        || matches!(
-        words.as_slice(),
-        ["sometimes" | "often" | "usually" | "normally" | "typically", ..]
-            | ["you", "know", ..]
-            | ["what", "happens" | "about", ..]
-            | ["is", "it", "possible", ..]
-            | ["what", "does", ..]
-    )
 }
 
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
@@ -268,7 +250,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     for mention in &found.mentions {
         // `my staff get grumpy` tells of whoever asks.
         let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
-        let told = stretch.words.get(mention.to + 1).is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
+        let told = stretch
+            .words
+            .get(mention.to + 1)
+            .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
         if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
             continue;
         }
@@ -329,10 +314,14 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     // `… standing together`, `have an operator and a trainee stroll`
     let shared = |to: usize| {
         stretch.words.get(to + 1).is_some_and(|word| {
-            word.text.ends_with("ing") || word.text == word.stem && lexicon().verbs.contains(&word.stem) && word.stem != "be"
+            word.text.ends_with("ing")
+                || word.text == word.stem && lexicon().verbs.contains(&word.stem) && word.stem != "be"
         })
     };
-    if joined.is_empty() && stretch.joint == Joint::And && found.mentions.first().is_some_and(|first| first.from == 0 && shared(first.to)) {
+    if joined.is_empty()
+        && stretch.joint == Joint::And
+        && found.mentions.first().is_some_and(|first| first.from == 0 && shared(first.to))
+    {
         joined = listed;
     }
     // `Five people: two follow the robot`: some of those who wait for a deed, not others beside them.
@@ -405,7 +394,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             subject => subject,
         };
         if act == Act::Gesture {
-            thread.addressed = meant.iter().filter(|(from, _, _)| *from > at).flat_map(|(_, _, some)| some.clone()).collect();
+            thread.addressed =
+                meant.iter().filter(|(from, _, _)| *from > at).flat_map(|(_, _, some)| some.clone()).collect();
         }
         let quote = quote.as_str();
         thread.untaken = None;
@@ -458,7 +448,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             Subject::People(people) => {
                 // `he walks off, followed by a trainee`
                 let mut around = meant.clone();
-                if let (true, Act::Follow, Subject::People(led)) = (passive && found.robots.is_empty(), act, &previous) {
+                if let (true, Act::Follow, Subject::People(led)) = (passive && found.robots.is_empty(), act, &previous)
+                {
                     around.push((stretch.words.len(), stretch.words.len(), led.clone()));
                 }
                 people_deed(story, thread, (act, at, to), people, &found, &around, stretch, quote)
@@ -498,123 +489,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
 }
 
-/// `except for one who …`: takes the clause before back for so many of its people, who are spoken of next.
-fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) -> bool {
-    let Some(doers) = thread.doer.clone().filter(|doers| doers.len() > 1) else { return false };
-    let count = match found.mentions.first().map(|mention| &mention.who) {
-        Some(Who::Bare(n) | Who::PartOf(n)) => usize::try_from(*n).unwrap_or(usize::MAX),
-        Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => usize::try_from(*n).unwrap_or(usize::MAX),
-        Some(Who::Ordinal(n)) if *n > 0 => 1,
-        _ => return false,
-    };
-    if count == 0 || count >= doers.len() {
-        return false;
-    }
-    let out: Vec<usize> = match found.mentions.first().map(|mention| &mention.who) {
-        Some(Who::Ordinal(n)) => usize::try_from(*n).ok().and_then(|n| doers.get(n.checked_sub(1)?)).copied().into_iter().collect(),
-        _ => doers.iter().rev().take(count).rev().copied().collect(),
-    };
-    for who in &out {
-        let rules: Vec<usize> = thread.made.iter().filter(|(of, _)| of == who).map(|(_, rule)| *rule).collect();
-        deed::except(&mut story.cast, *who, &rules);
-    }
-    thread.made.retain(|(who, _)| !out.contains(who));
-    story.cast.last.clone_from(&out);
-    thread.subject = Subject::People(out);
-    thread.doer = None;
-    true
-}
-
 fn mark(stretch: &mut Stretch, at: &[usize]) {
     for i in at {
         if let Some(word) = stretch.words.get_mut(*i) {
             word.used = true;
         }
-    }
-}
-
-/// Whether the clause is an answer to what the robot said just before.
-fn answers(found: &Found, said: Option<&Trigger>) -> bool {
-    let answer = |act: Act| match act {
-        Act::GoOn | Act::GiveWay => true,
-        Act::Follow => said == Some(&Trigger::RobotSays(Gesture::FollowMe)),
-        Act::Stop => said == Some(&Trigger::RobotSays(Gesture::Wait)),
-        _ => false,
-    };
-    found.distance_m.is_none()
-        && found.robots.iter().all(|robot| found.deeds.first().is_some_and(|deed| deed.at < *robot))
-        && found.gesture.is_none()
-        && found.deeds.first().is_some_and(|deed| answer(deed.act) && !deed.negated)
-}
-
-/// Whether the robot does it: `is followed by the robot`.
-fn done_by_robot(stretch: &Stretch, act: Act, at: usize, to: usize) -> bool {
-    let does = matches!(
-        act,
-        Act::Overtake
-            | Act::Follow
-            | Act::Lead
-            | Act::Abreast
-            | Act::Pass
-            | Act::Approach
-            | Act::Toward
-            | Act::Block
-            | Act::Gesture
-    );
-    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    // `is told "follow me" by the robot`
-    let reach = if act == Act::Gesture && at > 0 && stretch.words.get(at - 1).is_some_and(|word| word.stem == "be") { 8 } else { 3 };
-    let by = (at..to + reach).find(|k| text(*k) == "by");
-    does && by.is_some_and(|by| (by + 1..by + 4).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot")))
-}
-
-/// `raises a hand (WAIT)`, `Robot: excuse me`: a message alone is that of the clause before.
-fn only_says(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, gesture: Gesture, quote: &str) {
-    for word in &mut stretch.words {
-        word.used = true;
-    }
-    let signals = thread.made.last().copied();
-    match signals.and_then(|(who, rule)| story.cast.people.get_mut(who).and_then(|person| person.rules.get_mut(rule))) {
-        Some(read) if read.rule.gesture.is_some() => read.rule.gesture = Some(gesture),
-        Some(_) | None => {
-            story.robot_says.push((gesture, quote.to_owned()));
-            (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
-            thread.said = Some(Trigger::RobotSays(gesture));
-        }
-    }
-}
-
-/// `the third one, a security guard`: the role by which somebody is also called.
-fn also_called(story: &mut Story, meant: &[(usize, usize, Vec<usize>)], stretch: &mut Stretch) {
-    let Some((_, _, people)) = meant.first() else { return };
-    if let ([name], [who]) = (stretch.also.as_mut_slice(), people.as_slice())
-        && name.capital
-        && !lexicon().known.contains(&name.stem)
-    {
-        name.used = true;
-        if let Some(person) = story.cast.people.get_mut(*who) {
-            person.name = Some(name.stem.clone());
-        }
-        return;
-    }
-    let named = crate::mention::mentions(&stretch.also).into_iter().next();
-    let Some(role) = named.as_ref().and_then(|mention| mention.role.clone()) else {
-        // A name: nothing is lost where only the role counts.
-        if let [name] = stretch.also.as_mut_slice() {
-            name.used = true;
-        }
-        return;
-    };
-    // `Dr. Meyer, a surgeon`
-    let titled = stretch.words.first().is_some_and(|word| word.text == "dr");
-    for who in people {
-        if let Some(person) = story.cast.people.get_mut(*who)
-            && (person.role.is_empty() || !lexicon().roles.contains_key(&person.role) || titled && person.role == "doctor")
-        {
-            person.role.clone_from(&role);
-        }
-    }
-    for (at, word) in stretch.also.iter_mut().enumerate() {
-        word.used |= named.as_ref().is_some_and(|mention| (mention.from..=mention.to).contains(&at));
     }
 }

@@ -179,7 +179,8 @@ pub(crate) fn quiet(
     next: Option<Joint>,
 ) {
     // `The robot, in its friendly voice, asks her …`
-    if stretch.words.iter().all(|word| word.label || word.text == "the" || word.text == "this" || word.stem == "robot") {
+    if stretch.words.iter().all(|word| word.label || word.text == "the" || word.text == "this" || word.stem == "robot")
+    {
         thread.subject = Subject::Robot;
         return;
     }
@@ -290,7 +291,11 @@ pub(crate) fn quiet(
     }
     // `a nurse and …`: only bare mentions wait for the deed of the next clause.
     let bare = stretch.words.iter().enumerate().all(|(i, word)| {
-        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i)) || matches!(word.text.as_str(), "both" | "either" | "only" | "just" | "exactly" | "simply" | "perhaps" | "maybe")
+        meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i))
+            || matches!(
+                word.text.as_str(),
+                "both" | "either" | "only" | "just" | "exactly" | "simply" | "perhaps" | "maybe"
+            )
     });
     if bare && matches!(next, Some(Joint::And | Joint::Comma | Joint::When | Joint::While)) {
         thread.pending.clone_from(&people);

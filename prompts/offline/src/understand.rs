@@ -242,8 +242,11 @@ fn people(request: &Request, story: &Story, reading: &mut Reading) {
     for (i, person) in story.cast.people.iter().enumerate() {
         let number = u32::try_from(i + 1).unwrap_or(u32::MAX);
         let generic = person.role.is_empty();
-        let role =
-            if generic { person.called.clone().or_else(|| from_context.clone()).unwrap_or_else(|| "person".to_owned()) } else { person.role.clone() };
+        let role = if generic {
+            person.called.clone().or_else(|| from_context.clone()).unwrap_or_else(|| "person".to_owned())
+        } else {
+            person.role.clone()
+        };
         reading.humans.push(ReadHuman {
             id: HumanId::new(number),
             role,

@@ -190,7 +190,11 @@ fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, s
         PlaceClass::Elevator
             if (stands || !moves)
                 && before(at, stretch, BESIDE)
-                && !(0..at).any(|k| text(k + 1) == "for" && stretch.words.get(k).is_some_and(|word| word.stem == "head")) => PlaceClass::ElevatorLobby,
+                && !(0..at)
+                    .any(|k| text(k + 1) == "for" && stretch.words.get(k).is_some_and(|word| word.stem == "head")) =>
+        {
+            PlaceClass::ElevatorLobby
+        }
         PlaceClass::Elevator if (0..at).any(|k| text(k) == "lobby") => PlaceClass::ElevatorLobby,
         PlaceClass::OpenArea if text(at) == "lobby" => {
             let inside = |person: &crate::cast::Person| {

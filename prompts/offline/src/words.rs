@@ -87,7 +87,10 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             }
             // `2.3.1`, `#882`, `R-31` and `4B` name something.
             let version = at(i) == Some('.') && at(i + 1).is_some_and(|d| d.is_ascii_digit());
-            while version && at(i).is_some_and(|c| c == '.' && at(i + 1).is_some_and(|d| d.is_ascii_digit()) || c.is_ascii_digit()) {
+            while version
+                && at(i)
+                    .is_some_and(|c| c == '.' && at(i + 1).is_some_and(|d| d.is_ascii_digit()) || c.is_ascii_digit())
+            {
                 i += 1;
             }
             let back = |k: usize| start.checked_sub(k).and_then(&at);
@@ -245,7 +248,8 @@ fn mended(text: &str) -> Option<&'static str> {
     }
     let near = |word: &&String| {
         (word.chars().count() >= 6 || letters == 5 && lex.roles.contains_key(word.as_str()) && word.len() == 5)
-            && word.chars().next() == text.chars().next() && strsim::osa_distance(word, text) == 1
+            && word.chars().next() == text.chars().next()
+            && strsim::osa_distance(word, text) == 1
     };
     let mut found = lex.telling.iter().filter(near);
     let only = found.next()?;

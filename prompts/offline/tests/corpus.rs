@@ -181,6 +181,22 @@ fn what_a_sixth_hand_writes_is_read() {
     reads("open, sixth", include_str!("../corpus/open-6.toml"), 94);
 }
 
+/// Six sets by six more hands, each read only when all of it had been judged: what they were at the first look stands in
+/// `corpus/README.md`.
+#[test]
+fn what_six_more_hands_write_is_read() {
+    for (name, corpus, percent) in [
+        ("researchers", include_str!("../corpus/open-7.toml"), 98),
+        ("practitioners", include_str!("../corpus/open-8.toml"), 98),
+        ("test engineers", include_str!("../corpus/open-9.toml"), 95),
+        ("newcomers", include_str!("../corpus/open-10.toml"), 98),
+        ("a bit of all", include_str!("../corpus/open-11.toml"), 98),
+        ("long sentences", include_str!("../corpus/open-12.toml"), 96),
+    ] {
+        reads(name, corpus, percent);
+    }
+}
+
 /// Written before the grammar was worked on: 78 of 91 at the first look. Its misses were read then, and the grammar was
 /// mended in general; so it is no measure of unseen requests any more.
 #[test]
@@ -191,7 +207,7 @@ fn what_was_kept_aside_once_is_read() {
 /// Kept aside for a while: 67 of 99 at the first look, 72 after open-3 to open-5 had been mended; then its misses were read.
 #[test]
 fn what_was_kept_aside_later_is_read() {
-    reads("kept aside later", include_str!("../corpus/sealed-2.toml"), 82);
+    reads("kept aside later", include_str!("../corpus/sealed-2.toml"), 92);
 }
 
 /// Written by somebody who did not know the grammar, and unread by whoever works on it: only the figure is told, 107
