@@ -29,6 +29,10 @@ pub(crate) struct Around {
     pub(crate) quote: String,
 }
 
+/// Who is startled is so by the first sight of the robot, as a door opens or round a corner: from so far, m, and it
+/// stares for so long, s.
+const STARTLED_M: f64 = 5.0;
+const STARTLED_S: f64 = 8.0;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -220,13 +224,14 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         (Action::FollowRobot, Some(id)) => Action::FollowHuman(id),
         (other, _) => other,
     };
+    let usual = if around.startled { with_distance(usual, Some(STARTLED_M)) } else { usual };
     let when = match (&around.trigger, &usual) {
         (Some(Trigger::RobotVisible(_)), Trigger::RobotVisible(_)) if around.vague => usual,
         (Some(said), _) => said.clone(),
         (None, _) if matches!(action, Action::FollowHuman(_)) => Trigger::Always,
         (None, _) => with_distance(usual, around.distance_m),
     };
-    let lasts = around.lasts_s.or(if around.startled { Some(8.0) } else { lasts });
+    let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
     let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
     let stated = around.trigger.is_some() || around.distance_m.is_some();
     let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;
