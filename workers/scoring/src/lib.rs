@@ -17,6 +17,7 @@ mod circle;
 mod doubts;
 mod evidence;
 mod hull;
+mod running;
 mod series;
 mod skips;
 mod tracks;
