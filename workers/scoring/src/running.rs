@@ -149,10 +149,10 @@ impl Stretches {
         Self { level, rearm, rearm_s, found: Vec::new(), clear_since: None, last_s: None }
     }
 
-    /// Whether the piece begins a new stretch.
-    pub(crate) fn add(&mut self, piece: Option<Piece>) -> bool {
-        let Some((t0, v0, t1, v1)) = piece else { return false };
-        let mut begins = false;
+    /// When a new stretch begins in the piece, s.
+    pub(crate) fn add(&mut self, piece: Option<Piece>) -> Option<f64> {
+        let (t0, v0, t1, v1) = piece?;
+        let mut begins = None;
         // A hole ends every stretch.
         if self.last_s.is_some_and(|last| last < t0) {
             self.clear_since = Some(f64::NEG_INFINITY);
@@ -164,7 +164,7 @@ impl Stretches {
                 Some(last) if !armed => last.to_s = span.to_s,
                 _ => {
                     self.found.push(span);
-                    begins = true;
+                    begins = Some(span.from_s);
                 }
             }
             self.clear_since = None;

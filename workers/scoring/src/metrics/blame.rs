@@ -1,8 +1,10 @@
 //! Whose motion makes a collision likely.
 
 use crate::metrics::collisions::closing_share;
+use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::ttc::{EXPOSED_SECS, time_to_collision};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::{MeanWhileBelow, Pen};
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
@@ -14,27 +16,52 @@ pub(super) const FAMILY: Family = Family {
         source: "own: no canonical formula is published",
         about: "mean share of the robot in the closing speed while the time to collision is below 3 s; 0.5 when both come alike",
     }],
-    measure,
+    measure: Measure::Online(Begin(|humans| Box::new(Blame::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let (mut area, mut seconds) = (0.0, 0.0);
-    for (robot, human) in scene.pairs() {
-        let times = robot.between(human, |r, h| {
-            let ttc = time_to_collision(r, h, robot.radius_m + human.radius_m).unwrap_or(2.0 * EXPOSED_SECS);
-            ttc.min(2.0 * EXPOSED_SECS)
-        });
-        if times.least().is_none_or(|(_, least)| least >= EXPOSED_SECS) {
-            continue;
-        }
-        let shares = robot.between(human, |r, h| closing_share(r, h).unwrap_or(0.0));
-        let exposed = times.time_below(EXPOSED_SECS);
-        if let Some(mean) = shares.mean_while_below(&times, EXPOSED_SECS) {
-            area += mean * exposed;
-            seconds += exposed;
+/// Time on a collision course with one human, and the robot's share in it.
+#[derive(Clone)]
+struct Course {
+    times: Pen,
+    shares: Pen,
+    share: MeanWhileBelow,
+}
+
+struct Blame(Vec<Course>);
+
+impl Blame {
+    fn new(humans: usize) -> Self {
+        let course =
+            Course { times: Pen::default(), shares: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS) };
+        Self(vec![course; humans])
+    }
+}
+
+impl Running for Blame {
+    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        for ((course, human), radius_m) in self.0.iter_mut().zip(now.humans).zip(setting.humans_radius_m) {
+            let both = robot.there && human.there;
+            let ttc = both.then(|| {
+                let found = time_to_collision(robot, human, setting.robot_radius_m + radius_m);
+                found.unwrap_or(2.0 * EXPOSED_SECS).min(2.0 * EXPOSED_SECS)
+            });
+            let share = both.then(|| closing_share(robot, human).unwrap_or(0.0));
+            course.share.add(course.shares.to(now.t, share), course.times.to(now.t, ttc));
         }
     }
-    vec![or_why((seconds > 0.0).then(|| area / seconds), "the two are never on a collision course within 3 s")]
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let (mut area, mut seconds) = (0.0, 0.0);
+        for course in &self.0 {
+            if let Some(mean) = course.share.mean() {
+                area += mean * course.share.seconds();
+                seconds += course.share.seconds();
+            }
+        }
+        let why = "the two are never on a collision course within 3 s";
+        vec![or_why((seconds > 0.0).then(|| area / seconds), why)]
+    }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use socrates_maps::Geodesic;
 use socrates_model::{Missing, Point};
 
 use crate::fidelity::{GOAL_M, Signals};
-use crate::metrics::Need;
+use crate::metrics::{Measured, Need, Online, Setting};
 use crate::series::{Series, Span};
 use crate::tracks::{Sample, Track, Tracks};
 
@@ -74,30 +74,54 @@ impl<'a> Scene<'a> {
     #[must_use]
     pub fn lacks(&self, needs: &[Need]) -> Option<(Missing, String)> {
         needs.iter().find_map(|need| {
-            let (there, what) = match need {
-                Need::Tracks => (true, ""),
-                Need::Robot => (self.tracks.robot.is_some(), "there is no robot in the recording"),
-                Need::Humans => (!self.tracks.humans.is_empty(), "there is no human in the recording"),
-                Need::Map => (self.signals.field.is_some(), "there is no map"),
-                Need::Goal => (self.goal.is_some(), "the robot's goal is not known"),
-                Need::Groups => {
-                    let groups = self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty());
-                    (groups, "no groups are known")
+            let there = match need {
+                Need::Tracks => true,
+                Need::Robot => self.tracks.robot.is_some(),
+                Need::Humans => !self.tracks.humans.is_empty(),
+                Need::Map => self.signals.field.is_some(),
+                Need::Goal => self.goal.is_some(),
+                Need::Groups => self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty()),
+                Need::Twin => self.signals.evidence.twin.is_some(),
+                Need::PlannerTimes | Need::Commands | Need::Solo | Need::OtherRobots => false,
+                Need::Events => {
+                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0))
                 }
-                Need::Twin => {
-                    (self.signals.evidence.twin.is_some(), "there is no run without the robot to compare with")
-                }
-                Need::PlannerTimes => (false, "recordings hold no computing times of planners"),
-                Need::Commands => (false, "recordings hold no commands"),
-                Need::Solo => (false, "there is no run of the robot alone to compare with"),
-                Need::OtherRobots => (false, "recordings hold one robot"),
-                Need::Events => (
-                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
-                    "nobody makes a gesture",
-                ),
             };
-            (!there).then(|| (need.missing(), what.to_owned()))
+            (!there).then(|| (need.missing(), need.lacking().to_owned()))
         })
+    }
+
+    /// What is known before the first sample; `humans_radius_m` in the order of `tracks.humans`.
+    #[must_use]
+    pub fn setting<'s>(&'s self, humans_radius_m: &'s [f64]) -> Setting<'s> {
+        let robot = self.tracks.robot.as_ref();
+        Setting {
+            robot_radius_m: robot.map_or(0.0, |robot| robot.radius_m),
+            robot_speed_mps: robot.map_or(0.0, |robot| robot.speed_mps),
+            humans_radius_m,
+            goal: self.goal,
+            field: self.signals.field.as_ref(),
+            geodesic: self.geodesic.as_ref(),
+        }
+    }
+
+    /// The trip, sample by sample.
+    #[must_use]
+    pub(super) fn online(&self) -> Vec<Vec<Measured>> {
+        let tracks = &self.tracks;
+        let radii: Vec<f64> = tracks.humans.iter().map(|human| human.radius_m).collect();
+        let mut online = Online::new(self.setting(&radii));
+        let times = tracks.all().next().map_or(0, |track| track.samples.len());
+        let mut humans: Vec<Sample> = Vec::with_capacity(radii.len());
+        for index in 0..times {
+            humans.clear();
+            humans.extend(tracks.humans.iter().filter_map(|human| human.samples.get(index)));
+            online.push(tracks.robot.as_ref().and_then(|robot| robot.samples.get(index)), &humans);
+        }
+        if let Some(arrived) = self.arrived_s {
+            online.arrived(arrived);
+        }
+        online.measured()
     }
 
     /// The same run without a robot.
@@ -136,11 +160,7 @@ impl<'a> Scene<'a> {
     /// Shortest way from a point to the goal, m; straight where there is no map.
     #[must_use]
     pub fn to_goal_m(&self, from: &Point) -> Option<f64> {
-        let goal = self.goal?;
-        match &self.geodesic {
-            Some(geodesic) => geodesic.distance(from),
-            None => Some((goal - from).norm()),
-        }
+        self.setting(&[]).to_goal_m(from)
     }
 
     /// Way of the robot on the even grid, m.
