@@ -29,9 +29,7 @@ pub(crate) struct Around {
     pub(crate) quote: String,
 }
 
-/// Who is startled is so by the first sight of the robot, as a door opens or round a corner: from so far, m, and it
-/// stares for so long, s.
-const STARTLED_M: f64 = 5.0;
+/// Who is startled stares for so long, s.
 const STARTLED_S: f64 = 8.0;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
@@ -224,7 +222,6 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         (Action::FollowRobot, Some(id)) => Action::FollowHuman(id),
         (other, _) => other,
     };
-    let usual = if around.startled { with_distance(usual, Some(STARTLED_M)) } else { usual };
     let when = match (&around.trigger, &usual) {
         (Some(Trigger::RobotVisible(_)), Trigger::RobotVisible(_)) if around.vague => usual,
         (Some(said), _) => said.clone(),

@@ -2,9 +2,10 @@
 
 use crate::metrics::collisions::closing_share;
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::ttc::{EXPOSED_SECS, time_to_collision};
+use crate::metrics::ttc::EXPOSED_SECS;
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
 use crate::running::{MeanWhileBelow, Pen};
+use crate::tracks::Sample;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
@@ -16,6 +17,7 @@ pub(super) const FAMILY: Family = Family {
         source: "own: no canonical formula is published",
         about: "mean share of the robot in the closing speed while the time to collision is below 3 s; 0.5 when both come alike",
     }],
+    thresholds: &[("exposed_secs", EXPOSED_SECS)],
     measure: Measure::Online(Begin(|humans| Box::new(Blame::new(humans)))),
 };
 
@@ -23,31 +25,34 @@ pub(super) const FAMILY: Family = Family {
 #[derive(Clone)]
 struct Course {
     times: Pen,
-    shares: Pen,
     share: MeanWhileBelow,
+    /// Robot and human at the last time, when both were there.
+    before: Option<(Sample, Sample)>,
 }
 
 struct Blame(Vec<Course>);
 
 impl Blame {
     fn new(humans: usize) -> Self {
-        let course =
-            Course { times: Pen::default(), shares: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS) };
-        Self(vec![course; humans])
+        Self(vec![Course { times: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS), before: None }; humans])
     }
 }
 
 impl Running for Blame {
-    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
         let Some(robot) = now.robot else { return };
-        for ((course, human), radius_m) in self.0.iter_mut().zip(now.humans).zip(setting.humans_radius_m) {
-            let both = robot.there && human.there;
-            let ttc = both.then(|| {
-                let found = time_to_collision(robot, human, setting.robot_radius_m + radius_m);
-                found.unwrap_or(2.0 * EXPOSED_SECS).min(2.0 * EXPOSED_SECS)
-            });
-            let share = both.then(|| closing_share(robot, human).unwrap_or(0.0));
-            course.share.add(course.shares.to(now.t, share), course.times.to(now.t, ttc));
+        for ((course, human), ttc_s) in self.0.iter_mut().zip(now.humans).zip(now.ttc_s) {
+            let here = (robot.there && human.there).then_some((*robot, *human));
+            let far = 2.0 * EXPOSED_SECS;
+            let piece = course.times.to(now.t, here.map(|_| ttc_s.unwrap_or(far).min(far)));
+            let before = std::mem::replace(&mut course.before, here);
+            // Shares matter only where the time is short.
+            if let (Some((t0, s0, t1, s1)), Some((r, h))) = (piece, before)
+                && s0.min(s1) < EXPOSED_SECS
+            {
+                let share = |r: &Sample, h: &Sample| closing_share(r, h).unwrap_or(0.0);
+                course.share.add(Some((t0, share(&r, &h), t1, share(robot, human))), piece);
+            }
         }
     }
 

@@ -2,9 +2,9 @@
 
 use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::{REARM_M, REARM_SECS};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Scene, Sheet, count};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
 use crate::running::Below;
-use crate::series::{Series, Span};
+use crate::series::Span;
 
 /// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
 pub(super) const WALL_SLACK_M: f64 = 0.05;
@@ -72,6 +72,7 @@ pub(super) const FAMILY: Family = Family {
             about: "time with the robot's surface less than -0.05 m from a wall of the map",
         },
     ],
+    thresholds: &[("wall_slack_m", WALL_SLACK_M), ("rearm_m", REARM_M), ("rearm_secs", REARM_SECS)],
     measure: Measure::Online(Begin(|humans| Box::new(Contacts::new(humans)))),
 };
 
@@ -119,14 +120,6 @@ impl Running for Contacts {
             Ok(end.walls.spans().iter().map(Span::length_s).sum()),
         ]
     }
-}
-
-/// Contacts with walls.
-pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
-    let (Some(field), Some(robot)) = (&scene.signals.field, scene.robot()) else { return Vec::new() };
-    let clearance: Series =
-        robot.samples.iter().map(|sample| (sample.t, field.clearance(&sample.at) - robot.radius_m)).collect();
-    clearance.stretches_below(-WALL_SLACK_M, REARM_M, REARM_SECS)
 }
 
 /// The robot's share of the closing speed of two agents.

@@ -54,6 +54,7 @@ pub(super) const FAMILY: Family = Family {
             about: "1 when the run ends without the robot at its goal",
         },
     ],
+    thresholds: &[("mass_kg", MASS_KG)],
     measure: Measure::Online(Begin(|_| Box::new(Comfort::default()))),
 };
 
@@ -67,6 +68,7 @@ pub(super) const TOGETHER: Family = Family {
         source: "Francis et al. 2023, table 1 (AT): the last of a cooperative set",
         about: "time until the robot and every human who walks have stopped walking for good; not applicable when the robot never arrives",
     }],
+    thresholds: &[],
     measure: Measure::Whole { measure: together, why: "people walk on after the robot has arrived" },
 };
 

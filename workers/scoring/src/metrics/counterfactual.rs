@@ -34,6 +34,7 @@ pub(super) const FAMILY: Family = Family {
             about: "share of the near misses and contacts (below 0.5 m between surfaces) in which the person, going as in the twin run, would have kept 0.5 m from the robot as it went: the person came to the robot",
         },
     ],
+    thresholds: &[("near_m", NEAR_M), ("stop_secs", STOP_SECS), ("after_secs", AFTER_SECS)],
     measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
 

@@ -45,6 +45,7 @@ pub(super) const FAMILY: Family = Family {
             about: "most people within 2.5 m of the robot at once over the area of that disc",
         },
     ],
+    thresholds: &[("mean_a_m", MEAN_M[0]), ("mean_b_m", MEAN_M[1]), ("mean_c_m", MEAN_M[2]), ("most_m", MOST_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Crowding::new(humans)))),
 };
 

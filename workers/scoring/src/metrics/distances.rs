@@ -43,6 +43,7 @@ pub(super) const FAMILY: Family = Family {
             about: "time mean of the distance of the robot's surface from the map's walls",
         },
     ],
+    thresholds: &[],
     measure: Measure::Online(Begin(|_| Box::new(Distances::default()))),
 };
 

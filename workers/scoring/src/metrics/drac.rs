@@ -33,6 +33,7 @@ pub(super) const FAMILY: Family = Family {
             about: "mean speed of the robot while the closest human's surface is within 1.2 m",
         },
     ],
+    thresholds: &[("near_m", NEAR_M), ("touch_m", TOUCH_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Crash::new(humans)))),
 };
 

@@ -67,6 +67,15 @@ pub(super) const FAMILY: Family = Family {
             about: "integral over time of social force on the robot, wall force on the robot and social forces on people",
         },
     ],
+    thresholds: &[
+        ("strength", STRENGTH),
+        ("lambda", LAMBDA),
+        ("gamma", GAMMA),
+        ("n", N),
+        ("n_prime", N_PRIME),
+        ("wall_strength", WALL_STRENGTH),
+        ("wall_range_m", WALL_RANGE_M),
+    ],
     measure: Measure::Whole {
         measure,
         why: "summed by pairs over whole tracks, so that pairs far apart can be skipped",

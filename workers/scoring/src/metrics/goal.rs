@@ -34,6 +34,7 @@ pub(super) const FAMILY: Family = Family {
             about: "straight distance to the goal at the end of the trip",
         },
     ],
+    thresholds: &[],
     measure: Measure::Online(Begin(|_| Box::new(Nearest::default()))),
 };
 

@@ -76,6 +76,7 @@ pub(super) const FAMILY: Family = Family {
             about: "legibility over the moments at which at least one human has the robot in view (100° to each side, line of sight)",
         },
     ],
+    thresholds: &[("beta_per_m", BETA_PER_M), ("sure", SURE), ("apart_m", APART_M), ("half_view_rad", HALF_VIEW_RAD)],
     measure: Measure::Whole { measure, why: "the goals and the weights T - t are known at the end" },
 };
 

@@ -2,7 +2,7 @@
 
 use socrates_model::{HumanId, Point};
 
-use crate::circle::{Circle, P_SPACE_M};
+use crate::circle::{Circle, P_SPACE_M, STANDING_MPS};
 use crate::hull::{convex_hull, outside_hull_m};
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
@@ -73,6 +73,13 @@ pub(super) const FAMILY: Family = Family {
             "TAGA (arXiv 2503.21168), group collision rate, per run",
             "1 when the robot's disc was ever nearer than 0.45 m to the convex hull of a group's members",
         ),
+    ],
+    thresholds: &[
+        ("together_m", TOGETHER_M),
+        ("relation_m", RELATION_M),
+        ("hull_m", HULL_M),
+        ("p_space_m", P_SPACE_M),
+        ("standing_mps", STANDING_MPS),
     ],
     measure: Measure::Whole { measure, why: "members are looked at together, and only those who ever come" },
 };

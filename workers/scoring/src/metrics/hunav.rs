@@ -205,6 +205,7 @@ pub(super) const FAMILY: Family = Family {
             "sum over samples of the humans' mean wall force, not times the step",
         ),
     ],
+    thresholds: &[("touch_m", TOUCH_M), ("goal_m", GOAL_M), ("stride_m", STRIDE_M)],
     measure: Measure::Whole { measure, why: "the other tool's figures, as it computes them after a run" },
 };
 

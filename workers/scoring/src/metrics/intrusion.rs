@@ -34,6 +34,7 @@ pub(super) const FAMILY: Family = Family {
             about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the centre distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
         },
     ],
+    thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
     measure: Measure::Online(Begin(|humans| Box::new(Intrusions::new(humans)))),
 };
 

@@ -36,6 +36,7 @@ mod speeds;
 mod stalls;
 mod success;
 mod table;
+mod thresholds;
 mod ttc;
 mod twin;
 mod unrecorded;
@@ -46,8 +47,8 @@ use socrates_model::{MetricValue, Missing};
 
 pub use online::{Online, Setting};
 pub use scene::Scene;
-pub use success::succeeded;
 pub use table::csv;
+pub use thresholds::signature;
 
 /// What a metric needs (`spec/evaluation` §2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -179,6 +180,9 @@ pub struct Begin(fn(usize) -> Box<dyn online::Running>);
 pub struct Family {
     /// Fact sheets, in the order of the values.
     pub sheets: &'static [Sheet],
+    /// Names and values of what decides what counts: distances, times, speeds. With other ones the figures are others,
+    /// see [`signature`].
+    pub thresholds: &'static [(&'static str, f64)],
     /// Computes the values, one per sheet.
     pub measure: Measure,
 }

@@ -18,6 +18,7 @@ pub(super) const FAMILY: Family = Family {
         source: "Robot SF, near-miss counter",
         about: "stretches with a surface distance to a human from 0 to 0.5 m that do not end in a contact",
     }],
+    thresholds: &[("near_m", NEAR_M)],
     measure: Measure::Online(Begin(|humans| Box::new(Near::new(humans)))),
 };
 

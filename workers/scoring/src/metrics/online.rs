@@ -16,6 +16,7 @@ use socrates_model::{MetricValue, Missing, Point};
 use crate::fidelity::GOAL_M;
 use crate::metrics::collisions::WALL_SLACK_M;
 use crate::metrics::scene::{EVEN_SECS, REARM_M, REARM_SECS};
+use crate::metrics::ttc::time_to_collision;
 use crate::metrics::{CATALOG, Measure, Measured, Need, valued};
 use crate::running::{Pen, Piece, Stretches};
 use crate::tracks::{Sample, between};
@@ -62,6 +63,8 @@ pub(super) struct Now<'a> {
     pub(super) nearest: Option<f64>,
     /// The piece of that curve that ends now.
     pub(super) nearest_piece: Option<Piece>,
+    /// Time to collision with each human, s; `None` off any collision course and while the human is not there.
+    pub(super) ttc_s: &'a [Option<f64>],
     /// Humans with whom a contact begins, and when, s.
     pub(super) touched: &'a [(usize, f64)],
     /// Distance of the robot's surface from the walls, m.
@@ -199,6 +202,7 @@ pub struct Online<'a> {
     contacts: Vec<Stretches>,
     walls: Stretches,
     pieces: Vec<Option<Piece>>,
+    ttc_s: Vec<Option<f64>>,
     touched: Vec<(usize, f64)>,
     /// Whether a human was there at all.
     came: bool,
@@ -229,6 +233,7 @@ impl<'a> Online<'a> {
             contacts: vec![Stretches::below(0.0, REARM_M, REARM_SECS); humans],
             walls: Stretches::below(-WALL_SLACK_M, REARM_M, REARM_SECS),
             pieces: Vec::new(),
+            ttc_s: Vec::new(),
             touched: Vec::new(),
             came: false,
             arrived_s: None,
@@ -245,6 +250,7 @@ impl<'a> Online<'a> {
         let Some(t) = robot.or_else(|| humans.first()).map(|sample| sample.t) else { return };
         self.came |= humans.iter().any(|human| human.there);
         self.pieces.clear();
+        self.ttc_s.clear();
         self.touched.clear();
         self.even.come.clear();
         let (mut nearest, mut clearance) = (None, None);
@@ -262,6 +268,8 @@ impl<'a> Online<'a> {
                 let begins = self.contacts.get_mut(index).and_then(|contacts| contacts.add(piece));
                 self.touched.extend(begins.map(|from_s| (index, from_s)));
                 self.pieces.push(piece);
+                let radii_m = self.setting.robot_radius_m + radius_m;
+                self.ttc_s.push(human.there.then(|| time_to_collision(robot, human, radii_m)).flatten());
             }
             clearance = self.setting.field.map(|field| field.clearance(&robot.at) - self.setting.robot_radius_m);
             self.walls.add(self.clearing.to(t, clearance));
@@ -273,6 +281,7 @@ impl<'a> Online<'a> {
             pieces: &self.pieces,
             nearest,
             nearest_piece: self.nearest.to(t, nearest),
+            ttc_s: &self.ttc_s,
             touched: &self.touched,
             clearance,
             even: &self.even.come,

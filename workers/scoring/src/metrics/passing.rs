@@ -28,6 +28,7 @@ pub(super) const FAMILY: Family = Family {
             about: "sum over humans of the absolute winding number about the robot",
         },
     ],
+    thresholds: &[],
     measure: Measure::Whole { measure, why: "the human meant is the one who comes nearest in the end" },
 };
 

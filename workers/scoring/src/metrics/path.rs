@@ -82,6 +82,7 @@ pub(super) const FAMILY: Family = Family {
             about: "mean Menger curvature 4 A / (a b c) of points half a metre of way apart",
         },
     ],
+    thresholds: &[("step_m", STEP_M)],
     measure: Measure::Online(Begin(|_| Box::new(Way::default()))),
 };
 

@@ -19,6 +19,7 @@ pub(super) const FAMILY: Family = Family {
         source: "Allen, Shin and Cooper 1978 (PET)",
         about: "smallest time between one agent leaving the place where the ways cross (a disc of both radii) and the other entering it; 0 when both are in it at once",
     }],
+    thresholds: &[("step_m", STEP_M)],
     measure: Measure::Whole { measure, why: "the place where two ways cross is known when both have been gone" },
 };
 

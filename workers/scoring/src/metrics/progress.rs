@@ -18,6 +18,7 @@ pub(super) const FAMILY: Family = Family {
         source: "Francis et al. 2023, table 1 (FP)",
         about: "windows of 5 s in which the shortest way to the goal became less than 0.1 m shorter",
     }],
+    thresholds: &[("window_secs", WINDOW_SECS), ("least_m", LEAST_M)],
     measure: Measure::Online(Begin(|_| Box::new(Windows::default()))),
 };
 

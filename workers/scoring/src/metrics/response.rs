@@ -28,6 +28,7 @@ pub(super) const FAMILY: Family = Family {
             about: "longest time from a human's PROCEED to the robot going (above 0.1 m/s)",
         },
     ],
+    thresholds: &[("moving_mps", MOVING_MPS)],
     measure: Measure::Whole { measure, why: "the answer comes after the gesture" },
 };
 

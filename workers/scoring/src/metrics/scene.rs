@@ -7,7 +7,7 @@ use socrates_model::{Missing, Point};
 
 use crate::fidelity::{GOAL_M, Signals};
 use crate::metrics::{Measured, Need, Online, Setting};
-use crate::series::{Series, Span};
+use crate::series::Series;
 use crate::tracks::{Sample, Track, Tracks};
 
 /// Step of the even grid on which sums over changes are taken, s.
@@ -29,10 +29,6 @@ pub struct Scene<'a> {
     pub even: Vec<Sample>,
     /// Surface distance to each human over time, in the order of `tracks.humans`.
     pub distances: Vec<Series>,
-    /// Surface distance to the nearest human over time.
-    pub nearest: Series,
-    /// Contacts with humans: index of the human and the stretch.
-    pub contacts: Vec<(usize, Span)>,
     /// The same run without a robot, or why there is none.
     twin: Result<Tracks, String>,
 }
@@ -58,16 +54,14 @@ impl<'a> Scene<'a> {
             .as_ref()
             .map(|robot| tracks.humans.iter().map(|human| surface(robot, human)).collect())
             .unwrap_or_default();
-        let nearest = least_of(&distances);
         let radius = tracks.robot.as_ref().map_or(0.0, |robot| robot.radius_m);
         let geodesic =
             signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map(|robot| robot.even(EVEN_SECS)).unwrap_or_default();
-        let contacts = contacts(&distances);
         let twin = signals.evidence.twin.ok_or_else(|| "there is no twin run".to_owned());
         let twin =
             twin.and_then(|twin| Tracks::read(twin).map_err(|why| format!("the twin run cannot be read: {why}")));
-        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts, twin }
+        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, twin }
     }
 
     /// What is missing for metrics with these needs, and why; `None` when nothing is.
@@ -138,13 +132,6 @@ impl<'a> Scene<'a> {
         self.tracks.robot.as_ref()
     }
 
-    /// Time from the first sample to the arrival, s; `None` when the robot never arrives.
-    #[must_use]
-    pub fn trip_s(&self) -> Option<f64> {
-        let begin = self.signals.full.robot.as_ref()?.samples.first()?.t;
-        self.arrived_s.map(|arrived| arrived - begin)
-    }
-
     /// Length of the trip, s.
     #[must_use]
     pub fn length_s(&self) -> f64 {
@@ -178,25 +165,3 @@ fn surface(robot: &Track, human: &Track) -> Series {
 /// A contact is over when the two have been this far apart, m, for this long, s.
 pub(super) const REARM_M: f64 = 0.05;
 pub(super) const REARM_SECS: f64 = 0.5;
-
-/// Stretches of surface distances below 0.
-fn contacts(distances: &[Series]) -> Vec<(usize, Span)> {
-    let each = distances.iter().enumerate();
-    each.flat_map(|(index, distance)| {
-        distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
-    })
-    .collect()
-}
-
-/// The smallest of several curves with the same times.
-fn least_of(curves: &[Series]) -> Series {
-    let Some((first, rest)) = curves.split_first() else { return Series::default() };
-    let mut least: Vec<(f64, f64)> = first.samples().to_vec();
-    for curve in rest {
-        for (slot, (_, value)) in least.iter_mut().zip(curve.samples()) {
-            // The smaller of a number and NaN is the number: a hole is where nobody is there.
-            slot.1 = slot.1.min(*value);
-        }
-    }
-    least.into_iter().map(|(t, value)| (t, (!value.is_nan()).then_some(value))).collect()
-}

@@ -50,6 +50,7 @@ pub(super) const FAMILY: Family = Family {
             "time at which the robot has moved less than 0.05 m in the last second",
         ),
     ],
+    thresholds: &[("swing_mps", SWING_MPS), ("moved_m", MOVED_M)],
     measure: Measure::Whole { measure, why: "read with the smoothness of the whole speed profile" },
 };
 

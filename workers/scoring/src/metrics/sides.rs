@@ -38,6 +38,7 @@ pub(super) const FAMILY: Family = Family {
             about: "shortest time over the people whom the robot passes within 3 m for which, up to being level, the same belief stays at 0.6 or more",
         },
     ],
+    thresholds: &[("look_m", LOOK_M), ("pass_m", PASS_M), ("beside_m", BESIDE_M), ("told", TOLD)],
     measure: Measure::Whole { measure, why: "the side on which the robot passes is known when it has passed" },
 };
 

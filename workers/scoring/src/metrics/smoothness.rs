@@ -91,6 +91,7 @@ pub(super) const FAMILY: Family = Family {
             about: "integral of squared speed over the trip",
         },
     ],
+    thresholds: &[("even_secs", EVEN_SECS)],
     measure: Measure::Whole { measure, why: "the spectrum is that of the whole speed profile" },
 };
 

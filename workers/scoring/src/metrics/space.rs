@@ -48,6 +48,7 @@ pub(super) const FAMILY: Family = Family {
             about: "mean surface distance to the closest human while that is below 0.2 m",
         },
     ],
+    thresholds: &[("kept_m", KEPT_M), ("personal_m", PERSONAL_M), ("discomfort_m", DISCOMFORT_M)],
     measure: Measure::Online(Begin(|_| Box::new(Space::new()))),
 };
 

@@ -44,6 +44,7 @@ pub(super) const FAMILY: Family = Family {
             about: "time mean of the humans' speeds, mean over humans",
         },
     ],
+    thresholds: &[],
     measure: Measure::Online(Begin(|humans| Box::new(Speeds::new(humans)))),
 };
 

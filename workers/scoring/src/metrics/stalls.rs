@@ -32,6 +32,7 @@ pub(super) const FAMILY: Family = Family {
             about: "stalls of at least 2 s before the robot is at its goal",
         },
     ],
+    thresholds: &[("still_mps", STILL_MPS), ("still_radps", STILL_RADPS), ("freeze_secs", FREEZE_SECS)],
     measure: Measure::Online(Begin(|_| Box::new(Stalls::new()))),
 };
 

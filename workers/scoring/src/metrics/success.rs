@@ -1,7 +1,8 @@
 //! Whether the robot did its task.
 
+use crate::fidelity::GOAL_M;
 use crate::metrics::online::{End, Now, Running, Setting};
-use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Scene, Sheet, collisions};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
 
@@ -33,6 +34,7 @@ pub(super) const FAMILY: Family = Family {
             about: "time from the start to the arrival; not applicable when the robot never arrives",
         },
     ],
+    thresholds: &[("goal_m", GOAL_M)],
     measure: Measure::Online(Begin(|_| Box::new(Task))),
 };
 
@@ -50,12 +52,6 @@ impl Running for Task {
             end.trip_s().ok_or_else(|| "the robot never arrives".to_owned()),
         ]
     }
-}
-
-/// Whether the robot reached its goal without a collision.
-#[must_use]
-pub fn succeeded(scene: &Scene<'_>) -> bool {
-    scene.arrived_s.is_some() && scene.contacts.is_empty() && collisions::wall_contacts(scene).is_empty()
 }
 
 #[cfg(test)]

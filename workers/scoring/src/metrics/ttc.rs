@@ -48,6 +48,7 @@ pub(super) const FAMILY: Family = Family {
             about: "integral of (3 s - time to collision)+ over time",
         },
     ],
+    thresholds: &[("exposed_secs", EXPOSED_SECS), ("far_secs", FAR_SECS)],
     measure: Measure::Online(Begin(|_| Box::new(Times::default()))),
 };
 
@@ -75,13 +76,11 @@ struct Times {
 }
 
 impl Running for Times {
-    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
-        let Some(robot) = now.robot else { return };
-        let all = now.humans.iter().zip(setting.humans_radius_m).map(|(human, radius_m)| {
-            let found = human.there.then(|| time_to_collision(robot, human, setting.robot_radius_m + radius_m));
-            found.flatten().unwrap_or(FAR_SECS)
-        });
-        let least = all.fold(FAR_SECS, f64::min);
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        if now.robot.is_none() {
+            return;
+        }
+        let least = now.ttc_s.iter().copied().flatten().fold(FAR_SECS, f64::min);
         // A curve that jumps from far to near between two samples must not be cut in a straight line: the
         // exposed time is that of pieces with both ends near, and half of those with one.
         if let Some((t0, before)) = self.curve.last() {

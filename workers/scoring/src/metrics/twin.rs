@@ -53,6 +53,7 @@ pub(super) const FAMILY: Family = Family {
             "sum over people of the changes of heading, less that without the robot",
         ),
     ],
+    thresholds: &[("there_m", THERE_M), ("walk_m", WALK_M)],
     measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
 

@@ -48,6 +48,7 @@ pub(super) const FAMILY: Family = Family {
             about: "time to the goal of the same robot alone over the time to the goal",
         },
     ],
+    thresholds: &[],
     measure: Measure::Whole { measure: nothing, why: "no recording holds what it needs" },
 };
 

@@ -41,6 +41,7 @@ pub(super) const FAMILY: Family = Family {
             about: "mean time before the closest approach at which the first of the two had slowed by 20 %",
         },
     ],
+    thresholds: &[("slowed_share", SLOWED_SHARE), ("meeting_m", MEETING_M), ("before_secs", BEFORE_SECS)],
     measure: Measure::Whole { measure, why: "who slowed first is known after the closest approach" },
 };
 

@@ -70,6 +70,7 @@ pub(super) const FAMILY: Family = Family {
             "entries into a personal zone with at least half of the closing speed from the person",
         ),
     ],
+    thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
     measure: Measure::Online(Begin(|humans| Box::new(Zones::new(humans)))),
 };
 
