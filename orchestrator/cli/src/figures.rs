@@ -102,3 +102,91 @@ pub(crate) fn result(pool: &Pool) -> serde_json::Value {
         .collect();
     json!({ "thresholds": pool.thresholds, "cells": cells, "rankings": rankings })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use socrates_model::{Digest, MetricValue, Report, RunId, Verdict};
+
+    use super::*;
+
+    /// A report with a speed, a distance and whether the goal was reached.
+    fn report(planner: &str, seed: u64, values: [(&str, &str, Option<f64>); 3]) -> Report {
+        let value = |(id, unit, value): (&str, &str, Option<f64>)| MetricValue {
+            id: id.to_owned(),
+            unit: unit.to_owned(),
+            value,
+            direction: 1,
+            version: 1,
+            missing: None,
+            note: String::new(),
+        };
+        Report {
+            format: socrates_model::FORMAT,
+            run: RunId::new("a.run").unwrap(),
+            planner: planner.to_owned(),
+            seed,
+            recording: Digest::of(b"run"),
+            verdict: Verdict::Realised,
+            verdict_text: String::new(),
+            score: 1.0,
+            clauses: Vec::new(),
+            metrics: values.map(value).to_vec(),
+            thresholds: "standard-1".to_owned(),
+            robot_text: String::new(),
+            success: true,
+            story: Vec::new(),
+            encounter_gaps_s: BTreeMap::new(),
+            simulated_s: 9.0,
+            repair: None,
+        }
+    }
+
+    fn batch() -> Vec<(String, Vec<Report>)> {
+        let of = |planner: &str, seed: u64, metres: Option<f64>| {
+            let moves = (planner != "none").then_some(0.6);
+            let goal = moves.map(|_| 1.0);
+            report(
+                planner,
+                seed,
+                [("robot_speed_mean", "m/s", moves), ("human_distance_min", "m", metres), ("success", "0/1", goal)],
+            )
+        };
+        let scenario = |name: &str, more: f64| {
+            let runs = (1..=3).flat_map(|seed| {
+                [
+                    of("far", seed, Some(1.0 + more)),
+                    of("near", seed, (seed > 1).then_some(0.5 + more)),
+                    of("none", seed, None),
+                ]
+            });
+            (name.to_owned(), runs.collect())
+        };
+        vec![scenario("a", 0.0), scenario("b", 0.2)]
+    }
+
+    #[test]
+    fn figures_have_their_interval_their_order_and_how_stable_it_is() {
+        let pool = of(&batch()).unwrap();
+        let table = table(&pool);
+        assert_eq!(table.head, ["figure", "far", "near", "order"]);
+        let row = |name: &str| table.rows.iter().find(|row| row[0] == name).unwrap().clone();
+        let distance = row("human distance min");
+        assert_eq!(distance[1], "1.10 [1.00, 1.20] m");
+        assert!(distance[2].starts_with("0.60 [") && distance[2].ends_with("] m · 4 of 6"), "{distance:?}");
+        assert_eq!(distance[3], "far > near · tau 1.00 over 2");
+        // Whoever is as good is no better, and no part of it ranks them.
+        assert_eq!(row("success")[3], "far = near");
+        assert_eq!(row("time to goal")[1], "n/a");
+        assert_eq!(result(&pool)["thresholds"], "standard-1");
+    }
+
+    #[test]
+    fn runs_of_other_thresholds_are_refused_by_name_and_with_help() {
+        let mut reports = batch();
+        reports[1].1[0].thresholds = "mine-2".to_owned();
+        let why = of(&reports).unwrap_err();
+        assert!(why.what.contains("`b` with far and seed 1") && why.what.contains("`mine-2`"), "{}", why.what);
+    }
+}

@@ -43,7 +43,7 @@ pub struct Setting<'a> {
 
 impl Setting<'_> {
     /// Shortest way from a point to the goal, m; straight where there is no map.
-    pub(super) fn to_goal_m(&self, from: &Point) -> Option<f64> {
+    pub(super) fn to_goal_m(self, from: &Point) -> Option<f64> {
         let goal = self.goal?;
         match self.geodesic {
             Some(geodesic) => geodesic.distance(from),
