@@ -172,6 +172,10 @@ pub struct Report {
     pub clauses: Vec<ClauseResult>,
     /// Metrics in catalogue order.
     pub metrics: Vec<MetricValue>,
+    /// Profile and signature of the thresholds that the metrics used, such as `standard-1f3a9c2e8b07`; empty in reports
+    /// from before there was one. Reports with different ones are not pooled.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub thresholds: String,
     /// One sentence on what the robot did.
     pub robot_text: String,
     /// Whether the robot reached its goal without a collision.

@@ -42,11 +42,23 @@ pub struct BatchEntry<'a> {
     pub recording: Option<&'a Recording>,
 }
 
+/// What the planners did over all scenarios, ready to be shown.
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Figures {
+    /// Names of the columns.
+    pub head: Vec<String>,
+    /// A row per figure, as many cells as columns.
+    pub rows: Vec<Vec<String>>,
+    /// Signature of the thresholds that all figures used; empty where there is none.
+    pub thresholds: String,
+}
+
 /// The page while it is being filled, one scenario after another.
 #[derive(Debug, Clone, Default)]
 pub struct BatchPage {
     places: Places,
     rows: Vec<Value>,
+    figures: Value,
 }
 
 impl BatchPage {
@@ -74,6 +86,16 @@ impl BatchPage {
         self.rows.push(json!({ "scenario": scenario, "verdict": "failed", "told": why, "runs": [] }));
     }
 
+    /// Sets the figures over all scenarios.
+    pub fn tell(&mut self, figures: Figures) {
+        self.figures = json!(figures);
+    }
+
+    /// Says why there are no figures over all scenarios: then the page puts none together either.
+    pub fn tell_none(&mut self, why: &str) {
+        self.figures = json!({ "why": why });
+    }
+
     /// Scenarios added so far.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -89,7 +111,7 @@ impl BatchPage {
     /// The page.
     #[must_use]
     pub fn html(&self, title: &str) -> String {
-        let data = json!({ "rows": self.rows, "places": self.places.told() });
+        let data = json!({ "rows": self.rows, "places": self.places.told(), "figures": self.figures });
         template::page(TEMPLATE, SCRIPT, title, self.places.floors(), &data, Vec::new())
     }
 }
@@ -200,6 +222,22 @@ mod tests {
         let html = page("hall", PICTURES + 5, 0);
         let rows = data(&html)["rows"].as_array().unwrap().clone();
         assert!(rows[PICTURES - 1]["picture"].is_object() && rows[PICTURES]["picture"].is_null());
+    }
+
+    #[test]
+    fn figures_over_all_scenarios_are_told_or_why_there_are_none() {
+        let mut page = BatchPage::default();
+        let figures = Figures {
+            head: vec!["figure".into()],
+            rows: vec![vec!["</script>".into()]],
+            thresholds: "standard-1".into(),
+        };
+        page.tell(figures);
+        let html = page.html("one");
+        assert_eq!(html.matches("</script>").count(), 2);
+        assert_eq!(data(&html)["figures"]["thresholds"], "standard-1");
+        page.tell_none("thresholds differ");
+        assert_eq!(data(&page.html("one"))["figures"]["why"], "thresholds differ");
     }
 
     #[test]

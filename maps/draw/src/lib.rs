@@ -35,7 +35,7 @@ pub mod svg;
 mod template;
 
 pub use annotated::annotated_map;
-pub use batch::{BatchEntry, BatchPage};
+pub use batch::{BatchEntry, BatchPage, Figures};
 pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};

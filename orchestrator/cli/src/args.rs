@@ -129,9 +129,9 @@ pub(crate) enum Verb {
         /// Bundle or library folder, or a zenoh endpoint.
         what: String,
     },
-    /// Explain a fault code, such as G-DISC; without a code, list them.
+    /// Explain a fault code, such as G-DISC, or a metric; without one, list the codes.
     Explain {
-        /// Fault code.
+        /// Fault code, metric such as `ttc_min`, or `metrics` for the list of all metrics.
         code: Option<String>,
     },
     /// Check what this machine can do, and say what is missing.

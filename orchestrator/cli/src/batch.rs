@@ -4,9 +4,12 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use socrates_draw::{BatchEntry, BatchPage};
+use socrates_model::Report;
+use socrates_scoring::Pool;
 
 use crate::bundle;
 use crate::exit::Complaint;
+use crate::figures;
 use crate::library;
 
 /// What the page shows.
@@ -16,6 +19,8 @@ pub(crate) struct Found {
     pub(crate) rows: usize,
     /// Bundles that could not be read, and why.
     pub(crate) left_out: Vec<(String, String)>,
+    /// What the planners did over all of them, or why that is not put together.
+    pub(crate) figures: Result<Pool, Complaint>,
 }
 
 /// Names of the folders right below this one that hold a finished bundle, in order.
@@ -34,7 +39,7 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
     Ok(names.into_iter().collect())
 }
 
-/// Writes `report.html` into a folder of bundles: those its library lists first, in their order, then the others.
+/// Writes `report.html` and `planners.csv` into a folder of bundles: those its library lists first, in their order, then the others.
 pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
     let listed = library::read(root);
     let mut names: Vec<String> = Vec::new();
@@ -51,10 +56,26 @@ pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
     }
     let mut page = BatchPage::default();
     let mut left_out = Vec::new();
+    let mut reports = Vec::new();
     for name in names {
-        if let Err(why) = add(&mut page, root, &name) {
-            page.add_failed(&name, &why.what);
-            left_out.push((name, why.what));
+        match add(&mut page, root, &name) {
+            Ok(found) => reports.push((name, found)),
+            Err(why) => {
+                page.add_failed(&name, &why.what);
+                left_out.push((name, why.what));
+            }
+        }
+    }
+    let figures = figures::of(&reports);
+    match &figures {
+        Ok(pool) => {
+            page.tell(figures::table(pool));
+            crate::files::write(&root.join(figures::FILE), pool.csv().as_bytes())?;
+        }
+        Err(why) => {
+            page.tell_none(&why.what);
+            // A table of an earlier time would tell of other runs.
+            drop(std::fs::remove_file(root.join(figures::FILE)));
         }
     }
     for name in &failed {
@@ -63,10 +84,11 @@ pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let html = page.html(&title.unwrap_or_else(|| "Scenarios".to_owned()));
     crate::files::write(&root.join("report.html"), html.as_bytes())?;
-    Ok(Found { rows: page.len(), left_out })
+    Ok(Found { rows: page.len(), left_out, figures })
 }
 
-fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<(), Complaint> {
+/// Adds a bundle to the page and hands back its reports.
+fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<Vec<Report>, Complaint> {
     let dir = root.join(name);
     // One recording at a time: a library is larger than the memory of a laptop.
     let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
@@ -82,7 +104,7 @@ fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<(), Complaint> {
         reports: &reports,
         recording: bundle.runs.first().map(|(recording, _)| recording),
     });
-    Ok(())
+    Ok(reports)
 }
 
 /// What is said of a folder without bundles.

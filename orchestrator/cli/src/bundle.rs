@@ -381,14 +381,20 @@ fn story(title: &str, proposal: &Proposal, report: &Report) -> String {
 }
 
 fn metrics(runs: &[(Recording, Report)]) -> String {
-    let mut text = "planner,seed,metric,value,unit,direction,note\n".to_owned();
+    let mut text = "planner,seed,metric,value,unit,direction,note,version,thresholds\n".to_owned();
     for (_, report) in runs {
         for metric in &report.metrics {
             let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
             let note = metric.note.replace('"', "'");
             text.push_str(&format!(
-                "{},{},{},{value},{},{},\"{note}\"\n",
-                report.planner, report.seed, metric.id, metric.unit, metric.direction
+                "{},{},{},{value},{},{},\"{note}\",{},{}\n",
+                report.planner,
+                report.seed,
+                metric.id,
+                metric.unit,
+                metric.direction,
+                metric.version,
+                report.thresholds
             ));
         }
     }

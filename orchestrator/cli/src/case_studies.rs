@@ -23,12 +23,6 @@ const STOPPED_MPS: f64 = 0.1;
 /// Time between two ticks, s.
 const TICK_SECS: f64 = 0.01;
 
-/// Items that fail for more than one seed: the case, the item, for how many, and what is seen.
-const KNOWN: &[(&str, &str, usize, &str)] = &[
-    ("intersection", "S4", 2, "somebody is in the robot's way 2.6 to 2.7 s after being seen, not 2.5 s"),
-    ("elevator", "S6", 10, "the third is startled 3.1 to 4.1 s after the second is out, not 3 s: its rule says 4 m"),
-];
-
 /// What is wrong with a run, item by item: `S4: the second leaves 6.1 s after the first`.
 type Wrong = Vec<String>;
 
@@ -57,16 +51,14 @@ async fn study(name: &str, items: fn(&Case<'_>) -> Wrong, kinds: &[&str]) {
             }
         }
     }
-    // Each item in all but one of the seeds, but for what is known to be short of the list.
+    // Each item in all but one of the seeds.
     let mut items_of: BTreeMap<&str, BTreeMap<&str, usize>> = BTreeMap::new();
     for line in &wrong {
         let (seed, item) = line.split_once(": ").unwrap();
         *items_of.entry(item.split(':').next().unwrap()).or_default().entry(seed).or_default() += 1;
     }
     for (item, seeds) in &items_of {
-        let allowed =
-            KNOWN.iter().find(|(of, known, ..)| of == &name && known == item).map_or(1, |(_, _, seeds, _)| *seeds);
-        assert!(seeds.len() <= allowed, "{item} of {name} fails for {} of {SEEDS} seeds: {wrong:#?}", seeds.len());
+        assert!(seeds.len() <= 1, "{item} of {name} fails for {} of {SEEDS} seeds: {wrong:#?}", seeds.len());
     }
 }
 

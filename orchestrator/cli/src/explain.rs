@@ -4,14 +4,67 @@ use std::path::Path;
 
 use serde_json::json;
 use socrates_model::FaultCode;
+use socrates_scoring::metrics::{CATALOG, Direction, Family, Sheet};
 
 use crate::args::Format;
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::talk::Talk;
 
-/// Prints the page of a code, or the list of codes.
+/// The word for the list of metrics.
+const METRICS: &str = "metrics";
+
+/// Prints the list of metrics: for each its unit, whether it is known while a run goes on, and what it is.
+fn metrics(talk: &Talk) {
+    let mut rows = Vec::new();
+    for family in CATALOG {
+        let known = if family.waits().is_none() { "online" } else { "at the end" };
+        for sheet in family.sheets {
+            talk.line(&format!("{:<34} {:<10} {known:<11} {}", sheet.id, sheet.unit, sheet.about));
+            rows.push(json!({ "id": sheet.id, "unit": sheet.unit, "online": family.waits().is_none() }));
+        }
+    }
+    let signature = socrates_scoring::metrics::signature();
+    talk.line(&format!("thresholds {signature}"));
+    talk.result(&json!({ "metrics": rows, "thresholds": signature }));
+}
+
+/// Prints the fact sheet of a metric.
+fn metric(talk: &Talk, family: &Family, sheet: &Sheet) {
+    talk.line(&format!("{} ({}, version {})", sheet.id, sheet.unit, sheet.version()));
+    talk.line(sheet.about);
+    let better = match sheet.direction {
+        Direction::Up => "more is better",
+        Direction::Down => "less is better",
+        Direction::Neutral => "neither more nor less is better",
+    };
+    talk.line(&format!("better     {better}"));
+    talk.line(&format!("source     {}", sheet.source));
+    let known = family.waits().map_or_else(|| "while the run goes on".to_owned(), |why| format!("at the end: {why}"));
+    talk.line(&format!("known      {known}"));
+    for (name, value) in family.thresholds {
+        talk.line(&format!("threshold  {name} = {value}"));
+    }
+    let thresholds: serde_json::Map<String, serde_json::Value> =
+        family.thresholds.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
+    talk.result(&json!({
+        "metric": sheet.id, "unit": sheet.unit, "about": sheet.about, "direction": sheet.direction.sign(),
+        "source": sheet.source, "version": sheet.version(), "online": family.waits().is_none(),
+        "waits": family.waits(), "thresholds": thresholds,
+    }));
+}
+
+/// Prints the page of a code or of a metric, or the list of codes or metrics.
 pub(crate) fn explain(talk: &Talk, code: Option<&str>) -> Result<(), Complaint> {
+    if code == Some(METRICS) {
+        metrics(talk);
+        return Ok(());
+    }
+    let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
+    if let Some((family, sheet)) = sheets.find(|(_, sheet)| Some(sheet.id) == code) {
+        metric(talk, family, sheet);
+        return Ok(());
+    }
     let Some(code) = code else {
         for code in FaultCode::ALL {
             talk.line(&format!("{:<11} {}", code.code(), code.about()));
@@ -28,7 +81,7 @@ pub(crate) fn explain(talk: &Talk, code: Option<&str>) -> Result<(), Complaint> 
             .take(8)
             .collect();
         let hint = if near.is_empty() {
-            "`socrates explain` lists every code".to_owned()
+            format!("`socrates explain` lists every code, `socrates explain {METRICS}` every metric")
         } else {
             format!("codes of this kind: {}", near.join(", "))
         };

@@ -29,12 +29,15 @@ mod evaluate;
 mod exit;
 mod explain;
 mod figure;
+mod figures;
 mod files;
 mod history;
 mod labels;
 mod library;
 mod map;
 mod mutations;
+#[cfg(test)]
+mod online;
 mod orchestrate;
 mod play;
 mod prepare;

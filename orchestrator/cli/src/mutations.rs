@@ -212,7 +212,7 @@ fn judge(prepared: &Prepared, made: &Made, recording: &Recording) -> Report {
     socrates_scoring::score(&evidence(prepared, made, recording))
 }
 
-fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording) -> Evidence<'a> {
+pub(crate) fn evidence<'a>(prepared: &'a Prepared, made: &'a Made, recording: &'a Recording) -> Evidence<'a> {
     play::evidence(&prepared.request, &prepared.reading, &prepared.location, made, recording)
 }
 

@@ -8,6 +8,7 @@ use socrates_draw::{Page, ProvenanceRow, StageRow};
 use crate::batch;
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
+use crate::figures;
 use crate::talk::Talk;
 
 /// The page of a bundle.
@@ -39,10 +40,16 @@ pub(crate) fn report(talk: &Talk, what: &Path) -> Result<(), Complaint> {
         for (name, why) in &found.left_out {
             talk.line(&format!("left out   {name}: {why}"));
         }
+        if let Ok(pool) = &found.figures {
+            figures::print(talk, pool);
+        }
         talk.line(&format!("look       {}", page.display()));
         let left_out: Vec<_> = found.left_out.iter().map(|(name, why)| json!({ "name": name, "why": why })).collect();
-        talk.result(&json!({ "page": page.display().to_string(), "scenarios": found.rows, "left_out": left_out }));
-        return Ok(());
+        let figures = found.figures.as_ref().ok().map(figures::result);
+        talk.result(&json!({
+            "page": page.display().to_string(), "scenarios": found.rows, "left_out": left_out, "figures": figures,
+        }));
+        return found.figures.map(|_| ());
     }
     let bundle = bundle::read(what)?;
     let (stages, author) = past(what);
@@ -66,6 +73,9 @@ fn provenance_rows(bundle: &Bundle, author: &str) -> Vec<ProvenanceRow> {
         ("location.json".to_owned(), digest("details/location.json")),
         ("proposal.json".to_owned(), digest("details/proposal.json")),
     ];
+    // What was scored before there were signatures has none.
+    let signed = bundle.runs.iter().map(|(_, report)| &report.thresholds).find(|text| !text.is_empty());
+    rows.extend(signed.map(|text| ("thresholds".to_owned(), text.clone())));
     rows.extend(
         manifest
             .runs

@@ -255,7 +255,9 @@ async fn batch(
     }
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
-    crate::batch::write(&root)?;
+    if let Err(why) = crate::batch::write(&root)?.figures {
+        talk.warn(&why.what);
+    }
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
     library::finish(talk, options, &root)

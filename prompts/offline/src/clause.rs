@@ -552,8 +552,12 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             used.push(i);
         }
         found.in_group |= text == "together" && i > 0;
-        if text == "suddenly" || text == "together" {
+        if matches!(text, "suddenly" | "together") {
             used.push(i);
+        }
+        // Who comes out suddenly does not stroll out; who stops suddenly may have strolled.
+        if text == "suddenly" && found.deeds.iter().any(|deed| deed.act == Act::ComeOut) {
+            found.pace_mps = found.pace_mps.or_else(|| lex.pace.get("sudden").copied());
         }
         let exists = text == "there"
             && stretch

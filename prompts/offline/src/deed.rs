@@ -31,6 +31,8 @@ pub(crate) struct Around {
     pub(crate) quote: String,
 }
 
+/// Who is startled stares for so long, s.
+const STARTLED_S: f64 = 8.0;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -268,7 +270,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         (None, _) if matches!(action, Action::FollowHuman(_)) => Trigger::Always,
         (None, _) => with_distance(usual, around.distance_m),
     };
-    let lasts = around.lasts_s.or(if around.startled { Some(8.0) } else { lasts });
+    let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
     let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
     let stated = around.trigger.is_some() || around.distance_m.is_some();
     let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;

@@ -239,10 +239,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
     let (id, place) = (human.id, proposal.place);
     let said = !source.is_empty();
     let does = |act: &Action| human.rules.iter().any(|rule| rule.act == *act);
-    let halts = does(&Action::StandStill)
-        || does(&Action::LookAtRobot)
-        || does(&Action::Block)
-        || human.rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait));
+    let stands = does(&Action::StandStill) || does(&Action::LookAtRobot) || does(&Action::Block);
+    // Who is told to wait leaves a long gap, but whoever tells it and walks on crosses all the same.
+    let halts = stands || human.rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait));
     let meets = |list: &mut List, must: bool, within_m: f64| {
         // Whoever reacts at a distance need not come nearer than that.
         let early = human
@@ -275,7 +274,7 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             meets(list, true, 3.0);
             let gap_s = if halts { 10.0 } else { usual_gap_s };
             list.setup(
-                said && !halts,
+                said && !stands,
                 source,
                 format!("{id} crosses the robot's way"),
                 Predicate::Crosses { human: id, gap_s },

@@ -2,12 +2,14 @@
 
 use socrates_model::{Action, Fault, FaultCode, Gesture, PlaceClass, Relation, Trigger};
 
-use crate::cast::Person;
+use crate::cast::{Person, ReadRule};
 use crate::deed;
 use crate::story::Story;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
 const CIRCLE_M: f64 = 2.8;
+/// The farthest from which the first sight of the robot startles somebody, m (`spec/case_studies` E.S5).
+const FIRST_SIGHT_M: f64 = 5.0;
 
 impl Story {
     /// Fills relations that follow from the deeds, and finds wishes that exclude each other.
@@ -44,6 +46,7 @@ impl Story {
             self.robot_enters = self.headed.take();
         }
         self.standing();
+        self.startled();
         self.clashes();
         self.dubious();
     }
@@ -112,6 +115,28 @@ impl Story {
                 for trigger in &mut read.rule.when {
                     if let Trigger::RobotVisible(m) | Trigger::RobotNear(m) = trigger {
                         *m = m.min(CIRCLE_M);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Who stays inside comes no nearer to the robot: it is startled at no stated distance by the first sight through
+    /// the door, before those who leave stand in between.
+    fn startled(&mut self) {
+        for who in 0..self.cast.people.len() {
+            if self.relation_of(who) != Some(Relation::Staying) {
+                continue;
+            }
+            let Some(person) = self.cast.people.get_mut(who) else { continue };
+            if !person.doings.iter().any(|doing| doing == "startled") {
+                continue;
+            }
+            let looks = |read: &&mut ReadRule| read.rule.act == Action::LookAtRobot && !read.exact;
+            for read in person.rules.iter_mut().filter(looks) {
+                for trigger in &mut read.rule.when {
+                    if let Trigger::RobotVisible(m) = trigger {
+                        *m = m.max(FIRST_SIGHT_M);
                     }
                 }
             }

@@ -17,6 +17,7 @@ mod circle;
 mod doubts;
 mod evidence;
 mod hull;
+mod running;
 mod series;
 mod skips;
 mod tracks;
@@ -27,6 +28,7 @@ pub mod mutants;
 pub mod temporal;
 
 mod narrative;
+mod pool;
 mod repair;
 mod score;
 mod stage;
@@ -40,6 +42,7 @@ mod scenarios;
 
 pub use doubts::doubts;
 pub use evidence::{Evidence, REFERENCE};
+pub use pool::{Cell, Pool, PoolFault, PooledRun, Ranking, pool};
 pub use score::score;
 pub use series::{Series, Span};
 pub use stage::ScoringStage;

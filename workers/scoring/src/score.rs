@@ -24,6 +24,7 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
         score: 0.0,
         clauses: Vec::new(),
         metrics: Vec::new(),
+        thresholds: metrics::signature(),
         robot_text: String::new(),
         success: false,
         story: Vec::new(),
@@ -49,7 +50,8 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
     let ruling = rule(evidence, &judged, &gaps, reference);
     let scene = Scene::new(&signals);
     report.metrics = metrics::measure(&scene);
-    report.success = metrics::succeeded(&scene);
+    report.success =
+        report.metrics.iter().any(|metric| metric.id == "success" && metric.value.is_some_and(|v| v > 0.5));
     report.robot_text = narrative::robot_text(&scene, &judged);
     report.story = narrative::story(&signals);
     report.repair = repair::of(evidence, ruling.verdict, &judged);

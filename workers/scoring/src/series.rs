@@ -3,6 +3,8 @@
 //! Every time share, crossing and mean is computed on the piecewise-linear curve and not on the
 //! samples, so that a recording at 10 Hz and one at 100 Hz give the same figures.
 
+use crate::running::{Below, Mean, MeanWhileBelow, Pen, Piece, Stretches};
+
 /// Samples of one quantity. Times rise; values are finite, or NaN where there is none: a hole.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
@@ -76,7 +78,7 @@ impl Series {
     }
 
     /// The pieces between neighboring samples: `(t0, v0, t1, v1)`; none in a hole.
-    fn pieces(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> + '_ {
+    fn pieces(&self) -> impl Iterator<Item = Piece> + '_ {
         self.samples
             .iter()
             .zip(self.samples.iter().skip(1))
@@ -111,14 +113,21 @@ impl Series {
     /// Integral over time by the trapezoid rule.
     #[must_use]
     pub fn integral(&self) -> f64 {
-        self.pieces().map(|(t0, v0, t1, v1)| (t1 - t0) * (v0 + v1) / 2.0).sum()
+        self.averaged().integral()
     }
 
     /// Mean over time; `None` for a curve of no length.
     #[must_use]
     pub fn mean(&self) -> Option<f64> {
-        let length = self.length_s();
-        (length > 0.0).then(|| self.integral() / length)
+        self.averaged().mean()
+    }
+
+    fn averaged(&self) -> Mean {
+        let mut mean = Mean::default();
+        for (t, value) in &self.samples {
+            mean.add(*t, Some(*value));
+        }
+        mean
     }
 
     /// The curve with every value changed.
@@ -133,7 +142,11 @@ impl Series {
         if self.stays_above(level) {
             return 0.0;
         }
-        self.pieces().map(|piece| below(piece, level)).map(|span| span.map_or(0.0, |s| s.length_s())).sum()
+        let mut below = Below::level(level);
+        for piece in self.pieces() {
+            below.add(Some(piece));
+        }
+        below.seconds()
     }
 
     /// Whether no value is below a level.
@@ -144,61 +157,28 @@ impl Series {
     /// Mean of the curve's level while another curve with the same times is below a level.
     #[must_use]
     pub fn mean_while_below(&self, other: &Self, level: f64) -> Option<f64> {
-        let (mut area, mut seconds) = (0.0, 0.0);
         if other.stays_above(level) {
             return None;
         }
-        let pairs = |series: &'_ Self| series.samples.len().saturating_sub(1);
-        for index in 0..pairs(self).min(pairs(other)) {
-            let (Some([(t0, v0), (t1, v1)]), Some([(u0, w0), (u1, w1)])) =
-                (self.samples.get(index..index + 2), other.samples.get(index..index + 2))
-            else {
-                break;
-            };
-            if [v0, v1, w0, w1].iter().any(|value| value.is_nan()) {
-                continue;
-            }
-            let Some(span) = below((*u0, *w0, *u1, *w1), level) else { continue };
-            let (t0, v0, t1, v1) = (*t0, *v0, *t1, *v1);
-            let at = |t: f64| if t1 > t0 { v0 + (v1 - v0) * (t - t0) / (t1 - t0) } else { v0 };
-            area += span.length_s() * (at(span.from_s) + at(span.to_s)) / 2.0;
-            seconds += span.length_s();
+        let mut found = MeanWhileBelow::level(level);
+        let (mut mine, mut theirs) = (Pen::default(), Pen::default());
+        for ((t, value), (u, level)) in self.samples.iter().zip(&other.samples) {
+            found.add(mine.to(*t, Some(*value)), theirs.to(*u, Some(*level)));
         }
-        (seconds > 0.0).then(|| area / seconds)
+        found.mean()
     }
 
     /// Maximal stretches below a level. A stretch ends only when the curve has been above
     /// `level + rearm` for `rearm_s` (or for good), so that a flutter is one stretch.
     #[must_use]
     pub fn stretches_below(&self, level: f64, rearm: f64, rearm_s: f64) -> Vec<Span> {
-        let mut found: Vec<Span> = Vec::new();
-        if self.stays_above(level) {
-            return found;
-        }
-        let mut clear_since: Option<f64> = None;
-        let mut last_s: Option<f64> = None;
-        for piece in self.pieces() {
-            let (t0, v0, t1, v1) = piece;
-            // A hole ends every stretch.
-            if self.holed && last_s.is_some_and(|last| last < t0) {
-                clear_since = Some(f64::NEG_INFINITY);
-            }
-            last_s = Some(t1);
-            if let Some(span) = below(piece, level) {
-                let armed = clear_since.is_some_and(|since| span.from_s - since >= rearm_s);
-                match found.last_mut() {
-                    Some(last) if !armed => last.to_s = span.to_s,
-                    _ => found.push(span),
-                }
-                clear_since = None;
-            }
-            if v1 >= level + rearm {
-                clear_since.get_or_insert(if v0 >= level + rearm { t0 } else { t1 });
-            } else if v1 >= level && rearm > 0.0 && clear_since.is_some() {
-                clear_since = None;
+        let mut found = Stretches::below(level, rearm, rearm_s);
+        if !self.stays_above(level) {
+            for piece in self.pieces() {
+                found.add(Some(piece));
             }
         }
-        found
+        found.into_spans()
     }
 
     /// The value below which the curve is for a share of the time, 0 to 1, to a millionth of the curve's range.
@@ -213,18 +193,6 @@ impl Series {
             if self.time_below(middle) < wanted { low = middle } else { high = middle }
         }
         Some(high)
-    }
-}
-
-/// The part of a piece that lies below a level.
-fn below((t0, v0, t1, v1): (f64, f64, f64, f64), level: f64) -> Option<Span> {
-    match (v0 < level, v1 < level) {
-        (true, true) => Some(Span { from_s: t0, to_s: t1 }),
-        (false, false) => None,
-        (starts_below, _) => {
-            let cross = t0 + (t1 - t0) * (level - v0) / (v1 - v0);
-            Some(if starts_below { Span { from_s: t0, to_s: cross } } else { Span { from_s: cross, to_s: t1 } })
-        }
     }
 }
 

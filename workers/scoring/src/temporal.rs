@@ -12,7 +12,7 @@
 use std::collections::VecDeque;
 
 /// Slack for times that come from sums of steps, s.
-const TIME_SLACK: f64 = 1e-9;
+pub(crate) const TIME_SLACK: f64 = 1e-9;
 
 /// How far a condition holds, sample by sample. Times rise.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -80,6 +80,22 @@ impl Signal {
     #[must_use]
     pub fn first_s(&self) -> Option<f64> {
         self.samples().find(|(_, value)| *value >= 0.0).map(|(t, _)| t)
+    }
+
+    /// Maximal stretches of samples at which it holds: first and last time, s. Unknown ends a stretch.
+    #[must_use]
+    pub fn stretches(&self) -> Vec<(f64, f64)> {
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        let mut open: Option<(f64, f64)> = None;
+        for (t, value) in self.samples() {
+            if value >= 0.0 {
+                open = Some((open.map_or(t, |(from, _)| from), t));
+            } else {
+                found.extend(open.take());
+            }
+        }
+        found.extend(open);
+        found
     }
 
     /// Time robustness of each sample, s: for how long before or after it the verdict stays what it is at the

@@ -332,22 +332,8 @@ impl Track {
     #[must_use]
     pub fn at(&self, t: f64) -> Option<Sample> {
         let index = self.samples.partition_point(|sample| sample.t < t);
-        let after = self.samples.get(index)?;
-        if index == 0 || (after.t - t).abs() < 1e-12 {
-            return ((after.t - t).abs() < 1e-9 && after.there).then_some(*after);
-        }
-        let before = self.samples.get(index - 1)?;
-        if !(before.there && after.there) {
-            return None;
-        }
-        let share = (t - before.t) / (after.t - before.t);
-        Some(Sample {
-            t,
-            at: before.at + (after.at - before.at) * share,
-            velocity: before.velocity + (after.velocity - before.velocity) * share,
-            yaw: wrap_angle(before.yaw + wrap_angle(after.yaw - before.yaw) * share),
-            ..*before
-        })
+        let before = index.checked_sub(1).and_then(|index| self.samples.get(index));
+        between(before, self.samples.get(index)?, t)
     }
 
     /// The track on an even grid of times, so that sums over changes do not grow with the recording's rate.
@@ -365,6 +351,25 @@ impl Track {
             k += 1;
         }
     }
+}
+
+/// State at a time after one sample and not after the next, straight between them; at the first sample there is none
+/// before. `None` while the agent is not there.
+pub(crate) fn between(before: Option<&Sample>, after: &Sample, t: f64) -> Option<Sample> {
+    let Some(before) = before.filter(|_| (after.t - t).abs() >= 1e-12) else {
+        return ((after.t - t).abs() < 1e-9 && after.there).then_some(*after);
+    };
+    if !(before.there && after.there) {
+        return None;
+    }
+    let share = (t - before.t) / (after.t - before.t);
+    Some(Sample {
+        t,
+        at: before.at + (after.at - before.at) * share,
+        velocity: before.velocity + (after.velocity - before.velocity) * share,
+        yaw: wrap_angle(before.yaw + wrap_angle(after.yaw - before.yaw) * share),
+        ..*before
+    })
 }
 
 /// The first part of a state that is not finite.

@@ -38,6 +38,7 @@
       said.append(`${plain(verdict)} ${n}`);
     }
     const table = at("planners"); table.textContent = "";
+    if (data.figures && data.figures.why) { at("planners-note").textContent = data.figures.why; return; }
     const head = word("tr", "", word("thead", "", table));
     for (const name of ["planner", "runs", "realised", "success", "contacts per run", "smallest distance, median", "time to goal, median"]) word("th", name, head).scope = "col";
     const body = word("tbody", "", table), planners = new Map();
@@ -55,6 +56,21 @@
         number(median(runs.map((r) => r.distance)), "m"), number(median(runs.map((r) => r.time)), "s")];
       for (const cell of cells) word("td", cell, line);
     }
+  }
+
+  // Estimates with their intervals over everything in the folder, whatever is shown.
+  function figures() {
+    const told = data.figures;
+    if (!told || !told.rows || !told.rows.length || told.head.length < 3) return;
+    at("figures").hidden = false;
+    const table = at("figures-table"), head = word("tr", "", word("thead", "", table)), body = word("tbody", "", table);
+    for (const name of told.head) word("th", name, head).scope = "col";
+    for (const [name, ...cells] of told.rows) {
+      const line = word("tr", "", body);
+      word("th", name, line).scope = "row";
+      for (const cell of cells) word("td", cell, line);
+    }
+    at("figures-note").textContent = "Shares, means of counts, medians; in brackets the 95 % interval (Wilson, bootstrap). Order: the best first; tau: mean agreement of the order in each scenario (or seed) with it, 1 is the same." + (told.thresholds ? ` Thresholds ${told.thresholds}. ` : " ") + "planners.csv beside this page has every metric by scenario.";
   }
 
   function thumbnail(row, link) {
@@ -134,5 +150,6 @@
   at("clear").addEventListener("click", () => { at("filters").reset(); filter(); });
   at("more").addEventListener("click", () => { shown += STEP; list(); });
   addEventListener("beforeprint", () => { shown = Infinity; list(); });
+  figures();
   filter();
 })();

@@ -11,6 +11,7 @@ use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
+use crate::temporal::{Signal, Within};
 
 /// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
 const START_M: f64 = 3.0;
@@ -239,9 +240,38 @@ fn order(found: &BTreeMap<String, Finding>, first: &str, then: &str) -> Finding 
     };
     match (seen(first), seen(then)) {
         (Ok(before), Ok(after)) => {
+            // (not then) U first, at the two times. Whether `then` has come has no size of its own, so that the
+            // margin is in seconds: how long `first` has been seen by then.
+            let times = [before.min(after), before.max(after)];
+            let come: Signal =
+                times.map(|t| (t, if t >= after { f64::INFINITY } else { f64::NEG_INFINITY })).into_iter().collect();
+            let seen: Signal = times.map(|t| (t, t - before)).into_iter().collect();
+            let margin = come.not().until(&seen, Within::EVER).now().unwrap_or(f64::NEG_INFINITY);
             let text = format!("`{first}` at {before:.1} s, `{then}` at {after:.1} s");
-            Finding::by_margin(after - before, vec![after, before], text).shifted(after - before)
+            Finding::by_margin(margin, vec![after, before], text).shifted(margin)
         }
         (Err(finding), _) | (_, Err(finding)) => finding,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_margin_of_an_order_is_the_time_between_the_two() {
+        for (before, after) in [(2.5, 7.25), (7.25, 2.5), (3.0, 3.0)] {
+            let found = BTreeMap::from([
+                ("a".to_owned(), Finding::holds(1.0, vec![before], "")),
+                ("b".to_owned(), Finding::late(0.0, vec![after], "")),
+                ("c".to_owned(), Finding::fails(-1.0, vec![], "")),
+            ]);
+            let finding = order(&found, "a", "b");
+            let wanted = after - before;
+            assert!((finding.margin - wanted).abs() < 1e-12, "{finding:?}");
+            assert_eq!(finding.standing, if wanted >= 0.0 { Standing::Holds } else { Standing::Fails });
+            assert_eq!(finding.shift_s, Some(finding.margin));
+            assert_eq!(order(&found, "a", "c").standing, Standing::NotTriggered);
+        }
     }
 }

@@ -1,8 +1,11 @@
 //! Whose motion makes a collision likely.
 
 use crate::metrics::collisions::closing_share;
-use crate::metrics::ttc::{EXPOSED_SECS, time_to_collision};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::ttc::EXPOSED_SECS;
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::{MeanWhileBelow, Pen};
+use crate::tracks::Sample;
 
 /// The family.
 pub(super) const FAMILY: Family = Family {
@@ -14,27 +17,56 @@ pub(super) const FAMILY: Family = Family {
         source: "own: no canonical formula is published",
         about: "mean share of the robot in the closing speed while the time to collision is below 3 s; 0.5 when both come alike",
     }],
-    measure,
+    thresholds: &[("exposed_secs", EXPOSED_SECS)],
+    measure: Measure::Online(Begin(|humans| Box::new(Blame::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let (mut area, mut seconds) = (0.0, 0.0);
-    for (robot, human) in scene.pairs() {
-        let times = robot.between(human, |r, h| {
-            let ttc = time_to_collision(r, h, robot.radius_m + human.radius_m).unwrap_or(2.0 * EXPOSED_SECS);
-            ttc.min(2.0 * EXPOSED_SECS)
-        });
-        if times.least().is_none_or(|(_, least)| least >= EXPOSED_SECS) {
-            continue;
-        }
-        let shares = robot.between(human, |r, h| closing_share(r, h).unwrap_or(0.0));
-        let exposed = times.time_below(EXPOSED_SECS);
-        if let Some(mean) = shares.mean_while_below(&times, EXPOSED_SECS) {
-            area += mean * exposed;
-            seconds += exposed;
+/// Time on a collision course with one human, and the robot's share in it.
+#[derive(Clone)]
+struct Course {
+    times: Pen,
+    share: MeanWhileBelow,
+    /// Robot and human at the last time, when both were there.
+    before: Option<(Sample, Sample)>,
+}
+
+struct Blame(Vec<Course>);
+
+impl Blame {
+    fn new(humans: usize) -> Self {
+        Self(vec![Course { times: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS), before: None }; humans])
+    }
+}
+
+impl Running for Blame {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        for ((course, human), ttc_s) in self.0.iter_mut().zip(now.humans).zip(now.ttc_s) {
+            let here = (robot.there && human.there).then_some((*robot, *human));
+            let far = 2.0 * EXPOSED_SECS;
+            let piece = course.times.to(now.t, here.map(|_| ttc_s.unwrap_or(far).min(far)));
+            let before = std::mem::replace(&mut course.before, here);
+            // Shares matter only where the time is short.
+            if let (Some((t0, s0, t1, s1)), Some((r, h))) = (piece, before)
+                && s0.min(s1) < EXPOSED_SECS
+            {
+                let share = |r: &Sample, h: &Sample| closing_share(r, h).unwrap_or(0.0);
+                course.share.add(Some((t0, share(&r, &h), t1, share(robot, human))), piece);
+            }
         }
     }
-    vec![or_why((seconds > 0.0).then(|| area / seconds), "the two are never on a collision course within 3 s")]
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let (mut area, mut seconds) = (0.0, 0.0);
+        for course in &self.0 {
+            if let Some(mean) = course.share.mean() {
+                area += mean * course.share.seconds();
+                seconds += course.share.seconds();
+            }
+        }
+        let why = "the two are never on a collision course within 3 s";
+        vec![or_why((seconds > 0.0).then(|| area / seconds), why)]
+    }
 }
 
 #[cfg(test)]

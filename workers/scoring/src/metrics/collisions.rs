@@ -1,11 +1,13 @@
 //! Contacts with people and walls, and who ran into whom.
 
+use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::scene::{REARM_M, REARM_SECS};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
-use crate::series::{Series, Span};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::running::Below;
+use crate::series::Span;
 
 /// A wall is known to the size of a cell only; nearer than the radius less this is a contact, m.
-const WALL_SLACK_M: f64 = 0.05;
+pub(super) const WALL_SLACK_M: f64 = 0.05;
 
 const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
 const WALLS: &[Need] = &[Need::Robot, Need::Map];
@@ -70,45 +72,54 @@ pub(super) const FAMILY: Family = Family {
             about: "time with the robot's surface less than -0.05 m from a wall of the map",
         },
     ],
-    measure,
+    thresholds: &[("wall_slack_m", WALL_SLACK_M), ("rearm_m", REARM_M), ("rearm_secs", REARM_SECS)],
+    measure: Measure::Online(Begin(|humans| Box::new(Contacts::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let contacts = &scene.contacts;
-    let shares: Vec<f64> = contacts.iter().filter_map(|(index, span)| share(scene, *index, span.from_s)).collect();
-    let robots = shares.iter().filter(|share| **share > 0.5).count();
-    let mean = if shares.is_empty() {
-        Err("there is no contact in which somebody moves".to_owned())
-    } else {
-        Ok(shares.iter().sum::<f64>() / count(shares.len()))
-    };
-    let seconds: f64 = scene.distances.iter().map(|distance| distance.time_below(0.0)).sum();
-    let walls = wall_contacts(scene);
-    vec![
-        Ok(count(contacts.len())),
-        Ok(seconds),
-        Ok(count(robots)),
-        Ok(count(shares.len() - robots)),
-        mean,
-        Ok(count(walls.len())),
-        Ok(walls.iter().map(Span::length_s).sum()),
-    ]
+/// Contacts so far.
+struct Contacts {
+    /// Seconds in contact, by human.
+    touching: Vec<Below>,
+    /// The robot's share in each contact in which somebody moves, by human.
+    shares: Vec<Vec<f64>>,
 }
 
-/// Contacts with walls.
-pub(crate) fn wall_contacts(scene: &Scene<'_>) -> Vec<Span> {
-    let (Some(field), Some(robot)) = (&scene.signals.field, scene.robot()) else { return Vec::new() };
-    let clearance: Series =
-        robot.samples.iter().map(|sample| (sample.t, field.clearance(&sample.at) - robot.radius_m)).collect();
-    clearance.stretches_below(-WALL_SLACK_M, REARM_M, REARM_SECS)
+impl Contacts {
+    fn new(humans: usize) -> Self {
+        Self { touching: vec![Below::level(0.0); humans], shares: vec![Vec::new(); humans] }
+    }
 }
 
-/// The robot's share of the closing speed just before a time; `None` when nobody closes.
-pub(super) fn share(scene: &Scene<'_>, human: usize, t: f64) -> Option<f64> {
-    let (robot, person) = scene.pairs().nth(human)?;
-    let before = (t - 0.1).max(robot.samples.first()?.t);
-    let (r, h) = (robot.at(before)?, person.at(before)?);
-    closing_share(&r, &h)
+impl Running for Contacts {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        for (touching, piece) in self.touching.iter_mut().zip(now.pieces) {
+            touching.add(*piece);
+        }
+        for (human, from_s) in now.touched {
+            if let (Some(shares), Some(share)) = (self.shares.get_mut(*human), now.share(*human, *from_s)) {
+                shares.push(share);
+            }
+        }
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let shares: Vec<f64> = self.shares.iter().flatten().copied().collect();
+        let robots = shares.iter().filter(|share| **share > 0.5).count();
+        let mean = if shares.is_empty() {
+            Err("there is no contact in which somebody moves".to_owned())
+        } else {
+            Ok(shares.iter().sum::<f64>() / count(shares.len()))
+        };
+        vec![
+            Ok(count(end.contacts)),
+            Ok(self.touching.iter().map(Below::seconds).sum()),
+            Ok(count(robots)),
+            Ok(count(shares.len() - robots)),
+            mean,
+            Ok(count(end.walls.spans().len())),
+            Ok(end.walls.spans().iter().map(Span::length_s).sum()),
+        ]
+    }
 }
 
 /// The robot's share of the closing speed of two agents.

@@ -1,7 +1,8 @@
 //! Comfort of people as two published models have it, and the end of a run that took too long.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::running::Mean;
 use crate::tracks::Sample;
 
 /// Mass of the robot in the energy of a contact, kg: of a delivery robot, where none is stated.
@@ -52,16 +53,23 @@ pub(super) const FAMILY: Family = Family {
             source: "Francis et al. 2023, table 1 (TO)",
             about: "1 when the run ends without the robot at its goal",
         },
-        Sheet {
-            id: "aggregated_time",
-            unit: "s",
-            direction: Direction::Down,
-            needs: &[Need::Robot, Need::Humans, Need::Goal],
-            source: "Francis et al. 2023, table 1 (AT): the last of a cooperative set",
-            about: "time until the robot and every human who walks have stopped walking for good; not applicable when the robot never arrives",
-        },
     ],
-    measure,
+    thresholds: &[("mass_kg", MASS_KG)],
+    measure: Measure::Online(Begin(|_| Box::new(Comfort::default()))),
+};
+
+/// What people do after the robot has arrived counts too.
+pub(super) const TOGETHER: Family = Family {
+    sheets: &[Sheet {
+        id: "aggregated_time",
+        unit: "s",
+        direction: Direction::Down,
+        needs: &[Need::Robot, Need::Humans, Need::Goal],
+        source: "Francis et al. 2023, table 1 (AT): the last of a cooperative set",
+        about: "time until the robot and every human who walks have stopped walking for good; not applicable when the robot never arrives",
+    }],
+    thresholds: &[],
+    measure: Measure::Whole { measure: together, why: "people walk on after the robot has arrived" },
 };
 
 /// The person's Gaussian at a point: 1 at the person.
@@ -81,45 +89,47 @@ fn gaussian(person: &Sample, robot: &Sample) -> f64 {
     if size > 30.0 { 0.0 } else { libm::exp(-size) }
 }
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let Some(robot) = scene.robot() else { return Vec::new() };
-    let humans = &scene.tracks.humans;
-    let discomfort: Series = robot
-        .samples
-        .iter()
-        .enumerate()
-        .map(|(k, r)| {
-            let each = humans.iter().filter_map(|human| human.samples.get(k)).filter(|h| h.there);
-            (r.t, each.map(|h| gaussian(h, r)).fold(0.0, f64::max))
-        })
-        .collect();
-    let energy = scene
-        .pairs()
-        .flat_map(|(robot, human)| {
-            let touch = robot.radius_m + human.radius_m;
-            robot
-                .beside(human)
-                .filter(move |(r, h)| (r.at - h.at).norm() < touch)
-                .map(|(r, h)| MASS_KG * (r.velocity - h.velocity).norm_squared() / 2.0)
-        })
-        .fold(0.0, f64::max);
-    let contacts = scene.contacts.len() + super::collisions::wall_contacts(scene).len();
+#[derive(Default)]
+struct Comfort {
+    discomfort: Mean,
+    energy: f64,
+}
+
+impl Running for Comfort {
+    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        let there = now.humans.iter().filter(|human| human.there);
+        self.discomfort.add(now.t, Some(there.map(|human| gaussian(human, robot)).fold(0.0, f64::max)));
+        for (human, radius_m) in now.humans.iter().zip(setting.humans_radius_m) {
+            let touch = setting.robot_radius_m + radius_m;
+            if robot.there && human.there && (robot.at - human.at).norm() < touch {
+                self.energy = self.energy.max(MASS_KG * (robot.velocity - human.velocity).norm_squared() / 2.0);
+            }
+        }
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        vec![
+            Ok(self.discomfort.integral()),
+            Ok(self.energy),
+            Ok(count(end.contacts + end.walls.spans().len())),
+            Err("recordings hold one robot".to_owned()),
+            Ok(if end.arrived_s.is_some() { 0.0 } else { 1.0 }),
+        ]
+    }
+}
+
+/// The end of everybody's walk.
+fn together(scene: &Scene<'_>) -> Vec<Measured> {
+    let begin = scene.robot().and_then(|robot| robot.samples.first()).map_or(0.0, |sample| sample.t);
     let over = scene.arrived_s.map(|arrived| {
         let last = |samples: &[Sample]| {
             let mut there = samples.iter().rev().filter(|sample| sample.there);
             there.find(|sample| sample.speed() > crate::tracks::MOVING_MPS).map_or(0.0, |s| s.t)
         };
-        let begin = robot.samples.first().map_or(0.0, |sample| sample.t);
         scene.signals.full.humans.iter().map(|human| last(&human.samples)).fold(arrived, f64::max) - begin
     });
-    vec![
-        Ok(discomfort.integral()),
-        Ok(energy),
-        Ok(count(contacts)),
-        Err("recordings hold one robot".to_owned()),
-        Ok(if scene.arrived_s.is_some() { 0.0 } else { 1.0 }),
-        or_why(over, "the robot never arrives"),
-    ]
+    vec![or_why(over, "the robot never arrives")]
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Whose near miss it was, by what would have been: with a robot that stops in time, and with people who go as they
 //! go without a robot.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::tracks::Track;
 use socrates_model::Point;
 
@@ -34,7 +34,8 @@ pub(super) const FAMILY: Family = Family {
             about: "share of the near misses and contacts (below 0.5 m between surfaces) in which the person, going as in the twin run, would have kept 0.5 m from the robot as it went: the person came to the robot",
         },
     ],
-    measure,
+    thresholds: &[("near_m", NEAR_M), ("stop_secs", STOP_SECS), ("after_secs", AFTER_SECS)],
+    measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
 
 /// Where somebody is; before its first and after its last moment, where it begins and ends.

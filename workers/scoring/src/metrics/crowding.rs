@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::running::{Below, Pen};
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
 const SOURCE: &str = "CrowdBot evaluation tools, local density";
@@ -44,26 +45,52 @@ pub(super) const FAMILY: Family = Family {
             about: "most people within 2.5 m of the robot at once over the area of that disc",
         },
     ],
-    measure,
+    thresholds: &[("mean_a_m", MEAN_M[0]), ("mean_b_m", MEAN_M[1]), ("mean_c_m", MEAN_M[2]), ("most_m", MOST_M)],
+    measure: Measure::Online(Begin(|humans| Box::new(Crowding::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let centers: Vec<Series> =
-        scene.pairs().map(|(robot, human)| robot.between(human, |r, h| (r.at - h.at).norm())).collect();
-    let length = scene.length_s();
-    let mean = |reach: f64| {
-        let person_seconds: f64 = centers.iter().map(|distance| distance.time_below(reach)).sum();
-        or_why((length > 0.0).then(|| person_seconds / length / (PI * (reach * reach))), "the recording has no length")
-    };
-    let most = scene
-        .robot()
-        .map_or(0, |robot| robot.samples.len())
-        .min(centers.iter().map(|curve| curve.samples().len()).min().unwrap_or(0));
-    let most = (0..most)
-        .map(|index| centers.iter().filter(|curve| curve.samples().get(index).is_some_and(|(_, d)| *d < 2.5)).count())
-        .max();
-    let short = "the recording has no length";
-    vec![mean(5.0), mean(3.0), mean(10.0), or_why(most.map(|most| crate::metrics::count(most) / (PI * 6.25)), short)]
+/// Radii of the discs for the means, m, and that of the disc for the most, m.
+const MEAN_M: [f64; 3] = [5.0, 3.0, 10.0];
+const MOST_M: f64 = 2.5;
+
+struct Crowding {
+    /// Time within each radius, by human.
+    humans: Vec<(Pen, [Below; 3])>,
+    most: Option<usize>,
+}
+
+impl Crowding {
+    fn new(humans: usize) -> Self {
+        Self { humans: vec![(Pen::default(), MEAN_M.map(Below::level)); humans], most: None }
+    }
+}
+
+impl Running for Crowding {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        let mut near = 0;
+        for ((pen, discs), human) in self.humans.iter_mut().zip(now.humans) {
+            let distance = (robot.there && human.there).then(|| (robot.at - human.at).norm());
+            near += usize::from(distance.is_some_and(|distance| distance < MOST_M));
+            let piece = pen.to(now.t, distance);
+            for disc in discs {
+                disc.add(piece);
+            }
+        }
+        self.most = self.most.max(Some(near));
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let length = end.length_s();
+        let short = "the recording has no length";
+        let mean = |(index, reach): (usize, f64)| {
+            let seconds = |discs: &[Below; 3]| discs.get(index).map_or(0.0, Below::seconds);
+            let person_seconds: f64 = self.humans.iter().map(|(_, discs)| seconds(discs)).sum();
+            or_why((length > 0.0).then(|| person_seconds / length / (PI * (reach * reach))), short)
+        };
+        let most = or_why(self.most.map(|most| count(most) / (PI * (MOST_M * MOST_M))), short);
+        MEAN_M.into_iter().enumerate().map(mean).chain([most]).collect()
+    }
 }
 
 #[cfg(test)]

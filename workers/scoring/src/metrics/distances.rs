@@ -1,7 +1,8 @@
 //! Distances to people and walls.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::{Least, Mean};
 
 const PEOPLE: &[Need] = &[Need::Robot, Need::Humans];
 const WALLS: &[Need] = &[Need::Robot, Need::Map];
@@ -42,23 +43,30 @@ pub(super) const FAMILY: Family = Family {
             about: "time mean of the distance of the robot's surface from the map's walls",
         },
     ],
-    measure,
+    thresholds: &[],
+    measure: Measure::Online(Begin(|_| Box::new(Distances::default()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let clearing: Series = match (&scene.signals.field, scene.robot()) {
-        (Some(field), Some(robot)) => {
-            robot.samples.iter().map(|sample| (sample.t, field.clearance(&sample.at) - robot.radius_m)).collect()
-        }
-        _ => Series::default(),
-    };
-    let short = "the recording has no length";
-    vec![
-        or_why(scene.nearest.least().map(|(_, distance)| distance), short),
-        or_why(scene.nearest.map(|distance| distance.max(0.0)).mean(), short),
-        or_why(clearing.least().map(|(_, distance)| distance), short),
-        or_why(clearing.mean(), short),
-    ]
+#[derive(Default)]
+struct Distances {
+    least: Least,
+    mean: Mean,
+    clearing: Least,
+    clearing_mean: Mean,
+}
+
+impl Running for Distances {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        self.least.add(now.nearest);
+        self.mean.add(now.t, now.nearest.map(|distance| distance.max(0.0)));
+        self.clearing.add(now.clearance);
+        self.clearing_mean.add(now.t, now.clearance);
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let all = [self.least.value(), self.mean.mean(), self.clearing.value(), self.clearing_mean.mean()];
+        all.map(|value| or_why(value, "the recording has no length")).to_vec()
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Deceleration needed to avoid a crash, and speed near people.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::{MeanWhileBelow, Pen};
 use crate::tracks::Sample;
 use socrates_model::Vector;
 
@@ -32,7 +33,8 @@ pub(super) const FAMILY: Family = Family {
             about: "mean speed of the robot while the closest human's surface is within 1.2 m",
         },
     ],
-    measure,
+    thresholds: &[("near_m", NEAR_M), ("touch_m", TOUCH_M)],
+    measure: Measure::Online(Begin(|humans| Box::new(Crash::new(humans)))),
 };
 
 /// Velocity of the human against the robot.
@@ -46,17 +48,33 @@ fn drac(line: &Vector, motion: &Vector, gap: f64) -> f64 {
     closing * closing / (2.0 * gap)
 }
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let mut top: Option<f64> = None;
-    for (robot, human) in scene.pairs() {
-        let radii = robot.radius_m + human.radius_m;
-        let mut before: Option<(f64, &Sample, &Sample)> = None;
-        for (r, h) in robot.beside(human) {
-            let gap = (h.at - r.at).norm() - radii;
+struct Crash {
+    top: Option<f64>,
+    /// Gap, robot and human when both were last there, by human.
+    before: Vec<Option<(f64, Sample, Sample)>>,
+    pen: Pen,
+    speed: MeanWhileBelow,
+}
+
+impl Crash {
+    fn new(humans: usize) -> Self {
+        Self { top: None, before: vec![None; humans], pen: Pen::default(), speed: MeanWhileBelow::level(NEAR_M) }
+    }
+}
+
+impl Running for Crash {
+    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(r) = now.robot else { return };
+        self.speed.add(self.pen.to(now.t, Some(r.speed())), now.nearest_piece);
+        for ((before, h), radius_m) in self.before.iter_mut().zip(now.humans).zip(setting.humans_radius_m) {
+            if !(r.there && h.there) {
+                continue;
+            }
+            let gap = (h.at - r.at).norm() - (setting.robot_radius_m + radius_m);
             // Where the two meet or part between samples, the limit lies there and not at a sample.
             let found = match before {
-                Some((last, p, q)) if (last < TOUCH_M) != (gap < TOUCH_M) => {
-                    let share = (TOUCH_M - last) / (gap - last);
+                Some((last, p, q)) if (*last < TOUCH_M) != (gap < TOUCH_M) => {
+                    let share = (TOUCH_M - *last) / (gap - *last);
                     let (line, motion) =
                         ((q.at - p.at).lerp(&(h.at - r.at), share), relative(p, q).lerp(&relative(r, h), share));
                     Some(drac(&line, &motion, TOUCH_M))
@@ -64,17 +82,15 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
                 _ => (gap >= TOUCH_M).then(|| drac(&(h.at - r.at), &relative(r, h), gap)),
             };
             if let Some(found) = found {
-                top = Some(top.map_or(found, |old: f64| old.max(found)));
+                self.top = Some(self.top.map_or(found, |old: f64| old.max(found)));
             }
-            before = Some((gap, r, h));
+            *before = Some((gap, *r, *h));
         }
     }
-    let speed: Series =
-        scene.robot().map(|robot| robot.samples.iter().map(|s| (s.t, s.speed())).collect()).unwrap_or_default();
-    vec![
-        or_why(top, "the two are always in contact"),
-        or_why(speed.mean_while_below(&scene.nearest, NEAR_M), "nobody comes within 1.2 m"),
-    ]
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        vec![or_why(self.top, "the two are always in contact"), or_why(self.speed.mean(), "nobody comes within 1.2 m")]
+    }
 }
 
 #[cfg(test)]

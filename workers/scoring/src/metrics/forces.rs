@@ -2,7 +2,7 @@
 
 use socrates_model::Vector;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
 
@@ -67,7 +67,19 @@ pub(super) const FAMILY: Family = Family {
             about: "integral over time of social force on the robot, wall force on the robot and social forces on people",
         },
     ],
-    measure,
+    thresholds: &[
+        ("strength", STRENGTH),
+        ("lambda", LAMBDA),
+        ("gamma", GAMMA),
+        ("n", N),
+        ("n_prime", N_PRIME),
+        ("wall_strength", WALL_STRENGTH),
+        ("wall_range_m", WALL_RANGE_M),
+    ],
+    measure: Measure::Whole {
+        measure,
+        why: "summed by pairs over whole tracks, so that pairs far apart can be skipped",
+    },
 };
 
 /// From this exponent on a force is below 1e-19 and not worth an exponential.

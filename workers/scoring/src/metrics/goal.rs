@@ -1,6 +1,8 @@
 //! How near the robot came to its goal.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::Least;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
 
@@ -32,23 +34,33 @@ pub(super) const FAMILY: Family = Family {
             about: "straight distance to the goal at the end of the trip",
         },
     ],
-    measure,
+    thresholds: &[],
+    measure: Measure::Online(Begin(|_| Box::new(Nearest::default()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let (Some(robot), Some(goal)) = (scene.robot(), scene.goal) else { return Vec::new() };
-    let (Some(first), Some(last)) = (robot.samples.first(), robot.samples.last()) else { return Vec::new() };
-    let whole = scene.to_goal_m(&first.at).filter(|way| *way > 1e-6);
-    let left = scene.to_goal_m(&last.at);
-    let nearest = robot.samples.iter().map(|sample| (sample.at - goal).norm()).min_by(f64::total_cmp);
-    vec![
-        or_why(
-            whole.zip(left).map(|(whole, left)| left / whole),
-            "start and goal are one place, or no way leads there",
-        ),
-        or_why(nearest, "the recording is empty"),
-        Ok((last.at - goal).norm()),
-    ]
+/// The smallest straight distance so far.
+#[derive(Default)]
+struct Nearest(Least);
+
+impl Running for Nearest {
+    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+        self.0.add(now.robot.zip(setting.goal).map(|(robot, goal)| (robot.at - goal).norm()));
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let empty = "the recording is empty";
+        let whole = end.first.and_then(|first| end.setting.to_goal_m(&first.at)).filter(|way| *way > 1e-6);
+        let left = end.last.and_then(|last| end.setting.to_goal_m(&last.at));
+        let at_end = end.last.zip(end.setting.goal).map(|(last, goal)| (last.at - goal).norm());
+        vec![
+            or_why(
+                whole.zip(left).map(|(whole, left)| left / whole),
+                "start and goal are one place, or no way leads there",
+            ),
+            or_why(self.0.value(), empty),
+            or_why(at_end, empty),
+        ]
+    }
 }
 
 #[cfg(test)]

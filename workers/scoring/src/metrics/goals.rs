@@ -3,7 +3,7 @@
 use socrates_maps::{DistanceField, Geodesic};
 use socrates_model::{Cell, Grid, NodeId, Point};
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::tracks::Sample;
 
 /// Weight of a detour in the belief, 1/m (`spec/evaluation` §2.5: default 1).
@@ -76,7 +76,8 @@ pub(super) const FAMILY: Family = Family {
             about: "legibility over the moments at which at least one human has the robot in view (100° to each side, line of sight)",
         },
     ],
-    measure,
+    thresholds: &[("beta_per_m", BETA_PER_M), ("sure", SURE), ("apart_m", APART_M), ("half_view_rad", HALF_VIEW_RAD)],
+    measure: Measure::Whole { measure, why: "the goals and the weights T - t are known at the end" },
 };
 
 /// Other places the robot might be going to: ends of the graph's ways, and places off the way at its junctions.

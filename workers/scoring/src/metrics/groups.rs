@@ -2,9 +2,9 @@
 
 use socrates_model::{HumanId, Point};
 
-use crate::circle::{Circle, P_SPACE_M};
+use crate::circle::{Circle, P_SPACE_M, STANDING_MPS};
 use crate::hull::{convex_hull, outside_hull_m};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
 use crate::tracks::{Sample, Track};
 
@@ -74,7 +74,14 @@ pub(super) const FAMILY: Family = Family {
             "1 when the robot's disc was ever nearer than 0.45 m to the convex hull of a group's members",
         ),
     ],
-    measure,
+    thresholds: &[
+        ("together_m", TOGETHER_M),
+        ("relation_m", RELATION_M),
+        ("hull_m", HULL_M),
+        ("p_space_m", P_SPACE_M),
+        ("standing_mps", STANDING_MPS),
+    ],
+    measure: Measure::Whole { measure, why: "members are looked at together, and only those who ever come" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

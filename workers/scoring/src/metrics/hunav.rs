@@ -8,7 +8,7 @@ use socrates_model::geometry::wrap_angle;
 use socrates_model::{Point, Vector};
 
 use crate::metrics::forces::{FADED, faded};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count};
 use crate::tracks::{Sample, Track, Tracks};
 
 /// What upstream calls a collision, m.
@@ -205,7 +205,8 @@ pub(super) const FAMILY: Family = Family {
             "sum over samples of the humans' mean wall force, not times the step",
         ),
     ],
-    measure,
+    thresholds: &[("touch_m", TOUCH_M), ("goal_m", GOAL_M), ("stride_m", STRIDE_M)],
+    measure: Measure::Whole { measure, why: "the other tool's figures, as it computes them after a run" },
 };
 
 /// Step from a sample to the one before it, s.

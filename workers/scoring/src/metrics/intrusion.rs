@@ -1,8 +1,9 @@
 //! Personal intrusion in person-seconds.
 
+use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::zones::HALL_M;
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet};
-use crate::series::Series;
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
+use crate::running::Below;
 use crate::tracks::Sample;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
@@ -33,7 +34,8 @@ pub(super) const FAMILY: Family = Family {
             about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the centre distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
         },
     ],
-    measure,
+    thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
+    measure: Measure::Online(Begin(|humans| Box::new(Intrusions::new(humans)))),
 };
 
 /// Nobody is intruded upon from farther than this whatever the angle, m: 1.2 e^(0.9 - 1.5) is less.
@@ -50,29 +52,46 @@ fn margin(r: &Sample, h: &Sample) -> f64 {
     d - 1.2 * libm::exp(0.9 - d) * (0.4 + 0.6 * front)
 }
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let uniform = |limit: f64| -> f64 { scene.distances.iter().map(|distance| distance.time_below(limit)).sum() };
-    let anisotropic: f64 = scene
-        .pairs()
-        .map(|(robot, human)| {
-            // Only pieces with an end inside count, so angles matter only there and at the neighbours.
-            let near: Vec<bool> = robot.samples.iter().zip(&human.samples).map(|(r, h)| reaches(r, h)).collect();
-            let beside = |k: usize| {
-                let around = near.get(k.saturating_sub(1)..(k + 2).min(near.len())).unwrap_or_default();
-                around.contains(&true)
-            };
-            let margin: Series = robot
-                .samples
-                .iter()
-                .zip(&human.samples)
-                .enumerate()
-                .map(|(k, (r, h))| (r.t, h.there.then(|| if beside(k) { margin(r, h) } else { REACH_M })))
-                .collect();
-            margin.time_below(0.0)
-        })
-        .sum();
-    let [intimate, personal, social] = HALL_M.map(uniform);
-    vec![Ok(intimate), Ok(personal), Ok(social), Ok(anisotropic)]
+/// Time with the robot near one human.
+#[derive(Clone)]
+struct Intrusion {
+    zones: [Below; 3],
+    front: Below,
+    /// Robot and human at the last time, when the human was there.
+    before: Option<(Sample, Sample)>,
+}
+
+struct Intrusions(Vec<Intrusion>);
+
+impl Intrusions {
+    fn new(humans: usize) -> Self {
+        let none = Intrusion { zones: HALL_M.map(Below::level), front: Below::level(0.0), before: None };
+        Self(vec![none; humans])
+    }
+}
+
+impl Running for Intrusions {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        for ((intrusion, piece), human) in self.0.iter_mut().zip(now.pieces).zip(now.humans) {
+            for zone in &mut intrusion.zones {
+                zone.add(*piece);
+            }
+            let here = human.there.then_some((*robot, *human));
+            // Only pieces with an end inside count, so angles matter only there.
+            if let (Some((r, h)), Some(_)) = (std::mem::replace(&mut intrusion.before, here), here)
+                && (reaches(&r, &h) || reaches(robot, human))
+            {
+                intrusion.front.add(Some((r.t, margin(&r, &h), robot.t, margin(robot, human))));
+            }
+        }
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let uniform = |zone: usize| self.0.iter().filter_map(|one| one.zones.get(zone)).map(Below::seconds).sum();
+        let front = self.0.iter().map(|one| one.front.seconds()).sum();
+        vec![Ok(uniform(0)), Ok(uniform(1)), Ok(uniform(2)), Ok(front)]
+    }
 }
 
 #[cfg(test)]

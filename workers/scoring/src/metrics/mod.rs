@@ -19,6 +19,7 @@ mod groups;
 mod hunav;
 mod intrusion;
 mod near_misses;
+mod online;
 mod passing;
 mod path;
 mod pet;
@@ -35,6 +36,7 @@ mod speeds;
 mod stalls;
 mod success;
 mod table;
+mod thresholds;
 mod ttc;
 mod twin;
 mod unrecorded;
@@ -43,9 +45,10 @@ mod zones;
 
 use socrates_model::{MetricValue, Missing};
 
+pub use online::{Online, Setting};
 pub use scene::Scene;
-pub use success::succeeded;
 pub use table::csv;
+pub use thresholds::signature;
 
 /// What a metric needs (`spec/evaluation` §2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,6 +120,25 @@ pub struct Sheet {
 }
 
 impl Need {
+    /// What is said of a run that has not got it.
+    #[must_use]
+    pub const fn lacking(self) -> &'static str {
+        match self {
+            Self::Tracks => "the recording is empty",
+            Self::Robot => "there is no robot in the recording",
+            Self::Humans => "there is no human in the recording",
+            Self::Map => "there is no map",
+            Self::Goal => "the robot's goal is not known",
+            Self::Groups => "no groups are known",
+            Self::Twin => "there is no run without the robot to compare with",
+            Self::PlannerTimes => "recordings hold no computing times of planners",
+            Self::Commands => "recordings hold no commands",
+            Self::Solo => "there is no run of the robot alone to compare with",
+            Self::OtherRobots => "recordings hold one robot",
+            Self::Events => "nobody makes a gesture",
+        }
+    }
+
     /// What it says of a run when the need is not met: that it is not the kind of run that has such a value, or that
     /// the evidence lacks something which other evidence of the same run could hold.
     #[must_use]
@@ -135,13 +157,45 @@ impl Need {
 /// A value, or why there is none.
 pub type Measured = Result<f64, String>;
 
+/// How a family is computed.
+#[derive(Debug, Clone, Copy)]
+pub enum Measure {
+    /// While the run goes on, sample by sample, for so many humans (`spec/evaluation` §2.8).
+    Online(Begin),
+    /// From the whole run.
+    Whole {
+        /// Computes the values, one per sheet.
+        measure: fn(&Scene<'_>) -> Vec<Measured>,
+        /// Why it waits for the end.
+        why: &'static str,
+    },
+}
+
+/// Begins a family before the first sample.
+#[derive(Debug, Clone, Copy)]
+pub struct Begin(fn(usize) -> Box<dyn online::Running>);
+
 /// Metrics that are computed together.
 #[derive(Debug, Clone, Copy)]
 pub struct Family {
     /// Fact sheets, in the order of the values.
     pub sheets: &'static [Sheet],
+    /// Names and values of what decides what counts: distances, times, speeds. With other ones the figures are others,
+    /// see [`signature`].
+    pub thresholds: &'static [(&'static str, f64)],
     /// Computes the values, one per sheet.
-    pub measure: fn(&Scene<'_>) -> Vec<Measured>,
+    pub measure: Measure,
+}
+
+impl Family {
+    /// Why the values can be had only when the run is over; `None` where [`Online`] gives them at any time.
+    #[must_use]
+    pub const fn waits(&self) -> Option<&'static str> {
+        match self.measure {
+            Measure::Online(_) => None,
+            Measure::Whole { why, .. } => Some(why),
+        }
+    }
 }
 
 /// Every metric, in report order. Adding one is a sheet in its family's file, or a new file and a line here.
@@ -173,6 +227,7 @@ pub const CATALOG: &[Family] = &[
     goals::FAMILY,
     sides::FAMILY,
     comfort::FAMILY,
+    comfort::TOGETHER,
     twin::FAMILY,
     counterfactual::FAMILY,
     unrecorded::FAMILY,
@@ -245,10 +300,15 @@ pub fn measure(scene: &Scene<'_>) -> Vec<MetricValue> {
 fn computed(scene: &Scene<'_>) -> Vec<MetricValue> {
     CATALOG
         .iter()
-        .flat_map(|family| {
+        .zip(scene.online())
+        .flat_map(|(family, grown)| {
             let missing = family.sheets.iter().map(|sheet| scene.lacks(sheet.needs)).collect::<Vec<_>>();
-            // A family runs when at least one of its metrics can be had.
-            let values = if missing.iter().any(Option::is_none) { (family.measure)(scene) } else { Vec::new() };
+            let values = match family.measure {
+                Measure::Online(_) => grown,
+                // A family runs when at least one of its metrics can be had.
+                Measure::Whole { measure, .. } if missing.iter().any(Option::is_none) => measure(scene),
+                Measure::Whole { .. } => Vec::new(),
+            };
             family
                 .sheets
                 .iter()
@@ -277,7 +337,8 @@ pub fn none(why: &str) -> Vec<MetricValue> {
 
 fn valued(sheet: &Sheet, value: Measured, missing: Missing) -> MetricValue {
     let (value, note) = match value {
-        Ok(value) if value.is_finite() => (Some((value * 1e6).round() / 1e6), String::new()),
+        // A sum of nothing is -0, which is no figure to print.
+        Ok(value) if value.is_finite() => (Some((value * 1e6).round() / 1e6 + 0.0), String::new()),
         Ok(_) => (None, "not applicable: the value is not finite".to_owned()),
         Err(why) => (None, format!("not applicable: {why}")),
     };
@@ -345,8 +406,13 @@ pub(crate) mod tests {
         let tracks = Tracks::read(&run).unwrap();
         let signals = Signals::new(&evidence, &tracks);
         let scene = Scene::new(&signals);
+        let at = |family: &Family| CATALOG.iter().position(|other| other.sheets == family.sheets).unwrap();
         for family in CATALOG.iter().filter(|family| family.sheets.iter().any(|s| scene.lacks(s.needs).is_none())) {
-            assert_eq!((family.measure)(&scene).len(), family.sheets.len(), "{}", family.sheets[0].id);
+            let values = match family.measure {
+                Measure::Online(_) => scene.online()[at(family)].len(),
+                Measure::Whole { measure, .. } => measure(&scene).len(),
+            };
+            assert_eq!(values, family.sheets.len(), "{}", family.sheets[0].id);
         }
         for sheet in sheets() {
             assert!(!sheet.about.is_empty() && !sheet.source.is_empty() && !sheet.unit.is_empty(), "{}", sheet.id);

@@ -1,6 +1,9 @@
 //! Near misses.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::running::Stretches;
+use crate::series::Span;
 
 /// Nearer than this is a near miss, m (the default of Robot SF).
 const NEAR_M: f64 = 0.5;
@@ -15,18 +18,46 @@ pub(super) const FAMILY: Family = Family {
         source: "Robot SF, near-miss counter",
         about: "stretches with a surface distance to a human from 0 to 0.5 m that do not end in a contact",
     }],
-    measure,
+    thresholds: &[("near_m", NEAR_M)],
+    measure: Measure::Online(Begin(|humans| Box::new(Near::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let near = scene.distances.iter().flat_map(|distance| {
-        let touching = distance.stretches_below(0.0, 0.0, 0.0);
-        distance
-            .stretches_below(NEAR_M, 0.05, 0.5)
-            .into_iter()
-            .filter(move |span| !touching.iter().any(|touch| touch.from_s <= span.to_s && touch.to_s >= span.from_s))
-    });
-    vec![Ok(count(near.count()))]
+/// Stretches near one human, and those in contact.
+#[derive(Clone)]
+struct Misses {
+    near: Stretches,
+    touching: Stretches,
+}
+
+impl Misses {
+    fn count(&self) -> usize {
+        let touched = |span: &&Span| {
+            self.touching.spans().iter().any(|touch| touch.from_s <= span.to_s && touch.to_s >= span.from_s)
+        };
+        self.near.spans().iter().filter(|span| !touched(span)).count()
+    }
+}
+
+struct Near(Vec<Misses>);
+
+impl Near {
+    fn new(humans: usize) -> Self {
+        let none = Misses { near: Stretches::below(NEAR_M, 0.05, 0.5), touching: Stretches::below(0.0, 0.0, 0.0) };
+        Self(vec![none; humans])
+    }
+}
+
+impl Running for Near {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        for (misses, piece) in self.0.iter_mut().zip(now.pieces) {
+            misses.near.add(*piece);
+            misses.touching.add(*piece);
+        }
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        vec![Ok(count(self.0.iter().map(Misses::count).sum()))]
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use socrates_model::geometry::wrap_angle;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, or_why};
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans];
 
@@ -28,7 +28,8 @@ pub(super) const FAMILY: Family = Family {
             about: "sum over humans of the absolute winding number about the robot",
         },
     ],
-    measure,
+    thresholds: &[],
+    measure: Measure::Whole { measure, why: "the human meant is the one who comes nearest in the end" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

@@ -3,7 +3,9 @@
 use socrates_model::Point;
 use socrates_model::geometry::wrap_angle;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why, success};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::tracks::Sample;
 
 /// Steps shorter than this have no direction, m.
 const STEP_M: f64 = 0.02;
@@ -80,93 +82,126 @@ pub(super) const FAMILY: Family = Family {
             about: "mean Menger curvature 4 A / (a b c) of points half a metre of way apart",
         },
     ],
-    measure,
+    thresholds: &[("step_m", STEP_M)],
+    measure: Measure::Online(Begin(|_| Box::new(Way::default()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let length = scene.path_length_m();
-    let start = scene.even.first().map(|sample| sample.at);
-    let shortest = start.and_then(|start| scene.to_goal_m(&start)).filter(|way| *way > 0.0);
-    let speed = scene.robot().map_or(0.0, |robot| robot.speed_mps);
-    let succeeded = if success::succeeded(scene) { 1.0 } else { 0.0 };
-    let no_way = "the map has no way to the goal for the robot's disc";
-    let straight = start.zip(scene.goal).map(|(start, goal)| (goal - start).norm()).filter(|way| *way > 1e-6);
-    let arrived = scene.arrived_s.is_some();
-    let heading: f64 =
-        scene.even.iter().zip(scene.even.iter().skip(1)).map(|(a, b)| wrap_angle(b.yaw - a.yaw).abs()).sum();
-    vec![
-        Ok(length),
-        or_why(shortest.map(|way| succeeded * way / length.max(way)), no_way),
-        match (shortest, scene.trip_s()) {
-            (Some(_), None) => Ok(0.0),
-            (Some(way), Some(time)) if speed > 0.0 => Ok(succeeded * (way / speed) / time.max(way / speed)),
-            (Some(_), Some(_)) => Err("the robot's nominal speed is not known".to_owned()),
-            (None, _) => Err(no_way.to_owned()),
-        },
-        match shortest {
-            None => Err(no_way.to_owned()),
-            Some(_) if !arrived => Err("the robot never arrives".to_owned()),
-            Some(way) => or_why((length > 0.0).then(|| (way / length).min(1.0)), "the robot does not move"),
-        },
-        or_why(straight.map(|straight| length / straight), "start and goal are one place"),
-        irregularity(scene, length),
-        Ok(heading),
-        curvature(scene),
-    ]
+/// Points of a path, half a metre of way apart.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Spaced {
+    way_m: f64,
+    next_m: f64,
+    before: Option<Point>,
+    /// The last two points that came.
+    last: [Option<Point>; 2],
 }
 
-fn irregularity(scene: &Scene<'_>, length: f64) -> Measured {
-    let mut directions: Vec<f64> = Vec::new();
-    let mut from = match scene.even.first() {
-        Some(sample) => sample.at,
-        None => return Err("the recording is empty".to_owned()),
-    };
-    for sample in &scene.even {
-        let step = sample.at - from;
-        if step.norm() >= STEP_M {
-            directions.push(libm::atan2(step.y, step.x));
-            from = sample.at;
-        }
-    }
-    let (Some(first), Some(last)) = (directions.first(), directions.last()) else {
-        return Err("the robot does not move".to_owned());
-    };
-    let turned: f64 = directions.iter().zip(directions.iter().skip(1)).map(|(a, b)| wrap_angle(b - a).abs()).sum();
-    Ok((turned - wrap_angle(last - first).abs()).max(0.0) / length.max(STEP_M))
-}
-
-/// Points of the path, half a metre of way apart.
-pub(super) fn spaced(scene: &Scene<'_>) -> Vec<Point> {
-    let mut points = Vec::new();
-    let (mut way, mut next) = (0.0, 0.0);
-    let mut before: Option<Point> = None;
-    for sample in &scene.even {
+impl Spaced {
+    /// Goes on to a place; each point that comes is handed on with the two before it.
+    pub(super) fn step(&mut self, at: Point, mut triple: impl FnMut(&Point, &Point, &Point)) {
         // The point at the very length, not the sample after it: else the spacing would follow the grid.
-        if let Some(last) = before {
-            let step = (sample.at - last).norm();
-            while way + step >= next && step > 0.0 {
-                points.push(last + (sample.at - last) * ((next - way) / step));
-                next += 0.5;
+        if let Some(from) = self.before.replace(at) {
+            let step = (at - from).norm();
+            while self.way_m + step >= self.next_m && step > 0.0 {
+                let point = from + (at - from) * ((self.next_m - self.way_m) / step);
+                self.next_m += 0.5;
+                if let [Some(p), Some(q)] = &self.last {
+                    triple(p, q, &point);
+                }
+                self.last = [self.last[1], Some(point)];
             }
-            way += step;
+            self.way_m += step;
         }
-        before = Some(sample.at);
     }
-    points
 }
 
-fn curvature(scene: &Scene<'_>) -> Measured {
-    let mut total = 0.0;
-    let mut triples = 0_usize;
-    for triple in spaced(scene).windows(3) {
-        let [p, q, r] = triple else { continue };
-        let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
-        if a * b * c > 1e-9 {
-            total += 2.0 * (q - p).perp(&(r - p)).abs() / (a * b * c);
-            triples += 1;
+/// The way so far, on the even grid.
+#[derive(Clone, Default)]
+struct Way {
+    start: Option<Point>,
+    before: Option<Sample>,
+    length_m: f64,
+    heading_rad: f64,
+    /// Where the last step of some length ended, and its direction; the direction of the first.
+    from: Option<Point>,
+    direction: Option<f64>,
+    first_direction: Option<f64>,
+    turned_rad: f64,
+    spaced: Spaced,
+    curvature: f64,
+    triples: usize,
+}
+
+impl Way {
+    fn step(&mut self, sample: &Sample) {
+        self.start.get_or_insert(sample.at);
+        if let Some(before) = self.before.replace(*sample) {
+            self.length_m += (sample.at - before.at).norm();
+            self.heading_rad += wrap_angle(sample.yaw - before.yaw).abs();
+        }
+        let step = sample.at - *self.from.get_or_insert(sample.at);
+        if step.norm() >= STEP_M {
+            let direction = libm::atan2(step.y, step.x);
+            if let Some(before) = self.direction.replace(direction) {
+                self.turned_rad += wrap_angle(direction - before).abs();
+            }
+            self.first_direction.get_or_insert(direction);
+            self.from = Some(sample.at);
+        }
+        let (curvature, triples) = (&mut self.curvature, &mut self.triples);
+        self.spaced.step(sample.at, |p, q, r| {
+            let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
+            if a * b * c > 1e-9 {
+                *curvature += 2.0 * (q - p).perp(&(r - p)).abs() / (a * b * c);
+                *triples += 1;
+            }
+        });
+    }
+
+    fn irregularity(&self) -> Measured {
+        let turn = self.first_direction.zip(self.direction).map(|(first, last)| wrap_angle(last - first).abs());
+        let least = turn.map(|turn| (self.turned_rad - turn).max(0.0) / self.length_m.max(STEP_M));
+        or_why(least, "the robot does not move")
+    }
+}
+
+impl Running for Way {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        for sample in now.even {
+            self.step(sample);
         }
     }
-    or_why((triples > 0).then(|| total / crate::metrics::count(triples)), "the path is shorter than 1 m")
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let mut whole = self.clone();
+        end.tail.iter().for_each(|sample| whole.step(sample));
+        let length = whole.length_m;
+        let shortest = whole.start.and_then(|start| end.setting.to_goal_m(&start)).filter(|way| *way > 0.0);
+        let speed = end.setting.robot_speed_mps;
+        let succeeded = if end.succeeded() { 1.0 } else { 0.0 };
+        let no_way = "the map has no way to the goal for the robot's disc";
+        let straight =
+            whole.start.zip(end.setting.goal).map(|(start, goal)| (goal - start).norm()).filter(|way| *way > 1e-6);
+        vec![
+            Ok(length),
+            or_why(shortest.map(|way| succeeded * way / length.max(way)), no_way),
+            match (shortest, end.trip_s()) {
+                (Some(_), None) => Ok(0.0),
+                (Some(way), Some(time)) if speed > 0.0 => Ok(succeeded * (way / speed) / time.max(way / speed)),
+                (Some(_), Some(_)) => Err("the robot's nominal speed is not known".to_owned()),
+                (None, _) => Err(no_way.to_owned()),
+            },
+            match shortest {
+                None => Err(no_way.to_owned()),
+                Some(_) if end.arrived_s.is_none() => Err("the robot never arrives".to_owned()),
+                Some(way) => or_why((length > 0.0).then(|| (way / length).min(1.0)), "the robot does not move"),
+            },
+            or_why(straight.map(|straight| length / straight), "start and goal are one place"),
+            whole.irregularity(),
+            Ok(whole.heading_rad),
+            or_why((whole.triples > 0).then(|| whole.curvature / count(whole.triples)), "the path is shorter than 1 m"),
+        ]
+    }
 }
 
 #[cfg(test)]

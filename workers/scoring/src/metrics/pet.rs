@@ -2,7 +2,7 @@
 
 use socrates_model::Point;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, or_why};
 use crate::skips::{arcs, next};
 use crate::tracks::Track;
 
@@ -19,7 +19,8 @@ pub(super) const FAMILY: Family = Family {
         source: "Allen, Shin and Cooper 1978 (PET)",
         about: "smallest time between one agent leaving the place where the ways cross (a disc of both radii) and the other entering it; 0 when both are in it at once",
     }],
-    measure,
+    thresholds: &[("step_m", STEP_M)],
+    measure: Measure::Whole { measure, why: "the place where two ways cross is known when both have been gone" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

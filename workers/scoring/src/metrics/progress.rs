@@ -1,6 +1,8 @@
 //! Failure to progress.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::tracks::{Sample, between};
 
 /// Length of a window, s, and the least progress in it, m (`spec/evaluation` §2.1).
 const WINDOW_SECS: f64 = 5.0;
@@ -16,27 +18,55 @@ pub(super) const FAMILY: Family = Family {
         source: "Francis et al. 2023, table 1 (FP)",
         about: "windows of 5 s in which the shortest way to the goal became less than 0.1 m shorter",
     }],
-    measure,
+    thresholds: &[("window_secs", WINDOW_SECS), ("least_m", LEAST_M)],
+    measure: Measure::Online(Begin(|_| Box::new(Windows::default()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let Some(robot) = scene.robot() else { return Vec::new() };
-    let (Some(first), Some(last)) = (robot.samples.first(), robot.samples.last()) else { return Vec::new() };
-    let mut failures = 0_usize;
-    let mut start = first.t;
-    let mut left = scene.to_goal_m(&first.at);
-    while start + WINDOW_SECS <= last.t + 1e-9 {
-        start += WINDOW_SECS;
-        let Some(now) = robot.at(start.min(last.t)).and_then(|sample| scene.to_goal_m(&sample.at)) else {
-            left = None;
-            continue;
-        };
-        if left.is_some_and(|before| before - now < LEAST_M) {
-            failures += 1;
+/// Windows so far.
+#[derive(Clone, Copy, Default)]
+struct Windows {
+    /// The last state, and the shortest way at the end of the last window.
+    last: Option<Sample>,
+    left_m: Option<f64>,
+    /// End of the window that runs, s.
+    ends_s: f64,
+    failures: usize,
+}
+
+impl Windows {
+    /// The window ends with the robot in a state.
+    fn ends(&mut self, setting: &Setting<'_>, state: Option<Sample>) {
+        let now = state.and_then(|sample| setting.to_goal_m(&sample.at));
+        if self.left_m.zip(now).is_some_and(|(before, now)| before - now < LEAST_M) {
+            self.failures += 1;
         }
-        left = Some(now);
+        self.left_m = now;
+        self.ends_s += WINDOW_SECS;
     }
-    vec![Ok(count(failures))]
+}
+
+impl Running for Windows {
+    fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
+        let Some(robot) = now.robot else { return };
+        if self.last.is_none() {
+            self.left_m = setting.to_goal_m(&robot.at);
+            self.ends_s = robot.t + WINDOW_SECS;
+        }
+        while self.ends_s <= robot.t {
+            let state = between(self.last.as_ref(), robot, self.ends_s);
+            self.ends(setting, state);
+        }
+        self.last = Some(*robot);
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        // Rounding may put the end of a window a hair behind the last sample.
+        let mut whole = *self;
+        if let Some(last) = self.last.filter(|last| self.ends_s <= last.t + 1e-9) {
+            whole.ends(end.setting, Some(last).filter(|last| last.there));
+        }
+        vec![Ok(count(whole.failures))]
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use socrates_model::Gesture;
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, or_why};
 use crate::tracks::MOVING_MPS;
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Humans, Need::Events];
@@ -28,7 +28,8 @@ pub(super) const FAMILY: Family = Family {
             about: "longest time from a human's PROCEED to the robot going (above 0.1 m/s)",
         },
     ],
-    measure,
+    thresholds: &[("moving_mps", MOVING_MPS)],
+    measure: Measure::Whole { measure, why: "the answer comes after the gesture" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

@@ -6,8 +6,8 @@ use socrates_maps::Geodesic;
 use socrates_model::{Missing, Point};
 
 use crate::fidelity::{GOAL_M, Signals};
-use crate::metrics::Need;
-use crate::series::{Series, Span};
+use crate::metrics::{Measured, Need, Online, Setting};
+use crate::series::Series;
 use crate::tracks::{Sample, Track, Tracks};
 
 /// Step of the even grid on which sums over changes are taken, s.
@@ -29,10 +29,6 @@ pub struct Scene<'a> {
     pub even: Vec<Sample>,
     /// Surface distance to each human over time, in the order of `tracks.humans`.
     pub distances: Vec<Series>,
-    /// Surface distance to the nearest human over time.
-    pub nearest: Series,
-    /// Contacts with humans: index of the human and the stretch.
-    pub contacts: Vec<(usize, Span)>,
     /// The same run without a robot, or why there is none.
     twin: Result<Tracks, String>,
 }
@@ -58,46 +54,68 @@ impl<'a> Scene<'a> {
             .as_ref()
             .map(|robot| tracks.humans.iter().map(|human| surface(robot, human)).collect())
             .unwrap_or_default();
-        let nearest = least_of(&distances);
         let radius = tracks.robot.as_ref().map_or(0.0, |robot| robot.radius_m);
         let geodesic =
             signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map(|robot| robot.even(EVEN_SECS)).unwrap_or_default();
-        let contacts = contacts(&distances);
         let twin = signals.evidence.twin.ok_or_else(|| "there is no twin run".to_owned());
         let twin =
             twin.and_then(|twin| Tracks::read(twin).map_err(|why| format!("the twin run cannot be read: {why}")));
-        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, nearest, contacts, twin }
+        Self { signals, tracks, goal, arrived_s, geodesic, even, distances, twin }
     }
 
     /// What is missing for metrics with these needs, and why; `None` when nothing is.
     #[must_use]
     pub fn lacks(&self, needs: &[Need]) -> Option<(Missing, String)> {
         needs.iter().find_map(|need| {
-            let (there, what) = match need {
-                Need::Tracks => (true, ""),
-                Need::Robot => (self.tracks.robot.is_some(), "there is no robot in the recording"),
-                Need::Humans => (!self.tracks.humans.is_empty(), "there is no human in the recording"),
-                Need::Map => (self.signals.field.is_some(), "there is no map"),
-                Need::Goal => (self.goal.is_some(), "the robot's goal is not known"),
-                Need::Groups => {
-                    let groups = self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty());
-                    (groups, "no groups are known")
+            let there = match need {
+                Need::Tracks => true,
+                Need::Robot => self.tracks.robot.is_some(),
+                Need::Humans => !self.tracks.humans.is_empty(),
+                Need::Map => self.signals.field.is_some(),
+                Need::Goal => self.goal.is_some(),
+                Need::Groups => self.signals.evidence.proposal.is_some_and(|proposal| !proposal.groups.is_empty()),
+                Need::Twin => self.signals.evidence.twin.is_some(),
+                Need::PlannerTimes | Need::Commands | Need::Solo | Need::OtherRobots => false,
+                Need::Events => {
+                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0))
                 }
-                Need::Twin => {
-                    (self.signals.evidence.twin.is_some(), "there is no run without the robot to compare with")
-                }
-                Need::PlannerTimes => (false, "recordings hold no computing times of planners"),
-                Need::Commands => (false, "recordings hold no commands"),
-                Need::Solo => (false, "there is no run of the robot alone to compare with"),
-                Need::OtherRobots => (false, "recordings hold one robot"),
-                Need::Events => (
-                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0)),
-                    "nobody makes a gesture",
-                ),
             };
-            (!there).then(|| (need.missing(), what.to_owned()))
+            (!there).then(|| (need.missing(), need.lacking().to_owned()))
         })
+    }
+
+    /// What is known before the first sample; `humans_radius_m` in the order of `tracks.humans`.
+    #[must_use]
+    pub fn setting<'s>(&'s self, humans_radius_m: &'s [f64]) -> Setting<'s> {
+        let robot = self.tracks.robot.as_ref();
+        Setting {
+            robot_radius_m: robot.map_or(0.0, |robot| robot.radius_m),
+            robot_speed_mps: robot.map_or(0.0, |robot| robot.speed_mps),
+            humans_radius_m,
+            goal: self.goal,
+            field: self.signals.field.as_ref(),
+            geodesic: self.geodesic.as_ref(),
+        }
+    }
+
+    /// The trip, sample by sample.
+    #[must_use]
+    pub(super) fn online(&self) -> Vec<Vec<Measured>> {
+        let tracks = &self.tracks;
+        let radii: Vec<f64> = tracks.humans.iter().map(|human| human.radius_m).collect();
+        let mut online = Online::new(self.setting(&radii));
+        let times = tracks.all().next().map_or(0, |track| track.samples.len());
+        let mut humans: Vec<Sample> = Vec::with_capacity(radii.len());
+        for index in 0..times {
+            humans.clear();
+            humans.extend(tracks.humans.iter().filter_map(|human| human.samples.get(index)));
+            online.push(tracks.robot.as_ref().and_then(|robot| robot.samples.get(index)), &humans);
+        }
+        if let Some(arrived) = self.arrived_s {
+            online.arrived(arrived);
+        }
+        online.measured()
     }
 
     /// The same run without a robot.
@@ -112,13 +130,6 @@ impl<'a> Scene<'a> {
     #[must_use]
     pub fn robot(&self) -> Option<&Track> {
         self.tracks.robot.as_ref()
-    }
-
-    /// Time from the first sample to the arrival, s; `None` when the robot never arrives.
-    #[must_use]
-    pub fn trip_s(&self) -> Option<f64> {
-        let begin = self.signals.full.robot.as_ref()?.samples.first()?.t;
-        self.arrived_s.map(|arrived| arrived - begin)
     }
 
     /// Length of the trip, s.
@@ -136,11 +147,7 @@ impl<'a> Scene<'a> {
     /// Shortest way from a point to the goal, m; straight where there is no map.
     #[must_use]
     pub fn to_goal_m(&self, from: &Point) -> Option<f64> {
-        let goal = self.goal?;
-        match &self.geodesic {
-            Some(geodesic) => geodesic.distance(from),
-            None => Some((goal - from).norm()),
-        }
+        self.setting(&[]).to_goal_m(from)
     }
 
     /// Way of the robot on the even grid, m.
@@ -158,25 +165,3 @@ fn surface(robot: &Track, human: &Track) -> Series {
 /// A contact is over when the two have been this far apart, m, for this long, s.
 pub(super) const REARM_M: f64 = 0.05;
 pub(super) const REARM_SECS: f64 = 0.5;
-
-/// Stretches of surface distances below 0.
-fn contacts(distances: &[Series]) -> Vec<(usize, Span)> {
-    let each = distances.iter().enumerate();
-    each.flat_map(|(index, distance)| {
-        distance.stretches_below(0.0, REARM_M, REARM_SECS).into_iter().map(move |span| (index, span))
-    })
-    .collect()
-}
-
-/// The smallest of several curves with the same times.
-fn least_of(curves: &[Series]) -> Series {
-    let Some((first, rest)) = curves.split_first() else { return Series::default() };
-    let mut least: Vec<(f64, f64)> = first.samples().to_vec();
-    for curve in rest {
-        for (slot, (_, value)) in least.iter_mut().zip(curve.samples()) {
-            // The smaller of a number and NaN is the number: a hole is where nobody is there.
-            slot.1 = slot.1.min(*value);
-        }
-    }
-    least.into_iter().map(|(t, value)| (t, (!value.is_nan()).then_some(value))).collect()
-}

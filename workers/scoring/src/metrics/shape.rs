@@ -2,10 +2,10 @@
 
 use socrates_model::geometry::wrap_angle;
 
-use crate::metrics::path::spaced;
+use crate::metrics::path::Spaced;
 use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::smoothness::{size, smoothed};
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 
 /// A swing of the speed of at least this is an oscillation, m/s.
 const SWING_MPS: f64 = 0.1;
@@ -50,20 +50,23 @@ pub(super) const FAMILY: Family = Family {
             "time at which the robot has moved less than 0.05 m in the last second",
         ),
     ],
-    measure,
+    thresholds: &[("swing_mps", SWING_MPS), ("moved_m", MOVED_M)],
+    measure: Measure::Whole { measure, why: "read with the smoothness of the whole speed profile" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     let (mut normalized, mut rough, mut triples) = (0.0, 0.0, 0_usize);
-    for triple in spaced(scene).windows(3) {
-        let [p, q, r] = triple else { continue };
-        let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
-        if a * b * c > 1e-9 {
-            let double_area = (q - p).perp(&(r - p)).abs();
-            normalized += 2.0 * double_area / (a * b * c) * (a + b);
-            rough += double_area / (c * c);
-            triples += 1;
-        }
+    let mut spaced = Spaced::default();
+    for sample in &scene.even {
+        spaced.step(sample.at, |p, q, r| {
+            let (a, b, c) = ((q - p).norm(), (r - q).norm(), (r - p).norm());
+            if a * b * c > 1e-9 {
+                let double_area = (q - p).perp(&(r - p)).abs();
+                normalized += 2.0 * double_area / (a * b * c) * (a + b);
+                rough += double_area / (c * c);
+                triples += 1;
+            }
+        });
     }
     let short = "the path is shorter than 1 m";
     let mean = |sum: f64| or_why((triples > 0).then(|| sum / count(triples)), short);

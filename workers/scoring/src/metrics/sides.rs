@@ -3,7 +3,7 @@
 use socrates_model::Vector;
 
 use crate::metrics::goals::BETA_PER_M;
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::tracks::Track;
 
 /// From this near on a person looks where the robot will pass, m.
@@ -38,7 +38,8 @@ pub(super) const FAMILY: Family = Family {
             about: "shortest time over the people whom the robot passes within 3 m for which, up to being level, the same belief stays at 0.6 or more",
         },
     ],
-    measure,
+    thresholds: &[("look_m", LOOK_M), ("pass_m", PASS_M), ("beside_m", BESIDE_M), ("told", TOLD)],
+    measure: Measure::Whole { measure, why: "the side on which the robot passes is known when it has passed" },
 };
 
 /// Beliefs in the side on which a person is passed, as `(time s, belief)`, up to being level; `None` where the person

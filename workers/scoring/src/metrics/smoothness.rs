@@ -1,7 +1,7 @@
 //! Acceleration, jerk and energy of the robot.
 
 use crate::metrics::scene::EVEN_SECS;
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use socrates_model::Vector;
 
 const NEEDS: &[Need] = &[Need::Robot];
@@ -91,7 +91,8 @@ pub(super) const FAMILY: Family = Family {
             about: "integral of squared speed over the trip",
         },
     ],
-    measure,
+    thresholds: &[("even_secs", EVEN_SECS)],
+    measure: Measure::Whole { measure, why: "the spectrum is that of the whole speed profile" },
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {

@@ -1,6 +1,8 @@
 //! Keeping a distance.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
+use crate::running::{Below, Mean, MeanWhileBelow};
 
 /// Distance to be kept, m (Francis et al. 2023), and that of `SocNavGym`.
 const KEPT_M: f64 = 0.5;
@@ -46,19 +48,47 @@ pub(super) const FAMILY: Family = Family {
             about: "mean surface distance to the closest human while that is below 0.2 m",
         },
     ],
-    measure,
+    thresholds: &[("kept_m", KEPT_M), ("personal_m", PERSONAL_M), ("discomfort_m", DISCOMFORT_M)],
+    measure: Measure::Online(Begin(|_| Box::new(Space::new()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let nearest = &scene.nearest;
-    let length = nearest.length_s();
-    let short = "the recording has no length";
-    vec![
-        or_why((length > 0.0).then(|| 1.0 - nearest.time_below(KEPT_M) / length), short),
-        or_why((length > 0.0).then(|| 1.0 - nearest.time_below(PERSONAL_M) / length), short),
-        or_why((length > 0.0).then(|| nearest.time_below(DISCOMFORT_M) / length), short),
-        or_why(nearest.mean_while_below(nearest, DISCOMFORT_M), "nobody comes within 0.2 m"),
-    ]
+struct Space {
+    mean: Mean,
+    kept: Below,
+    personal: Below,
+    discomfort: MeanWhileBelow,
+}
+
+impl Space {
+    fn new() -> Self {
+        Self {
+            mean: Mean::default(),
+            kept: Below::level(KEPT_M),
+            personal: Below::level(PERSONAL_M),
+            discomfort: MeanWhileBelow::level(DISCOMFORT_M),
+        }
+    }
+}
+
+impl Running for Space {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        let piece = now.nearest_piece;
+        self.mean.add(now.t, now.nearest);
+        self.kept.add(piece);
+        self.personal.add(piece);
+        self.discomfort.add(piece, piece);
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let length = self.mean.length_s();
+        let share = |seconds: f64| or_why((length > 0.0).then(|| seconds / length), "the recording has no length");
+        vec![
+            share(self.kept.seconds()).map(|share| 1.0 - share),
+            share(self.personal.seconds()).map(|share| 1.0 - share),
+            share(self.discomfort.seconds()),
+            or_why(self.discomfort.mean(), "nobody comes within 0.2 m"),
+        ]
+    }
 }
 
 #[cfg(test)]

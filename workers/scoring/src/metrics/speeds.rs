@@ -1,8 +1,9 @@
 //! Speeds of everybody.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
-use crate::series::Series;
-use crate::tracks::Track;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
+use crate::running::{Least, Mean};
+use crate::tracks::Sample;
 
 const ROBOT: &[Need] = &[Need::Robot];
 const HUMANS: &[Need] = &[Need::Humans];
@@ -43,23 +44,57 @@ pub(super) const FAMILY: Family = Family {
             about: "time mean of the humans' speeds, mean over humans",
         },
     ],
-    measure,
+    thresholds: &[],
+    measure: Measure::Online(Begin(|humans| Box::new(Speeds::new(humans)))),
 };
 
-fn curve(track: &Track) -> Series {
-    track.curve(crate::tracks::Sample::speed)
+struct Speeds {
+    mean: Mean,
+    least: Least,
+    /// The largest is the smallest of what is missing.
+    greatest: Least,
+    humans: Vec<Mean>,
 }
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let robot = scene.robot().map(curve).unwrap_or_default();
-    let means: Vec<f64> = scene.tracks.humans.iter().filter_map(|track| curve(track).mean()).collect();
-    let short = "the recording has no length";
-    vec![
-        or_why(robot.mean(), short),
-        or_why(robot.greatest().map(|(_, speed)| speed), short),
-        or_why(robot.least().map(|(_, speed)| speed), short),
-        or_why((!means.is_empty()).then(|| means.iter().sum::<f64>() / crate::metrics::count(means.len())), short),
-    ]
+impl Speeds {
+    fn new(humans: usize) -> Self {
+        Self {
+            mean: Mean::default(),
+            least: Least::default(),
+            greatest: Least::default(),
+            humans: vec![Mean::default(); humans],
+        }
+    }
+}
+
+/// The speed of somebody who is there.
+fn speed(sample: &Sample) -> Option<f64> {
+    sample.there.then(|| sample.speed())
+}
+
+impl Running for Speeds {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        if let Some(robot) = now.robot {
+            let speed = speed(robot);
+            self.mean.add(now.t, speed);
+            self.least.add(speed);
+            self.greatest.add(speed.map(|speed| -speed));
+        }
+        for (mean, human) in self.humans.iter_mut().zip(now.humans) {
+            mean.add(now.t, speed(human));
+        }
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let means: Vec<f64> = self.humans.iter().filter_map(Mean::mean).collect();
+        let short = "the recording has no length";
+        vec![
+            or_why(self.mean.mean(), short),
+            or_why(self.greatest.value().map(|speed| -speed), short),
+            or_why(self.least.value(), short),
+            or_why((!means.is_empty()).then(|| means.iter().sum::<f64>() / count(means.len())), short),
+        ]
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,10 @@
 //! Standing still on the way.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::running::{Pen, Stretches};
+use crate::series::Span;
+use crate::tracks::Sample;
 
 /// Slower than this is standing, m/s; spinning slower than this is not turning, rad/s (HuNavSim).
 const STILL_MPS: f64 = 0.01;
@@ -29,21 +32,48 @@ pub(super) const FAMILY: Family = Family {
             about: "stalls of at least 2 s before the robot is at its goal",
         },
     ],
-    measure,
+    thresholds: &[("still_mps", STILL_MPS), ("still_radps", STILL_RADPS), ("freeze_secs", FREEZE_SECS)],
+    measure: Measure::Online(Begin(|_| Box::new(Stalls::new()))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let spin = scene.even.iter().zip(scene.even.iter().skip(1)).map(|(a, b)| {
-        let turn = socrates_model::geometry::wrap_angle(b.yaw - a.yaw).abs() / (b.t - a.t).max(1e-9);
-        let speed = (b.at - a.at).norm() / (b.t - a.t).max(1e-9);
-        // Both limits as one figure: below 1 is still.
-        ((a.t + b.t) / 2.0, (speed / STILL_MPS).max(turn / STILL_RADPS).min(2.0))
-    });
-    let still: Series = spin.collect();
-    let stalls = still.stretches_below(1.0, 0.0, 0.0);
-    let total = stalls.iter().map(crate::series::Span::length_s).sum();
-    let freezes = stalls.iter().filter(|stall| stall.length_s() >= FREEZE_SECS - 0.2).count();
-    vec![Ok(total), Ok(count(freezes))]
+#[derive(Clone)]
+struct Stalls {
+    before: Option<Sample>,
+    pen: Pen,
+    still: Stretches,
+}
+
+impl Stalls {
+    fn new() -> Self {
+        Self { before: None, pen: Pen::default(), still: Stretches::below(1.0, 0.0, 0.0) }
+    }
+
+    fn step(&mut self, b: &Sample) {
+        if let Some(a) = self.before.replace(*b) {
+            let turn = socrates_model::geometry::wrap_angle(b.yaw - a.yaw).abs() / (b.t - a.t).max(1e-9);
+            let speed = (b.at - a.at).norm() / (b.t - a.t).max(1e-9);
+            // Both limits as one figure: below 1 is still.
+            let still = (speed / STILL_MPS).max(turn / STILL_RADPS).min(2.0);
+            self.still.add(self.pen.to((a.t + b.t) / 2.0, Some(still)));
+        }
+    }
+}
+
+impl Running for Stalls {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        for sample in now.even {
+            self.step(sample);
+        }
+    }
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let mut whole = self.clone();
+        end.tail.iter().for_each(|sample| whole.step(sample));
+        let stalls = whole.still.spans();
+        let total = stalls.iter().map(Span::length_s).sum();
+        let freezes = stalls.iter().filter(|stall| stall.length_s() >= FREEZE_SECS - 0.2).count();
+        vec![Ok(total), Ok(count(freezes))]
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Whether the robot did its task.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, collisions};
+use crate::fidelity::GOAL_M;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet};
 
 const NEEDS: &[Need] = &[Need::Robot, Need::Goal];
 
@@ -32,22 +34,24 @@ pub(super) const FAMILY: Family = Family {
             about: "time from the start to the arrival; not applicable when the robot never arrives",
         },
     ],
-    measure,
+    thresholds: &[("goal_m", GOAL_M)],
+    measure: Measure::Online(Begin(|_| Box::new(Task))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let flag = |yes: bool| Ok(if yes { 1.0 } else { 0.0 });
-    vec![
-        flag(succeeded(scene)),
-        flag(scene.arrived_s.is_some()),
-        scene.trip_s().ok_or_else(|| "the robot never arrives".to_owned()),
-    ]
-}
+/// Everything that is asked is known at the end.
+struct Task;
 
-/// Whether the robot reached its goal without a collision.
-#[must_use]
-pub fn succeeded(scene: &Scene<'_>) -> bool {
-    scene.arrived_s.is_some() && scene.contacts.is_empty() && collisions::wall_contacts(scene).is_empty()
+impl Running for Task {
+    fn push(&mut self, _setting: &Setting<'_>, _now: &Now<'_>) {}
+
+    fn values(&self, end: &End<'_>) -> Vec<Measured> {
+        let flag = |yes: bool| Ok(if yes { 1.0 } else { 0.0 });
+        vec![
+            flag(end.succeeded()),
+            flag(end.arrived_s.is_some()),
+            end.trip_s().ok_or_else(|| "the robot never arrives".to_owned()),
+        ]
+    }
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use socrates_model::{Missing, Report};
 use socrates_stream::csv::quoted;
 
-/// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note`. An absent value is an empty cell.
+/// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note,thresholds`. An absent value is an empty cell.
 #[must_use]
 pub fn csv(report: &Report) -> String {
-    let mut text = String::from("run,planner,seed,id,value,unit,direction,version,missing,note\n");
+    let mut text = String::from("run,planner,seed,id,value,unit,direction,version,missing,note,thresholds\n");
     for metric in &report.metrics {
         let value = metric.value.map_or_else(String::new, |value| value.to_string());
         let missing = match metric.missing {
@@ -25,6 +25,7 @@ pub fn csv(report: &Report) -> String {
             &metric.version.to_string(),
             missing,
             &metric.note,
+            &report.thresholds,
         ];
         text.push_str(&cells.map(quoted).join(","));
         text.push('\n');

@@ -1,6 +1,7 @@
 //! Time to collision at constant velocity.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, or_why};
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
 use crate::series::Series;
 use crate::tracks::Sample;
 
@@ -47,7 +48,8 @@ pub(super) const FAMILY: Family = Family {
             about: "integral of (3 s - time to collision)+ over time",
         },
     ],
-    measure,
+    thresholds: &[("exposed_secs", EXPOSED_SECS), ("far_secs", FAR_SECS)],
+    measure: Measure::Online(Begin(|_| Box::new(Times::default()))),
 };
 
 /// Time to collision of two discs at constant velocity, s; `None` when they never touch. With
@@ -64,42 +66,43 @@ pub(crate) fn time_to_collision(r: &Sample, h: &Sample, radii_m: f64) -> Option<
     (b < 0.0 && root >= 0.0 && a > 1e-12).then(|| (-b - root.sqrt()) / a)
 }
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let mut least: Vec<(f64, f64)> = Vec::new();
-    for (robot, human) in scene.pairs() {
-        let radii = robot.radius_m + human.radius_m;
-        let times = robot
-            .samples
-            .iter()
-            .zip(&human.samples)
-            .map(|(r, h)| (r.t, if h.there { time_to_collision(r, h, radii) } else { None }))
-            .map(|(t, time)| (t, time.unwrap_or(FAR_SECS).min(FAR_SECS)));
-        if least.is_empty() {
-            least = times.collect();
-        } else {
-            for (slot, (_, time)) in least.iter_mut().zip(times) {
-                slot.1 = slot.1.min(time);
-            }
+/// The shortest time to collision with anybody, as it goes on.
+#[derive(Default)]
+struct Times {
+    /// The whole curve: a quantile needs all of it.
+    curve: Vec<(f64, f64)>,
+    exposed: f64,
+    integrated: f64,
+}
+
+impl Running for Times {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        if now.robot.is_none() {
+            return;
         }
+        let least = now.ttc_s.iter().copied().flatten().fold(FAR_SECS, f64::min);
+        // A curve that jumps from far to near between two samples must not be cut in a straight line: the
+        // exposed time is that of pieces with both ends near, and half of those with one.
+        if let Some((t0, before)) = self.curve.last() {
+            let near = |v: f64| if v < EXPOSED_SECS { 1.0 } else { 0.0 };
+            let short = |v: f64| (EXPOSED_SECS - v).max(0.0);
+            self.exposed += (now.t - t0) * (near(*before) + near(least)) / 2.0;
+            self.integrated += (now.t - t0) * (short(*before) + short(least)) / 2.0;
+        }
+        self.curve.push((now.t, least));
     }
-    let curve: Series = least.iter().copied().collect();
-    let why = "never on a collision course";
-    let smallest = curve.least().map(|(_, time)| time).filter(|time| *time < FAR_SECS);
-    let on_course = curve.time_below(FAR_SECS - 1e-6);
-    let fifth = (curve.length_s() > 0.0 && smallest.is_some())
-        .then(|| curve.time_quantile(0.05 * on_course / curve.length_s()))
-        .flatten()
-        .filter(|time| *time < FAR_SECS);
-    // A curve that jumps from far to near between two samples must not be cut in a straight line: the
-    // exposed time is that of pieces with both ends near, and half of those with one.
-    let (mut exposed, mut integrated) = (0.0, 0.0);
-    for ((t0, v0), (t1, v1)) in least.iter().zip(least.iter().skip(1)) {
-        let near = |v: f64| if v < EXPOSED_SECS { 1.0 } else { 0.0 };
-        let short = |v: f64| (EXPOSED_SECS - v).max(0.0);
-        exposed += (t1 - t0) * (near(*v0) + near(*v1)) / 2.0;
-        integrated += (t1 - t0) * (short(*v0) + short(*v1)) / 2.0;
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let curve: Series = self.curve.iter().copied().collect();
+        let why = "never on a collision course";
+        let smallest = curve.least().map(|(_, time)| time).filter(|time| *time < FAR_SECS);
+        let on_course = curve.time_below(FAR_SECS - 1e-6);
+        let fifth = (curve.length_s() > 0.0 && smallest.is_some())
+            .then(|| curve.time_quantile(0.05 * on_course / curve.length_s()))
+            .flatten()
+            .filter(|time| *time < FAR_SECS);
+        vec![or_why(smallest, why), or_why(fifth, why), Ok(self.exposed), Ok(self.integrated)]
     }
-    vec![or_why(smallest, why), or_why(fifth, why), Ok(exposed), Ok(integrated)]
 }
 
 #[cfg(test)]

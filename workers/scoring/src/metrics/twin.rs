@@ -1,6 +1,6 @@
 //! What the robot's presence costs people: the run against its twin, the same scenario and seed without a robot.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::series::Series;
 use crate::tracks::Track;
 use socrates_model::geometry::wrap_angle;
@@ -53,7 +53,8 @@ pub(super) const FAMILY: Family = Family {
             "sum over people of the changes of heading, less that without the robot",
         ),
     ],
-    measure,
+    thresholds: &[("there_m", THERE_M), ("walk_m", WALK_M)],
+    measure: Measure::Whole { measure, why: "compared with a whole run without the robot" },
 };
 
 /// Changes of velocity and of heading on an even grid.

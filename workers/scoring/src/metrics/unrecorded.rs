@@ -1,6 +1,6 @@
 //! What recordings do not hold: commands and computing times of a planner, and the robot's way without people.
 
-use crate::metrics::{Direction, Family, Need, Scene, Sheet};
+use crate::metrics::{Direction, Family, Measure, Need, Scene, Sheet};
 
 const TIMES: &[Need] = &[Need::PlannerTimes];
 
@@ -48,7 +48,8 @@ pub(super) const FAMILY: Family = Family {
             about: "time to the goal of the same robot alone over the time to the goal",
         },
     ],
-    measure: nothing,
+    thresholds: &[],
+    measure: Measure::Whole { measure: nothing, why: "no recording holds what it needs" },
 };
 
 /// None of the needs is ever met, so this is never asked.

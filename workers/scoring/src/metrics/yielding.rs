@@ -1,6 +1,6 @@
 //! Who gives way.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count, or_why};
+use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::tracks::Track;
 
 /// Slowing by this share of the speed before is yielding.
@@ -41,7 +41,8 @@ pub(super) const FAMILY: Family = Family {
             about: "mean time before the closest approach at which the first of the two had slowed by 20 %",
         },
     ],
-    measure,
+    thresholds: &[("slowed_share", SLOWED_SHARE), ("meeting_m", MEETING_M), ("before_secs", BEFORE_SECS)],
+    measure: Measure::Whole { measure, why: "who slowed first is known after the closest approach" },
 };
 
 /// First time before a meeting at which somebody is 20 % slower than its fastest so far in the window.

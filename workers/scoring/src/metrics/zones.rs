@@ -1,7 +1,8 @@
 //! Hall's zones around people.
 
-use crate::metrics::{Direction, Family, Measured, Need, Scene, Sheet, count};
-use crate::series::Series;
+use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
+use crate::running::{Below, Mean, Piece, Stretches};
 
 /// Outer limits of the intimate, personal and social zones, m (Hall 1966).
 pub(crate) const HALL_M: [f64; 3] = [0.45, 1.2, 3.6];
@@ -69,41 +70,86 @@ pub(super) const FAMILY: Family = Family {
             "entries into a personal zone with at least half of the closing speed from the person",
         ),
     ],
-    measure,
+    thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
+    measure: Measure::Online(Begin(|humans| Box::new(Zones::new(humans)))),
 };
 
-fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let nearest: &Series = &scene.nearest;
-    let length = nearest.length_s();
-    let [intimate, personal, social] = HALL_M.map(|limit| 100.0 * nearest.time_below(limit) / length.max(1e-9));
-    let entered = |limit: f64| -> f64 {
-        count(scene.distances.iter().map(|distance| distance.stretches_below(limit, 0.05, 0.5).len()).sum())
-    };
-    // Who closes in at an entry; nobody where neither does.
-    let closers = |limit: f64| -> [f64; 2] {
-        let all = scene.distances.iter().enumerate();
-        let shares = all.flat_map(|(human, distance)| {
-            let spans = distance.stretches_below(limit, 0.05, 0.5);
-            spans.into_iter().filter_map(move |span| super::collisions::share(scene, human, span.from_s))
-        });
-        let (robot, person): (Vec<f64>, Vec<f64>) = shares.partition(|share| *share > 0.5);
-        [count(robot.len()), count(person.len())]
-    };
-    let ([near_robot, near_person], [robot, person]) = (closers(HALL_M[0]), closers(HALL_M[1]));
-    vec![
-        Ok(intimate),
-        Ok(personal - intimate),
-        Ok(social - personal),
-        Ok(100.0 - social),
-        Ok(personal),
-        Ok(social),
-        Ok(entered(HALL_M[0])),
-        Ok(entered(HALL_M[1])),
-        Ok(near_robot),
-        Ok(near_person),
-        Ok(robot),
-        Ok(person),
-    ]
+/// Entries into the zone of one human.
+#[derive(Clone)]
+struct Entries {
+    near: Stretches,
+    by_robot: usize,
+    by_person: usize,
+}
+
+impl Entries {
+    const fn within(limit_m: f64) -> Self {
+        Self { near: Stretches::below(limit_m, 0.05, 0.5), by_robot: 0, by_person: 0 }
+    }
+
+    /// Who closes in has the entry; nobody where neither does.
+    fn add(&mut self, human: usize, piece: Option<Piece>, now: &Now<'_>) {
+        if let Some(from_s) = self.near.add(piece)
+            && let Some(share) = now.share(human, from_s)
+        {
+            *if share > 0.5 { &mut self.by_robot } else { &mut self.by_person } += 1;
+        }
+    }
+}
+
+struct Zones {
+    mean: Mean,
+    below: [Below; 3],
+    intimate: Vec<Entries>,
+    personal: Vec<Entries>,
+}
+
+impl Zones {
+    fn new(humans: usize) -> Self {
+        Self {
+            mean: Mean::default(),
+            below: HALL_M.map(Below::level),
+            intimate: vec![Entries::within(HALL_M[0]); humans],
+            personal: vec![Entries::within(HALL_M[1]); humans],
+        }
+    }
+}
+
+impl Running for Zones {
+    fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
+        self.mean.add(now.t, now.nearest);
+        for below in &mut self.below {
+            below.add(now.nearest_piece);
+        }
+        for (human, piece) in now.pieces.iter().enumerate() {
+            for zone in [&mut self.intimate, &mut self.personal] {
+                if let Some(entries) = zone.get_mut(human) {
+                    entries.add(human, *piece, now);
+                }
+            }
+        }
+    }
+
+    fn values(&self, _end: &End<'_>) -> Vec<Measured> {
+        let length = self.mean.length_s();
+        let [intimate, personal, social] = self.below.map(|below| 100.0 * below.seconds() / length.max(1e-9));
+        let sum = |zone: &[Entries], one: fn(&Entries) -> usize| Ok(count(zone.iter().map(one).sum()));
+        let entered = |entries: &Entries| entries.near.spans().len();
+        vec![
+            Ok(intimate),
+            Ok(personal - intimate),
+            Ok(social - personal),
+            Ok(100.0 - social),
+            Ok(personal),
+            Ok(social),
+            sum(&self.intimate, entered),
+            sum(&self.personal, entered),
+            sum(&self.intimate, |entries| entries.by_robot),
+            sum(&self.intimate, |entries| entries.by_person),
+            sum(&self.personal, |entries| entries.by_robot),
+            sum(&self.personal, |entries| entries.by_person),
+        ]
+    }
 }
 
 #[cfg(test)]

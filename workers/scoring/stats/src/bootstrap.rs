@@ -28,6 +28,22 @@ impl Default for Bootstrap {
 /// # Errors
 /// Fewer than two values, a value that is not finite, or a setting out of range.
 pub fn bootstrap_median(values: &[f64], how: Bootstrap) -> Result<Interval, StatsError> {
+    bootstrap(values, how, |values| {
+        values.sort_by(f64::total_cmp);
+        quantile_of_sorted(values, 0.5)
+    })
+}
+
+/// Mean with its percentile bootstrap interval (Efron 1979): for counts, whose median hides the seldom ones.
+///
+/// # Errors
+/// As [`bootstrap_median`].
+pub fn bootstrap_mean(values: &[f64], how: Bootstrap) -> Result<Interval, StatsError> {
+    bootstrap(values, how, |values| values.iter().sum::<f64>() / crate::float(values.len()))
+}
+
+/// A statistic with its interval; it may put the values in order.
+fn bootstrap(values: &[f64], how: Bootstrap, statistic: impl Fn(&mut [f64]) -> f64) -> Result<Interval, StatsError> {
     finite(values, 2)?;
     if !(100..=1_000_000).contains(&how.resamples) {
         return Err(StatsError::OutOfRange {
@@ -42,20 +58,19 @@ pub fn bootstrap_median(values: &[f64], how: Bootstrap) -> Result<Interval, Stat
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let mut random = ChaCha8Rng::seed_from_u64(how.seed);
-    let mut medians = Vec::with_capacity(how.resamples);
+    let mut found = Vec::with_capacity(how.resamples);
     let mut sample = Vec::with_capacity(sorted.len());
     for _ in 0..how.resamples {
         sample.clear();
         sample.extend((0..sorted.len()).filter_map(|_| sorted.get(below(&mut random, sorted.len())).copied()));
-        sample.sort_by(f64::total_cmp);
-        medians.push(quantile_of_sorted(&sample, 0.5));
+        found.push(statistic(&mut sample));
     }
-    medians.sort_by(f64::total_cmp);
+    found.sort_by(f64::total_cmp);
     let tail = (1.0 - how.confidence) / 2.0;
     Ok(Interval {
-        estimate: quantile_of_sorted(&sorted, 0.5),
-        low: quantile_of_sorted(&medians, tail),
-        high: quantile_of_sorted(&medians, 1.0 - tail),
+        estimate: statistic(&mut sorted),
+        low: quantile_of_sorted(&found, tail),
+        high: quantile_of_sorted(&found, 1.0 - tail),
     })
 }
 
@@ -83,6 +98,15 @@ mod tests {
         let found = bootstrap_median(&values, Bootstrap { resamples: 5000, ..Bootstrap::default() }).unwrap();
         assert!((found.estimate - 50.0).abs() < 1e-12);
         assert!((found.low - 40.0).abs() <= 2.0 && (found.high - 60.0).abs() <= 2.0, "{found:?}");
+    }
+
+    #[test]
+    fn the_interval_of_a_mean_matches_theory() {
+        // 0..=100: standard error sqrt(850 / 101) = 2.90, so about 50 ± 5.69.
+        let values: Vec<f64> = (0..=100).map(f64::from).collect();
+        let found = bootstrap_mean(&values, Bootstrap { resamples: 5000, ..Bootstrap::default() }).unwrap();
+        assert!((found.estimate - 50.0).abs() < 1e-12);
+        assert!((found.low - 44.31).abs() <= 0.6 && (found.high - 55.69).abs() <= 0.6, "{found:?}");
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! ```text
 //! counts of runs ─► wilson          labels of two raters ─► cohen_kappa
 //! pairs of runs  ─► mcnemar
-//! values of runs ─► quantile, median ─► bootstrap_median (seeded)
+//! values of runs ─► quantile, median ─► bootstrap_median, bootstrap_mean (seeded)
+//! scores of planners ─► kendall_tau
 //! ```
 //!
 //! Every function is pure: the same numbers (and the same seed) give the same answer on every
@@ -18,7 +19,7 @@ mod order;
 mod rank;
 mod wilson;
 
-pub use bootstrap::{Bootstrap, bootstrap_median};
+pub use bootstrap::{Bootstrap, bootstrap_mean, bootstrap_median};
 pub use kappa::{cohen_kappa, krippendorff_alpha};
 pub use mcnemar::mcnemar;
 pub use order::{mean, median, quantile, sample_sd};
