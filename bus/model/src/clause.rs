@@ -54,6 +54,16 @@ pub enum Predicate {
         /// Largest distance between the two.
         within_m: f64,
     },
+    /// The human and the robot meet for the `nth` time: they come within `within_m` of each other near the human's nth
+    /// encounter node (both within 3 m of it), after the robot has left the encounter before behind.
+    MeetsAgain {
+        /// Who.
+        human: HumanId,
+        /// Which of its encounters, from 2.
+        nth: u32,
+        /// Largest distance between the two.
+        within_m: f64,
+    },
     /// The human moves against the robot's heading as they first come within 6 m (150–180°, closing).
     HeadOn {
         /// Who.
@@ -332,6 +342,7 @@ impl Predicate {
     pub const fn human(&self) -> Option<HumanId> {
         match self {
             Self::Meets { human, .. }
+            | Self::MeetsAgain { human, .. }
             | Self::HeadOn { human }
             | Self::Crosses { human, .. }
             | Self::Ahead { human, .. }

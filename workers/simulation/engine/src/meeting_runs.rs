@@ -36,7 +36,7 @@ fn met(recording: &Recording) -> Vec<(u32, String, f64)> {
         .events
         .iter()
         .filter_map(|event| {
-            if let EventKind::Encounter { human, node, gap_s } = &event.kind {
+            if let EventKind::Encounter { human, node, gap_s, .. } = &event.kind {
                 Some((human.number(), node.to_string(), *gap_s))
             } else {
                 None
