@@ -103,6 +103,10 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         }
         FactKind::Reacts { human, rule } => format!("{human}: {}", terse::rule_line(rule)),
         FactKind::Relates { human, relation } => format!("{human}: relation {}", terse::line(&json!(relation))),
+        FactKind::MeetsTimes { human, times, place } => {
+            let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
+            format!("{human}: meets the robot {times} times{place}")
+        }
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),

@@ -38,9 +38,8 @@ pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
         let meeting = signals.meeting(encounter.human, nth);
         let own = |t: f64| meeting.is_none_or(|meeting| (meeting.from_s..meeting.to_s).contains(&t));
         let arrival = |samples: &[crate::tracks::Sample]| {
-            let there = |sample: &&crate::tracks::Sample| {
-                sample.there && own(sample.t) && (sample.at - at).norm() <= ARRIVED_M
-            };
+            let there =
+                |sample: &&crate::tracks::Sample| sample.there && own(sample.t) && (sample.at - at).norm() <= ARRIVED_M;
             samples.iter().find(there).map(|sample| sample.t)
         };
         if let (Some(first), Some(second)) = (arrival(&robot.samples), arrival(&human.samples)) {

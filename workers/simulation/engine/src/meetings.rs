@@ -30,10 +30,10 @@ pub(crate) fn of(
     for visit in &found {
         let Some(place) = setup.location.graph.node(visit.node) else { continue };
         let at = place.at;
-        let chosen = if several { steps(visit, marks, robot_marks) } else { in_time(visit.node, marks, robot_marks, robot_mps) };
+        let chosen =
+            if several { steps(visit, marks, robot_marks) } else { in_time(visit.node, marks, robot_marks, robot_mps) };
         let (human_s, robot_s) = chosen.unwrap_or_else(|| {
-            let own =
-                marks.iter().find(|(id, _)| id == visit.node).map_or_else(|| way.project(&at).0, |(_, s)| *s);
+            let own = marks.iter().find(|(id, _)| id == visit.node).map_or_else(|| way.project(&at).0, |(_, s)| *s);
             (own, robot_way.project(&at).0)
         });
         let lead_s = if made.is_empty() {

@@ -104,7 +104,8 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         return free;
     }
     let slowest = SLOWEST_MPS.min(human.speed_mps);
-    let fastest = if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
+    let fastest =
+        if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
     let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
     let due_s = robot.eta_s(meeting.robot_s) + stands_s - meeting.lead_s;
