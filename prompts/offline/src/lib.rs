@@ -28,6 +28,7 @@ mod refer;
 mod arrange;
 mod cut;
 
+mod again;
 mod clause;
 mod measure;
 mod message;
@@ -65,9 +66,12 @@ mod humans;
 mod mended;
 mod routes;
 mod solve;
+mod twice;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod again_tests;
 
 use socrates_model::{Location, Reading, Request};
 

@@ -2,6 +2,7 @@
 
 use socrates_model::{Fault, FaultCode, Gesture, PlaceClass, Trigger};
 
+use crate::again;
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
 use crate::clause::{self, Found};
@@ -225,6 +226,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
     if !stretch.also.is_empty() {
         also_called(story, &meant, stretch);
+    }
+    if again::note(story, thread, stretch, &found, &meant, &quote) {
+        return;
     }
     if let Some(does) = ellipsis::elided(stretch, &found) {
         return ellipsis::repeat(story, thread, &meant, does, stretch, &quote);

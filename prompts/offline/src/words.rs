@@ -119,7 +119,7 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             i += 1;
         }
     }
-    out
+    crate::again::joined(out)
 }
 
 /// Pushes a word and what its apostrophe hides (`don't` is `do not`, `robot's` is `robot`); says how many characters it took.
