@@ -150,11 +150,7 @@ fn paths(question: &Question, form: PathsForm) -> Value {
     };
     // A list of nodes only where somebody meets the robot more than once.
     let again = question.proposal.as_ref().is_some_and(|proposal| !crate::vocabulary::meetings(proposal).is_empty());
-    let meet = if again {
-        json!({"anyOf": [one.clone(), list(&one), {"type": "null"}]})
-    } else {
-        or_null(&one)
-    };
+    let meet = if again { json!({"anyOf": [one.clone(), list(&one), {"type": "null"}]}) } else { or_null(&one) };
     let (robot, human) = match form {
         PathsForm::Anchors => (way(None), way(Some(("meet", meet)))),
         // A map too large for a chain of its own is walked by name.

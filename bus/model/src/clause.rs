@@ -47,7 +47,7 @@ pub enum Predicate {
         count: u32,
     },
     /// The human and the robot come within `within_m` of each other near its encounter node
-    /// (both within 3 m of it), or anywhere where it has none.
+    /// (both within 3 m of it), or anywhere where it has none; of several encounters, the first.
     Meets {
         /// Who.
         human: HumanId,

@@ -405,9 +405,10 @@ fn once(made: &Made, id: HumanId, group: Option<GroupId>) -> Option<Made> {
         first.push(encounter.human);
         !(again && with_it(encounter.human))
     });
-    other.proposal.expected_events.retain(
-        |clause| !matches!(clause.predicate, Predicate::MeetsAgain { human, .. } if with_it(human)),
-    );
+    other
+        .proposal
+        .expected_events
+        .retain(|clause| !matches!(clause.predicate, Predicate::MeetsAgain { human, .. } if with_it(human)));
     Some(other)
 }
 

@@ -160,7 +160,9 @@ pub(crate) fn fact(
     if !walks {
         problem(
             FaultCode::PRead,
-            format!("`{quote}`: who stands or goes behind the robot meets it once; ask for somebody who comes towards it or crosses its way"),
+            format!(
+                "`{quote}`: who stands or goes behind the robot meets it once; ask for somebody who comes towards it or crosses its way"
+            ),
         );
         return None;
     }

@@ -540,7 +540,9 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     desk.draft.paths = mapped(&desk.draft.paths, &text);
     let facts = &mut desk.question.reading.facts;
     let of = |kind: &FactKind| {
-        if let FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. }
+        if let FactKind::Reacts { human, .. }
+        | FactKind::Gestures { human, .. }
+        | FactKind::Relates { human, .. }
         | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)

@@ -69,9 +69,9 @@ mod solve;
 mod twice;
 
 #[cfg(test)]
-mod tests;
-#[cfg(test)]
 mod again_tests;
+#[cfg(test)]
+mod tests;
 
 use socrates_model::{Location, Reading, Request};
 

@@ -13,7 +13,7 @@ const PACES_MPS: [f64; 2] = [0.8, 1.4];
 /// The second meeting is at least so far on along the robot's way, m: 6 m are needed, and some to part and come together.
 const BETWEEN_M: f64 = 8.0;
 /// Who turns back goes at least so far away first, m.
-const AWAY_M: f64 = 2.5;
+const AWAY_M: f64 = 3.0;
 /// Somebody goes on at least so far after the second meeting, m.
 const ONWARD_M: f64 = 3.0;
 
@@ -22,6 +22,10 @@ const AFTER: f64 = 8.0;
 const ROOM: f64 = 4.0;
 /// Cost of coming by the robot's own edges where somebody is to cross its way.
 const ALONG: f64 = 6.0;
+/// Cost of not crossing the robot's way at the first meeting where that is asked for.
+const TURNS: f64 = 25.0;
+/// Cost of crossing it there along the robot's way instead of square to it, twice.
+const SLANT: f64 = 8.0;
 
 /// What a solution costs in which somebody does not meet the robot twice as asked: any other is better.
 pub(crate) const ONLY_ONCE: f64 = 80.0;
@@ -39,7 +43,9 @@ pub(crate) fn asked(proposal: &Proposal) -> Vec<(HumanId, Option<PlaceClass>)> {
             let Predicate::MeetsAgain { human, .. } = clause.predicate else { return None };
             let place = clauses.iter().filter(|other| !clause.source.is_empty() && other.source == clause.source);
             let place = place
-                .filter_map(|other| if let Predicate::EncounterAt { place } = other.predicate { Some(place) } else { None })
+                .filter_map(
+                    |other| if let Predicate::EncounterAt { place } = other.predicate { Some(place) } else { None },
+                )
                 .next();
             Some((human, place))
         })
@@ -55,9 +61,12 @@ pub(crate) fn second(
 ) -> Option<(Way, usize)> {
     let meet = route.nodes.iter().position(|node| *node == own.meet)?;
     let head = own.nodes.get(..=own.nodes.iter().position(|node| *node == own.meet)?)?;
+    let first_arms = [meet.checked_sub(1).and_then(|before| route.nodes.get(before)), route.nodes.get(meet + 1)];
     let mut best: Option<(f64, Vec<usize>, usize)> = None;
     for end in meet + 1..route.nodes.len().saturating_sub(1) {
-        let (Some(node), Some(stretch)) = (route.nodes.get(end).copied(), route.nodes.get(meet..=end)) else { continue };
+        let (Some(node), Some(stretch)) = (route.nodes.get(end).copied(), route.nodes.get(meet..=end)) else {
+            continue;
+        };
         let robot_m = net.length_m(stretch);
         if robot_m < BETWEEN_M || class.is_some_and(|class| !net.is(node, class)) {
             continue;
@@ -68,7 +77,20 @@ pub(crate) fn second(
             // Who crosses the robot's way does so again, if there is such a way.
             let from = between.nodes.len().checked_sub(2).and_then(|at| between.nodes.get(at));
             let along = if relation == Relation::Crossing && arms.contains(&from) { ALONG } else { 0.0 };
-            let cost = between.cost + narrow + along;
+            // Nor does who crosses turn into the robot's way, or back, at the first meeting.
+            let next = between.nodes.get(1);
+            let came = head.len().checked_sub(2).and_then(|at| head.get(at));
+            let crossed = if relation == Relation::Crossing {
+                let turns = first_arms.contains(&next) || next == came;
+                let slant = |from: Option<&usize>, to: Option<&usize>| {
+                    from.zip(to).map_or(0.0, |(from, to)| net.straight(*from, own.meet, *to).abs())
+                };
+                let [before, after] = first_arms;
+                if turns { TURNS } else { SLANT * (slant(came, after) + slant(before, next)) }
+            } else {
+                0.0
+            };
+            let cost = between.cost + narrow + along + crossed;
             if best.as_ref().is_some_and(|(least, ..)| *least <= cost + 1e-9) {
                 continue;
             }

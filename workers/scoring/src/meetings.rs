@@ -38,9 +38,9 @@ fn robot() -> Walk {
     Walk::robot(-8., 0., 0.8, 0.)
 }
 
-/// The human at `m` at 10 s, round to the north, and at `n` at such a time.
+/// The human at `m` at 10 s, round by the north, and at `n` at such a time.
 fn human(at_n_s: f64) -> Walk {
-    let stops = [(0.0, 8.0, 0.6), (10.0, 0.0, 0.6), (14.0, 0.0, 6.0), (at_n_s - 4.0, 8.0, 6.0), (at_n_s, 8.0, 0.6)];
+    let stops = [(0.0, 8.0, 0.6), (10.0, 0.0, 0.6), (12.5, 0.0, 3.5), (at_n_s - 2.5, 8.0, 3.5), (at_n_s, 8.0, 0.6)];
     Walk::human_through(1, &[&stops[..], &[(at_n_s + 6.0, 16.0, 0.6)]].concat())
 }
 
@@ -62,7 +62,7 @@ fn two_meetings_are_judged_each_in_its_own_time() {
     assert!(first.1.unwrap() < 10.0 && second.1.unwrap() > 15.0, "{first:?} {second:?}");
     let gaps = &report.encounter_gaps_s;
     assert_eq!(gaps.keys().map(String::as_str).collect::<Vec<_>>(), ["human_1", "human_1 second meeting"]);
-    assert!(gaps.values().all(|gap| gap.abs() < 1.0), "{gaps:?}");
+    assert!(gaps.values().all(|gap| gap.abs() < 2.0), "{gaps:?}");
 }
 
 #[test]
@@ -100,6 +100,8 @@ fn who_is_asked_to_meet_twice_needs_a_clause_for_it() {
     case.reading = Some(Reading { format: 1, facts: vec![fact], ..Reading::default() });
     let run: Recording = recording(&[robot(), human(20.5)], 34.0, 0.01);
     assert_eq!(case.judge(&run).verdict, Verdict::Realised);
+    // A second encounter of the paths would be demanded whatever the proposal lists.
+    case.ways.encounters.truncate(1);
     case.plan.expected_events[0].predicate = Predicate::Meets { human: H1, within_m: 3.0 };
     assert_eq!(case.judge(&run).verdict, Verdict::Invalid);
 }
@@ -115,7 +117,8 @@ fn a_node_that_both_visit_twice_is_met_at_twice() {
         &[(0.0, -8.0, 0.0), (10.0, 0.0, 0.0), (20.0, 8.0, 0.0), (30.0, 0.0, 0.0), (37.5, 0.0, 6.0)],
     );
     let there = |again_s: f64| {
-        let stops = [(0.0, 0.0, 6.0), (9.0, 1.0, 0.8), (14.0, -8.0, 0.6), (again_s - 8.0, -8.0, 0.6), (again_s, -0.8, 0.6)];
+        let stops =
+            [(0.0, 0.0, 6.0), (9.0, 1.0, 0.8), (14.0, -8.0, 0.6), (again_s - 8.0, -8.0, 0.6), (again_s, -0.8, 0.6)];
         recording(&[Walk::through(robot.agent, &robot.stops), Walk::human_through(1, &stops)], 40.0, 0.01)
     };
     let report = case.judge(&there(30.0));
@@ -127,16 +130,14 @@ fn a_node_that_both_visit_twice_is_met_at_twice() {
 #[test]
 fn the_story_tells_which_meeting_it_is() {
     let mut run = recording(&[robot(), human(20.5)], 34.0, 0.01);
-    let meets = |nth: u32, node: &str| EventKind::Encounter {
-        human: H1,
-        node: crate::fixture::node(node),
-        gap_s: 0.25,
-        nth,
-    };
+    let meets =
+        |nth: u32, node: &str| EventKind::Encounter { human: H1, node: crate::fixture::node(node), gap_s: 0.25, nth };
     event(&mut run, 10.0, meets(1, "m"));
     event(&mut run, 20.0, meets(2, "n"));
     let report = case().judge(&run);
-    assert!(report.story.iter().any(|line| line.contains("meet at m, gap 0.2 s") || line.contains("meet at m, gap 0.3 s")));
+    assert!(
+        report.story.iter().any(|line| line.contains("meet at m, gap 0.2 s") || line.contains("meet at m, gap 0.3 s"))
+    );
     assert!(report.story.iter().any(|line| line.contains("meet for the second time at n")), "{:?}", report.story);
     assert_eq!(report.encounter_gaps_s["human_1 second meeting"], 0.25);
 }

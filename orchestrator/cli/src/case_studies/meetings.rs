@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use socrates_model::{EventKind, FaultCode, HumanId, Verdict};
+use socrates_model::{EventKind, HumanId, Verdict};
 
 use super::Case;
 use crate::config::Config;
@@ -14,7 +14,7 @@ const SEEDS: u64 = 10;
 /// Larger gaps than this are no meeting at about the same time, s.
 const GAP_SECS: f64 = 4.0;
 /// Between the meetings they are once at least so far apart, m.
-const PARTED_M: f64 = 3.5;
+const PARTED_M: f64 = 3.0;
 
 fn asked(place: &str, rough: &str) -> Prepared {
     let text = format!(
@@ -52,39 +52,51 @@ fn wrong(scenario: &Scenario, human: HumanId) -> Vec<String> {
     found
 }
 
-#[tokio::test]
-async fn look() {
-    for rough in [
-        "A nurse comes towards the robot and meets it again later.",
-        "A visitor crosses the robot's path twice.",
-        "A nurse comes towards the robot, stops and looks at it for 5 seconds, and meets it again at an intersection.",
-        "Two people walk together towards the robot and meet it twice.",
-        "The robot meets the same nurse two times. A visitor crosses its way.",
-    ] {
-        for place in ["office", "hospital", "warehouse"] {
-            let prepared = asked(place, rough);
-            let mut fine = 0;
-            let mut lines = Vec::new();
-            for seed in 1..=SEEDS {
-                match realised(prepared.clone(), seed).await {
-                    Err(why) => lines.push(format!("   {seed} {why}")),
-                    Ok(scenario) => {
-                        let done = scenario.report.verdict == Verdict::Realised;
-                        let ids = scenario.made.proposal.humans.iter().map(|human| human.id);
-                        let twice: Vec<HumanId> = ids.filter(|id| scenario.made.paths.encounters_of(*id).count() > 1).collect();
-                        let bad: Vec<String> = twice.iter().flat_map(|id| wrong(&scenario, *id)).collect();
-                        fine += u32::from(done && bad.is_empty() && !twice.is_empty());
-                        let way = |id: HumanId| scenario.made.paths.humans[&id].iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-                        let robot = scenario.made.paths.robot.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");
-                        lines.push(format!("   {seed} {} {:?} {} | {bad:?} | {robot} | {}", scenario.report.verdict, scenario.report.encounter_gaps_s, if done { "" } else { &scenario.report.verdict_text }, twice.iter().map(|id| way(*id)).collect::<Vec<_>>().join("; ")));
-                    }
+/// Of so many seeds on each of these maps at least nine are realised, with both meetings on time and apart from each other.
+async fn study(places: &[&str], rough: &str) {
+    for place in places {
+        let prepared = asked(place, rough);
+        assert_eq!(prepared.reading.problems, [], "{rough}");
+        let mut missed: Vec<String> = Vec::new();
+        for seed in 1..=SEEDS {
+            let scenario = match realised(prepared.clone(), seed).await {
+                Ok(scenario) => scenario,
+                Err(why) => {
+                    missed.push(format!("seed {seed}: {why}"));
+                    continue;
                 }
+            };
+            let report = &scenario.report;
+            let human = HumanId::new(1);
+            let mut found = wrong(&scenario, human);
+            if report.verdict != Verdict::Realised {
+                found.push(format!("{} · {}", report.verdict, report.verdict_text));
             }
-            eprintln!("{fine}/{SEEDS} {place}: {rough}");
-            for line in lines {
-                eprintln!("{line}");
+            if seed == 1 && found.is_empty() {
+                let mut tally = Tally::default();
+                try_all(&scenario, place, &mut tally);
+                let (tried, right) = tally.spoiled_of("N: second encounter left out");
+                assert_eq!((tried, right), (1, 1), "{place}: {:#?}", tally.wrong());
             }
+            missed.extend(found.into_iter().map(|what| format!("seed {seed}: {what}")));
         }
+        assert!(missed.len() <= 1, "{place}: {rough}: {missed:#?}");
     }
-    let _ = (FaultCode::GMeet, Tally::default(), try_all as fn(&Scenario, &str, &mut Tally));
+}
+
+#[tokio::test]
+async fn who_comes_towards_the_robot_meets_it_again() {
+    study(&["office", "hospital", "warehouse"], "A nurse comes towards the robot and meets it again later.").await;
+}
+
+#[tokio::test]
+async fn who_looks_for_a_while_meets_it_again_where_it_was_said() {
+    let rough =
+        "A nurse comes towards the robot, stops and looks at it for 5 seconds, and meets it again at an intersection.";
+    study(&["office", "hospital"], rough).await;
+}
+
+#[tokio::test]
+async fn who_crosses_the_robots_way_does_so_twice() {
+    study(&["office", "warehouse"], "A visitor crosses the robot's path twice.").await;
 }

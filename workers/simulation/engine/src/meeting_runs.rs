@@ -121,17 +121,27 @@ fn somebody_who_goes_round_the_block_meets_the_robot_twice() {
 
 #[test]
 fn at_a_revisited_node_the_second_encounter_is_that_of_the_second_visit() {
-    // Path A-B-C-B-D: the robot comes over `m`, turns at `e`, and comes over `m` again.
-    let way = ["w2", "m", "e", "m", "nw"];
+    // The robot comes over `m`, round the block, and over `m` again; the person goes to and fro in the west meanwhile.
+    let way = ["w2", "m", "e", "ne", "nw", "m", "w2"];
+    let west = ["e", "m", "w2", "w", "w2", "w", "w2", "m", "e"];
     for seed in 1..=4 {
-        let cast = [Cast(Relation::Frontal, &["e", "m", "w2", "w", "w2", "m", "e"], vec![])];
+        let cast = [Cast(Relation::Frontal, &west, vec![])];
         let made = setup(ring(), &way, &cast, &[(1, "m"), (1, "m")]);
-        let recording = run(Setup { seed, ..made });
+        let recording = run(Setup { seed, duration_s: Some(120.0), ..made });
         let met = numbered(&recording);
         let nodes: Vec<(u32, &str)> = met.iter().map(|(_, nth, node, _)| (*nth, node.as_str())).collect();
         assert_eq!(nodes, [(1, "m"), (2, "m")], "seed {seed}: {met:?}");
         assert!(met.iter().all(|(.., gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
-        let time = |nth: usize| recording.events.iter().filter(|event| matches!(event.kind, EventKind::Encounter { .. })).nth(nth).unwrap().time.secs();
+        let time = |nth: usize| {
+            recording
+                .events
+                .iter()
+                .filter(|event| matches!(event.kind, EventKind::Encounter { .. }))
+                .nth(nth)
+                .unwrap()
+                .time
+                .secs()
+        };
         assert!(time(1) - time(0) > 15.0, "seed {seed}: the second is one of its own");
     }
 }
@@ -139,8 +149,8 @@ fn at_a_revisited_node_the_second_encounter_is_that_of_the_second_visit() {
 #[test]
 fn who_stands_where_the_robot_comes_by_twice_is_met_twice() {
     let cast = [Cast(Relation::Static, &["m"], vec![])];
-    let made = setup(ring(), &["w", "w2", "m", "e", "m", "nw"], &cast, &[(1, "m"), (1, "m")]);
-    let met = numbered(&run(made));
+    let made = setup(ring(), &["w", "w2", "m", "e", "ne", "nw", "m", "w2"], &cast, &[(1, "m"), (1, "m")]);
+    let met = numbered(&run(Setup { duration_s: Some(120.0), ..made }));
     assert_eq!(met.iter().map(|(_, nth, ..)| *nth).collect::<Vec<_>>(), [1, 2], "{met:?}");
 }
 
@@ -150,7 +160,7 @@ fn an_encounter_that_is_missed_leaves_the_next_one_its_own() {
     let cast = [Cast(Relation::Leaving, &["ne", "nw", "ne", "nw", "m", "nw", "ne", "e", "ne"], vec![])];
     let made = setup(ring(), &["w2", "m", "e", "ne"], &cast, &[(1, "m"), (1, "e")]);
     let met = numbered(&run(Setup { duration_s: Some(90.0), ..made }));
-    assert!(met.iter().all(|(_, nth, ..)| *nth == 2) , "{met:?}");
+    assert!(met.iter().all(|(_, nth, ..)| *nth == 2), "{met:?}");
 }
 
 #[test]
