@@ -317,6 +317,34 @@ mod tests {
     }
 
     #[test]
+    fn who_is_to_meet_the_robot_twice_is_named_in_the_paths_question_and_nobody_else() {
+        use socrates_model::{Clause, ClauseRole, HumanId, Predicate};
+        let style = Style { paths: PathsForm::Anchors, ..Style::default() };
+        let mut asked = question(Stage::Paths);
+        let told = |asked: &Question| {
+            let prompt = asked.prompt(&style);
+            let text: String = prompt.messages.iter().map(|message| message.text.as_str()).collect();
+            let schema = prompt.schema.unwrap().to_string();
+            (text.contains("human_1 meets the robot 2 times"), schema)
+        };
+        let (named, once) = told(&asked);
+        assert!(!named);
+        let again = Predicate::MeetsAgain { human: HumanId::new(1), nth: 2, within_m: 3.0 };
+        let clause = Clause {
+            id: "c9".to_owned(),
+            text: String::new(),
+            role: ClauseRole::Setup,
+            must: true,
+            source: String::new(),
+            predicate: again,
+        };
+        asked.proposal.as_mut().unwrap().expected_events.push(clause);
+        let (named, twice) = told(&asked);
+        assert!(named);
+        assert_ne!(once, twice, "`meet` may be a list then");
+    }
+
+    #[test]
     fn every_template_can_be_filled_in_every_style() {
         for style in styles() {
             for stage in STAGES {

@@ -226,6 +226,21 @@ mod tests {
     }
 
     #[test]
+    fn somebody_may_meet_the_robot_several_times() {
+        let graph = tee_map().graph;
+        let mut twice = paths();
+        let human = socrates_model::HumanId::new(2);
+        let node = twice.encounters[0].node.clone();
+        twice.encounters.clear();
+        twice.encounters.extend([0, 1].map(|_| socrates_model::Encounter { human, node: node.clone() }));
+        for form in PathsForm::ALL {
+            let mut value = written(&twice, *form, &graph);
+            expand(&mut value, &graph);
+            assert_eq!(value["encounters"], json!(twice.encounters), "{form}");
+        }
+    }
+
+    #[test]
     fn encounters_come_in_the_order_of_the_robots_way() {
         let mut value = json!({"robot": ["w", "c", "n"], "humans": {
             "human_1": {"start": "n", "goal": "n", "meet": "n"}, "human_2": {"start": "c", "goal": "c", "meet": "c"}}});

@@ -386,17 +386,14 @@ fn moved(prepared: &Prepared, made: &Made, encounter: &Encounter, group: Option<
     Some((node, other))
 }
 
-/// The human goes home from its first encounter instead of coming to its second.
+/// The human ends a node after its first encounter instead of coming to its second.
 fn once(made: &Made, id: HumanId, group: Option<GroupId>) -> Option<Made> {
     let mut other = made.clone();
     let with_it = |who: HumanId| {
         who == id || group.is_some() && made.proposal.human(who).is_some_and(|human| human.group == group)
     };
     for (who, way) in other.paths.humans.iter_mut().filter(|(who, _)| with_it(**who)) {
-        let step = made.paths.visits(*who).first()?.human_step?;
-        let back: Vec<NodeId> = way.get(..step)?.iter().rev().cloned().collect();
-        way.truncate(step + 1);
-        way.extend(back);
+        way.truncate(made.paths.visits(*who).first()?.human_step? + 2);
     }
     // Played without a second meeting; the one that was asked for judges it.
     let mut first: Vec<HumanId> = Vec::new();

@@ -93,10 +93,10 @@ async fn who_comes_towards_the_robot_meets_it_again() {
 async fn who_looks_for_a_while_meets_it_again_where_it_was_said() {
     let rough =
         "A nurse comes towards the robot, stops and looks at it for 5 seconds, and meets it again at an intersection.";
-    study(&["office", "hospital"], rough).await;
+    study(&["office", "hospital", "warehouse"], rough).await;
 }
 
 #[tokio::test]
 async fn who_crosses_the_robots_way_does_so_twice() {
-    study(&["office", "warehouse"], "A visitor crosses the robot's path twice.").await;
+    study(&["office", "hospital", "warehouse"], "A visitor crosses the robot's path twice.").await;
 }

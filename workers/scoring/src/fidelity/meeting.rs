@@ -196,12 +196,19 @@ fn steps(track: &Track) -> Vec<(Point, socrates_model::Vector)> {
         .collect()
 }
 
-/// The track as it is in the time of the human's first encounter, where it has several.
-fn first_part(signals: &Signals<'_>, human: HumanId, track: &Track) -> Option<Track> {
+/// The tracks of robot and human as they are at the human's first encounter, where it has several: the robot's in the time
+/// that is this encounter's, the human's until it leaves the place for the first time.
+fn first_part(signals: &Signals<'_>, human: HumanId, robot: &Track, person: &Track) -> Option<(Track, Track)> {
     let meeting = signals.meeting(human, 1)?;
-    let mut part = track.clone();
-    part.samples.retain(|sample| sample.t < meeting.to_s);
-    Some(part)
+    let off = |sample: &Sample| (sample.at - meeting.at).norm();
+    let mut passed = person.present().skip_while(|sample| off(sample) > CONFLICT_M);
+    let left_s = passed.find(|sample| off(sample) > MEET_NODE_M).map_or(meeting.to_s, |sample| sample.t);
+    let until = |track: &Track, end_s: f64| {
+        let mut part = track.clone();
+        part.samples.retain(|sample| sample.t < end_s);
+        part
+    };
+    Some((until(robot, meeting.to_s), until(person, left_s.min(meeting.to_s))))
 }
 
 fn conflict(robot: &Track, human: &Track, near: Option<Point>) -> Option<Conflict> {
@@ -227,8 +234,8 @@ pub(super) fn crosses(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     let (Some(robot), Some(person)) = (&signals.tracks.robot, signals.tracks.human(human)) else {
         return Finding::not_applicable("the recording is empty");
     };
-    let (mine, theirs) = (first_part(signals, human, robot), first_part(signals, human, person));
-    let (robot, person) = (mine.as_ref().unwrap_or(robot), theirs.as_ref().unwrap_or(person));
+    let part = first_part(signals, human, robot, person);
+    let (robot, person) = part.as_ref().map_or((robot, person), |(robot, person)| (robot, person));
     let near = signals.encounter(human);
     let place = near.map_or_else(String::new, |(id, _)| format!(" near `{id}`"));
     let Some(meet) = conflict(robot, person, near.map(|(_, at)| at)).filter(|meet| meet.apart_m <= 1.0) else {
