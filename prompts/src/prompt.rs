@@ -101,7 +101,9 @@ impl Question {
     pub fn grammar(&self) -> Option<String> {
         let proposal = self.proposal.as_ref().filter(|_| self.stage == Stage::Paths)?;
         let humans: Vec<String> = self.humans(proposal).iter().map(|human| human.id.to_string()).collect();
-        (!humans.is_empty()).then(|| ways::grammar(&self.location.graph, &humans))
+        let again: u32 = vocabulary::meetings(proposal).values().map(|times| times - 1).sum();
+        let meetings = humans.len() + usize::try_from(again).unwrap_or(usize::MAX);
+        (!humans.is_empty()).then(|| ways::grammar(&self.location.graph, &humans, meetings))
     }
 
     fn rules(&self, style: &Style) -> String {
@@ -234,7 +236,17 @@ fn paths_outline(proposal: &Proposal) -> String {
         members.extend(ends.into_iter().filter_map(|(key, class)| Some((key.to_owned(), json!(class?)))));
     }
     let outline = json!({"description": clean(&proposal.description, DESCRIPTION), "place": proposal.place, "humans": humans, "robot": robot});
-    format!("Scenario (data): {outline}\n")
+    let again: String = vocabulary::meetings(proposal)
+        .iter()
+        .map(|(human, times)| {
+            format!(
+                "{human} meets the robot {times} times: lead both paths to {times} nodes, one after the other, at least 6 m apart on the \
+                 robot's path, and give an encounter for each, in this order (`meet`: a list). Between them it goes another way than the \
+                 robot and comes back; there it may go back and forth.\n"
+            )
+        })
+        .collect();
+    format!("Scenario (data): {outline}\n{again}")
 }
 
 fn node_tables(in_full: bool) -> String {
@@ -302,6 +314,34 @@ mod tests {
             }));
         }
         styles
+    }
+
+    #[test]
+    fn who_is_to_meet_the_robot_twice_is_named_in_the_paths_question_and_nobody_else() {
+        use socrates_model::{Clause, ClauseRole, HumanId, Predicate};
+        let style = Style { paths: PathsForm::Anchors, ..Style::default() };
+        let mut asked = question(Stage::Paths);
+        let told = |asked: &Question| {
+            let prompt = asked.prompt(&style);
+            let text: String = prompt.messages.iter().map(|message| message.text.as_str()).collect();
+            let schema = prompt.schema.unwrap().to_string();
+            (text.contains("human_1 meets the robot 2 times"), schema)
+        };
+        let (named, once) = told(&asked);
+        assert!(!named);
+        let again = Predicate::MeetsAgain { human: HumanId::new(1), nth: 2, within_m: 3.0 };
+        let clause = Clause {
+            id: "c9".to_owned(),
+            text: String::new(),
+            role: ClauseRole::Setup,
+            must: true,
+            source: String::new(),
+            predicate: again,
+        };
+        asked.proposal.as_mut().unwrap().expected_events.push(clause);
+        let (named, twice) = told(&asked);
+        assert!(named);
+        assert_ne!(once, twice, "`meet` may be a list then");
     }
 
     #[test]

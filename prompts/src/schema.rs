@@ -148,8 +148,11 @@ fn paths(question: &Question, form: PathsForm) -> Value {
         let stops = [("goal", one.clone()), ("start", one.clone()), ("via", list(&one))];
         object(&stops.into_iter().chain(more).collect::<Vec<_>>())
     };
+    // A list of nodes only where somebody meets the robot more than once.
+    let again = question.proposal.as_ref().is_some_and(|proposal| !crate::vocabulary::meetings(proposal).is_empty());
+    let meet = if again { json!({"anyOf": [one.clone(), list(&one), {"type": "null"}]}) } else { or_null(&one) };
     let (robot, human) = match form {
-        PathsForm::Anchors => (way(None), way(Some(("meet", or_null(&one))))),
+        PathsForm::Anchors => (way(None), way(Some(("meet", meet)))),
         // A map too large for a chain of its own is walked by name.
         PathsForm::Walk if few => {
             // A definition for each node under a name of a letter: the names are most of what such a schema costs.
@@ -164,7 +167,7 @@ fn paths(question: &Question, form: PathsForm) -> Value {
             let walk: Vec<Value> = (0..ids.len()).map(walk_from).collect();
             defs.push(("walk".to_owned(), json!({"anyOf": walk})));
             let walk = json!({"$ref": "#/$defs/walk"});
-            (walk.clone(), object(&[("meet", or_null(&one)), ("walk", walk)]))
+            (walk.clone(), object(&[("meet", meet), ("walk", walk)]))
         }
         PathsForm::Walk | PathsForm::Nodes => (list(&one), list(&one)),
     };

@@ -1,11 +1,13 @@
 //! Tables of the prompts, made from the types that the readers take.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use serde_json::{Value, json};
 use socrates_model::proposal::Relation;
 use socrates_model::reading::FactKind;
 use socrates_model::rule::{RobotDo, RobotWhen};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, PlaceClass, Predicate, RobotRule, Trigger};
+use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, PlaceClass, Predicate, Proposal, RobotRule, Trigger};
 
 use crate::terse;
 
@@ -93,6 +95,19 @@ pub(crate) fn gestures() -> String {
     names.join(", ")
 }
 
+/// Who meets the robot more than once by the clauses of a proposal, and how often.
+pub(crate) fn meetings(proposal: &Proposal) -> BTreeMap<HumanId, u32> {
+    let mut found: BTreeMap<HumanId, u32> = BTreeMap::new();
+    for clause in proposal.expected_events.iter().filter(|clause| clause.must) {
+        if let Predicate::MeetsAgain { human, nth, .. } = clause.predicate {
+            let times = found.entry(human).or_insert(nth);
+            *times = nth.max(*times);
+        }
+    }
+    found.retain(|_, times| *times > 1);
+    found
+}
+
 /// What a fact says, in few words.
 pub(crate) fn fact(kind: &FactKind) -> String {
     match kind {
@@ -103,6 +118,10 @@ pub(crate) fn fact(kind: &FactKind) -> String {
         }
         FactKind::Reacts { human, rule } => format!("{human}: {}", terse::rule_line(rule)),
         FactKind::Relates { human, relation } => format!("{human}: relation {}", terse::line(&json!(relation))),
+        FactKind::MeetsTimes { human, times, place } => {
+            let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
+            format!("{human}: meets the robot {times} times{place}")
+        }
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),
@@ -205,6 +224,10 @@ fn predicates() -> Vec<(Value, String)> {
     vec![
         row(&Predicate::Humans { count: 2 }, "so many are there all the time (setup)"),
         row(&Predicate::Meets { human, within_m: 2.5 }, "so near to each other at their encounter (setup)"),
+        row(
+            &Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 },
+            "they meet a second (nth) time, where the request asks for it (setup)",
+        ),
         row(&Predicate::HeadOn { human }, "comes straight at the robot (setup)"),
         row(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses the robot's way, both there within gap_s (setup)"),
         row(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot (setup)"),

@@ -17,9 +17,17 @@ pub(crate) fn expand(value: &mut Value, graph: &SceneGraph) {
     let order: Vec<Value> = members.get("robot").and_then(Value::as_array).cloned().unwrap_or_default();
     let mut met: Vec<(usize, Value)> = Vec::new();
     for (name, human) in members.get_mut("humans").and_then(Value::as_object_mut).into_iter().flatten() {
-        if let Some(node) = human.get("meet").filter(|node| !node.is_null()).cloned() {
-            let place = order.iter().position(|other| *other == node).unwrap_or(usize::MAX);
-            met.push((place, json!({"human": name, "node": node})));
+        // One node, or several where somebody meets the robot more than once.
+        let nodes = match human.get("meet") {
+            None | Some(Value::Null) => Vec::new(),
+            Some(Value::Array(nodes)) => nodes.clone(),
+            Some(node) => vec![node.clone()],
+        };
+        let mut from = 0;
+        for node in nodes {
+            let step = order.iter().skip(from).position(|other| *other == node).map(|step| step + from);
+            from = step.map_or(from, |step| step + 1);
+            met.push((step.unwrap_or(usize::MAX), json!({"human": name, "node": node})));
         }
         if human.get("walk").is_some() {
             *human = human.get("walk").cloned().unwrap_or_default();
@@ -84,7 +92,8 @@ pub(crate) fn written(paths: &Paths, form: PathsForm, graph: &SceneGraph) -> Val
     let meets: Vec<&NodeId> = paths.encounters.iter().map(|encounter| &encounter.node).collect();
     let mut humans = Map::new();
     for (id, nodes) in &paths.humans {
-        let meet = json!(paths.encounter_of(*id));
+        let met: Vec<&NodeId> = paths.encounters_of(*id).collect();
+        let meet = if met.len() > 1 { json!(met) } else { json!(met.first()) };
         let human = match form {
             PathsForm::Nodes => json!(nodes),
             PathsForm::Walk => json!({"meet": meet, "walk": nested(nodes)}),
@@ -135,9 +144,9 @@ fn anchors(nodes: &[NodeId], named: &[&NodeId], graph: &SceneGraph) -> Map<Strin
 }
 
 /// A grammar (GBNF) of the answer in the form of nodes, in which a node is followed by a neighbor or by nothing: the robot
-/// walks 4 to 12 nodes, a human 1 to 12.
+/// walks 4 to 12 nodes, a human 1 to 12, with at most so many meetings.
 #[must_use]
-pub(crate) fn grammar(graph: &SceneGraph, humans: &[String]) -> String {
+pub(crate) fn grammar(graph: &SceneGraph, humans: &[String], meetings: usize) -> String {
     const ROBOT_LEAST: usize = 4;
     const LONGEST: usize = 12;
     let mut ids: Vec<&NodeId> = graph.nodes.iter().map(|node| &node.id).collect();
@@ -157,7 +166,7 @@ pub(crate) fn grammar(graph: &SceneGraph, humans: &[String]) -> String {
     let name: Vec<String> = humans.iter().map(|name| format!("\"\\\"{name}\\\"\"")).collect();
     text.push_str(&format!("name ::= {}\n", name.join(" | ")));
     text.push_str("meeting ::= \"{\\\"human\\\":\" name \",\\\"node\\\":\" node \"}\"\n");
-    text.push_str(&format!("met ::= (meeting (\",\" meeting){{0,{}}})?\n", humans.len().saturating_sub(1)));
+    text.push_str(&format!("met ::= (meeting (\",\" meeting){{0,{}}})?\n", meetings.saturating_sub(1)));
     for (prefix, least) in [("r", ROBOT_LEAST), ("h", 1)] {
         for (k, id) in ids.iter().enumerate() {
             for step in 1..=LONGEST {
@@ -217,6 +226,21 @@ mod tests {
     }
 
     #[test]
+    fn somebody_may_meet_the_robot_several_times() {
+        let graph = tee_map().graph;
+        let mut twice = paths();
+        let human = socrates_model::HumanId::new(2);
+        let node = twice.encounters[0].node.clone();
+        twice.encounters.clear();
+        twice.encounters.extend([0, 1].map(|_| socrates_model::Encounter { human, node: node.clone() }));
+        for form in PathsForm::ALL {
+            let mut value = written(&twice, *form, &graph);
+            expand(&mut value, &graph);
+            assert_eq!(value["encounters"], json!(twice.encounters), "{form}");
+        }
+    }
+
+    #[test]
     fn encounters_come_in_the_order_of_the_robots_way() {
         let mut value = json!({"robot": ["w", "c", "n"], "humans": {
             "human_1": {"start": "n", "goal": "n", "meet": "n"}, "human_2": {"start": "c", "goal": "c", "meet": "c"}}});
@@ -227,7 +251,7 @@ mod tests {
     #[test]
     fn the_grammar_lets_only_neighbors_follow() {
         let graph = tee_map().graph;
-        let text = grammar(&graph, &["human_1".into(), "human_2".into()]);
+        let text = grammar(&graph, &["human_1".into(), "human_2".into()], 2);
         // Sorted: c, e, n, w. From `e` one comes to `c` alone, and the robot must not stop yet.
         assert!(text.contains("r1-1 ::= \"\\\"e\\\"\" (\",\" r0-2)\n"), "{text}");
         assert!(text.contains("h1-1 ::= \"\\\"e\\\"\" (\",\" h0-2 | \"\")\n"), "{text}");

@@ -1,9 +1,10 @@
 //! Where robot and humans meet: G-MEET, G-MEETEND, G-TYPE.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use socrates_model::{
-    Encounter, Fault, FaultCode, HumanProposal, Location, NodeId, Paths, PlaceClass, Proposal, Relation,
+    ClauseRole, Encounter, Fault, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Predicate,
+    Proposal, Relation, ordinal,
 };
 
 use crate::list;
@@ -12,14 +13,16 @@ use crate::places::{family, is_inside, nodes_of};
 /// Longest list of candidates in one message.
 const LISTED: usize = 24;
 
+/// Two encounters of one person are at least so far apart along the robot's way, m: out of the place of the one (3 m about
+/// its node) before the place of the other begins.
+const APART_M: f64 = 6.0;
+
 /// Every fault of the encounters.
 pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut seen = BTreeSet::new();
+    let mut met: BTreeMap<HumanId, usize> = BTreeMap::new();
     for encounter in &paths.encounters {
-        if !seen.insert(encounter.human) {
-            faults.push(Fault::new(FaultCode::GMeet, encounter.human, "has two encounters; give at most one"));
-        }
+        let place = met.entry(encounter.human).and_modify(|place| *place += 1).or_insert(0);
         match proposal.human(encounter.human) {
             None => {
                 let message = format!(
@@ -29,11 +32,16 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
                 faults.push(Fault::new(FaultCode::GAgents, encounter.human, message));
             }
             Some(human) => {
-                faults.extend(meets(encounter, human, paths, location));
-                faults.extend(ends(encounter, human, paths, location));
+                let missing = meets(encounter, human, paths, location);
+                if missing.is_none() {
+                    faults.extend(again(*place, human, paths, location));
+                }
+                faults.extend(missing);
+                faults.extend(ends(encounter, *place, human, paths, location));
             }
         }
     }
+    faults.extend(too_few(paths, proposal));
     for human in &proposal.humans {
         let path = paths.humans.get(&human.id);
         // Whoever stands where the robot starts is left, not met.
@@ -75,6 +83,63 @@ fn meets(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: 
     Some(Fault::new(FaultCode::GMeet, human.id, message))
 }
 
+/// G-MEET: the encounters of one person are on both paths one after the other, and apart from each other.
+fn again(place: usize, human: &HumanProposal, paths: &Paths, location: &Location) -> Option<Fault> {
+    let visits = paths.visits(human.id);
+    let (before, visit) = (visits.get(place.checked_sub(1)?)?, visits.get(place)?);
+    let nth = ordinal(u32::try_from(place + 1).unwrap_or(u32::MAX));
+    let own = paths.humans.get(&human.id)?;
+    let after = |path: &[NodeId], step: Option<usize>| path.get(step? + 1..).map(<[NodeId]>::to_vec);
+    let later = |whose: &str, path: &[NodeId], step: Option<usize>| {
+        let rest = after(path, step).unwrap_or_default();
+        let message = format!(
+            "meets the robot for the {nth} time at `{}`, but {whose} path does not come there after the encounter before it, at `{}`; it \
+             goes on over {}. Give the encounters of one person in order, and lead both paths to each",
+            visit.node,
+            before.node,
+            list(rest)
+        );
+        Some(Fault::new(FaultCode::GMeet, human.id, message))
+    };
+    let Some(robot_step) = visit.robot_step else { return later("the robot's", &paths.robot, before.robot_step) };
+    if visit.human_step.is_none() {
+        return later("its own", own, before.human_step);
+    }
+    let way_m = location.graph.length_m(paths.robot.get(before.robot_step?..=robot_step)?);
+    (way_m < APART_M).then(|| {
+        let message = format!(
+            "meets the robot for the {nth} time at `{}`, {way_m:.1} m along the robot's way from the encounter before it, at `{}`; at \
+             least {APART_M:.0} m are needed. Choose a node further on, or lead the robot's path round",
+            visit.node, before.node
+        );
+        Fault::new(FaultCode::GMeet, human.id, message)
+    })
+}
+
+/// G-MEET: as many encounters as the proposal has somebody meet the robot.
+fn too_few(paths: &Paths, proposal: &Proposal) -> Vec<Fault> {
+    let mut wanted: BTreeMap<HumanId, u32> = BTreeMap::new();
+    for clause in proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup) {
+        if let Predicate::MeetsAgain { human, nth, .. } = clause.predicate {
+            wanted.entry(human).and_modify(|most| *most = nth.max(*most)).or_insert(nth);
+        }
+    }
+    let few = |(human, times): (HumanId, u32)| {
+        let nodes: Vec<&NodeId> = paths.encounters_of(human).collect();
+        let found = u32::try_from(nodes.len()).unwrap_or(u32::MAX);
+        (found > 0 && found < times && paths.humans.contains_key(&human)).then(|| {
+            let message = format!(
+                "has {found} encounter{} ({}) where the proposal has it meet the robot {times} times; name it once for each meeting, in \
+                 order, and lead both paths to each",
+                if found == 1 { "" } else { "s" },
+                list(nodes)
+            );
+            Fault::new(FaultCode::GMeet, human, message)
+        })
+    };
+    wanted.into_iter().filter_map(few).collect()
+}
+
 /// Whether a node is in the same room or car as the start, or next to it.
 fn near_inside(node: &NodeId, start: &NodeId, location: &Location) -> bool {
     let same_door = location.door_of(start).is_some_and(|door| door.inside.contains(node));
@@ -82,16 +147,30 @@ fn near_inside(node: &NodeId, start: &NodeId, location: &Location) -> bool {
 }
 
 /// G-MEETEND: not at the ends of the robot's path, and the human goes on behind it.
-fn ends(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: &Location) -> Option<Fault> {
+fn ends(
+    encounter: &Encounter,
+    place: usize,
+    human: &HumanProposal,
+    paths: &Paths,
+    location: &Location,
+) -> Option<Fault> {
     let own = paths.humans.get(&human.id)?;
+    // With several encounters the ends of a path may be visited before; with one, any visit might be meant.
+    let visits = paths.visits(human.id);
+    let visit = visits.get(place).filter(|_| visits.len() > 1);
+    let (robot_step, human_step) = visit.map_or((None, None), |visit| (visit.robot_step, visit.human_step));
+    let is_end = |path: &[NodeId], step: Option<usize>| {
+        path.last() == Some(&encounter.node) && step.is_none_or(|step| step + 1 == path.len())
+    };
+    let is_start = paths.robot.first() == Some(&encounter.node) && robot_step.is_none();
     let at_car = is_inside(location, &encounter.node)
         || location.graph.neighbors(&encounter.node).iter().any(|node| is_inside(location, node));
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let stands = own.len() == 1;
-    let last = paths.robot.last() == Some(&encounter.node);
+    let last = is_end(&paths.robot, robot_step);
     // A standing group may be where the robot's way ends: it joins them.
     let joined = stands && human.group.is_some();
-    if paths.robot.first() == Some(&encounter.node) || last && !((indoors || stands) && at_car || joined) {
+    if is_start || last && !((indoors || stands) && at_car || joined) {
         let which = if last { "last" } else { "first" };
         let message = format!(
             "meets the robot at `{}`, the robot's {which} node; the encounter needs a robot node before and after it. Choose \
@@ -101,7 +180,7 @@ fn ends(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: &
         );
         return Some(Fault::new(FaultCode::GMeetEnd, human.id, message));
     }
-    if !stands && !indoors && own.last() == Some(&encounter.node) {
+    if !stands && !indoors && is_end(own, human_step) {
         let next: Vec<NodeId> = location.graph.neighbors(&encounter.node);
         let message = format!(
             "ends at the encounter `{}`; a human who walks needs at least one node after it, such as one of {}",
@@ -138,10 +217,15 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
             .is_some_and(|human| matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast))
     };
     let somewhere = paths.encounters.iter().any(fits);
+    // Of somebody who meets the robot several times one meeting is at the place.
+    let once = |encounter: &Encounter| {
+        paths.encounters_of(encounter.human).count() > 1
+            && paths.encounters.iter().any(|other| other.human == encounter.human && fits(other))
+    };
     paths
         .encounters
         .iter()
-        .filter(|encounter| !(fits(encounter) || somewhere && along(encounter)))
+        .filter(|encounter| !(fits(encounter) || once(encounter) || somewhere && along(encounter)))
         .map(|encounter| {
             let message = format!(
                 "meets the robot at `{}` ({}), but the proposal wants `{wanted}`; candidates: {}",
@@ -172,7 +256,6 @@ fn inner(nodes: &[NodeId]) -> &[NodeId] {
 mod tests {
     use super::*;
     use crate::testing::{crossing_paths, crossing_proposal, hard_codes, node, nodes, plus_map};
-    use socrates_model::HumanId;
 
     fn codes(change: impl FnOnce(&mut Paths, &mut Proposal)) -> Vec<String> {
         let (mut paths, mut proposal) = (crossing_paths(), crossing_proposal());
@@ -214,6 +297,59 @@ mod tests {
             paths.encounters.clear();
         };
         assert!(codes(leaves).is_empty());
+    }
+
+    fn meets_at(paths: &mut Paths, names: &[&str]) {
+        let human = HumanId::new(1);
+        paths.encounters.retain(|encounter| encounter.human != human);
+        paths.encounters.extend(names.iter().map(|name| Encounter { human, node: node(name) }));
+    }
+
+    #[test]
+    fn a_person_may_meet_the_robot_twice_where_both_paths_come_twice() {
+        // The robot goes by the centre to the north and back, then on to the east.
+        let twice = |paths: &mut Paths, meets: &[&str]| {
+            paths.robot = nodes(&["w_2", "w_1", "n_center", "n_1", "n_2", "n_1", "n_center", "e_1", "e_2"]);
+            paths.humans.insert(HumanId::new(1), nodes(&["s_1", "n_center", "s_1", "n_center", "w_1", "w_2"]));
+            meets_at(paths, meets);
+        };
+        let found = |meets: &[&str]| {
+            let (mut paths, proposal) = (crossing_paths(), crossing_proposal());
+            twice(&mut paths, meets);
+            check(&paths, &proposal, &plus_map())
+        };
+        assert!(found(&["n_center", "n_center"]).is_empty(), "{:?}", found(&["n_center", "n_center"]));
+        let thrice = found(&["n_center", "n_center", "n_center"]);
+        assert_eq!(hard_codes(&thrice), ["G-MEET"]);
+        assert!(thrice[0].message.contains("third time at `n_center`"), "{}", thrice[0].message);
+    }
+
+    #[test]
+    fn encounters_of_one_person_are_in_order_and_apart() {
+        let found = |robot: &[&str], human: &[&str], meets: &[&str]| {
+            let (mut paths, proposal) = (crossing_paths(), crossing_proposal());
+            paths.robot = nodes(robot);
+            paths.humans.insert(HumanId::new(1), nodes(human));
+            meets_at(&mut paths, meets);
+            check(&paths, &proposal, &plus_map())
+        };
+        let west_to_east = ["w_2", "w_1", "n_center", "e_1", "e_2"];
+        let order = found(&west_to_east, &["n_1", "n_center", "e_1", "e_2"], &["e_1", "n_center"]);
+        assert_eq!(hard_codes(&order), ["G-MEET"]);
+        assert!(order[0].message.contains("does not come there after"), "{}", order[0].message);
+        let near = found(&west_to_east, &["n_1", "n_center", "e_1", "e_2"], &["n_center", "e_1"]);
+        assert_eq!(hard_codes(&near), ["G-MEET"]);
+        assert!(near[0].message.contains("along the robot's way"), "{}", near[0].message);
+    }
+
+    #[test]
+    fn a_demanded_second_encounter_that_is_missing_is_asked_for() {
+        let (paths, mut proposal) = (crossing_paths(), crossing_proposal());
+        let again = Predicate::MeetsAgain { human: HumanId::new(1), nth: 2, within_m: 3.0 };
+        proposal.expected_events[0].predicate = again;
+        let faults = check(&paths, &proposal, &plus_map());
+        assert_eq!(hard_codes(&faults), ["G-MEET"]);
+        assert!(faults[0].message.contains("2 times"), "{}", faults[0].message);
     }
 
     #[test]

@@ -28,7 +28,15 @@ pub fn check_paths(paths: &Paths, proposal: &Proposal, location: &Location) -> V
         let broken = steps(agent, nodes, proposal.place, &location.graph);
         sound &= broken.is_empty();
         faults.extend(broken);
-        faults.extend(loops(agent, nodes));
+        // Who meets somebody twice comes back for it.
+        let again = |human: HumanId| paths.encounters_of(human).count() > 1;
+        let twice = match agent {
+            AgentId::Robot => paths.humans.keys().copied().any(again),
+            AgentId::Human(human) => again(human),
+        };
+        if !twice {
+            faults.extend(loops(agent, nodes));
+        }
     }
     faults.extend(encounters::check(paths, proposal, location));
     // Lengths, directions and distances of a path with a hole say nothing.

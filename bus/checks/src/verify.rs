@@ -100,6 +100,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         FactKind::Group { .. }
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
+        | FactKind::MeetsTimes { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_) => true,
         FactKind::Humans(_)
@@ -113,7 +114,9 @@ const fn needs_clause(kind: &FactKind) -> bool {
 
 const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => Some(*human),
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::MeetsTimes { human, .. } => {
+            Some(*human)
+        }
         FactKind::Humans(_)
         | FactKind::Group { .. }
         | FactKind::Relates { .. }
@@ -134,6 +137,9 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
         | Predicate::StartsAt { within_m, .. }
         | Predicate::Reaches { within_m, .. } => {
             vec![("within_m", *within_m)]
+        }
+        Predicate::MeetsAgain { nth, within_m, .. } => {
+            vec![("nth, less two", f64::from(*nth) - 2.0), ("within_m", *within_m)]
         }
         Predicate::Crosses { gap_s, .. } | Predicate::OnTime { gap_s, .. } => vec![("gap_s", *gap_s)],
         Predicate::Ahead { within_m, for_s, .. } => vec![("within_m", *within_m), ("for_s", *for_s)],

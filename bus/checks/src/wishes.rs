@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::{
-    AgentId, Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger,
+    AgentId, Clause, Fact, FactKind, Fault, FaultCode, Gesture, HumanId, Predicate, Proposal, Reading, Rule, Trigger,
 };
 
 use crate::list;
@@ -54,6 +54,15 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                     human.to_string(),
                     format!("has the relation `{}`, asked for was `{}`", found.name(), relation.name()),
                 )
+            }
+        }
+        FactKind::MeetsTimes { human, times, .. } => {
+            let asks = |clause: &Clause| matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times);
+            if *times < 2 || proposal.expected_events.iter().any(asks) {
+                None
+            } else {
+                let what = format!("has no `meets_again` clause with nth {times}; asked for were {times} meetings");
+                rough(human.to_string(), what)
             }
         }
         FactKind::Gestures { human, gesture } => {

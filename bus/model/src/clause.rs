@@ -47,10 +47,20 @@ pub enum Predicate {
         count: u32,
     },
     /// The human and the robot come within `within_m` of each other near its encounter node
-    /// (both within 3 m of it), or anywhere where it has none.
+    /// (both within 3 m of it), or anywhere where it has none; of several encounters, the first.
     Meets {
         /// Who.
         human: HumanId,
+        /// Largest distance between the two.
+        within_m: f64,
+    },
+    /// The human and the robot meet for the `nth` time: they come within `within_m` of each other near the human's nth
+    /// encounter node (both within 3 m of it), after the robot has left the encounter before behind.
+    MeetsAgain {
+        /// Who.
+        human: HumanId,
+        /// Which of its encounters, from 2.
+        nth: u32,
         /// Largest distance between the two.
         within_m: f64,
     },
@@ -332,6 +342,7 @@ impl Predicate {
     pub const fn human(&self) -> Option<HumanId> {
         match self {
             Self::Meets { human, .. }
+            | Self::MeetsAgain { human, .. }
             | Self::HeadOn { human }
             | Self::Crosses { human, .. }
             | Self::Ahead { human, .. }

@@ -52,7 +52,7 @@ pub use grid::{Cell, Grid};
 pub use hash::Digest;
 pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
 pub use location::{Door, DoorKind, DoorOpens, Location};
-pub use paths::{Encounter, Paths};
+pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use place::PlaceClass;
 pub use polyline::Polyline;
 pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};

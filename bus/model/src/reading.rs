@@ -49,6 +49,16 @@ pub enum FactKind {
         /// How.
         relation: Relation,
     },
+    /// A human meets the robot several times.
+    MeetsTimes {
+        /// Who.
+        human: HumanId,
+        /// How often, from 2.
+        times: u32,
+        /// Class of the place of the last meeting, if said.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        place: Option<PlaceClass>,
+    },
     /// A human makes a gesture.
     Gestures {
         /// Who.

@@ -165,6 +165,9 @@ pub enum EventKind {
         node: NodeId,
         /// Difference of arrival times, s; positive: the human came later.
         gap_s: f64,
+        /// Which of the human's encounters, counted from 1; left out for the first.
+        #[serde(default = "first", skip_serializing_if = "is_first")]
+        nth: u32,
     },
     /// Two agents touch.
     Contact {
@@ -308,6 +311,15 @@ impl Recording {
         }
         Digest::of(&bytes)
     }
+}
+
+const fn first() -> u32 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+const fn is_first(nth: &u32) -> bool {
+    *nth == 1
 }
 
 #[cfg(test)]

@@ -182,7 +182,7 @@ pub struct Report {
     pub success: bool,
     /// The story of the run: one line per thing that happened, with times.
     pub story: Vec<String>,
-    /// Achieved gap of each encounter, s, by human.
+    /// Achieved gap of each encounter, s, by human; later ones as `human_1 second meeting`.
     pub encounter_gaps_s: BTreeMap<String, f64>,
     /// Simulated seconds.
     pub simulated_s: f64,

@@ -28,7 +28,7 @@ pub enum Trigger {
     HumanSays(HumanId, Gesture),
     /// The human is at the end of its path.
     GoalReached,
-    /// The human is at the node where it meets the robot.
+    /// The human is at the node where it meets the robot; of several, the first.
     AtEncounter,
     /// So many seconds after the start of the run.
     AfterSecs(f64),
@@ -156,7 +156,7 @@ pub enum RobotWhen {
     HumanNear(f64),
     /// A human makes this gesture.
     HumanSays(Gesture),
-    /// It reaches the encounter node of this human.
+    /// It reaches the encounter node of this human; of several, the first.
     AtEncounter(HumanId),
     /// So many seconds after the start.
     AfterSecs(f64),

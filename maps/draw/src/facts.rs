@@ -10,6 +10,10 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::Humans(count) => format!("{count} humans"),
         FactKind::Group { group, members } => format!("{} are a group ({group})", names(members)),
         FactKind::Reacts { human, rule } => format!("{human} {}", rule_words(rule)),
+        FactKind::MeetsTimes { human, times, place } => {
+            let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
+            format!("{human} meets the robot {times} times{place}")
+        }
         FactKind::Relates { human, relation } => format!("{human} {}", relation_words(*relation)),
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(place) => format!("place: {}", place_words(*place)),

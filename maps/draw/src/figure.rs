@@ -234,15 +234,15 @@ fn label(svg: &mut Svg, labels: &mut Labels, at: (f64, f64), words: &str, color:
     svg.text(base, words, &format!("{common} fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.25\""));
 }
 
-/// The first encounter of every human, where the robot was.
+/// Every encounter, where the robot was.
 fn draw_encounters(svg: &mut Svg, run: &Recording, px: &dyn Fn(f64, f64) -> (f64, f64), labels: &mut Labels) {
     let mut met = BTreeMap::new();
     for event in &run.events {
-        if let EventKind::Encounter { human, .. } = &event.kind {
-            met.entry(*human).or_insert(event.time);
+        if let EventKind::Encounter { human, nth, .. } = &event.kind {
+            met.entry((*human, *nth)).or_insert(event.time);
         }
     }
-    for (human, time) in met {
+    for ((human, _), time) in met {
         let tick = usize::try_from(time.tick()).unwrap_or(usize::MAX);
         let Some(robot) = run.tick(tick).iter().find(|state| state.agent == 0) else { continue };
         let (x, y) = px(robot.x, robot.y);

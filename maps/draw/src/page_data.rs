@@ -1,7 +1,7 @@
 //! What the script of the report page plays and lists, as JSON.
 
 use serde_json::{Value, json};
-use socrates_model::{ClauseRole, EventKind, Location, Point, Reading, Recording, Report};
+use socrates_model::{ClauseRole, EventKind, Location, Point, Reading, Recording, Report, ordinal};
 
 use crate::facts::fact_words;
 use crate::play;
@@ -94,10 +94,11 @@ fn mark(secs: f64, kind: &EventKind) -> Option<Value> {
         EventKind::Sees { human, distance_m } => {
             mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
         }
-        EventKind::Encounter { human, gap_s, .. } => {
+        EventKind::Encounter { human, gap_s, nth, .. } => {
             // To a millisecond first, as the report has it: else two roundings would tell two figures.
+            let which = if *nth > 1 { format!("{} ", ordinal(*nth)) } else { String::new() };
             let gap_s = ((gap_s * 1e3).round() / 1e3).abs();
-            mark(human.number(), "encounter", format!("encounter of {human} and the robot, gap {gap_s:.1} s"))
+            mark(human.number(), "encounter", format!("{which}encounter of {human} and the robot, gap {gap_s:.1} s"))
         }
         EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
         EventKind::WallContact { agent, .. } => mark(agent.number(), "contact", format!("{agent} touches a wall")),

@@ -1,6 +1,6 @@
 //! The picture of one run: where everybody went, and when.
 
-use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Report, Verdict};
+use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Report, Verdict, ordinal};
 
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
@@ -203,7 +203,7 @@ fn draw_ends(
 
 fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, frame: &Frame, labels: &mut Labels) {
     for event in &recording.events {
-        let EventKind::Encounter { human, .. } = &event.kind else { continue };
+        let EventKind::Encounter { human, nth, .. } = &event.kind else { continue };
         let tick = usize::try_from(event.time.tick()).unwrap_or(usize::MAX);
         let Some(robot) = recording.tick(tick).iter().find(|state| state.agent == 0) else { continue };
         let (x, y) = frame.px(location, &robot.point());
@@ -213,6 +213,8 @@ fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, fr
             palette::human(human.number())
         ));
         labels.block(Area { x: x - 8.0, y: y - 8.0, w: 16.0, h: 16.0 });
-        draw_label(svg, labels, (x, y), &format!("{:.1} s", event.time.secs()), (palette::INK, 15.0), 11.0);
+        let which = if *nth > 1 { format!("{}: ", ordinal(*nth)) } else { String::new() };
+        let words = format!("{which}{:.1} s", event.time.secs());
+        draw_label(svg, labels, (x, y), &words, (palette::INK, 15.0), 11.0);
     }
 }

@@ -6,6 +6,7 @@ mod corridor;
 mod elevator;
 mod group;
 mod intersection;
+mod meetings;
 
 use std::collections::BTreeMap;
 

@@ -25,6 +25,8 @@ const ROUNDS: u64 = 4;
 /// A moved encounter is at least this far from where it was asked for, m.
 const MOVED_M: f64 = 6.0;
 
+/// The change that leaves a second encounter out: the human goes on from the first.
+const ONCE: &str = "N: second encounter left out";
 /// The change that puts an encounter elsewhere.
 const MOVED: &str = "encounter moved";
 /// Two meetings nearer to each other than this are one, m.
@@ -299,18 +301,25 @@ fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, Strin
             found.extend(with_rules(made, id, short).map(|other| ("N: obstruction of 0.5 s", id.to_string(), other)));
         }
     }
-    let mut groups: Vec<Option<GroupId>> = Vec::new();
+    let mut groups: Vec<(Option<GroupId>, u32)> = Vec::new();
+    let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
     for encounter in &made.paths.encounters {
+        let nth = *met.entry(encounter.human).and_modify(|nth| *nth += 1).or_insert(1);
         let Some(human) = made.proposal.human(encounter.human) else { continue };
         // Who goes with the robot meets it everywhere.
         if matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast) {
             continue;
         }
         // A group goes as a whole.
-        if human.group.is_some() && groups.contains(&human.group) {
+        if human.group.is_some() && groups.contains(&(human.group, nth)) {
             continue;
         }
-        groups.push(human.group);
+        groups.push((human.group, nth));
+        if nth > 1 {
+            let left_out = once(made, encounter.human, human.group);
+            found.extend(left_out.map(|other| (ONCE, encounter.human.to_string(), other)));
+            continue;
+        }
         if let Some((node, other)) = moved(prepared, made, encounter, human.group) {
             found.push((MOVED, format!("{} to {node}", encounter.human), other));
         }
@@ -366,10 +375,38 @@ fn moved(prepared: &Prepared, made: &Made, encounter: &Encounter, group: Option<
     for (_, way) in other.paths.humans.iter_mut().filter(|(id, _)| with_it(**id)) {
         way.clone_from(&path);
     }
+    let mut first: Vec<HumanId> = Vec::new();
     for other in other.paths.encounters.iter_mut().filter(|other| with_it(other.human)) {
-        other.node.clone_from(&node);
+        // Of several the first is moved; the way to the others is gone with it.
+        if !first.contains(&other.human) {
+            first.push(other.human);
+            other.node.clone_from(&node);
+        }
     }
     Some((node, other))
+}
+
+/// The human ends a node after its first encounter instead of coming to its second.
+fn once(made: &Made, id: HumanId, group: Option<GroupId>) -> Option<Made> {
+    let mut other = made.clone();
+    let with_it = |who: HumanId| {
+        who == id || group.is_some() && made.proposal.human(who).is_some_and(|human| human.group == group)
+    };
+    for (who, way) in other.paths.humans.iter_mut().filter(|(who, _)| with_it(**who)) {
+        way.truncate(made.paths.visits(*who).first()?.human_step? + 2);
+    }
+    // Played without a second meeting; the one that was asked for judges it.
+    let mut first: Vec<HumanId> = Vec::new();
+    other.paths.encounters.retain(|encounter| {
+        let again = first.contains(&encounter.human);
+        first.push(encounter.human);
+        !(again && with_it(encounter.human))
+    });
+    other
+        .proposal
+        .expected_events
+        .retain(|clause| !matches!(clause.predicate, Predicate::MeetsAgain { human, .. } if with_it(human)));
+    Some(other)
 }
 
 /// Who stays goes out like the one who leaves.

@@ -92,8 +92,9 @@ pub fn trajectory(proposal: &Proposal, paths: &Paths) -> Value {
     let mut trajectories: Map<String, Value> =
         paths.humans.iter().map(|(id, nodes)| (key(*id), json!(nodes))).collect();
     trajectories.insert("robot".to_owned(), json!(paths.robot));
+    // The published format has one point a human: of somebody who meets the robot several times, the first.
     let points: Map<String, Value> =
-        paths.encounters.iter().map(|encounter| (key(encounter.human), json!(encounter.node))).collect();
+        paths.encounters.iter().rev().map(|encounter| (key(encounter.human), json!(encounter.node))).collect();
     json!({ "groupids": groups, "trajectories": trajectories, "interaction_points": points })
 }
 

@@ -105,9 +105,15 @@ fn listed(net: &Net<'_>, nodes: &[usize]) -> String {
 
 /// Encounters in the order in which the robot comes to them.
 fn sort(paths: &mut Paths) {
-    let robot = paths.robot.clone();
-    let at = |encounter: &Encounter| robot.iter().position(|node| *node == encounter.node).unwrap_or(usize::MAX);
-    paths.encounters.sort_by_key(|encounter| (at(encounter), encounter.human));
+    let mut all: Vec<(usize, Encounter)> = Vec::new();
+    for human in paths.humans.keys() {
+        all.extend(paths.visits(*human).into_iter().map(|visit| {
+            (visit.robot_step.unwrap_or(usize::MAX), Encounter { human: *human, node: visit.node.clone() })
+        }));
+    }
+    // Those of one human stay in their order.
+    all.sort_by_key(|(step, encounter)| (*step, encounter.human));
+    paths.encounters = all.into_iter().map(|(_, encounter)| encounter).collect();
 }
 
 /// One agent's way that is to change.
@@ -419,7 +425,7 @@ fn lay(
     human: &HumanProposal,
     class: PlaceClass,
     at: Option<PlaceClass>,
-    pattern: &str,
+    (pattern, twice): (&str, Option<Option<PlaceClass>>),
 ) -> bool {
     let net = Net::new(location);
     let old = paths.encounter_of(human.id).cloned();
@@ -429,12 +435,14 @@ fn lay(
         Some(at) => stands(&net, &route, &taken, at),
         None => way(human, &route, &taken, true),
     };
-    let Some(Way { nodes, meet, .. }) = found else { return false };
+    let Some(own) = found else { return false };
+    let second = twice.and_then(|class| crate::twice::second(&net, &route, &own, (human.relation, class)));
+    let (own, again) = second.map_or((own, None), |(own, node)| (own, Some(node)));
     paths.encounters.retain(|encounter| encounter.human != human.id);
-    if let Some(node) = net.id(meet) {
+    for node in [Some(own.meet), again].into_iter().flatten().filter_map(|node| net.id(node)) {
         paths.encounters.push(Encounter { human: human.id, node: node.clone() });
     }
-    paths.humans.insert(human.id, net.named(&nodes));
+    paths.humans.insert(human.id, net.named(&own.nodes));
     sort(paths);
     true
 }
@@ -467,7 +475,8 @@ pub(crate) fn join(desk: &mut Desk, who: usize, at: Option<PlaceClass>) -> bool 
         return false;
     };
     let proposal = &desk.draft.proposal;
-    let done = lay(&desk.question.location, &mut paths, &human, proposal.place, at, &proposal.pattern);
+    let twice = crate::twice::asked(proposal).into_iter().find(|(id, _)| *id == human.id).map(|(_, class)| class);
+    let done = lay(&desk.question.location, &mut paths, &human, proposal.place, at, (&proposal.pattern, twice));
     if done {
         desk.draft.paths = Some(paths);
     }
@@ -485,12 +494,14 @@ pub(crate) fn together(desk: &mut Desk, members: &[usize]) {
         members.iter().filter_map(|i| desk.draft.proposal.humans.get(*i)).map(|human| human.id).collect();
     let Some(paths) = &mut desk.draft.paths else { return };
     let Some(first) = ids.first().and_then(|id| paths.humans.get(id)).cloned() else { return };
-    let node = ids.first().and_then(|id| paths.encounter_of(*id)).cloned();
+    let met: Vec<NodeId> = ids.first().map(|id| paths.encounters_of(*id).cloned().collect()).unwrap_or_default();
     for id in ids.iter().skip(1) {
         paths.humans.insert(*id, first.clone());
-        for encounter in paths.encounters.iter_mut().filter(|encounter| encounter.human == *id) {
-            encounter.node = node.clone().unwrap_or_else(|| encounter.node.clone());
+        if met.is_empty() || paths.encounter_of(*id).is_none() {
+            continue;
         }
+        paths.encounters.retain(|encounter| encounter.human != *id);
+        paths.encounters.extend(met.iter().map(|node| Encounter { human: *id, node: node.clone() }));
     }
     sort(paths);
 }

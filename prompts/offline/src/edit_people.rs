@@ -540,8 +540,10 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     desk.draft.paths = mapped(&desk.draft.paths, &text);
     let facts = &mut desk.question.reading.facts;
     let of = |kind: &FactKind| {
-        if let FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::Relates { human, .. } =
-            kind
+        if let FactKind::Reacts { human, .. }
+        | FactKind::Gestures { human, .. }
+        | FactKind::Relates { human, .. }
+        | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)
         } else if let FactKind::Group { members, .. } = kind {

@@ -87,6 +87,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             FactKind::Place(class) => *class = proposal.place,
             FactKind::Group { .. }
             | FactKind::Gestures { .. }
+            | FactKind::MeetsTimes { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
             | FactKind::RobotStart(_)
@@ -104,6 +105,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
         FactKind::Humans(_)
         | FactKind::Relates { .. }
+        | FactKind::MeetsTimes { .. }
         | FactKind::Place(_)
         | FactKind::RobotTask(_)
         | FactKind::Pattern(_) => true,

@@ -3,7 +3,7 @@
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
     Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, PlaceClass,
-    Predicate, Proposal, Reading, Relation, Rule, Trigger,
+    Predicate, Proposal, Reading, Relation, Rule, Trigger, ordinal,
 };
 
 use crate::card::Card;
@@ -14,6 +14,8 @@ use crate::understand::Extra;
 
 /// A robot that does its part has met somebody once they were this near, m: the usual distance of passing in a corridor.
 const MEETS_M: f64 = 2.5;
+/// Somebody has met the robot again once they were this near, m.
+const AGAIN_M: f64 = 3.0;
 /// People at a blind corner see each other from no farther, m.
 const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross and no card says, s.
@@ -120,6 +122,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
     let own = |fact: &&Fact| {
         if let FactKind::Reacts { human: who, .. }
         | FactKind::Gestures { human: who, .. }
+        | FactKind::MeetsTimes { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -160,6 +163,14 @@ fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) 
         FactKind::Relates { human, .. } => {
             if let Some(who) = proposal.human(*human) {
                 of_relation(list, &fact.id, who, proposal, GAP_S);
+            }
+        }
+        FactKind::MeetsTimes { human, times, place } => {
+            let text = format!("{human} meets the robot for the {} time", ordinal(*times));
+            list.setup(true, &fact.id, text, Predicate::MeetsAgain { human: *human, nth: *times, within_m: AGAIN_M });
+            if let Some(class) = place {
+                let text = format!("they meet at {}", place::an(*class));
+                list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class });
             }
         }
         FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),

@@ -29,6 +29,7 @@ mod around;
 mod arrange;
 mod cut;
 
+mod again;
 mod clause;
 mod measure;
 mod message;
@@ -68,7 +69,10 @@ mod humans;
 mod mended;
 mod routes;
 mod solve;
+mod twice;
 
+#[cfg(test)]
+mod again_tests;
 #[cfg(test)]
 mod tests;
 

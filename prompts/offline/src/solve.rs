@@ -13,6 +13,7 @@ use crate::edit_paths;
 use crate::humans::{Taken, Way, way};
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
+use crate::twice;
 
 /// Meeting nodes that are tried, and ways of the robot over each.
 const NODES: usize = 14;
@@ -26,6 +27,8 @@ const OTHERS: usize = 6;
 struct Solution {
     route: Route,
     ways: BTreeMap<HumanId, Way>,
+    /// Where somebody meets the robot for the second time.
+    again: BTreeMap<HumanId, usize>,
     score: f64,
 }
 
@@ -126,6 +129,7 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         0.3
     };
     let longer = f64::from(shorts.min(4));
+    let twice = !twice::asked(proposal).is_empty();
     // Followers and overtakers need a longer way to show what they do.
     let along = has(Relation::Behind) || has(Relation::Ahead) || has(Relation::Abreast);
     Wish {
@@ -135,8 +139,14 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         via: None,
         roomy: false,
         straight,
-        least_m: 6.5 + 2.0 * longer,
-        aim_m: if along { 20.0 } else { 16.0 } + 4.0 * longer,
+        least_m: if twice { twice::LEAST_M } else { 6.5 } + 2.0 * longer,
+        aim_m: if twice {
+            twice::AIM_M
+        } else if along {
+            20.0
+        } else {
+            16.0
+        } + 4.0 * longer,
     }
 }
 
@@ -386,6 +396,8 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         .iter()
         .any(|human| !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast));
     let mut cost = 0.0;
+    let twice = twice::asked(proposal);
+    let mut again: BTreeMap<HumanId, usize> = BTreeMap::new();
     for human in &proposal.humans {
         // Members of a group go together; people of one room leave it one after the other.
         let mate = proposal
@@ -402,6 +414,22 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
             Some(leader) => after(net, leader, &taken)?,
             None => way(human, &route, &taken, along)?,
         };
+        let own = match twice.iter().find(|(id, _)| *id == human.id) {
+            // A member of a group goes the way of the one before it, its second meeting included.
+            Some(_) if mate.is_some() => {
+                let of = proposal.humans.iter().filter(|other| other.group == human.group);
+                again.extend(of.filter_map(|other| again.get(&other.id)).next().copied().map(|node| (human.id, node)));
+                own
+            }
+            Some((_, class)) => match twice::second(net, &route, &own, (human.relation, *class)) {
+                Some((own, node)) => {
+                    again.insert(human.id, node);
+                    own
+                }
+                None => Way { cost: own.cost + twice::ONLY_ONCE, ..own },
+            },
+            None => own,
+        };
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());
@@ -412,7 +440,7 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         ways.insert(human.id, own);
     }
     let score = route.score - cost;
-    Some(Solution { route, ways, score })
+    Some(Solution { route, ways, again, score })
 }
 
 /// The way of somebody who follows another human: the same, from the node before or after its start.
@@ -434,6 +462,7 @@ fn after(net: &Net<'_>, leader: &Way, taken: &Taken<'_>) -> Option<Way> {
 fn written(net: &Net<'_>, solution: &Solution, proposal: &Proposal) -> Paths {
     let order = |node: &usize| solution.route.nodes.iter().position(|other| other == node).unwrap_or(usize::MAX);
     let mut meetings: Vec<(HumanId, usize)> = solution.ways.iter().map(|(id, way)| (*id, way.meet)).collect();
+    meetings.extend(solution.again.iter().map(|(id, node)| (*id, *node)));
     meetings.sort_by_key(|(id, node)| (order(node), *id));
     let encounters: Vec<Encounter> = meetings
         .into_iter()

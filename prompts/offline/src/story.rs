@@ -2,6 +2,7 @@
 
 use socrates_model::{Fault, FaultCode, Gesture, PlaceClass, Trigger};
 
+use crate::again;
 use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
@@ -282,6 +283,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
     if !stretch.also.is_empty() {
         also_called(story, &meant, stretch);
+    }
+    if again::note(story, thread, stretch, &found, &meant, &quote) {
+        return;
     }
     if let Some(does) = ellipsis::elided(stretch, &found) {
         return ellipsis::repeat(story, thread, &meant, does, stretch, &quote);

@@ -9,7 +9,7 @@ use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{aside, cut, default_cast, place, words};
+use crate::{again, aside, cut, default_cast, place, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -84,7 +84,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         extras = default_cast::fill(&mut reading, &story, request, location);
     }
     unfitting(request, location, &mut reading);
-    facts(&story, &task, &mut reading);
+    facts(&story, &task, location, &mut reading);
     if request.expect.pattern.is_some()
         && let Some(id) = &reading.pattern
     {
@@ -258,7 +258,7 @@ fn people(request: &Request, story: &Story, reading: &mut Reading) {
     }
 }
 
-fn facts(story: &Story, task: &Task, reading: &mut Reading) {
+fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading) {
     let mut facts: Vec<(String, FactKind)> = Vec::new();
     let count = u32::try_from(reading.humans.len()).unwrap_or(u32::MAX);
     if count > 0 {
@@ -275,6 +275,8 @@ fn facts(story: &Story, task: &Task, reading: &mut Reading) {
         if let Some((relation, quote)) = person.relation.clone() {
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
         }
+        let twice = person.again.as_ref();
+        facts.extend(twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading)));
         for read in &person.rules {
             // That somebody walks on after all it did is no demand of its own.
             if !read.stated && read.rule.act == Action::Navigate && read.rule.gesture.is_none() {

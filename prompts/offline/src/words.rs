@@ -150,7 +150,7 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             i += 1;
         }
     }
-    out
+    crate::again::joined(out)
 }
 
 /// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.

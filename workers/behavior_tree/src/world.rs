@@ -28,7 +28,7 @@ pub trait World {
     }
     /// Takes the next goal of the path; at the last one nothing changes.
     fn next_goal(&mut self);
-    /// Whether this human is at the node where it meets the robot.
+    /// Whether this human is at the node where it meets the robot; of several, the first.
     fn at_encounter(&self) -> bool;
     /// Time since the start of the run.
     fn now(&self) -> SimTime;

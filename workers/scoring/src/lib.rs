@@ -38,6 +38,8 @@ mod crowds;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod meetings;
+#[cfg(test)]
 mod scenarios;
 
 pub use doubts::doubts;

@@ -1,7 +1,7 @@
 //! The story of a run in lines with times, and what the robot did in one sentence.
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, EventKind, Gesture};
+use socrates_model::{Action, AgentId, ClauseRole, EventKind, Gesture, ordinal};
 
 use crate::fidelity::{Judged, Signals, does, to_millis};
 use crate::metrics::Scene;
@@ -56,8 +56,9 @@ fn told(kind: &EventKind) -> Option<String> {
             None => format!("{human} runs {leaf}"),
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
-        EventKind::Encounter { human, node, gap_s } => {
-            format!("{human} and the robot meet at {node}, gap {:.1} s", to_millis(*gap_s).abs())
+        EventKind::Encounter { human, node, gap_s, nth } => {
+            let again = if *nth > 1 { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
+            format!("{human} and the robot meet{again} at {node}, gap {:.1} s", to_millis(*gap_s).abs())
         }
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
         EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {:.0} mm deep", depth_m * 1e3),

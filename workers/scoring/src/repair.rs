@@ -84,6 +84,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         Predicate::Plausible => (FaultCode::DPen, Stage::Paths),
         Predicate::Humans { .. }
         | Predicate::Meets { .. }
+        | Predicate::MeetsAgain { .. }
         | Predicate::HeadOn { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }

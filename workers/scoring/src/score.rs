@@ -75,5 +75,5 @@ pub(crate) fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault>
 /// Whether a predicate tells of a meeting that the paths must make.
 #[must_use]
 pub(crate) const fn is_meeting(predicate: &Predicate) -> bool {
-    matches!(predicate, Predicate::Meets { .. })
+    matches!(predicate, Predicate::Meets { .. } | Predicate::MeetsAgain { .. })
 }

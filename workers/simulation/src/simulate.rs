@@ -117,7 +117,9 @@ pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooke
     let route = setup.location.graph.polyline(&setup.paths.robot);
     let script = setup.proposal.robot.script.clone();
     let place = |node: &NodeId| setup.location.graph.node(node).map(|node| node.at);
-    let encounters = setup.paths.encounters.iter().filter_map(|meet| Some((meet.human, place(&meet.node)?))).collect();
+    // The script's `at_encounter` means the first of somebody who meets the robot several times.
+    let encounters =
+        setup.paths.encounters.iter().rev().filter_map(|meet| Some((meet.human, place(&meet.node)?))).collect();
     let engine = Engine::new(setup)?;
     let field = engine.floor().field().clone();
     let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, encounters };

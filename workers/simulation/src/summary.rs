@@ -27,8 +27,11 @@ pub struct Summary {
     /// When the robot arrived, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robot_arrived_s: Option<f64>,
-    /// Achieved gap of each encounter, s; positive: the human came later.
+    /// Achieved gap of each human's first encounter, s; positive: the human came later.
     pub encounter_gaps_s: BTreeMap<HumanId, f64>,
+    /// Those of the encounters after the first, one after the other.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub later_gaps_s: BTreeMap<HumanId, Vec<f64>>,
     /// Touches between agents.
     pub contacts: u32,
 }
@@ -48,10 +51,14 @@ impl Summary {
             end: String::new(),
             robot_arrived_s: None,
             encounter_gaps_s: BTreeMap::new(),
+            later_gaps_s: BTreeMap::new(),
             contacts: 0,
         };
         for event in &recording.events {
             match &event.kind {
+                EventKind::Encounter { human, gap_s, nth, .. } if *nth > 1 => {
+                    summary.later_gaps_s.entry(*human).or_default().push(*gap_s);
+                }
                 EventKind::Encounter { human, gap_s, .. } => {
                     summary.encounter_gaps_s.insert(*human, *gap_s);
                 }

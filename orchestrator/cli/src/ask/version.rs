@@ -92,7 +92,12 @@ impl Version {
                 let ids: Vec<&str> = nodes.iter().map(socrates_model::NodeId::as_str).collect();
                 let meets = match agent {
                     AgentId::Human(id) => {
-                        paths.encounter_of(id).map(|node| format!(" · meets the robot at {node}")).unwrap_or_default()
+                        let nodes: Vec<&str> = paths.encounters_of(id).map(socrates_model::NodeId::as_str).collect();
+                        if nodes.is_empty() {
+                            String::new()
+                        } else {
+                            format!(" · meets the robot at {}", nodes.join(", then at "))
+                        }
                     }
                     AgentId::Robot => String::new(),
                 };

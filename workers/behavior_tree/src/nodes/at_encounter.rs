@@ -1,4 +1,4 @@
-//! `IsAtEncounter`: this human is where it meets the robot.
+//! `IsAtEncounter`: this human is where it meets the robot, for the first time if it does so several times.
 
 use socrates_model::Trigger;
 

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::convert::identity;
 
 use socrates_model::report::Standing;
-use socrates_model::{Clause, ClauseResult, ClauseRole, Predicate, Relation, rule::RobotDo};
+use socrates_model::{Clause, ClauseResult, ClauseRole, HumanId, Predicate, Relation, ordinal, rule::RobotDo};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
@@ -110,8 +110,20 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         }
     }
     if let Some(paths) = signals.evidence.paths {
+        let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
         for encounter in &paths.encounters {
             let human = encounter.human;
+            let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);
+            if *nth > 1 {
+                let nth = *nth;
+                let again = |predicate: &Predicate| matches!(predicate, Predicate::MeetsAgain { human: who, nth: which, within_m } if *who == human && *which == nth && *within_m <= MEET_NODE_M);
+                if !has(&again) {
+                    let text = format!("{human} meets the robot for the {} time near {}", ordinal(nth), encounter.node);
+                    let predicate = Predicate::MeetsAgain { human, nth, within_m: MEET_NODE_M };
+                    more.push(setup(format!("auto-meet-{human}-{nth}"), text, predicate));
+                }
+                continue;
+            }
             let meets = |predicate: &Predicate| matches!(predicate, Predicate::Meets { human: who, within_m } if *who == human && *within_m <= MEET_NODE_M);
             if !has(&meets) {
                 let text = format!("{human} meets the robot near {}", encounter.node);
@@ -176,7 +188,8 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
     let either = |result: Result<Finding, Finding>| result.unwrap_or_else(identity);
     match predicate {
         Predicate::Humans { count } => setting::humans(signals, *count),
-        Predicate::Meets { human, within_m } => meeting::meets(signals, *human, *within_m),
+        Predicate::Meets { human, within_m } => meeting::meets(signals, *human, 1, *within_m),
+        Predicate::MeetsAgain { human, nth, within_m } => meeting::meets(signals, *human, *nth, *within_m),
         Predicate::HeadOn { human } => meeting::head_on(signals, *human),
         Predicate::Crosses { human, gap_s } => meeting::crosses(signals, *human, *gap_s),
         Predicate::Ahead { human, within_m, for_s } => meeting::ahead(signals, *human, *within_m, *for_s),

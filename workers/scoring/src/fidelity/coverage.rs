@@ -57,7 +57,11 @@ fn about(clause: &Clause, human: HumanId, group: Option<socrates_model::GroupId>
 /// Facts that a scenario must show; the task and its ends are the robot's own business.
 const fn asks(kind: &FactKind) -> bool {
     match kind {
-        FactKind::Group { .. } | FactKind::Reacts { .. } | FactKind::Gestures { .. } | FactKind::Place(_) => true,
+        FactKind::Group { .. }
+        | FactKind::Reacts { .. }
+        | FactKind::Gestures { .. }
+        | FactKind::MeetsTimes { .. }
+        | FactKind::Place(_) => true,
         FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
@@ -80,6 +84,9 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::Gestures { human, gesture } => {
             let asked = Predicate::Gestures { agent: AgentId::Human(*human), gesture: *gesture };
             clause.predicate == asked || named && about(clause, *human, None, u32::MAX)
+        }
+        FactKind::MeetsTimes { human, times, .. } => {
+            matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times)
         }
         FactKind::Group { group, members } => members
             .first()

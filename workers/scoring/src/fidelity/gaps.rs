@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::EventKind;
+use socrates_model::{EventKind, HumanId, ordinal};
 
 use crate::fidelity::signals::Signals;
 
@@ -15,30 +15,41 @@ pub(crate) fn to_millis(gap_s: f64) -> f64 {
     (gap_s * 1e3).round() / 1e3
 }
 
-/// Achieved gap of each encounter, s, by human: as the engine tells it, else from the tracks. Positive:
-/// the human came later.
+/// Achieved gap of each encounter, s, by human, those after the first with their number in words: as the engine tells it,
+/// else from the tracks. Positive: the human came later.
 pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
     let mut gaps = BTreeMap::new();
     for event in &signals.evidence.recording.events {
-        if let EventKind::Encounter { human, gap_s, .. } = &event.kind
+        if let EventKind::Encounter { human, gap_s, nth, .. } = &event.kind
             && gap_s.is_finite()
         {
-            gaps.entry(human.to_string()).or_insert_with(|| to_millis(*gap_s));
+            gaps.entry(name(*human, *nth)).or_insert_with(|| to_millis(*gap_s));
         }
     }
     let Some(paths) = signals.evidence.paths else { return gaps };
+    let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
     for encounter in &paths.encounters {
+        let nth = *met.entry(encounter.human).and_modify(|nth| *nth += 1).or_insert(1);
         let (Some(at), Some(robot), Some(human)) =
             (signals.node(&encounter.node), &signals.tracks.robot, signals.tracks.human(encounter.human))
         else {
             continue;
         };
+        let meeting = signals.meeting(encounter.human, nth);
+        let own = |t: f64| meeting.is_none_or(|meeting| (meeting.from_s..meeting.to_s).contains(&t));
         let arrival = |samples: &[crate::tracks::Sample]| {
-            samples.iter().find(|sample| sample.there && (sample.at - at).norm() <= ARRIVED_M).map(|sample| sample.t)
+            let there =
+                |sample: &&crate::tracks::Sample| sample.there && own(sample.t) && (sample.at - at).norm() <= ARRIVED_M;
+            samples.iter().find(there).map(|sample| sample.t)
         };
         if let (Some(first), Some(second)) = (arrival(&robot.samples), arrival(&human.samples)) {
-            gaps.entry(encounter.human.to_string()).or_insert_with(|| to_millis(second - first));
+            gaps.entry(name(encounter.human, nth)).or_insert_with(|| to_millis(second - first));
         }
     }
     gaps
+}
+
+/// Who, and which of its meetings if not the first.
+fn name(human: HumanId, nth: u32) -> String {
+    if nth > 1 { format!("{human} {} meeting", ordinal(nth)) } else { human.to_string() }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use socrates_model::{HumanId, Point};
+use socrates_model::{HumanId, Point, ordinal};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::{Moment, Signals};
@@ -39,13 +39,23 @@ fn closest(moments: &[Moment]) -> Option<&Moment> {
     moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))
 }
 
-/// Robot and human come within `within_m` of each other, both near the human's encounter node.
-pub(super) fn meets(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Finding {
+/// Robot and human come within `within_m` of each other, both near the human's nth encounter node, in the time that is
+/// this encounter's.
+pub(super) fn meets(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f64) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let moments = signals.of(human);
-    let near = signals.encounter(human);
+    let meeting = signals.meeting(human, nth);
+    if nth > 1 && meeting.is_none() {
+        let text = format!("{human} has no {} encounter with the robot in the paths", ordinal(nth));
+        return Finding::fails(-1.0, vec![], text);
+    }
+    let moments = signals.of_meeting(human, nth);
+    if moments.is_empty() && meeting.is_some() {
+        let text = format!("the robot never got near the {} encounter with {human}", ordinal(nth));
+        return Finding::never(-1.0, vec![], text);
+    }
+    let near = meeting.map_or_else(|| signals.encounter(human), |meeting| Some((&meeting.node, meeting.at)));
     let mark = |moment: &Moment| {
         let both = near.map_or(f64::INFINITY, |(_, at)| {
             MEET_NODE_M - (moment.robot.at - at).norm().max((moment.human.at - at).norm())
@@ -55,14 +65,15 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Fin
     let (Some(nearest), Some(top)) = (closest(moments), best(moments.iter().map(mark))) else {
         return Finding::not_applicable("the recording is empty");
     };
-    let place = near.map_or_else(String::new, |(id, _)| format!(" near `{id}`"));
+    let which = if meeting.is_some() { format!(", {} meeting,", ordinal(nth)) } else { String::new() };
+    let place = near.map_or_else(String::new, |(id, _)| format!("{which} near `{id}`"));
     if let Some(mark) = first(moments.iter().map(mark)) {
         let text = format!(
             "{human} and the robot within {within_m:.1} m{place} at {:.1} s; closest {:.2} m at {:.1} s",
             mark.t, nearest.distance_m, nearest.t
         );
         return Finding::holds(top.margin, vec![mark.t, nearest.t], text)
-            .shifted(room_s(signals, human, within_m, true));
+            .shifted(room_s(signals, human, nth, within_m, true));
     }
     let missing = near.map_or_else(String::new, |(id, at)| {
         let reach = |samples: Vec<Sample>| {
@@ -83,7 +94,7 @@ pub(super) fn meets(signals: &Signals<'_>, human: HumanId, within_m: f64) -> Fin
         "{human} and the robot never came within {within_m:.1} m{place}: closest {:.1} m at {:.1} s{missing}",
         nearest.distance_m, nearest.t
     );
-    Finding::never(top.margin, vec![nearest.t], text).shifted(-room_s(signals, human, within_m, false))
+    Finding::never(top.margin, vec![nearest.t], text).shifted(-room_s(signals, human, nth, within_m, false))
 }
 
 /// Step and end of the shifts that are tried, s.
@@ -92,15 +103,17 @@ const SHIFT_STEPS: u32 = 40;
 
 /// How much sooner or later the human could come, whichever is less, and they would still meet; `meets` false: how much
 /// it takes for them to meet. Infinite beyond 10 s.
-fn room_s(signals: &Signals<'_>, human: HumanId, within_m: f64, meets: bool) -> f64 {
+fn room_s(signals: &Signals<'_>, human: HumanId, nth: u32, within_m: f64, meets: bool) -> f64 {
     let (Some(robot), Some(person)) = (&signals.tracks.robot, signals.tracks.human(human)) else {
         return f64::INFINITY;
     };
-    let near = signals.encounter(human).map(|(_, at)| at);
+    let meeting = signals.meeting(human, nth);
+    let near = meeting.map(|meeting| meeting.at).or_else(|| signals.encounter(human).map(|(_, at)| at));
     let reach = |at: &Point| near.is_none_or(|node| (at - node).norm() <= MEET_NODE_M);
+    let own = |t: f64| meeting.is_none_or(|meeting| (meeting.from_s..meeting.to_s).contains(&t));
     let grid = |track: &Track| -> Vec<Option<Point>> {
         let even = (0..).map(|k| f64::from(k) * SHIFT_STEP_SECS).take_while(|t| *t <= signals.end_s());
-        even.map(|t| track.at(t).map(|sample| sample.at).filter(&reach)).collect()
+        even.map(|t| track.at(t).filter(|_| own(t)).map(|sample| sample.at).filter(&reach)).collect()
     };
     let (mine, theirs) = (grid(robot), grid(person));
     let met = |shift: u32, sooner: bool| {
@@ -119,7 +132,7 @@ pub(super) fn head_on(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let moments = signals.of(human);
+    let moments = signals.of_meeting(human, 1);
     let Some(nearest) = closest(moments) else { return Finding::not_applicable("the recording is empty") };
     let Some(start) = moments.iter().find(|moment| moment.distance_m <= APPROACH_M) else {
         let text = format!("never within {APPROACH_M:.0} m: closest {:.1} m at {:.1} s", nearest.distance_m, nearest.t);
@@ -183,6 +196,21 @@ fn steps(track: &Track) -> Vec<(Point, socrates_model::Vector)> {
         .collect()
 }
 
+/// The tracks of robot and human as they are at the human's first encounter, where it has several: the robot's in the time
+/// that is this encounter's, the human's until it leaves the place for the first time.
+fn first_part(signals: &Signals<'_>, human: HumanId, robot: &Track, person: &Track) -> Option<(Track, Track)> {
+    let meeting = signals.meeting(human, 1)?;
+    let off = |sample: &Sample| (sample.at - meeting.at).norm();
+    let mut passed = person.present().skip_while(|sample| off(sample) > CONFLICT_M);
+    let left_s = passed.find(|sample| off(sample) > MEET_NODE_M).map_or(meeting.to_s, |sample| sample.t);
+    let until = |track: &Track, end_s: f64| {
+        let mut part = track.clone();
+        part.samples.retain(|sample| sample.t < end_s);
+        part
+    };
+    Some((until(robot, meeting.to_s), until(person, left_s.min(meeting.to_s))))
+}
+
 fn conflict(robot: &Track, human: &Track, near: Option<Point>) -> Option<Conflict> {
     let inside = |at: &Point| near.is_none_or(|node| (at - node).norm() <= MEET_NODE_M);
     let theirs: Vec<_> = steps(human).into_iter().filter(|(at, _)| inside(at)).collect();
@@ -206,6 +234,8 @@ pub(super) fn crosses(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     let (Some(robot), Some(person)) = (&signals.tracks.robot, signals.tracks.human(human)) else {
         return Finding::not_applicable("the recording is empty");
     };
+    let part = first_part(signals, human, robot, person);
+    let (robot, person) = part.as_ref().map_or((robot, person), |(robot, person)| (robot, person));
     let near = signals.encounter(human);
     let place = near.map_or_else(String::new, |(id, _)| format!(" near `{id}`"));
     let Some(meet) = conflict(robot, person, near.map(|(_, at)| at)).filter(|meet| meet.apart_m <= 1.0) else {

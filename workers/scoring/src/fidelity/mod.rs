@@ -23,6 +23,7 @@ mod ring;
 mod robot;
 mod setting;
 mod signals;
+mod times;
 mod verdict;
 mod windows;
 

@@ -110,7 +110,10 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     else {
         return Finding::not_applicable("there is no encounter, or no map to tell where it is");
     };
-    let arrival = |track: &Track| track.present().find(|s| (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
+    // The first of several encounters is over when the next one begins.
+    let until_s = signals.meeting(human, 1).map_or(f64::INFINITY, |meeting| meeting.to_s);
+    let arrival =
+        |track: &Track| track.present().find(|s| s.t < until_s && (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };

@@ -9,6 +9,7 @@ use socrates_model::{AgentId, EventKind, HumanId, NodeId, Point};
 use crate::evidence::Evidence;
 use crate::fidelity::doors::Doors;
 use crate::fidelity::leaves::{LeafSpan, leaf_spans};
+use crate::fidelity::times::{Meeting, meetings_of};
 use crate::tracks::{Sample, Track, Tracks};
 
 /// Time between two moments, s (`spec/evaluation` §5.3: 10 to 20 Hz).
@@ -79,6 +80,8 @@ pub struct Signals<'a> {
     pub arrived_s: Option<f64>,
     /// Distance to walls; `None` without a map.
     pub field: Option<DistanceField>,
+    /// Encounters of every human who has several, one after the other.
+    pub(super) meetings: BTreeMap<HumanId, Vec<Meeting>>,
 }
 
 impl<'a> Signals<'a> {
@@ -125,7 +128,8 @@ impl<'a> Signals<'a> {
             .iter()
             .find(|event| event.kind == EventKind::RobotArrived)
             .map(|event| event.time.secs());
-        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, arrived_s, field }
+        let meetings = meetings_of(evidence, tracks.robot.as_ref());
+        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, arrived_s, field, meetings }
     }
 
     /// Moments of a human; empty when it or the robot is missing.
@@ -146,11 +150,27 @@ impl<'a> Signals<'a> {
         Some(self.evidence.location?.graph.node(id)?.at)
     }
 
-    /// Node and position where a human meets the robot.
+    /// Node and position where a human meets the robot, for the first time if it does so several times.
     #[must_use]
     pub fn encounter(&self, human: HumanId) -> Option<(&'a NodeId, Point)> {
         let id = self.evidence.paths?.encounter_of(human)?;
         Some((id, self.node(id)?))
+    }
+
+    /// The nth encounter of a human, from 1, with the time that is its own.
+    #[must_use]
+    pub fn meeting(&self, human: HumanId, nth: u32) -> Option<&Meeting> {
+        self.meetings.get(&human)?.get(usize::try_from(nth).ok()?.checked_sub(1)?)
+    }
+
+    /// Moments of the human's nth encounter: all where it has but one.
+    #[must_use]
+    pub fn of_meeting(&self, human: HumanId, nth: u32) -> &[Moment] {
+        let all = self.of(human);
+        let Some(meeting) = self.meeting(human, nth) else { return all };
+        let from = all.partition_point(|moment| moment.t < meeting.from_s);
+        let to = all.partition_point(|moment| moment.t < meeting.to_s);
+        all.get(from..to).unwrap_or_default()
     }
 
     /// The track of an agent at the rate of moments.

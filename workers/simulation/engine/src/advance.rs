@@ -134,7 +134,7 @@ impl Engine {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
             // Sight matters to the controller only while a meeting lies ahead.
-            let asked = human.meeting.is_some() || human.relation == Relation::Leaving;
+            let asked = !human.meetings.is_empty() || human.relation == Relation::Leaving;
             let sight = asked
                 && human.notice.robot_seen.unwrap_or_else(|| {
                     self.robot.as_ref().is_some_and(|robot| self.floor.sees(&human.at, &robot.at()))

@@ -38,7 +38,7 @@ impl Engine {
         let at_encounter: Vec<HumanId> = self
             .humans
             .iter()
-            .filter(|human| human.meeting.as_ref().is_some_and(|meeting| (meeting.at - at).norm() < 1.0))
+            .filter(|human| human.meeting().is_some_and(|meeting| (meeting.at - at).norm() < 1.0))
             .map(|human| human.id)
             .collect();
         let mut gesture =

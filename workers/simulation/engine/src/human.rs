@@ -16,6 +16,8 @@ pub(crate) struct Meeting {
     pub(crate) human_s: f64,
     /// Length along the robot's way, m.
     pub(crate) robot_s: f64,
+    /// It aims at being there so long before the robot, s.
+    pub(crate) lead_s: f64,
 }
 
 /// A door on the way.
@@ -56,7 +58,8 @@ pub(crate) struct Human {
     pub(crate) nodes: Vec<(NodeId, f64)>,
     pub(crate) next_node: usize,
     pub(crate) s: f64,
-    pub(crate) meeting: Option<Meeting>,
+    /// Where it meets the robot, one after the other.
+    pub(crate) meetings: Vec<Meeting>,
     pub(crate) doors: Vec<DoorOnWay>,
     pub(crate) at: Point,
     pub(crate) velocity: Vector,
@@ -93,6 +96,11 @@ impl Human {
     /// As an agent.
     pub(crate) const fn agent(&self) -> AgentId {
         AgentId::Human(self.id)
+    }
+
+    /// The first of its meetings: what trees and scripts call the encounter.
+    pub(crate) fn meeting(&self) -> Option<&Meeting> {
+        self.meetings.first()
     }
 
     /// Whether it is at the end of its path.

@@ -31,6 +31,7 @@ mod gathering;
 mod human;
 mod lanes;
 mod make_room;
+mod meetings;
 mod motion;
 mod near;
 mod placing;

@@ -36,7 +36,7 @@ fn met(recording: &Recording) -> Vec<(u32, String, f64)> {
         .events
         .iter()
         .filter_map(|event| {
-            if let EventKind::Encounter { human, node, gap_s } = &event.kind {
+            if let EventKind::Encounter { human, node, gap_s, .. } = &event.kind {
                 Some((human.number(), node.to_string(), *gap_s))
             } else {
                 None
@@ -89,5 +89,113 @@ fn a_human_who_visits_a_node_twice_meets_the_robot_there() {
         let recording = run(Setup { seed, duration_s: Some(120.0), ..made });
         let met = met(&recording);
         assert!(met.iter().any(|(_, _, gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
+    }
+}
+
+/// Encounters with their number: human, number, node, gap.
+fn numbered(recording: &Recording) -> Vec<(u32, u32, String, f64)> {
+    let of = |kind: &EventKind| {
+        if let EventKind::Encounter { human, node, gap_s, nth } = kind {
+            Some((human.number(), *nth, node.to_string(), *gap_s))
+        } else {
+            None
+        }
+    };
+    recording.events.iter().filter_map(|event| of(&event.kind)).collect()
+}
+
+#[test]
+fn somebody_who_goes_round_the_block_meets_the_robot_twice() {
+    for seed in 1..=6 {
+        // The robot straight on, the person towards it, round the block to the north, and onto its way again.
+        let cast = [Cast(Relation::Frontal, &["e", "m", "nw", "ne", "e"], vec![])];
+        let made = setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &[(1, "m"), (1, "e")]);
+        let recording = run(Setup { seed, ..made });
+        let met = numbered(&recording);
+        assert_eq!(met.len(), 2, "seed {seed}: {met:?}");
+        assert_eq!((met[0].1, met[0].2.as_str()), (1, "m"), "seed {seed}: {met:?}");
+        assert_eq!((met[1].1, met[1].2.as_str()), (2, "e"), "seed {seed}: {met:?}");
+        assert!(met.iter().all(|(.., gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
+    }
+}
+
+#[test]
+fn at_a_revisited_node_the_second_encounter_is_that_of_the_second_visit() {
+    // The robot comes over `m`, round the block, and over `m` again; the person goes to and fro in the west meanwhile.
+    let way = ["w2", "m", "e", "ne", "nw", "m", "w2"];
+    let west = ["e", "m", "w2", "w", "w2", "w", "w2", "m", "e"];
+    for seed in 1..=4 {
+        let cast = [Cast(Relation::Frontal, &west, vec![])];
+        let made = setup(ring(), &way, &cast, &[(1, "m"), (1, "m")]);
+        let recording = run(Setup { seed, duration_s: Some(120.0), ..made });
+        let met = numbered(&recording);
+        let nodes: Vec<(u32, &str)> = met.iter().map(|(_, nth, node, _)| (*nth, node.as_str())).collect();
+        assert_eq!(nodes, [(1, "m"), (2, "m")], "seed {seed}: {met:?}");
+        assert!(met.iter().all(|(.., gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
+        let time = |nth: usize| {
+            recording
+                .events
+                .iter()
+                .filter(|event| matches!(event.kind, EventKind::Encounter { .. }))
+                .nth(nth)
+                .unwrap()
+                .time
+                .secs()
+        };
+        assert!(time(1) - time(0) > 15.0, "seed {seed}: the second is one of its own");
+    }
+}
+
+#[test]
+fn who_stands_where_the_robot_comes_by_twice_is_met_twice() {
+    let cast = [Cast(Relation::Static, &["m"], vec![])];
+    let made = setup(ring(), &["w", "w2", "m", "e", "ne", "nw", "m", "w2"], &cast, &[(1, "m"), (1, "m")]);
+    let met = numbered(&run(Setup { duration_s: Some(120.0), ..made }));
+    assert_eq!(met.iter().map(|(_, nth, ..)| *nth).collect::<Vec<_>>(), [1, 2], "{met:?}");
+}
+
+#[test]
+fn an_encounter_that_is_missed_leaves_the_next_one_its_own() {
+    // Far too late for the first: it starts beyond the block.
+    let cast = [Cast(Relation::Leaving, &["ne", "nw", "ne", "nw", "m", "nw", "ne", "e", "ne"], vec![])];
+    let made = setup(ring(), &["w2", "m", "e", "ne"], &cast, &[(1, "m"), (1, "e")]);
+    let met = numbered(&run(Setup { duration_s: Some(90.0), ..made }));
+    assert!(met.iter().all(|(_, nth, ..)| *nth == 2), "{met:?}");
+}
+
+#[test]
+fn a_group_meets_the_robot_twice_together() {
+    for seed in 1..=3 {
+        let way = ["e", "m", "nw", "ne", "e"];
+        let cast = [Cast(Relation::Frontal, &way, vec![]), Cast(Relation::Frontal, &way, vec![])];
+        let mut made = setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &[(1, "m"), (2, "m"), (1, "e"), (2, "e")]);
+        let group = socrates_model::GroupId(1);
+        for human in &mut made.proposal.humans {
+            human.group = Some(group);
+        }
+        let members = made.proposal.humans.iter().map(|human| human.id).collect();
+        made.proposal.groups.push(socrates_model::GroupProposal { id: group, members, standing: false });
+        let met = numbered(&run(Setup { seed, ..made }));
+        assert_eq!(met.len(), 4, "seed {seed}: {met:?}");
+        assert!(met.iter().all(|(.., gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
+    }
+}
+
+#[test]
+fn a_look_at_the_first_meeting_does_not_spoil_the_second() {
+    use socrates_model::{Action, Rule, Trigger};
+    for seed in 1..=4 {
+        let look = Rule {
+            when: vec![Trigger::RobotNear(3.0)],
+            act: Action::LookAtRobot,
+            gesture: None,
+            for_s: Some(5.0),
+            latched: true,
+        };
+        let cast = [Cast(Relation::Frontal, &["e", "m", "nw", "ne", "e"], vec![look])];
+        let made = setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &[(1, "m"), (1, "e")]);
+        let met = numbered(&run(Setup { seed, ..made }));
+        assert_eq!(met.len(), 2, "seed {seed}: {met:?}");
+        assert!(met[1].3.abs() <= 4.0, "seed {seed}: {met:?}");
     }
 }

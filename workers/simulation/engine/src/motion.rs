@@ -14,6 +14,9 @@ use crate::robot::Robot;
 
 /// Length of the way that a walker looks ahead, m.
 const LOOK_AHEAD_M: f64 = 0.9;
+/// Cosine between the ways before and after a turn up to which it turns back (154°), and how near to it it is made, m.
+const TURNS_BACK: f64 = -0.9;
+const TURN_M: f64 = 0.25;
 /// Speed of somebody who runs away, m/s.
 const RUN_MPS: f64 = 1.6;
 /// Fastest speed of somebody who keeps up with a leader, m/s.
@@ -128,7 +131,7 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     let wish = human.lane_m + human.notice.aside_m;
     // The sidestep is taken up at 0.9 m/s sideways, so that nobody jumps.
     human.aside_m += (wish - human.aside_m).clamp(-0.009, 0.009);
-    let base = human.route.point(human.s + LOOK_AHEAD_M);
+    let base = human.route.point(human.s + look_ahead_m(human));
     let aside = Vector::new(-ahead.y, ahead.x) * human.aside_m;
     if scene.looks {
         human.notice.share = share(scene.floor, &base, &aside, human.radius_m + 0.08);
@@ -144,6 +147,21 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     // Pushed off its way behind a corner: round it, back to the way.
     let back = human.route.point(human.s + 0.4);
     Want::go(round(human, scene, &back).unwrap_or(base), speed)
+}
+
+/// How far ahead on its way somebody heads for, m. Where the way turns back that is the turn, and from right before it a point
+/// behind it: the point as far ahead as elsewhere would be where it stands.
+fn look_ahead_m(human: &Human) -> f64 {
+    let (route, s) = (&human.route, human.s);
+    if route.direction(s).dot(&route.direction(s + LOOK_AHEAD_M)) > TURNS_BACK {
+        return LOOK_AHEAD_M;
+    }
+    let back = |mark: &f64| {
+        let (before, after) = (route.direction(mark - TURN_M), route.direction(mark + TURN_M));
+        *mark > s && before.dot(&after) <= TURNS_BACK
+    };
+    let turn = route.marks_m().iter().copied().find(back);
+    turn.map_or(LOOK_AHEAD_M, |turn| if turn - s > TURN_M { turn - s } else { turn - s + LOOK_AHEAD_M })
 }
 
 /// Stands at its place; lets a robot through that cannot get past it, and comes back.

@@ -136,7 +136,7 @@ fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
     let toward = match door {
         Some(door) => door - at,
         None if ahead.norm() > 0.5 => ahead,
-        None => human.meeting.as_ref().map_or_else(|| Vector::new(1.0, 0.0), |_| human.heading()),
+        None => human.meeting().map_or_else(|| Vector::new(1.0, 0.0), |_| human.heading()),
     };
     libm::atan2(toward.y, toward.x)
 }
@@ -174,7 +174,7 @@ fn stand(
     let members: Vec<usize> =
         group.members.iter().filter_map(|id| humans.iter().position(|human| human.id == *id)).collect();
     let Some(first) = members.first().and_then(|place| humans.get(*place)) else { return };
-    let home = first.meeting.as_ref().map_or_else(|| first.route.point(0.0), |meeting| meeting.at);
+    let home = first.meeting().map_or_else(|| first.route.point(0.0), |meeting| meeting.at);
     let body = first.radius_m;
     let around = Around { floor, route, taken, body };
     let places = if line {

@@ -40,7 +40,7 @@ pub struct Recorder {
     last: usize,
     touches: BTreeMap<(AgentId, Option<AgentId>), f64>,
     sights: BTreeMap<HumanId, f64>,
-    meetings: BTreeMap<HumanId, Meeting>,
+    meetings: BTreeMap<(HumanId, u32), Meeting>,
 }
 
 impl Recorder {
@@ -94,18 +94,18 @@ impl Recorder {
         }
     }
 
-    /// One tick of an encounter; true from the tick on at which it has happened. Who stands there is never late.
+    /// One tick of a human's nth encounter, from 1; true from the tick on at which it has happened. Who stands there is never late.
     pub fn meet(
         &mut self,
-        human: HumanId,
+        (human, nth): (HumanId, u32),
         (node, spot): (&NodeId, &Point),
         robot: &Point,
         person: &Point,
         stands: bool,
     ) -> bool {
         let now = self.now.secs();
-        let meeting =
-            self.meetings.entry(human).or_insert_with(|| Meeting { closest_m: f64::INFINITY, ..Meeting::default() });
+        let fresh = || Meeting { closest_m: f64::INFINITY, ..Meeting::default() };
+        let meeting = self.meetings.entry((human, nth)).or_insert_with(fresh);
         if meeting.told {
             return true;
         }
@@ -132,7 +132,7 @@ impl Recorder {
         } else {
             time(&meeting.human_s) - time(&meeting.robot_s)
         };
-        self.tell(EventKind::Encounter { human, node: node.clone(), gap_s });
+        self.tell(EventKind::Encounter { human, node: node.clone(), gap_s, nth });
         true
     }
 

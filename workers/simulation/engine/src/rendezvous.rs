@@ -5,7 +5,7 @@
 //! robot is far or cannot see it; one who walks is only made slower or faster within 0.6 to 1.8 m/s, and is
 //! held (at most 10 s in all) only where the robot cannot see it: nobody freezes in the robot's view.
 
-use socrates_model::{Point, Relation};
+use socrates_model::{Point, Relation, Vector};
 
 use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
@@ -39,6 +39,8 @@ const TOWARD_S: f64 = 0.7;
 const STANDS_MPS: f64 = 0.15;
 const STANDS_FROM_S: f64 = 3.0;
 const STANDS_S: f64 = 1.5;
+/// Cosine from which two ways are the same or opposite: 45°.
+const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Somebody ahead is at the encounter so long before the robot, s.
 const AHEAD_S: f64 = 1.0;
 
@@ -50,8 +52,12 @@ pub(crate) struct Timing {
     pub(crate) open_since_s: Option<f64>,
     /// Its place among those who leave through the same door.
     pub(crate) leaving_order: u32,
-    /// Whether the encounter is over.
+    /// The meeting that is watched, counted from 0.
+    pub(crate) meeting: usize,
+    /// Whether it is over.
     pub(crate) over: bool,
+    /// How many of those before it happened.
+    pub(crate) happened: usize,
     /// Whether the robot's own way leads into the place that is left.
     pub(crate) robot_enters: bool,
     /// Whether its door opens for whoever comes near, so that it need not wait for it.
@@ -87,19 +93,22 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     if human.relation == Relation::Leaving && !human.started && timing.robot_enters {
         return leave(human, timing, robot, moment);
     }
-    if human.relation == Relation::Abreast && !timing.over {
+    let next = timing.meeting + usize::from(timing.over);
+    let is_first = next == 0;
+    if human.relation == Relation::Abreast && is_first {
         return Pace { speed_mps: beside(human, robot) };
     }
-    let Some(meeting) = &human.meeting else { return free };
+    let Some(meeting) = human.meetings.get(next) else { return free };
     let left = meeting.human_s - human.s;
-    if timing.over || left <= 0.0 || !robot.before(meeting.robot_s) {
+    if left <= 0.0 || !robot.before(meeting.robot_s) {
         return free;
     }
     let slowest = SLOWEST_MPS.min(human.speed_mps);
-    let fastest = if human.relation == Relation::Ahead { human.speed_mps.max(slowest) } else { FASTEST_MPS };
+    let fastest =
+        if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
     let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
-    let due_s = due_s(human.relation, robot.eta_s(meeting.robot_s) + stands_s);
+    let due_s = robot.eta_s(meeting.robot_s) + stands_s - meeting.lead_s;
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
@@ -114,7 +123,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         return hold;
     }
     let mut speed = needed.clamp(slowest, fastest);
-    if human.relation == Relation::Behind {
+    if human.relation == Relation::Behind && is_first {
         // Catches up without treading on its heels.
         let behind = robot.s - (human.s + meeting.robot_s - meeting.human_s);
         speed = speed.min((robot.v.max(0.0) + 0.6 * (behind - 1.2)).max(0.0));
@@ -122,13 +131,26 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     Pace { speed_mps: speed }
 }
 
-fn due_s(relation: Relation, robot_eta_s: f64) -> f64 {
+/// How long before the robot somebody aims at being at its first meeting, s.
+pub(crate) const fn lead_s(relation: Relation) -> f64 {
     match relation {
-        Relation::Ahead => robot_eta_s - AHEAD_S,
+        Relation::Ahead => AHEAD_S,
         // A little before the robot: who crosses is seen crossing, not waiting.
-        Relation::Crossing | Relation::Leaving => robot_eta_s - CROSS_S,
-        Relation::Frontal => robot_eta_s - TOWARD_S,
-        Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => robot_eta_s,
+        Relation::Crossing | Relation::Leaving => CROSS_S,
+        Relation::Frontal => TOWARD_S,
+        Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => 0.0,
+    }
+}
+
+/// The same for a later meeting, where the ways tell how the two come together: `human` and `robot` are their directions.
+pub(crate) fn lead_by_ways_s(human: &Vector, robot: &Vector) -> f64 {
+    let same = human.dot(robot);
+    if same < -SAME_COS {
+        TOWARD_S
+    } else if same < SAME_COS {
+        CROSS_S
+    } else {
+        0.0
     }
 }
 

@@ -19,7 +19,7 @@ use crate::robot::Robot;
 use crate::script::Script;
 use crate::setup::{self, Setup};
 use crate::view::{RobotSeen, View};
-use crate::{start, walk};
+use crate::{meetings, start, walk};
 
 /// The name of the planner that means: no robot (the twin run).
 pub const NO_ROBOT: &str = "none";
@@ -241,7 +241,7 @@ impl Engine {
         robot.chain(humans).collect()
     }
 
-    /// Tells what is seen at this tick: nodes reached, encounters. Gives back the humans met so far.
+    /// Tells what is seen at this tick: nodes reached, encounters. Gives back how many encounters happened so far.
     fn watch(&mut self, recorder: &mut Recorder) -> usize {
         let mut met = 0;
         if let Some(robot) = &mut self.robot {
@@ -260,10 +260,8 @@ impl Engine {
                 }
                 human.next_node += 1;
             }
-            if let (Some(meeting), Some(robot)) = (&human.meeting, &self.robot) {
-                timing.over |=
-                    recorder.meet(human.id, (&meeting.node, &meeting.at), &robot.at(), &human.at, human.stays());
-                met += usize::from(timing.over);
+            if let Some(robot) = &self.robot {
+                met += meetings::watch(human, timing, robot, recorder);
             }
         }
         met
@@ -298,7 +296,7 @@ impl Engine {
             arrived,
             people_done: done,
             met,
-            to_meet: self.humans.iter().filter(|human| human.meeting.is_some()).count(),
+            to_meet: self.humans.iter().map(|human| human.meetings.len()).sum(),
             walkers,
         }
     }

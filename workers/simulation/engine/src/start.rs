@@ -17,6 +17,7 @@ use socrates_model::{
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::make_room::Facing;
+use crate::meetings::{self, Marks};
 use crate::models::Walks;
 use crate::near::Notice;
 use crate::placing;
@@ -27,7 +28,7 @@ use crate::setup::{PERSON_RADIUS_M, Setup};
 const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
-const HURRY_MPS: f64 = 1.5;
+pub(crate) const HURRY_MPS: f64 = 1.5;
 /// Later than this at the encounter is not made good on the way, s.
 const LATE_S: f64 = 0.5;
 /// Least way to the encounter, m.
@@ -193,23 +194,6 @@ fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
     Polyline::new(&points)
 }
 
-type Marks = [(NodeId, f64)];
-
-/// Which of the visits of a node is that of the meeting, along the human's way and the robot's, m: one for which nobody is
-/// too late if there is one, the robot's earliest of those.
-fn visits(node: &NodeId, own: &Marks, robot: &Marks, robot_mps: f64) -> Option<(f64, f64)> {
-    let of = |marks: &Marks| -> Vec<f64> { marks.iter().filter(|(id, _)| id == node).map(|(_, s)| *s).collect() };
-    let (mine, robots) = (of(own), of(robot));
-    let pairs = mine.iter().flat_map(|human_s| robots.iter().map(move |robot_s| (*human_s, *robot_s)));
-    let cost = |(human_s, robot_s): &(f64, f64)| {
-        let due_s = robot_s / robot_mps;
-        // Who stands there from the start goes away before the robot comes, unless it stays.
-        let starts = if *human_s < 1.0 && mine.len() > 1 { 1000.0 } else { 0.0 };
-        starts + 10.0 * (human_s / HURRY_MPS - due_s).max(0.0) + due_s
-    };
-    pairs.min_by(|a, b| cost(a).total_cmp(&cost(b)))
-}
-
 fn human(
     setup: &Setup,
     proposal: &HumanProposal,
@@ -222,21 +206,12 @@ fn human(
     if route.length_m() > 1.0 {
         route = clear_end(route, robot_way, floor);
     }
-    let meeting = setup.paths.encounter_of(proposal.id).and_then(|node| {
-        let at = setup.location.graph.node(node)?.at;
-        let robot_mps = (0.93 * setup.robot.v_max_mps).max(0.1);
-        let visit = visits(node, &marks, robot_marks, robot_mps);
-        let (human_s, robot_s) = visit.unwrap_or_else(|| {
-            let own = marks.iter().find(|(id, _)| id == node).map_or_else(|| route.project(&at).0, |(_, s)| *s);
-            (own, robot_way.project(&at).0)
-        });
-        Some(Meeting { node: node.clone(), at, human_s, robot_s })
-    });
-    let (route, marks, meeting) = in_time(setup, proposal.relation, route, marks, meeting);
+    let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
+    let (route, marks, meetings) = in_time(setup, proposal.relation, route, marks, meetings);
     let doors = doors_on(setup, &route);
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
     let mut facing = 0.0;
-    if let Some(meeting) = &meeting
+    if let Some(meeting) = meetings.first()
         && route.length_m() < 0.05
     {
         // Somebody who stands in the robot's way looks along it, not at the robot.
@@ -255,7 +230,7 @@ fn human(
         lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { 0.0 },
         route,
         nodes: marks,
-        meeting,
+        meetings,
         doors,
         yaw: facing,
         speed_mps,
@@ -285,7 +260,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         nodes: Vec::new(),
         next_node: 0,
         s: 0.0,
-        meeting: None,
+        meetings: Vec::new(),
         doors: Vec::new(),
         velocity: Vector::zeros(),
         yaw: 0.0,
@@ -307,33 +282,33 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
     }
 }
 
-type Way = (Polyline, Vec<(NodeId, f64)>, Option<Meeting>);
+type Way = (Polyline, Vec<(NodeId, f64)>, Vec<Meeting>);
 
 /// Whoever could not be at its encounter in time even at a fast walk is already under way at tick 0: it starts
-/// later on its path, but never nearer than [`STILL_LEFT_M`] to the encounter.
+/// later on its path, but never nearer than [`STILL_LEFT_M`] to the (first) encounter.
 fn in_time(
     setup: &Setup,
     relation: Relation,
     route: Polyline,
     marks: Vec<(NodeId, f64)>,
-    meeting: Option<Meeting>,
+    meetings: Vec<Meeting>,
 ) -> Way {
-    let Some(meet) = meeting.as_ref().filter(|_| matches!(relation, Relation::Crossing | Relation::Frontal)) else {
-        return (route, marks, meeting);
+    let Some(meet) = meetings.first().filter(|_| matches!(relation, Relation::Crossing | Relation::Frontal)) else {
+        return (route, marks, meetings);
     };
     let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1);
     let late_s = meet.human_s / HURRY_MPS - robot_s;
     if late_s < LATE_S {
-        return (route, marks, meeting);
+        return (route, marks, meetings);
     }
     let cut = (meet.human_s - HURRY_MPS * robot_s).min(meet.human_s - STILL_LEFT_M).max(0.0);
     // Inside a door it stays inside: the door is part of the story.
     if cut <= 0.0 || !doors_on(setup, &route).is_empty() {
-        return (route, marks, meeting);
+        return (route, marks, meetings);
     }
     let marks = marks.into_iter().filter(|(_, s)| *s >= cut).map(|(node, s)| (node, s - cut)).collect();
-    let meeting = meeting.map(|meet| Meeting { human_s: meet.human_s - cut, ..meet });
-    (route.from(cut), marks, meeting)
+    let meetings = meetings.into_iter().map(|meet| Meeting { human_s: meet.human_s - cut, ..meet }).collect();
+    (route.from(cut), marks, meetings)
 }
 
 /// Doors that a way goes through, in order.

@@ -128,7 +128,7 @@ impl World for View<'_> {
     }
 
     fn at_encounter(&self) -> bool {
-        let meeting = self.human.meeting.as_ref();
+        let meeting = self.human.meeting();
         meeting.is_some_and(|meeting| (self.human.at - meeting.at).norm() <= AT_ENCOUNTER_M)
     }
 

@@ -24,6 +24,6 @@ pub struct Mission {
     pub waypoints: Vec<Point>,
     /// The robot's script; only `reference` plays it (gestures are made by the engine).
     pub script: Vec<RobotRule>,
-    /// Where each human is met.
+    /// Where each human is met, for the first time if several times.
     pub encounters: BTreeMap<HumanId, Point>,
 }

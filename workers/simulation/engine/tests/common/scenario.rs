@@ -97,7 +97,13 @@ pub fn run(mut setup: Setup, planner: &str) -> Recording {
         route: graph.polyline(&setup.paths.robot),
         waypoints: setup.paths.robot.iter().filter_map(spot).collect::<Vec<Point>>(),
         script: setup.proposal.robot.script.clone(),
-        encounters: setup.paths.encounters.iter().filter_map(|meet| Some((meet.human, spot(&meet.node)?))).collect(),
+        encounters: setup
+            .paths
+            .encounters
+            .iter()
+            .rev()
+            .filter_map(|meet| Some((meet.human, spot(&meet.node)?)))
+            .collect(),
     };
     let engine = Engine::new(setup).unwrap();
     mission.field = engine.floor().field().clone();
