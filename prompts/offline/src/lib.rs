@@ -74,6 +74,8 @@ mod twice;
 #[cfg(test)]
 mod again_tests;
 #[cfg(test)]
+mod corpus_tests;
+#[cfg(test)]
 mod tests;
 
 use socrates_model::{Location, Reading, Request};
