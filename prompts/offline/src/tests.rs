@@ -3,7 +3,7 @@
 use socrates_model::job::Stage;
 use socrates_model::{
     Action, ClauseRole, FactKind, Fault, FaultCode, Gesture, Location, Paths, PlaceClass, Predicate, Proposal, Reading,
-    Relation, Request,
+    Relation, Request, Trigger,
 };
 use socrates_prompts::Question;
 
@@ -538,6 +538,28 @@ fn a_person_who_wants_other_paths_gets_others() {
         assert_ne!(others.robot, first.robot, "seed {seed}");
         assert_eq!(others.robot.last(), first.robot.last(), "the task stays");
     }
+}
+
+#[test]
+fn what_comes_suddenly_is_brisk_and_who_stays_inside_is_startled_at_first_sight() {
+    let made = |rough: &str, on: &str| answers(&request("go to the goal", Some(rough)), &map(on), 1).1;
+    let plan = made("Two people suddenly come out of a meeting room and cross the robot's way.", "office");
+    assert!(plan.humans.iter().all(|human| human.speed_mps == Some(1.5)), "{plan:#?}");
+    let plan = made("A person comes out of a room. It suddenly stops when it sees the robot.", "office");
+    assert!(plan.humans.iter().all(|human| human.speed_mps.is_none()), "{plan:#?}");
+    let sees = |plan: &Proposal, m: f64| {
+        let mut rules = plan.humans.iter().flat_map(|human| &human.rules);
+        rules.any(|rule| rule.act == Action::LookAtRobot && rule.when == [Trigger::RobotVisible(m)])
+    };
+    let inside = "Two people are in the elevator. One leaves, the other is startled when it sees the robot";
+    assert!(sees(&made(&format!("{inside} and stays inside."), "hospital"), 5.0));
+    assert!(sees(&made(&format!("{inside} within 3 m and stays inside."), "hospital"), 3.0));
+    let plan = made(
+        "A nurse crosses the robot's way. When the nurse sees the robot, it gestures WAIT and walks on.",
+        "hospital",
+    );
+    let crosses = |clause: &&socrates_model::Clause| matches!(clause.predicate, Predicate::Crosses { .. });
+    assert!(plan.expected_events.iter().find(crosses).unwrap().must);
 }
 
 #[test]

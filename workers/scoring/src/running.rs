@@ -94,7 +94,9 @@ impl Below {
     }
 
     pub(crate) fn add(&mut self, piece: Option<Piece>) {
-        self.seconds += piece.and_then(|piece| below(piece, self.level)).map_or(0.0, |span| span.length_s());
+        if let Some(span) = piece.and_then(|piece| below(piece, self.level)) {
+            self.seconds += span.length_s();
+        }
     }
 
     pub(crate) const fn seconds(&self) -> f64 {
@@ -152,6 +154,10 @@ impl Stretches {
     /// When a new stretch begins in the piece, s.
     pub(crate) fn add(&mut self, piece: Option<Piece>) -> Option<f64> {
         let (t0, v0, t1, v1) = piece?;
+        // Up to the first stretch nothing above the level is worth remembering.
+        if self.found.is_empty() && v0 >= self.level && v1 >= self.level {
+            return None;
+        }
         let mut begins = None;
         // A hole ends every stretch.
         if self.last_s.is_some_and(|last| last < t0) {

@@ -9,7 +9,7 @@ use crate::fidelity::leaves::does;
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
 use crate::fidelity::reactions::said_after;
 use crate::fidelity::signals::{Moment, Signals};
-use crate::fidelity::windows::{Mark, held, stretches};
+use crate::fidelity::windows::{Mark, held, longest_s, stretches};
 use crate::tracks::MOVING_MPS;
 
 /// Heading within this of the robot is looking at it, rad (20°).
@@ -91,7 +91,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
     };
     let marks: Vec<Mark> = track.present().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())).collect();
-    let longest = stretches(marks.iter().copied(), 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+    let longest = longest_s(marks.iter().copied());
     let text = format!("{human} below {MOVING_MPS} m/s for {longest:.1} s at most ({for_s:.1} s asked)");
     match held(marks, for_s, 0.0) {
         Some(found) => Finding::by_margin(

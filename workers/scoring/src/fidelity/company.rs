@@ -8,7 +8,7 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::{Gap, arcs, gaps};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
-use crate::fidelity::windows::{Mark, held, stretches};
+use crate::fidelity::windows::{Mark, held, longest_s, stretches};
 use crate::tracks::MOVING_MPS;
 
 /// How far off the leader's trail one still follows, m.
@@ -99,7 +99,7 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     match held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) {
         None => Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long")),
         Some(found) => {
-            let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+            let longest = longest_s(marks);
             let finding = match found.first_s {
                 Some(from) => {
                     Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s"))
@@ -134,7 +134,7 @@ pub(super) fn parallel(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Fin
     let Some(found) = held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) else {
         return Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long"));
     };
-    let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| b - a).fold(0.0, f64::max);
+    let longest = longest_s(marks);
     if let Some(from) = found.first_s {
         let text = format!("{what}: from {from:.1} s, margin {:.2}", found.margin);
         return Finding::holds(found.margin, vec![from, from + for_s], text).scaled(0.3).shifted(longest - for_s);

@@ -7,7 +7,7 @@ use socrates_model::{HumanId, Point};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::LATE_FACTOR;
 use crate::fidelity::signals::{Moment, Signals};
-use crate::fidelity::windows::{Mark, best, held, stretches};
+use crate::fidelity::windows::{Mark, best, held, longest_s, stretches};
 
 /// Slower than this is not walking, m/s.
 const WALKING_MPS: f64 = 0.2;
@@ -87,8 +87,7 @@ fn kept(marks: &[Mark], for_s: f64, what: &str, near: bool) -> Finding {
     let Some(found) = held(marks.iter().copied(), for_s, 0.0) else {
         return Finding::fails(-1.0, vec![], format!("{what}: the run is shorter than that"));
     };
-    let spans = stretches(marks.iter().copied(), 0.0);
-    let longest = spans.iter().map(|(from, to)| to - from).fold(0.0, f64::max);
+    let longest = longest_s(marks.iter().copied());
     let finding = match found.first_s {
         Some(from) => {
             Finding::holds(found.margin, vec![from, from + for_s], format!("{what}: from {from:.1} s, {longest:.1} s"))

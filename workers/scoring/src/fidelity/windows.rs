@@ -75,6 +75,11 @@ pub(super) fn stretches(marks: impl IntoIterator<Item = Mark>, for_s: f64) -> Ve
     found
 }
 
+/// Length of the longest stretch in which the margin is not negative, s; 0 without any.
+pub(super) fn longest_s(marks: impl IntoIterator<Item = Mark>) -> f64 {
+    stretches(marks, 0.0).into_iter().map(|(from, to)| to - from).fold(0.0, f64::max)
+}
+
 /// The margins as a signal.
 fn signal(marks: impl IntoIterator<Item = Mark>) -> Signal {
     marks.into_iter().map(|mark| (mark.t, mark.margin)).collect()

@@ -26,32 +26,30 @@ pub(super) const FAMILY: Family = Family {
 struct Course {
     times: Pen,
     share: MeanWhileBelow,
-    /// Robot and human at the last time, when both were there.
-    before: Option<(Sample, Sample)>,
 }
 
 struct Blame(Vec<Course>);
 
 impl Blame {
     fn new(humans: usize) -> Self {
-        Self(vec![Course { times: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS), before: None }; humans])
+        Self(vec![Course { times: Pen::default(), share: MeanWhileBelow::level(EXPOSED_SECS) }; humans])
     }
 }
 
 impl Running for Blame {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
         let Some(robot) = now.robot else { return };
-        for ((course, human), ttc_s) in self.0.iter_mut().zip(now.humans).zip(now.ttc_s) {
-            let here = (robot.there && human.there).then_some((*robot, *human));
+        for (index, ((course, human), ttc_s)) in self.0.iter_mut().zip(now.humans).zip(now.ttc_s).enumerate() {
             let far = 2.0 * EXPOSED_SECS;
-            let piece = course.times.to(now.t, here.map(|_| ttc_s.unwrap_or(far).min(far)));
-            let before = std::mem::replace(&mut course.before, here);
+            let both = robot.there && human.there;
+            let piece = course.times.to(now.t, both.then(|| ttc_s.unwrap_or(far).min(far)));
             // Shares matter only where the time is short.
-            if let (Some((t0, s0, t1, s1)), Some((r, h))) = (piece, before)
+            if let (Some((t0, s0, t1, s1)), Some((r, others))) = (piece, now.before)
                 && s0.min(s1) < EXPOSED_SECS
+                && let Some(h) = others.get(index)
             {
                 let share = |r: &Sample, h: &Sample| closing_share(r, h).unwrap_or(0.0);
-                course.share.add(Some((t0, share(&r, &h), t1, share(robot, human))), piece);
+                course.share.add(Some((t0, share(r, h), t1, share(robot, human))), piece);
             }
         }
     }

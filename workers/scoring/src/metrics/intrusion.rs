@@ -57,15 +57,13 @@ fn margin(r: &Sample, h: &Sample) -> f64 {
 struct Intrusion {
     zones: [Below; 3],
     front: Below,
-    /// Robot and human at the last time, when the human was there.
-    before: Option<(Sample, Sample)>,
 }
 
 struct Intrusions(Vec<Intrusion>);
 
 impl Intrusions {
     fn new(humans: usize) -> Self {
-        let none = Intrusion { zones: HALL_M.map(Below::level), front: Below::level(0.0), before: None };
+        let none = Intrusion { zones: HALL_M.map(Below::level), front: Below::level(0.0) };
         Self(vec![none; humans])
     }
 }
@@ -73,16 +71,16 @@ impl Intrusions {
 impl Running for Intrusions {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
         let Some(robot) = now.robot else { return };
-        for ((intrusion, piece), human) in self.0.iter_mut().zip(now.pieces).zip(now.humans) {
+        for (index, ((intrusion, piece), human)) in self.0.iter_mut().zip(now.pieces).zip(now.humans).enumerate() {
             for zone in &mut intrusion.zones {
                 zone.add(*piece);
             }
-            let here = human.there.then_some((*robot, *human));
             // Only pieces with an end inside count, so angles matter only there.
-            if let (Some((r, h)), Some(_)) = (std::mem::replace(&mut intrusion.before, here), here)
-                && (reaches(&r, &h) || reaches(robot, human))
+            if let Some((r, others)) = now.before
+                && let Some(h) = others.get(index).filter(|h| h.there && human.there)
+                && (reaches(r, h) || reaches(robot, human))
             {
-                intrusion.front.add(Some((r.t, margin(&r, &h), robot.t, margin(robot, human))));
+                intrusion.front.add(Some((r.t, margin(r, h), robot.t, margin(robot, human))));
             }
         }
     }

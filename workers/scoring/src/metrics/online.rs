@@ -57,6 +57,8 @@ pub(super) struct Now<'a> {
     pub(super) t: f64,
     pub(super) robot: Option<&'a Sample>,
     pub(super) humans: &'a [Sample],
+    /// Robot and humans at the time before.
+    pub(super) before: Option<(&'a Sample, &'a [Sample])>,
     /// The pieces of the curves of surface distance, by human, that end now; none while one of the two is not there.
     pub(super) pieces: &'a [Option<Piece>],
     /// The smallest surface distance, m.
@@ -144,6 +146,12 @@ impl Past {
         room.clear();
         room.extend_from_slice(humans);
         self.samples.push_back((*robot, room));
+    }
+
+    /// The moment before the last.
+    fn before(&self) -> Option<(&Sample, &[Sample])> {
+        let (robot, humans) = self.samples.get(self.samples.len().checked_sub(2)?)?;
+        Some((robot, humans))
     }
 
     /// Robot and human at a time, not before the first.
@@ -278,6 +286,7 @@ impl<'a> Online<'a> {
             t,
             robot,
             humans,
+            before: self.past.before(),
             pieces: &self.pieces,
             nearest,
             nearest_piece: self.nearest.to(t, nearest),
