@@ -1,7 +1,9 @@
 //! What the script of the report page plays and lists, as JSON.
 
+use std::collections::BTreeSet;
+
 use serde_json::{Value, json};
-use socrates_model::{ClauseRole, EventKind, Location, Point, Reading, Recording, Report, ordinal};
+use socrates_model::{ClauseRole, EventKind, HumanId, Location, Point, Reading, Recording, Report, ordinal};
 
 use crate::facts::fact_words;
 use crate::play;
@@ -80,11 +82,12 @@ fn series(recording: &Recording, hz: u32) -> Value {
 
 /// The marks of a time line.
 pub(crate) fn marks(recording: &Recording) -> Vec<Value> {
-    recording.events.iter().filter_map(|event| mark(event.time.secs(), &event.kind)).collect()
+    let again = crate::run::several(recording);
+    recording.events.iter().filter_map(|event| mark(event.time.secs(), &event.kind, &again)).collect()
 }
 
 /// A mark on the time line: time, lane (agent number), kind and words.
-fn mark(secs: f64, kind: &EventKind) -> Option<Value> {
+fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<Value> {
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
     match kind {
         EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
@@ -96,7 +99,7 @@ fn mark(secs: f64, kind: &EventKind) -> Option<Value> {
         }
         EventKind::Encounter { human, gap_s, nth, .. } => {
             // To a millisecond first, as the report has it: else two roundings would tell two figures.
-            let which = if *nth > 1 { format!("{} ", ordinal(*nth)) } else { String::new() };
+            let which = if again.contains(human) { format!("{} ", ordinal(*nth)) } else { String::new() };
             let gap_s = ((gap_s * 1e3).round() / 1e3).abs();
             mark(human.number(), "encounter", format!("{which}encounter of {human} and the robot, gap {gap_s:.1} s"))
         }

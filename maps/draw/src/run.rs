@@ -1,6 +1,8 @@
 //! The picture of one run: where everybody went, and when.
 
-use socrates_model::{AgentId, EventKind, Location, Paths, Point, Recording, Report, Verdict, ordinal};
+use std::collections::BTreeSet;
+
+use socrates_model::{AgentId, EventKind, HumanId, Location, Paths, Point, Recording, Report, Verdict, ordinal};
 
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
@@ -201,7 +203,15 @@ fn draw_ends(
     }
 }
 
+/// Who meets the robot more than once.
+pub(crate) fn several(recording: &Recording) -> BTreeSet<HumanId> {
+    let again =
+        |kind: &EventKind| if let EventKind::Encounter { human, nth: 2.., .. } = kind { Some(*human) } else { None };
+    recording.events.iter().filter_map(|event| again(&event.kind)).collect()
+}
+
 fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, frame: &Frame, labels: &mut Labels) {
+    let again = several(recording);
     for event in &recording.events {
         let EventKind::Encounter { human, nth, .. } = &event.kind else { continue };
         let tick = usize::try_from(event.time.tick()).unwrap_or(usize::MAX);
@@ -213,7 +223,7 @@ fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, fr
             palette::human(human.number())
         ));
         labels.block(Area { x: x - 8.0, y: y - 8.0, w: 16.0, h: 16.0 });
-        let which = if *nth > 1 { format!("{}: ", ordinal(*nth)) } else { String::new() };
+        let which = if again.contains(human) { format!("{}: ", ordinal(*nth)) } else { String::new() };
         let words = format!("{which}{:.1} s", event.time.secs());
         draw_label(svg, labels, (x, y), &words, (palette::INK, 15.0), 11.0);
     }

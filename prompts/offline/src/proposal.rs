@@ -49,6 +49,14 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         || ("A free scenario".to_owned(), "People and the robot meet.".to_owned(), FREE.to_owned()),
         |card| (card.title.clone(), card.about.clone(), card.id.clone()),
     );
+    let mut humans = humans;
+    for fact in &reading.facts {
+        if let FactKind::MeetsTimes { human, .. } = fact.kind
+            && let Some(human) = humans.iter_mut().find(|other| other.id == human)
+        {
+            human.behavior.push_str(" Later on it meets the robot a second time.");
+        }
+    }
     let description = prose::description(&about, &location.name, place, &humans);
     let mut notes = reading.notes.clone();
     notes.extend(reading.problems.iter().map(|fault| format!("{}: {}", fault.code, fault.message)));

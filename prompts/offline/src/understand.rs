@@ -276,7 +276,12 @@ fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading)
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
         }
         let twice = person.again.as_ref();
-        facts.extend(twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading)));
+        let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
+        if let Some(human) = reading.humans.get_mut(i).filter(|_| twice.is_some()) {
+            let joint = if human.summary.is_empty() { "" } else { ", " };
+            human.summary.push_str(&format!("{joint}meets the robot twice"));
+        }
+        facts.extend(twice);
         for read in &person.rules {
             // That somebody walks on after all it did is no demand of its own.
             if !read.stated && read.rule.act == Action::Navigate && read.rule.gesture.is_none() {

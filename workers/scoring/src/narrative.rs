@@ -1,7 +1,9 @@
 //! The story of a run in lines with times, and what the robot did in one sentence.
 
+use std::collections::BTreeSet;
+
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, EventKind, Gesture, ordinal};
+use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, ordinal};
 
 use crate::fidelity::{Judged, Signals, does, to_millis};
 use crate::metrics::Scene;
@@ -16,8 +18,9 @@ const STOP_SECS: f64 = 0.8;
 pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     let mut lines: Vec<(f64, String)> = Vec::new();
     let mut add = |t: f64, text: String| lines.push((t, text));
+    let again = several(&signals.evidence.recording.events);
     for event in &signals.evidence.recording.events {
-        if let Some(text) = told(&event.kind) {
+        if let Some(text) = told(&event.kind, &again) {
             add(event.time.secs(), text);
         }
     }
@@ -46,8 +49,15 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     story
 }
 
+/// Who meets the robot more than once.
+fn several(events: &[Event]) -> BTreeSet<HumanId> {
+    let again =
+        |kind: &EventKind| if let EventKind::Encounter { human, nth: 2.., .. } = kind { Some(*human) } else { None };
+    events.iter().filter_map(|event| again(&event.kind)).collect()
+}
+
 /// An event in words; steps along paths are not told.
-fn told(kind: &EventKind) -> Option<String> {
+fn told(kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
     Some(match kind {
         EventKind::Gesture { gesture: Gesture::None, .. } | EventKind::Node { .. } => return None,
         EventKind::Gesture { agent, gesture } => format!("{agent} says {gesture}"),
@@ -57,8 +67,8 @@ fn told(kind: &EventKind) -> Option<String> {
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
         EventKind::Encounter { human, node, gap_s, nth } => {
-            let again = if *nth > 1 { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
-            format!("{human} and the robot meet{again} at {node}, gap {:.1} s", to_millis(*gap_s).abs())
+            let which = if again.contains(human) { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
+            format!("{human} and the robot meet{which} at {node}, gap {:.1} s", to_millis(*gap_s).abs())
         }
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
         EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {:.0} mm deep", depth_m * 1e3),
