@@ -73,5 +73,5 @@ fn what_people_write_is_answered_at_every_stage() {
         }
     }
     println!("{} of {all} requests are refused by a stage", failed.len());
-    assert!(failed.len() * 50 <= all, "{} of {all} requests are refused by a stage", failed.len());
+    assert!(failed.len() * 200 <= all, "{} of {all} requests are refused by a stage", failed.len());
 }

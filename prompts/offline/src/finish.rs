@@ -4,6 +4,7 @@ use socrates_model::{Action, Fault, FaultCode, Gesture, PlaceClass, Relation, Tr
 
 use crate::cast::{Person, ReadRule};
 use crate::deed;
+use crate::rules;
 use crate::story::Story;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
@@ -41,6 +42,7 @@ impl Story {
         }
         for person in &mut self.cast.people {
             deed::settle_going_on(person);
+            rules::settle(person);
         }
         if self.robot_part == Some("leading") && self.robot_enters.is_none() {
             self.robot_enters = self.headed.take();

@@ -68,6 +68,7 @@ mod headings;
 mod humans;
 mod mended;
 mod routes;
+mod rules;
 mod solve;
 mod twice;
 

@@ -93,7 +93,7 @@ impl Cast {
 
     /// `Sometimes a patient follows it. Make a patient follow it …`: the same one, of whom it is now said what is wanted.
     pub(crate) fn supposes(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
-        if self.supposed {
+        if self.supposed || n == 0 {
             return None;
         }
         let wanted = usize::try_from(n).ok()?;
