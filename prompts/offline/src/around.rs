@@ -14,11 +14,12 @@ pub(crate) fn supposes(sentence: &[Stretch]) -> bool {
     let words: Vec<&str> =
         sentence.iter().flat_map(|stretch| &stretch.words).map(|word| word.text.as_str()).take(4).collect();
     let condition = sentence.get(1).is_some_and(|stretch| stretch.joint == Joint::When);
-    matches!(words.first(), Some(&"what")) && condition
+    let habit = words.iter().any(|word| matches!(*word, "sometimes" | "often" | "usually" | "normally" | "typically"));
+    habit
+        || matches!(words.first(), Some(&"what")) && condition
         || matches!(
             words.as_slice(),
-            ["sometimes" | "often" | "usually" | "normally" | "typically", ..]
-                | ["you", "know", ..]
+            ["you", "know", ..]
                 | ["what", "happens" | "about", ..]
                 | ["is", "it", "possible", ..]
                 | ["what", "does", ..]

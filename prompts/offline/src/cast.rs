@@ -61,7 +61,7 @@ pub(crate) struct Together {
     pub(crate) total: bool,
     pub(crate) quote: String,
     /// Who was told apart by a bare number since: `four get out: two turn left, two turn right`.
-    counted: Vec<usize>,
+    pub(crate) counted: Vec<usize>,
 }
 
 /// Everybody so far.
@@ -133,6 +133,7 @@ impl Cast {
             Who::New { count: Some(n), .. } if self.supposes(*n, mention).is_some() => {
                 let found = self.supposes(*n, mention).unwrap_or_default();
                 self.supposed_people.retain(|i| !found.contains(i));
+                self.forget(&found);
                 found
             }
             Who::New { count: Some(n), article } => {

@@ -123,6 +123,16 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
         }
         return;
     }
+    // `Regression 204.`
+    let numbered = whole.len() <= 3
+        && whole.iter().any(|word| word.is_digits())
+        && !whole.iter().any(|word| somebody(word) || lexicon().verbs.contains(&word.stem));
+    if numbered {
+        for word in words.iter_mut().flatten() {
+            (word.label, word.used) = (true, true);
+        }
+        return;
+    }
     let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
     let robot = all().any(|word| word.stem == "robot");
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());

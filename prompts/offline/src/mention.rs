@@ -303,6 +303,14 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return made(Who::Number(number), role(at), at + 1);
         }
     }
+    // `H1 gives way`
+    let numbered = words
+        .get(at)
+        .filter(|word| word.capital && word.text.len() == 2)
+        .and_then(|word| word.text.strip_prefix(['h', 'p']).and_then(|digit| digit.parse::<u32>().ok()));
+    if let Some(number) = numbered.filter(|number| *number > 0) {
+        return made(Who::Number(number), None, at);
+    }
     // `person A`, `pedestrian B`; alone only where it cannot be an article.
     let letter = |k: usize| {
         // `lift B` is a lift.

@@ -70,7 +70,7 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         return;
     }
     for (from, to) in
-        [(first + 1, last), (last + 1, last + 10), (first.saturating_sub(if noun { 3 } else { 0 }), first)]
+        [(first + 1, last), (last + 1, last + 15), (first.saturating_sub(if noun { 3 } else { 0 }), first)]
     {
         for phrase in &lexicon().gestures {
             let inside = |i: usize| (from..to).contains(&i) && !verb.contains(&i);

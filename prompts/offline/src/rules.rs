@@ -22,9 +22,8 @@ pub(crate) fn settle(person: &mut Person) {
         let Some(when) = rules.get(at).filter(|read| walks_on(&read.rule)).map(|read| read.rule.when.clone()) else {
             continue;
         };
-        let later = (at + 1..rules.len()).find(|k| {
-            rules.get(*k).is_some_and(|read| read.rule.when == when && read.rule.for_s.is_some())
-        });
+        let later = (at + 1..rules.len())
+            .find(|k| rules.get(*k).is_some_and(|read| read.rule.when == when && read.rule.for_s.is_some()));
         if let Some(later) = later {
             let read = rules.remove(later);
             rules.insert(at, read);

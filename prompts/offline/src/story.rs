@@ -273,6 +273,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             let own =
                 meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
             people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
+            // `another girl who follows her`: somebody else than who follows.
+            let himself =
+                found.acts() && thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who;
+            if himself && !story.cast.before.is_empty() {
+                people.clone_from(&story.cast.before);
+            }
             meant.push((mention.from, mention.to, people));
             continue;
         }

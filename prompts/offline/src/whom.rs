@@ -73,6 +73,28 @@ impl Cast {
         found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
     }
 
+    /// Those who were only supposed with somebody of whom it is now said what is wanted, if they are the last ones.
+    pub(crate) fn forget(&mut self, wanted: &[usize]) {
+        while let Some(last) = self.people.len().checked_sub(1).filter(|last| self.supposed_people.contains(last)) {
+            let together = self
+                .sets
+                .iter()
+                .any(|set| set.members.contains(&last) && wanted.iter().any(|i| set.members.contains(i)));
+            if !together {
+                return;
+            }
+            self.people.pop();
+            self.supposed_people.retain(|i| *i != last);
+            self.last.retain(|i| *i != last);
+            self.before.retain(|i| *i != last);
+            for set in &mut self.sets {
+                set.members.retain(|i| *i != last);
+                set.counted.retain(|i| *i != last);
+            }
+            self.sets.retain(|set| !set.members.is_empty());
+        }
+    }
+
     /// The third of exactly two, said of everybody who is there.
     pub(crate) fn beyond(&mut self, n: u32, quote: &str) {
         let last = self.sets.iter().rev().find(|set| set.members.len() > 1).filter(|set| set.total);

@@ -4,8 +4,8 @@
 use serde::Deserialize;
 use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Trigger};
 
-/// Facts of the requests kept aside that were right when the test saw them first.
-const FIRST_LOOK: usize = 107;
+/// Facts of the sets kept aside that were right when the test saw them first.
+const FIRST_LOOKS: [usize; 2] = [107, 120];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -210,12 +210,23 @@ fn what_was_kept_aside_later_is_read() {
     reads("kept aside later", include_str!("../corpus/sealed-2.toml"), 92);
 }
 
-/// Written by somebody who did not know the grammar, and unread by whoever works on it: only the figure is told, 107
-/// of 117 at the first look. 95 in 100 are aimed at.
+/// Kept aside until the seventh to the twelfth set had been mended: 125 of 134 before and after; then its misses were read.
+#[test]
+fn what_was_kept_aside_last_is_read() {
+    reads("kept aside last", include_str!("../corpus/sealed-4.toml"), 98);
+}
+
+/// Written by people who did not know the grammar, and unread by whoever works on it: only the figures are told. 95 in 100
+/// are aimed at.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
-    let (right, all, _unread) = judge(include_str!("../corpus/sealed-3.toml"));
-    println!("kept aside: {right} of {all} facts");
-    assert!(right >= FIRST_LOOK, "{right} of {all} facts");
+    for (name, corpus, at_least) in [
+        ("third", include_str!("../corpus/sealed-3.toml"), FIRST_LOOKS[0]),
+        ("fifth", include_str!("../corpus/sealed-5.toml"), FIRST_LOOKS[1]),
+    ] {
+        let (right, all, _unread) = judge(corpus);
+        println!("kept aside, {name}: {right} of {all} facts");
+        assert!(right >= at_least, "{name}: {right} of {all} facts");
+    }
 }
