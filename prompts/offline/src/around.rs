@@ -68,11 +68,11 @@ pub(crate) fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) ->
 
 /// Whether the clause is an answer to what the robot said just before.
 pub(crate) fn answers(found: &Found, said: Option<&Trigger>) -> bool {
-    let answer = |act: Act| match act {
-        Act::GoOn | Act::GiveWay => true,
-        Act::Follow => said == Some(&Trigger::RobotSays(Gesture::FollowMe)),
-        Act::Stop => said == Some(&Trigger::RobotSays(Gesture::Wait)),
-        _ => false,
+    let to = |gesture: Gesture| said == Some(&Trigger::RobotSays(gesture));
+    let answer = |act: Act| {
+        matches!(act, Act::GoOn | Act::GiveWay)
+            || act == Act::Follow && to(Gesture::FollowMe)
+            || act == Act::Stop && to(Gesture::Wait)
     };
     found.distance_m.is_none()
         && found.robots.iter().all(|robot| found.deeds.first().is_some_and(|deed| deed.at < *robot))

@@ -10,6 +10,12 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     if let Some(first) = found.first_mut() {
         asked(first);
     }
+    // `A patient, not a visitor, comes out`
+    found.retain(|stretch| {
+        !(stretch.joint == Joint::Comma
+            && stretch.words.first().is_some_and(|word| word.text == "not")
+            && matches!(mentions(stretch.words.get(1..).unwrap_or_default()).as_slice(), [only] if only.from == 0 && only.to + 2 == stretch.words.len()))
+    });
     measured(&mut found);
     pair(&mut found);
     resumed(&mut found);
@@ -178,11 +184,9 @@ fn named(found: &mut Vec<Stretch>) {
     };
     for at in 1..found.len() {
         let count = found.get(at - 1).and_then(|before| {
-            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| match last
-                .who
-            {
-                Who::New { count: Some(n), .. } | Who::Definite { count: Some(n), .. } => usize::try_from(n).ok(),
-                _ => None,
+            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| {
+                let (Who::New { count, .. } | Who::Definite { count, .. }) = last.who else { return None };
+                usize::try_from(count?).ok()
             })
         });
         let Some(count) = count.filter(|count| (2..=4).contains(count)) else { continue };

@@ -230,7 +230,8 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         return;
     }
     // `when there is less than 1.5 m between them`, `with only one meter left`.
-    if stretch.joint == Joint::When && found.distance_m.is_some() {
+    let apart = stretch.joint == Joint::Until && stretch.words.iter().any(|word| word.text == "apart");
+    if (stretch.joint == Joint::When || apart) && found.distance_m.is_some() {
         found.cue = Some((Cue::Near, 0));
     }
 }
@@ -296,7 +297,8 @@ fn negated(stretch: &Stretch, at: usize) -> bool {
         // `at no point does she look`
         || (0..at).any(|i| {
             let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-            text(i) == "no" && matches!(text(i + 1), "point" | "time" | "moment" | "circumstances" | "way" | "case")
+            text(i) == "no" && text(i + 1) == "one"
+                || text(i) == "no" && matches!(text(i + 1), "point" | "time" | "moment" | "circumstances" | "way" | "case")
         })
 }
 

@@ -18,7 +18,7 @@ struct Case {
     text: String,
 }
 
-const OPEN: [&str; 12] = [
+const OPEN: [&str; 14] = [
     include_str!("../corpus/open.toml"),
     include_str!("../corpus/open-2.toml"),
     include_str!("../corpus/open-3.toml"),
@@ -31,6 +31,8 @@ const OPEN: [&str; 12] = [
     include_str!("../corpus/open-10.toml"),
     include_str!("../corpus/open-11.toml"),
     include_str!("../corpus/open-12.toml"),
+    include_str!("../corpus/open-13.toml"),
+    include_str!("../corpus/open-14.toml"),
 ];
 
 /// What a stage says of the answer, if it does not take it.

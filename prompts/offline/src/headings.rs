@@ -40,6 +40,9 @@ const HEADS: &[&str] = &[
     "benchmark",
     "reproduction",
     "acceptance",
+    "try",
+    "attempt",
+    "regression",
     "phase",
     "part",
 ];
@@ -146,7 +149,26 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
             matches!(stem(k), "ask" | "want" | "tell" | "say" | "think" | "suggest" | "require" | "insist" | "need")
                 && matches!(text(k + 1), "for" | "me" | "us" | "that" | "to" | "whether" | "if")
         });
-    let silent = speaker.unwrap_or(if asker { words.len() } else { 0 });
+    // `I manage this building and …`, `We run a pilot in a care home`: of whoever asks.
+    let own = matches!(text(0), "i" | "we")
+        && matches!(
+            text(1),
+            "teach"
+                | "manage"
+                | "run"
+                | "work"
+                | "am"
+                | "are"
+                | "study"
+                | "own"
+                | "lead"
+                | "organise"
+                | "organize"
+                | "supervise"
+        );
+    let asker = asker || own;
+    let colon = words.iter().position(|word| word.as_ref().is_some_and(|word| word.after_colon)).unwrap_or(words.len());
+    let silent = speaker.unwrap_or(if asker { colon } else { 0 });
     let number = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     let mut labels = Vec::new();
     for at in 0..words.len() {
@@ -293,6 +315,8 @@ const OF_ROBOT: &[&str] = &[
     "stationary",
     "social",
     "assistive",
+    "elder",
+    "care",
 ];
 
 /// Marks what only describes the robot.

@@ -189,7 +189,11 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         "nobody" | "noone" => return made(Who::Nobody, None, at),
         "no" => {
             if text(at + 1) == "one" {
-                return made(Who::Nobody, None, at + 1);
+                // `no one of them`
+                return match of_them(at + 2) {
+                    Some(of) => made(of.count.map_or(Who::All, Who::AllOf), of.role, of.end),
+                    None => made(Who::Nobody, None, at + 1),
+                };
             }
             return noun(words, at + 1, lex).and_then(|end| made(Who::Nobody, None, end));
         }
@@ -481,6 +485,10 @@ fn counted(
         if two || text(at + 3) == "them" {
             return made(Who::ToldApart, None, false, at + if two { 4 } else { 3 });
         }
+    }
+    // `his guide`
+    if matches!(text(at), "his" | "her" | "their") && matches!(text(at + 1), "guide" | "escort") {
+        return made(Who::Definite { plural: false, count: None }, role(at + 1), false, at + 1);
     }
     // `his mother`, `her colleague`: known or new.
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")

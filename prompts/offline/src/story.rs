@@ -401,7 +401,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             Subject::People(people) if own(&people) && !thread.addressed.is_empty() => {
                 Subject::People(thread.addressed.clone())
             }
-            subject => subject,
+            Subject::People(_) | Subject::Robot | Subject::Nobody => subject,
         };
         if act == Act::Gesture {
             thread.addressed =

@@ -105,7 +105,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         && !stretch.after_and
         && !fronted
         // `then the nurse steps aside, while the doctor signals`: each does something of its own.
-        && !(stretch.joint == Joint::While && cue == Cue::Told && already_timed(story, thread));
+        && (stretch.joint != Joint::While || cue != Cue::Told || !already_timed(story, thread));
     // `stays when they see the robot` speaks of whom it spoke before, be it one or many.
     for mention in found
         .mentions

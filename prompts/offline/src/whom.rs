@@ -240,20 +240,29 @@ impl Cast {
                 return found;
             }
             // `waves his colleague through`: the other one of two.
-            if !plural && OF_THEM.contains(&role.as_str()) && self.people.len() == 2 {
-                if let [only] = self.last.as_slice() {
-                    return vec![1 - only.min(&1)];
-                }
+            if !plural
+                && OF_THEM.contains(&role.as_str())
+                && self.people.len() == 2
+                && let [only] = self.last.as_slice()
+            {
+                return vec![1 - only.min(&1)];
             }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
             if !plural && plain(role) {
                 let men = MEN.contains(&role.as_str());
-                let other = if men { WOMEN } else { MEN };
+                let women = WOMEN.contains(&role.as_str());
+                let none: &[&str] = &[];
+                let other = if men {
+                    WOMEN
+                } else if women {
+                    MEN
+                } else {
+                    none
+                };
                 let may = |i: &usize| {
-                    self.people.get(*i).is_some_and(|person| {
-                        !plain(&person.role) && !(men || WOMEN.contains(&role.as_str()))
-                            || !plain(&person.role) && !other.contains(&person.role.as_str())
-                    })
+                    self.people
+                        .get(*i)
+                        .is_some_and(|person| !plain(&person.role) && !other.contains(&person.role.as_str()))
                 };
                 let who = self.last.iter().chain(&self.latest()).copied().find(may);
                 if let Some(who) = who {

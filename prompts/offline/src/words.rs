@@ -186,7 +186,7 @@ fn chained(chars: &[(usize, char)], i: usize) -> Option<usize> {
     let letter = |k: usize| chars.get(k).is_some_and(|(_, c)| c.is_alphabetic());
     let hyphen = |k: usize| chars.get(k).is_some_and(|(_, c)| *c == '-');
     let begins = i == 0 || !letter(i - 1) && !hyphen(i - 1);
-    let end = (i..).find(|k| !letter(*k) && !(hyphen(*k) && letter(k + 1)))?;
+    let end = (i..).find(|k| !(letter(*k) || hyphen(*k) && letter(k + 1)))?;
     let text: String = chars.get(i..end)?.iter().flat_map(|(_, c)| c.to_lowercase()).collect();
     let parts: Vec<&str> = text.split('-').collect();
     let people = parts.iter().skip(1).any(|part| lexicon().roles.contains_key(&lexicon().stem(part)));
