@@ -85,7 +85,8 @@ fn resumed(found: &mut Vec<Stretch>) {
         };
         let head = found.get(at - 1).filter(|head| {
             head.words.first().is_some_and(|word| matches!(word.text.as_str(), "neither" | "none" | "each" | "nobody"))
-                || head.words.first().is_some_and(|word| word.text == "the") && verbless(head)
+                || head.words.first().is_some_and(|word| matches!(word.text.as_str(), "the" | "after" | "then" | "at"))
+                    && verbless(head)
         });
         let Some(who) = found.get(at).filter(|who| who.joint == Joint::Who && head.is_some()) else { continue };
         let verb = |word: &Word| {

@@ -87,6 +87,12 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
         }
     }
     cue(stretch, &mut found, &mut taken);
+    // What a heading says, or who asks, nobody does.
+    for (i, word) in stretch.words.iter().enumerate() {
+        if let Some(flag) = taken.get_mut(i) {
+            *flag |= word.label;
+        }
+    }
     for (i, at) in placed.iter().enumerate() {
         if let Some(flag) = taken.get_mut(i) {
             *flag |= *at;

@@ -203,6 +203,11 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         }
     }
     let excepting = cast.excepting;
+    // `A nurse asks a patient to follow her. He follows her.`
+    let called = around.object.filter(|id| {
+        let asker = usize::try_from(id.number()).ok().and_then(|n| cast.people.get(n.checked_sub(1)?));
+        asker.is_some_and(|asker| asker.rules.iter().any(|read| read.rule.gesture == Some(Gesture::FollowMe)))
+    });
     let person = cast.people.get_mut(who)?;
     // `stands there for the whole run`, and moves all the same
     let still = person
@@ -267,7 +272,9 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     let when = match (&around.trigger, &usual) {
         (Some(Trigger::RobotVisible(_)), Trigger::RobotVisible(_)) if around.vague => usual,
         (Some(said), _) => said.clone(),
-        (None, _) if matches!(action, Action::FollowHuman(_)) => Trigger::Always,
+        (None, _) if matches!(action, Action::FollowHuman(_)) => {
+            called.map_or(Trigger::Always, |id| Trigger::HumanSays(id, Gesture::FollowMe))
+        }
         (None, _) => with_distance(usual, around.distance_m),
     };
     let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });

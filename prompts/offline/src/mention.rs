@@ -2,7 +2,7 @@
 
 use crate::lexicon::{Item, Lexicon, lexicon};
 use crate::noun::{band, noun, plural, stranger, thing};
-use crate::refer::{group, others};
+use crate::refer::{group, others, predicate};
 use crate::words::Word;
 
 /// Whom a mention means.
@@ -92,34 +92,26 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
     let mut found: Vec<Mention> = Vec::new();
     let mut at = 0;
     while at < words.len() {
-        if let Some(mention) = phrase_at(words, at, lex) {
+        if words.get(at).is_some_and(|word| word.label) {
+            at += 1;
+        } else if let Some(mention) = phrase_at(words, at, lex) {
             at = mention.to + 1;
+            // `three relatives of a patient` are three.
+            let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+            if text(at) == "of"
+                && matches!(text(at + 1), "a" | "an")
+                && let Some(of) = phrase_at(words, at + 1, lex)
+                    .filter(|of| matches!(of.who, Who::New { count: Some(1), .. }) && !of.group)
+                && mention.role.is_some()
+            {
+                at = of.to + 1;
+            }
             found.push(predicate(words, mention, &found));
         } else {
             at += 1;
         }
     }
     found
-}
-
-/// `he is a doctor`, `they are friends`: the same people by another word.
-fn predicate(words: &[Word], mention: Mention, before: &[Mention]) -> Mention {
-    let is = mention.from.checked_sub(1).and_then(|at| words.get(at)).is_some_and(|word| word.stem == "be");
-    let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
-    match (subject, &mention.who) {
-        // `she is the only one who looks`
-        (Some(subject), Who::ToldApart) if subject.who != Who::Nobody => {
-            Mention { who: if subject.who == Who::All { Who::All } else { Who::Same }, ..mention }
-        }
-        (Some(subject), Who::New { .. }) if subject.who != Who::Nobody => {
-            let many = matches!(subject.who, Who::All | Who::AllOf(_) | Who::New { count: None | Some(2..), .. });
-            if let (Who::All, Who::New { count: Some(n @ 2..), .. }) = (&subject.who, &mention.who) {
-                return Mention { who: Who::AllOf(*n), ..mention };
-            }
-            Mention { who: if many { Who::All } else { Who::Same }, ..mention }
-        }
-        _ => mention,
-    }
 }
 
 /// Of whom some are meant: `of the three visitors`.
@@ -195,7 +187,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                     None => made(Who::Nobody, None, at + 1),
                 };
             }
-            return noun(words, at + 1, lex).and_then(|end| made(Who::Nobody, None, end));
+            // `no other people`
+            let more = usize::from(matches!(text(at + 1), "other" | "more" | "further" | "additional" | "others"));
+            return noun(words, at + 1 + more, lex).and_then(|end| made(Who::Nobody, None, end));
         }
         "both" | "neither" => {
             let of = of_them(at + 1);

@@ -85,7 +85,21 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
     // `the robot asks`: for nothing but its way.
     let asks = stem(first) == "ask"
         && stretch.words.iter().skip(last + 1).all(|word| {
-            matches!(word.text.as_str(), "once" | "twice" | "again" | "politely" | "nicely" | "kindly" | "loudly")
+            matches!(
+                word.text.as_str(),
+                "once"
+                    | "twice"
+                    | "again"
+                    | "politely"
+                    | "nicely"
+                    | "kindly"
+                    | "loudly"
+                    | "him"
+                    | "her"
+                    | "them"
+                    | "to"
+                    | "so"
+            )
         })
         && first.checked_sub(1).is_some_and(|k| stem(k) == "robot");
     if asks {

@@ -160,3 +160,23 @@ pub(crate) fn group(
     let lined = matches!(text(group), "queue" | "line" | "row");
     Some(Mention { who, role, word: String::new(), group: !lined, parts, from: at, to: end })
 }
+
+/// `he is a doctor`, `they are friends`: the same people by another word.
+pub(crate) fn predicate(words: &[Word], mention: Mention, before: &[Mention]) -> Mention {
+    let is = mention.from.checked_sub(1).and_then(|at| words.get(at)).is_some_and(|word| word.stem == "be");
+    let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
+    match (subject, &mention.who) {
+        // `she is the only one who looks`
+        (Some(subject), Who::ToldApart) if subject.who != Who::Nobody => {
+            Mention { who: if subject.who == Who::All { Who::All } else { Who::Same }, ..mention }
+        }
+        (Some(subject), Who::New { .. }) if subject.who != Who::Nobody => {
+            let many = matches!(subject.who, Who::All | Who::AllOf(_) | Who::New { count: None | Some(2..), .. });
+            if let (Who::All, Who::New { count: Some(n @ 2..), .. }) = (&subject.who, &mention.who) {
+                return Mention { who: Who::AllOf(*n), ..mention };
+            }
+            Mention { who: if many { Who::All } else { Who::Same }, ..mention }
+        }
+        _ => mention,
+    }
+}

@@ -273,9 +273,20 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             let own =
                 meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
             people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
+            // `a nurse asks a patient to follow her`: whoever asks, and so `she` from here on.
+            if let (true, [(_, _, asker), _, ..]) = (found.gesture.is_some() && own.is_none(), meant.as_slice()) {
+                people.clone_from(asker);
+                let word = if said == "him" { "he" } else { "she" };
+                if let ([only], "him" | "her") = (people.as_slice(), said)
+                    && let Some(person) = story.cast.people.get_mut(*only)
+                {
+                    person.pronoun.get_or_insert_with(|| word.to_owned());
+                }
+            }
             // `another girl who follows her`: somebody else than who follows.
-            let himself =
-                found.acts() && thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who;
+            let himself = found.acts()
+                && (thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who
+                    || meant.last().is_some_and(|(_, _, own)| *own == people));
             if himself && !story.cast.before.is_empty() {
                 people.clone_from(&story.cast.before);
             }

@@ -179,7 +179,12 @@ pub(crate) fn quiet(
     next: Option<Joint>,
 ) {
     // `The robot, in its friendly voice, asks her …`
-    if stretch.words.iter().all(|word| word.label || word.text == "the" || word.text == "this" || word.stem == "robot")
+    let robot = stretch.words.iter().any(|word| word.stem == "robot");
+    if robot
+        && stretch
+            .words
+            .iter()
+            .all(|word| word.label || word.text == "the" || word.text == "this" || word.stem == "robot")
     {
         thread.subject = Subject::Robot;
         return;

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Trigger};
 
 /// Facts of the sets kept aside that were right when the test saw them first.
-const FIRST_LOOKS: [usize; 2] = [107, 120];
+const FIRST_LOOKS: [usize; 3] = [107, 120, 127];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -192,8 +192,8 @@ fn what_eight_more_hands_write_is_read() {
         ("newcomers", include_str!("../corpus/open-10.toml"), 98),
         ("a bit of all", include_str!("../corpus/open-11.toml"), 98),
         ("long sentences", include_str!("../corpus/open-12.toml"), 96),
-        ("a bit of all, again", include_str!("../corpus/open-13.toml"), 96),
-        ("staff", include_str!("../corpus/open-14.toml"), 93),
+        ("a bit of all, again", include_str!("../corpus/open-13.toml"), 97),
+        ("staff", include_str!("../corpus/open-14.toml"), 95),
     ] {
         reads(name, corpus, percent);
     }
@@ -219,13 +219,14 @@ fn what_was_kept_aside_last_is_read() {
 }
 
 /// Written by people who did not know the grammar, and unread by whoever works on it: only the figures are told. 95 in 100
-/// are aimed at.
+/// are aimed at: 360 of 378 facts of the three, the sixth at the only time it was run.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
     for (name, corpus, at_least) in [
         ("third", include_str!("../corpus/sealed-3.toml"), FIRST_LOOKS[0]),
         ("fifth", include_str!("../corpus/sealed-5.toml"), FIRST_LOOKS[1]),
+        ("sixth", include_str!("../corpus/sealed-6.toml"), FIRST_LOOKS[2]),
     ] {
         let (right, all, _unread) = judge(corpus);
         println!("kept aside, {name}: {right} of {all} facts");
