@@ -203,6 +203,9 @@ async fn follow(
     submit(bus.as_ref(), BATCH, specs).await?;
     let mut interrupted = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())
         .map_err(|why| ours(&why.to_string()))?;
+    // Listened to all the time: a signal between two rounds must not get lost.
+    let mut stop = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::interrupt())
+        .map_err(|why| ours(&why.to_string()))?;
     let mut last_heard = Instant::now();
     // Notices hasten; the poll behind them decides.
     let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
@@ -221,7 +224,9 @@ async fn follow(
             },
             gone = supervisor.gave_up() => return Err(ours(&gone.unwrap_or_else(|| "every process has ended".to_owned()))),
             complaint = left(&mut asking) => return Err(complaint),
-            _ = tokio::signal::ctrl_c(), if !looking || !talk.live => return Err(stopped()),
+            _ = stop.recv() => if !looking || !talk.live {
+                return Err(stopped());
+            },
             _ = interrupted.recv() => return Err(stopped()),
         }
         if !looks_done {
