@@ -40,21 +40,14 @@ pub(crate) fn excepts(sentence: &[Stretch]) -> bool {
 /// `except for one who …`: takes the clause before back for so many of its people, who are spoken of next.
 pub(crate) fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) -> bool {
     let Some(doers) = thread.doer.clone().filter(|doers| doers.len() > 1) else { return false };
-    let count = match found.mentions.first().map(|mention| &mention.who) {
-        Some(Who::Bare(n) | Who::PartOf(n)) => usize::try_from(*n).unwrap_or(usize::MAX),
-        Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => usize::try_from(*n).unwrap_or(usize::MAX),
-        Some(Who::Ordinal(n)) if *n > 0 => 1,
-        _ => return false,
+    let last = |n: u32| doers.len().checked_sub(usize::try_from(n).unwrap_or(usize::MAX)).filter(|from| *from > 0);
+    let out = match found.mentions.first().map(|mention| &mention.who) {
+        Some(Who::Bare(n) | Who::PartOf(n)) => last(*n).and_then(|from| doers.get(from..)),
+        Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => last(*n).and_then(|from| doers.get(from..)),
+        Some(Who::Ordinal(n)) if *n > 0 => usize::try_from(*n).ok().map(|n| doers.get(n - 1..n).unwrap_or_default()),
+        _ => None,
     };
-    if count == 0 || count >= doers.len() {
-        return false;
-    }
-    let out: Vec<usize> = match found.mentions.first().map(|mention| &mention.who) {
-        Some(Who::Ordinal(n)) => {
-            usize::try_from(*n).ok().and_then(|n| doers.get(n.checked_sub(1)?)).copied().into_iter().collect()
-        }
-        _ => doers.iter().rev().take(count).rev().copied().collect(),
-    };
+    let Some(out) = out.map(<[usize]>::to_vec).filter(|out| !out.is_empty()) else { return false };
     for who in &out {
         let rules: Vec<usize> = thread.made.iter().filter(|(of, _)| of == who).map(|(_, rule)| *rule).collect();
         deed::except(&mut story.cast, *who, &rules);

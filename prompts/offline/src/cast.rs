@@ -130,14 +130,12 @@ impl Cast {
             {
                 self.latest()
             }
-            Who::New { count: Some(n), .. } if self.supposes(*n, mention).is_some() => {
-                let found = self.supposes(*n, mention).unwrap_or_default();
-                self.supposed_people.retain(|i| !found.contains(i));
-                self.forget(&found);
-                found
-            }
             Who::New { count: Some(n), article } => {
-                let pick = if self.listing {
+                let pick = if let Some(found) = self.supposes(*n, mention) {
+                    self.supposed_people.retain(|i| !found.contains(i));
+                    self.forget(&found);
+                    Some(found)
+                } else if self.listing {
                     self.pick_open(*n, mention)
                 } else if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)

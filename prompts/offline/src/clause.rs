@@ -87,16 +87,9 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
         }
     }
     cue(stretch, &mut found, &mut taken);
-    // What a heading says, or who asks, nobody does.
-    for (i, word) in stretch.words.iter().enumerate() {
-        if let Some(flag) = taken.get_mut(i) {
-            *flag |= word.label;
-        }
-    }
-    for (i, at) in placed.iter().enumerate() {
-        if let Some(flag) = taken.get_mut(i) {
-            *flag |= *at;
-        }
+    // What a heading says, or who asks, nobody does; nor are places deeds.
+    for ((flag, place), word) in taken.iter_mut().zip(&placed).zip(&stretch.words) {
+        *flag |= *place || word.label;
     }
     deeds(stretch, &mut found, &mut taken, &placed);
     rest(stretch, &mut found, &taken);
@@ -303,8 +296,8 @@ fn negated(stretch: &Stretch, at: usize) -> bool {
         // `at no point does she look`
         || (0..at).any(|i| {
             let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-            text(i) == "no" && text(i + 1) == "one"
-                || text(i) == "no" && matches!(text(i + 1), "point" | "time" | "moment" | "circumstances" | "way" | "case")
+            text(i) == "no"
+                && matches!(text(i + 1), "one" | "point" | "time" | "moment" | "circumstances" | "way" | "case")
         })
 }
 
@@ -360,22 +353,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 });
             // `staring at his phone` sees no robot.
             let aside = phrase.means == Act::Look && aside(stretch, last);
-            if aside {
-                mark_each(stretch, &at);
-                for i in &at {
-                    if let Some(flag) = taken.get_mut(*i) {
-                        *flag = true;
-                    }
-                }
-                found.deeds.push(Deed { act: Act::Ignore, at: first, to: last, negated: false });
-                continue;
-            }
             let of_place = noun
                 || elsewhere
                 || apart
                 || stretch.words.get(last).is_some_and(|word| word.text == "it")
                     && (first..last).any(|i| !at.contains(&i) && placed.get(i).copied().unwrap_or(false));
-            if of_place {
+            if of_place && !aside {
                 continue;
             }
             for i in &at {
@@ -393,10 +376,10 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             }
             let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
             found.deeds.push(Deed {
-                act: phrase.means,
+                act: if aside { Act::Ignore } else { phrase.means },
                 at: first,
                 to: last,
-                negated: !says_not && negated(stretch, first),
+                negated: !says_not && !aside && negated(stretch, first),
             });
         }
     }

@@ -3,6 +3,7 @@
 use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Relation, Rule, Trigger};
 
 use crate::cast::{Cast, Person, ReadRule};
+use crate::finish::does;
 use crate::lexicon::Act;
 
 /// What is known around a deed.
@@ -157,13 +158,11 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     {
         relate(cast, who, Relation::Static, &around.quote);
     }
-    // `walks behind the robot, in its direction`; `just stands in the doorway`
+    // `walks behind the robot, in its direction`
     let same_way = act == Act::Ahead
         && around.quote.contains("direction")
         && !["ahead", "front"].iter().any(|word| around.quote.contains(word))
-        && cast.people.get(who).is_some_and(|person| {
-            person.relation.is_some() || person.rules.iter().any(|read| read.rule.act == Action::FollowRobot)
-        });
+        && cast.people.get(who).is_some_and(|person| person.relation.is_some() || does(person, &Action::FollowRobot));
     if same_way {
         return None;
     }
@@ -174,10 +173,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     // `when 4 m away they form a line`: they came from where they came.
     let then = matches!(relation(act), Some(Relation::Static | Relation::Ahead))
         && around.trigger.is_some()
-        && person.is_some_and(|person| {
-            person.relation.is_some()
-                || act == Act::Ahead && person.rules.iter().any(|read| read.rule.act == Action::FollowRobot)
-        });
+        && person
+            .is_some_and(|person| person.relation.is_some() || act == Act::Ahead && does(person, &Action::FollowRobot));
     let on_the_way = act == Act::Talk && person.is_some_and(walks) || then;
     if let Some(relation) = relation(act).filter(|_| !on_the_way) {
         relate(cast, who, relation, &around.quote);

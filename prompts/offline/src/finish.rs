@@ -199,6 +199,6 @@ fn is(person: &Person, relation: Relation) -> bool {
     person.relation.as_ref().is_some_and(|(own, _)| *own == relation)
 }
 
-fn does(person: &Person, act: &Action) -> bool {
+pub(crate) fn does(person: &Person, act: &Action) -> bool {
     person.rules.iter().any(|read| read.rule.act == *act)
 }

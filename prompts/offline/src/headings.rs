@@ -66,6 +66,18 @@ fn head(words: &[&Word], at: usize) -> bool {
             || words.get(at + 1).is_none() && !word.text.ends_with("ing"))
 }
 
+/// Whether one of the words says what a heading speaks of.
+fn heads(words: &[&Word]) -> bool {
+    (0..words.len()).any(|at| head(words, at))
+}
+
+/// Makes words labels, which nobody reads.
+fn label<'a>(words: impl IntoIterator<Item = &'a mut Option<Word>>) {
+    for word in words.into_iter().flatten() {
+        (word.label, word.used) = (true, true);
+    }
+}
+
 /// Words that count no people, but how often, how long ago or what hour it is.
 const COUNTED: &[&str] = &[
     "runs",
@@ -112,32 +124,23 @@ const LISTS: &[&str] = &[
 
 /// `Turn-taking, block 2, trial 14.`: a title without anybody in it counts nothing; nor do `10 of 10 runs`.
 pub(crate) fn titled(words: &mut [Option<Word>]) {
-    let all = || words.iter().flatten();
-    let whole: Vec<&Word> = all().collect();
-    let titled = (0..whole.len()).any(|k| head(&whole, k));
+    let whole: Vec<&Word> = words.iter().flatten().collect();
     let somebody = |word: &Word| {
         lexicon().roles.contains_key(&word.stem)
             || word.stem == "robot"
             || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who")
     };
-    if whole.len() <= 9 && titled && !all().any(somebody) {
-        for word in words.iter_mut().flatten() {
-            (word.label, word.used) = (true, true);
-        }
-        return;
-    }
+    let nobody = !whole.iter().any(|word| somebody(word));
     // `Regression 204.`
     let numbered = whole.len() <= 3
         && whole.iter().any(|word| word.is_digits())
-        && !whole.iter().any(|word| somebody(word) || lexicon().verbs.contains(&word.stem));
-    if numbered {
-        for word in words.iter_mut().flatten() {
-            (word.label, word.used) = (true, true);
-        }
+        && !whole.iter().any(|word| lexicon().verbs.contains(&word.stem));
+    if nobody && (numbered || whole.len() <= 9 && heads(&whole)) {
+        label(words);
         return;
     }
     let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
-    let robot = all().any(|word| word.stem == "robot");
+    let robot = whole.iter().any(|word| word.stem == "robot");
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
     // `As the safety officer here I need …`; `My professor asked for two conditions.`
     let speaker = (text(0) == "as" && matches!(text(1), "the" | "a" | "an"))
@@ -166,9 +169,8 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
                 | "organize"
                 | "supervise"
         );
-    let asker = asker || own;
     let colon = words.iter().position(|word| word.as_ref().is_some_and(|word| word.after_colon)).unwrap_or(words.len());
-    let silent = speaker.unwrap_or(if asker { colon } else { 0 });
+    let silent = speaker.unwrap_or(if asker || own { colon } else { 0 });
     let number = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     let mut labels = Vec::new();
     for at in 0..words.len() {
@@ -209,62 +211,36 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
 pub(crate) fn labels(words: &mut [Option<Word>]) {
     let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
     // `Field notes, ward 7, day 2:`
-    let article = |k: usize| {
-        words
-            .get(k)
-            .and_then(Option::as_ref)
-            .is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot")
-    };
+    let article = |word: &Word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot";
     let role = |word: &Word| lexicon().roles.contains_key(&word.stem);
     let counted = words
         .windows(2)
         .any(|pair| matches!(pair, [Some(number), Some(noun)] if number.count().is_some() && role(noun)));
-    let title = words.iter().flatten().count() <= 9
-        && start > 0
-        && {
-            let whole: Vec<&Word> = words.iter().flatten().collect();
-            (0..whole.len()).any(|k| head(&whole, k))
-        }
-        && !(0..words.len()).any(article)
-        && !counted;
+    let sentence: Vec<&Word> = words.iter().flatten().collect();
+    let title =
+        start > 0 && sentence.len() <= 9 && heads(&sentence) && !sentence.iter().any(|word| article(word)) && !counted;
     if title {
-        for word in words.iter_mut().flatten() {
-            (word.label, word.used) = (true, true);
-        }
+        label(words);
         return;
     }
-    let heading = {
-        let whole: Vec<&Word> = words.iter().skip(start).flatten().collect();
-        (0..whole.len().min(3)).any(|k| head(&whole, k))
-    };
-    let whole = words.iter().skip(start).flatten();
-    let person = |word: &Word| lexicon().roles.contains_key(&word.stem) || word.stem == "robot";
+    let whole: Vec<&Word> = words.iter().skip(start).flatten().collect();
+    let heading = (0..whole.len().min(3)).any(|at| head(&whole, at));
     let counts = |word: &Word| word.count().is_some() || matches!(word.text.as_str(), "one" | "someone" | "somebody");
-    let placed =
-        whole.clone().next().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
+    let placed = whole.first().is_some_and(|word| matches!(word.text.as_str(), "in" | "at" | "on" | "near" | "inside"));
     // `Explicit signalling condition:`, `Reproduction steps for #882:` name what comes, and nobody in it.
-    if !placed
-        && (heading || !whole.clone().any(person))
-        && !whole.clone().any(|word| person(word) && counts(word))
-        && (heading || whole.clone().count() > 3 || !whole.clone().any(counts))
-    {
-        let people = whole.clone().any(|word| person(word) && word.stem != "robot");
-        if !people {
-            for word in words.iter_mut().skip(start).flatten() {
-                (word.label, word.used) = (true, true);
-            }
-            return;
-        }
+    let somebody = whole.iter().any(|word| role(word) || !heading && word.stem == "robot");
+    let uncounted = heading || whole.len() > 3 || !whole.iter().any(|word| counts(word));
+    if !placed && !somebody && uncounted {
+        label(words.iter_mut().skip(start));
+        return;
     }
     let list = |word: &Word| {
         LISTS.contains(&word.text.as_str())
             || lexicon().adjectives.contains(&word.text)
-            || lexicon().roles.contains_key(&word.stem) && crate::noun::plural(word)
+            || role(word) && crate::noun::plural(word)
     };
-    if whole.clone().count() <= 2 && whole.clone().all(list) {
-        for word in words.iter_mut().skip(start).flatten() {
-            (word.label, word.used) = (true, true);
-        }
+    if whole.len() <= 2 && whole.iter().all(|word| list(word)) {
+        label(words.iter_mut().skip(start));
     }
     let purpose = words.iter().skip(start).position(|word| word.as_ref().is_some_and(|word| word.text == "for"));
     if let Some(purpose) = purpose.filter(|_| heading) {
@@ -335,15 +311,17 @@ pub(crate) fn described(words: &mut [Option<Word>]) {
     }
 }
 
+/// The word at this place, if no mark stands there.
+fn word_at(pieces: &[Piece], at: usize) -> Option<&Word> {
+    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
+}
+
 /// `pedestrians: 2` and `humans=4` give a number of people: `exactly 2 pedestrians`.
 pub(crate) fn totals(pieces: &mut Vec<Piece>) {
     let mut at = 0;
     while at < pieces.len() {
         let found = {
-            let word = |k: usize| match pieces.get(k) {
-                Some(Piece::Word(word)) => Some(word),
-                Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => None,
-            };
+            let word = |k: usize| word_at(pieces, k);
             let noun = word(at).filter(|word| lexicon().roles.contains_key(&word.stem));
             let counted = word(at + 1).is_some_and(|word| word.text == "count");
             let several = noun.is_some_and(crate::noun::plural) || counted;
@@ -372,17 +350,9 @@ pub(crate) fn totals(pieces: &mut Vec<Piece>) {
 /// Marks names everywhere, once one place shows that they are names: `Anna follows Tom. Tom stops.`
 pub(crate) fn names(pieces: &mut [Piece]) {
     let lex = lexicon();
-    let word = |k: usize| match pieces.get(k) {
-        Some(Piece::Word(word)) => Some(word),
-        Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => None,
-    };
+    let word = |k: usize| word_at(pieces, k);
     let strange = |word: &Word| {
-        word.capital
-            && word.text.len() > 1
-            && word.text.chars().all(char::is_alphabetic)
-            && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives, &lex.things]
-                .iter()
-                .any(|table| table.contains(&word.stem) || table.contains(&word.text))
+        word.capital && word.text.len() > 1 && word.text.chars().all(char::is_alphabetic) && !lex.has(word)
     };
     let does = |k: usize| {
         word(k).is_some_and(|word| {
@@ -426,9 +396,6 @@ pub(crate) fn names(pieces: &mut [Piece]) {
 
 /// `Mr.` in `Mr. Hartmann`.
 fn title_before_name(pieces: &[Piece], at: usize, names: &[String]) -> bool {
-    let word = |k: usize| match pieces.get(k) {
-        Some(Piece::Word(word)) => word.text.as_str(),
-        Some(Piece::Comma | Piece::Colon | Piece::Stop) | None => "",
-    };
-    matches!(word(at), "mr" | "mrs" | "ms" | "miss") && names.iter().any(|name| name == word(at + 1))
+    let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
+    matches!(text(at), "mr" | "mrs" | "ms" | "miss") && names.iter().any(|name| name == text(at + 1))
 }

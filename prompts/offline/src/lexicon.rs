@@ -6,6 +6,8 @@ use std::sync::{Arc, LazyLock};
 use serde::Deserialize;
 use socrates_model::{Gesture, PlaceClass};
 
+use crate::words::Word;
+
 /// What somebody does, as the text says it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -294,6 +296,13 @@ impl Lexicon {
             }
         }
         self.telling.extend(telling);
+    }
+
+    /// Whether one of the tables of plain words has it, as written or in its base form.
+    pub(crate) fn has(&self, word: &Word) -> bool {
+        [&self.known, &self.stop, &self.labels, &self.task, &self.nowhere, &self.adjectives, &self.things]
+            .iter()
+            .any(|table| table.contains(&word.stem) || table.contains(&word.text))
     }
 
     /// The base form of a word in lower case.

@@ -527,14 +527,6 @@ fn counted(
     }
     // A number alone speaks of people only where it can stand for them: `2 leave`, `one stays`, `two more`.
     let n = count?;
-    // `racks 7 and 8`
-    let numbered = at >= 3
-        && matches!(text(at - 1), "and" | "or" | "to")
-        && words.get(at - 2).is_some_and(Word::is_digits)
-        && lex.labels.contains(stem(words, at - 3));
-    if numbered {
-        return None;
-    }
     let label = lex.labels.contains(before) && (words.get(next - 1).is_some_and(Word::is_digits))
         || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot");
     let unit = words.get(next).is_some_and(|word| {

@@ -143,9 +143,7 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
             !word.label
                 && word.text.len() >= if word.capital { 2 } else { 4 }
                 && word.text.chars().all(char::is_alphabetic)
-                && ![&lex.known, &lex.stop, &lex.labels, &lex.task, &lex.nowhere, &lex.adjectives, &lex.things]
-                    .iter()
-                    .any(|table| table.contains(&word.stem) || table.contains(&word.text))
+                && !lex.has(word)
                 && !thing(words, k)
                 && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())))
         })

@@ -6,7 +6,7 @@ use crate::again;
 use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
-use crate::clause;
+use crate::clause::{self, Found, mark_each};
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
@@ -171,7 +171,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             format!("`{word}` in `{quote}` is a place that no location of this kind has"),
         ));
     }
-    mark(stretch, &found.nowhere);
+    mark_each(stretch, &found.nowhere);
     if let Some(gesture) = found.only_says.filter(|_| thread.speaks) {
         return only_says(story, thread, stretch, gesture, &quote);
     }
@@ -222,8 +222,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             "rough_scenario",
             format!("`{}` in `{quote}` cannot be simulated; people walk, stop, look, follow, flee, block, give way, approach and gesture", verbs.join("`, `")),
         ));
-        let at = found.impossible.clone();
-        mark(stretch, &at);
+        mark_each(stretch, &found.impossible);
     }
     place_of(story, &found, stretch, &thread.subject, &quote);
     if stretch.joint == Joint::Except && excepted(story, thread, &found) {
@@ -245,59 +244,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             ),
         ));
     }
-    // Whom the mentions mean, in order.
-    let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
-    let spoken_of = story.cast.last.clone();
-    for mention in &found.mentions {
-        // `my staff get grumpy` tells of whoever asks.
-        let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
-        let told = stretch
-            .words
-            .get(mention.to + 1)
-            .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
-        if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
-            continue;
-        }
-        let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
-        let from = words.first().map_or(0, |word| word.from);
-        let to = words.last().map_or(0, |word| word.to);
-        let said = text.get(from..to).unwrap_or_default();
-        let declares = found.declares
-            || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let mut people =
-            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
-        story.cast.call(mention, words, &people);
-        if mention.who == Who::Object {
-            // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
-            let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
-            let own =
-                meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
-            people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
-            // `a nurse asks a patient to follow her`: whoever asks, and so `she` from here on.
-            if let (true, [(_, _, asker), _, ..]) = (found.gesture.is_some() && own.is_none(), meant.as_slice()) {
-                people.clone_from(asker);
-                let word = if said == "him" { "he" } else { "she" };
-                if let ([only], "him" | "her") = (people.as_slice(), said)
-                    && let Some(person) = story.cast.people.get_mut(*only)
-                {
-                    person.pronoun.get_or_insert_with(|| word.to_owned());
-                }
-            }
-            // `another girl who follows her`: somebody else than who follows.
-            let himself = found.acts()
-                && (thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who
-                    || meant.last().is_some_and(|(_, _, own)| *own == people));
-            if himself && !story.cast.before.is_empty() {
-                people.clone_from(&story.cast.before);
-            }
-            meant.push((mention.from, mention.to, people));
-            continue;
-        }
-        if !people.is_empty() && story.cast.last != people {
-            story.cast.before = std::mem::replace(&mut story.cast.last, people.clone());
-        }
-        meant.push((mention.from, mention.to, people));
-    }
+    let meant = meant(story, thread, stretch, &found, text, next);
     if !stretch.also.is_empty() {
         also_called(story, &meant, stretch);
     }
@@ -510,10 +457,66 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     }
 }
 
-fn mark(stretch: &mut Stretch, at: &[usize]) {
-    for i in at {
-        if let Some(word) = stretch.words.get_mut(*i) {
-            word.used = true;
+/// Whom the mentions of a clause mean, in order, with their first and last words.
+fn meant(
+    story: &mut Story,
+    thread: &Thread,
+    stretch: &Stretch,
+    found: &Found,
+    text: &str,
+    next: Option<Joint>,
+) -> Vec<(usize, usize, Vec<usize>)> {
+    let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
+    let spoken_of = story.cast.last.clone();
+    for mention in &found.mentions {
+        // `my staff get grumpy` tells of whoever asks.
+        let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
+        let told = stretch
+            .words
+            .get(mention.to + 1)
+            .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
+        if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
+            continue;
         }
+        let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
+        let from = words.first().map_or(0, |word| word.from);
+        let to = words.last().map_or(0, |word| word.to);
+        let said = text.get(from..to).unwrap_or_default();
+        let declares = found.declares
+            || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
+        let mut people =
+            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
+        story.cast.call(mention, words, &people);
+        if mention.who == Who::Object {
+            // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
+            let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
+            let own =
+                meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
+            people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
+            // `a nurse asks a patient to follow her`: whoever asks, and so `she` from here on.
+            if let (true, [(_, _, asker), _, ..]) = (found.gesture.is_some() && own.is_none(), meant.as_slice()) {
+                people.clone_from(asker);
+                let word = if said == "him" { "he" } else { "she" };
+                if let ([only], "him" | "her") = (people.as_slice(), said)
+                    && let Some(person) = story.cast.people.get_mut(*only)
+                {
+                    person.pronoun.get_or_insert_with(|| word.to_owned());
+                }
+            }
+            // `another girl who follows her`: somebody else than who follows.
+            let himself = found.acts()
+                && (thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who
+                    || meant.last().is_some_and(|(_, _, own)| *own == people));
+            if himself && !story.cast.before.is_empty() {
+                people.clone_from(&story.cast.before);
+            }
+            meant.push((mention.from, mention.to, people));
+            continue;
+        }
+        if !people.is_empty() && story.cast.last != people {
+            story.cast.before = std::mem::replace(&mut story.cast.last, people.clone());
+        }
+        meant.push((mention.from, mention.to, people));
     }
+    meant
 }

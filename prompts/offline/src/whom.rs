@@ -251,13 +251,12 @@ impl Cast {
             if !plural && plain(role) {
                 let men = MEN.contains(&role.as_str());
                 let women = WOMEN.contains(&role.as_str());
-                let none: &[&str] = &[];
-                let other = if men {
+                let other: &[&str] = if men {
                     WOMEN
                 } else if women {
                     MEN
                 } else {
-                    none
+                    &[]
                 };
                 let may = |i: &usize| {
                     self.people
