@@ -53,6 +53,9 @@ const BAD_END: f64 = 8.0;
 /// Cost of a way that ends right after the meeting.
 const SHORT_TAIL: f64 = 3.0;
 
+/// Cost of turning into the robot's own way instead of crossing it: a room on the other side is better.
+const OWN_WAY: f64 = 3.0;
+
 /// No node: somebody with whom the robot starts is met nowhere.
 const NOWHERE: usize = usize::MAX;
 
@@ -222,7 +225,7 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 }
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
-                let own = if used.contains(&Some(*exit)) { 1.5 } else { 0.0 };
+                let own = if used.contains(&Some(*exit)) { OWN_WAY } else { 0.0 };
                 let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
                 let inside =
                     way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0 + if into { 2.0 } else { 0.0 };
@@ -257,7 +260,9 @@ fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(us
             .near(last)
             .iter()
             .map(|(node, _)| *node)
-            .filter(|node| !nodes.contains(node) && !barred(*node) && !net.inside(*node));
+            .filter(|node| !nodes.contains(node) && !barred(*node))
+            // Into a room only through its doorway, once that is entered.
+            .filter(|node| !net.inside(*node) || net.kind(last) == PlaceClass::Doorway);
         let Some(next) =
             next.max_by(|a, b| net.straight(previous, last, *a).total_cmp(&net.straight(previous, last, *b)))
         else {

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_maps::{DistanceField, Sight};
-use socrates_model::{Encounter, FORMAT, FaultCode, HumanId, NodeId, Paths, PlaceClass, Proposal, Relation};
+use socrates_model::{
+    Action, Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
+};
 use socrates_prompts::Question;
 
 use crate::NAME;
@@ -20,6 +22,12 @@ const NODES: usize = 14;
 const ROUTES: usize = 10;
 /// Answers within this much of the best are as good, and the seed picks among them.
 const ALIKE: f64 = 2.5;
+
+/// Free width on each side of the middle of the floor that lets somebody past a robot there, m, the way that takes, m, and what a
+/// node without it costs.
+const BESIDE_M: f64 = 1.15;
+const OVERTAKES_M: f64 = 12.0;
+const SQUEEZED: f64 = 2.0;
 
 /// A person who wants other paths is given one of so many.
 const OTHERS: usize = 6;
@@ -205,6 +213,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
         inside.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect()
     });
     let many = proposal.humans.len() > 3;
+    let overtaken = proposal.humans.iter().any(overtakes).then(|| DistanceField::new(&net.location.grid));
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
@@ -239,12 +248,28 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             if let Some(mut solution) = people(net, proposal, route, crowded) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
-                solution.score += rank + hidden - if many || wish.roomy { 3.0 * tight } else { 0.0 };
+                let squeezed = overtaken.as_ref().map_or(0.0, |field| squeezed(net, field, &solution.route));
+                solution.score +=
+                    rank + hidden - if many || wish.roomy { 3.0 * tight } else { 0.0 } - SQUEEZED * squeezed;
                 found.push(solution);
             }
         }
     }
     found
+}
+
+/// Whether somebody comes from behind to get past the robot.
+fn overtakes(human: &HumanProposal) -> bool {
+    let follows = |act: &Action| matches!(act, Action::FollowRobot | Action::FollowHuman(_));
+    human.relation == Relation::Behind && !human.rules.iter().any(|rule| follows(&rule.act))
+}
+
+/// How many nodes from the meeting on, as far as it takes to get past the robot, leave no room for that.
+fn squeezed(net: &Net<'_>, field: &DistanceField, route: &Route) -> f64 {
+    let from = route.nodes.get(route.meet.saturating_sub(2)..).unwrap_or_default();
+    let near = (1..=from.len()).take_while(|n| net.length_m(from.get(..*n).unwrap_or_default()) <= OVERTAKES_M);
+    let narrow = near.filter_map(|n| from.get(n - 1)).filter(|node| field.clearance(&net.at(**node)) < BESIDE_M);
+    narrow.count() as f64
 }
 
 fn tight(net: &Net<'_>, node: usize) -> bool {

@@ -16,6 +16,9 @@ use crate::walk::{self, Pairs, Steps, Walker};
 /// People whose forces are reckoned at once: enough to fill the lanes, few enough for the nearest cache.
 const AT_ONCE: usize = 32;
 
+/// Between people of a group who go one behind the other, m.
+const IN_LINE_M: f64 = 0.8;
+
 /// Lists that every tick fills anew; kept, so that no tick makes any.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
@@ -155,23 +158,26 @@ impl Engine {
         paces
     }
 
-    /// Members of a walking group take the pace of its first member, a little faster behind and slower in front.
+    /// Members of a walking group take the pace of their middle one, a little faster behind and slower in front; where there
+    /// is no room to walk abreast they go one behind the other, whoever is ahead first.
     fn keep_groups_together(&self, paces: &mut [f64]) {
         for group in self.setup.proposal.groups.iter().filter(|group| !group.standing) {
-            let places: Vec<usize> =
-                group.members.iter().filter_map(|id| self.humans.iter().position(|human| human.id == *id)).collect();
-            let Some(lead) = places.first().and_then(|place| paces.get(*place)).copied() else { continue };
-            let left: Vec<f64> = places
-                .iter()
-                .filter_map(|place| self.humans.get(*place))
-                .map(|human| human.route.length_m() - human.s)
-                .collect();
+            let ids = group.members.iter();
+            let mut members: Vec<(usize, &Human)> =
+                ids.filter_map(|id| self.humans.iter().enumerate().find(|(_, human)| human.id == *id)).collect();
+            let left_m = |human: &Human| human.route.length_m() - human.s;
+            members.sort_by(|(_, a), (_, b)| left_m(a).total_cmp(&left_m(b)));
+            let middle = members.get(members.len().saturating_sub(1) / 2).and_then(|(place, _)| paces.get(*place));
+            let Some(lead) = middle.copied() else { continue };
+            let apart_m = if members.iter().any(|(_, human)| human.notice.in_line) { IN_LINE_M } else { 0.0 };
+            let lag = |rank: u32, human: &Human| left_m(human) - apart_m * f64::from(rank);
+            let lags: Vec<f64> = (0..).zip(&members).map(|(rank, (_, human))| lag(rank, human)).collect();
             #[expect(clippy::cast_precision_loss, reason = "a few people")]
-            let mean = left.iter().sum::<f64>() / left.len().max(1) as f64;
-            for (place, left) in places.iter().zip(left) {
+            let mean = lags.iter().sum::<f64>() / lags.len().max(1) as f64;
+            for ((place, _), lag) in members.iter().zip(lags) {
                 if let Some(pace) = paces.get_mut(*place) {
-                    *pace =
-                        if lead > 0.0 { (lead * (1.0 + 0.6 * (left - mean).clamp(-0.8, 0.8))).min(1.8) } else { 0.0 };
+                    let share = 1.0 + 0.6 * (lag - mean).clamp(-0.8, 0.8);
+                    *pace = if lead > 0.0 { (lead * share).min(1.8) } else { 0.0 };
                 }
             }
         }

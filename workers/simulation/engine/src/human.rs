@@ -51,6 +51,8 @@ pub(crate) struct Human {
     pub(crate) standing: bool,
     /// Place beside the middle of a walking group, m to the left.
     pub(crate) lane_m: f64,
+    /// From the middle of its walking group to the outermost member, m; 0 for who walks alone.
+    pub(crate) flank_m: f64,
     pub(crate) tree: Tree,
     pub(crate) state: TreeState,
     pub(crate) route: Polyline,

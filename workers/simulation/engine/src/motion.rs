@@ -17,6 +17,12 @@ const LOOK_AHEAD_M: f64 = 0.9;
 /// Cosine between the ways before and after a turn up to which it turns back (154°), and how near to it it is made, m.
 const TURNS_BACK: f64 = -0.9;
 const TURN_M: f64 = 0.25;
+/// The distance that the floor allows is found in so many parts.
+const SHARES: u32 = 12;
+/// People who walk abreast fall into line so long before a place that is too narrow for that, m, and below that share of
+/// their distance from the middle.
+const LINE_UP_M: f64 = 1.9;
+const IN_LINE: f64 = 0.6;
 /// Speed of somebody who runs away, m/s.
 const RUN_MPS: f64 = 1.6;
 /// Fastest speed of somebody who keeps up with a leader, m/s.
@@ -31,6 +37,8 @@ const APPROACH_M: f64 = 1.2;
 const SEE_AHEAD_M: f64 = 4.5;
 /// Gap to whom it passes that a walker wants, surface to surface, m: the near edge of personal space.
 const BERTH_M: f64 = 0.45;
+/// Who walks along faster than this is overtaken by people behind it, m/s.
+const OVERTAKEN_MPS: f64 = 0.2;
 /// Whoever is this far behind is passed, m.
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
@@ -135,6 +143,12 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     let aside = Vector::new(-ahead.y, ahead.x) * human.aside_m;
     if scene.looks {
         human.notice.share = share(scene.floor, &base, &aside, human.radius_m + 0.08);
+        if human.flank_m > 0.0 {
+            // Who walks abreast falls into line before the narrow place, not in it.
+            let before = human.route.point(human.s + LINE_UP_M);
+            human.notice.share = human.notice.share.min(share(scene.floor, &before, &aside, human.radius_m + 0.08));
+            human.notice.in_line = human.notice.share < IN_LINE;
+        }
     }
     let target = base + aside * human.notice.share;
     if scene.looks {
@@ -214,14 +228,14 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
 /// How much of the way `aside` from `base` the floor allows.
 fn share(floor: &Floor, base: &Point, aside: &Vector, clearance_m: f64) -> f64 {
     let free = |share: &f64| floor.clearance_m(&(base + aside * *share)) >= clearance_m;
-    [1.0, 0.75, 0.5, 0.25].into_iter().find(free).unwrap_or(0.0)
+    (1..=SHARES).rev().map(|part| f64::from(part) / f64::from(SHARES)).find(free).unwrap_or(0.0)
 }
 
 /// How far to go aside for whoever is ahead and in the way, m to the left.
 fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
     let left = Vector::new(-ahead.y, ahead.x);
-    // Where it walks now, beside the line that it would keep to without anybody in the way.
-    let lane_m = (human.at - human.route.point(human.s)).dot(&left) - human.lane_m;
+    // Where it walks now, beside the middle of its way.
+    let beside_m = (human.at - human.route.point(human.s)).dot(&left);
     let left_m = human.route.length_m() - human.s;
     let mut nearest = (SEE_AHEAD_M, 0.0);
     for other in scene.others {
@@ -237,8 +251,13 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
         let beside = way.dot(&left);
         let closing = (human.velocity - other.velocity).dot(ahead);
         let across = other.velocity.dot(&left).abs();
-        let need = human.radius_m + other.radius_m + BERTH_M;
-        let off = beside + lane_m;
+        // From who comes towards them people who walk together go aside together: the line that counts is that of their
+        // middle, and their flank needs room. Whom they overtake they pass on both sides.
+        let together = human.flank_m > 0.0 && other.velocity.dot(ahead) < OVERTAKEN_MPS;
+        let (line_m, flank_m) = if together { (0.0, human.flank_m) } else { (human.lane_m, 0.0) };
+        let need = human.radius_m + other.radius_m + BERTH_M + flank_m;
+        // Beside the line that it would keep to without anybody in the way.
+        let off = beside + beside_m - line_m;
         // Somebody level with it is still passed: going back to the line now would run into its side.
         let level = before > -PASSED_M && before < 0.1 && human.aside_m.abs() > 0.1;
         // Who crosses is left to the forces: going aside would lead into its way.
@@ -265,7 +284,8 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
         if !free(side) && free(-side) {
             side = -side;
         }
-        nearest = (before, (off + side * need).clamp(-1.3, 1.3));
+        let most = 1.3 + flank_m;
+        nearest = (before, (off + side * need).clamp(-most, most));
     }
     nearest.1
 }

@@ -72,6 +72,8 @@ pub(crate) struct Notice {
     pub(crate) aside_m: f64,
     /// Share of that which the floor allows.
     pub(crate) share: f64,
+    /// Whether its walking group has no room to walk abreast here.
+    pub(crate) in_line: bool,
     /// Whether it and the robot are in line of sight, once that was asked since the last look.
     pub(crate) robot_seen: Option<bool>,
     /// Whether nothing stands between it and the next point of its way.

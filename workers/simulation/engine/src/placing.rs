@@ -156,8 +156,9 @@ fn lanes(humans: &mut [Human], group: &GroupProposal) {
             let row = place % 3;
             let width = count.min(3);
             #[expect(clippy::cast_precision_loss, reason = "a few people")]
-            let lane = (row as f64 - (width as f64 - 1.0) / 2.0) * LANE_M;
-            human.lane_m = lane;
+            let (row, flank) = (row as f64, 0.5 * (width as f64 - 1.0));
+            human.lane_m = (row - flank) * LANE_M;
+            human.flank_m = flank * LANE_M;
         }
     }
 }

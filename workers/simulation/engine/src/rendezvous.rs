@@ -39,6 +39,9 @@ const TOWARD_S: f64 = 0.7;
 const STANDS_MPS: f64 = 0.15;
 const STANDS_FROM_S: f64 = 3.0;
 const STANDS_S: f64 = 1.5;
+/// A robot nearer than this before somebody, m, slower than this share of its top speed, waits for it.
+const FACES_M: f64 = 5.0;
+const FACES_SHARE: f64 = 0.5;
 /// Cosine from which two ways are the same or opposite: 45°.
 const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Somebody ahead is at the encounter so long before the robot, s.
@@ -112,6 +115,9 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
+    if human.started && in_view && apart < FACES_M && faces(human, robot) {
+        return free;
+    }
     if !human.started {
         // Early: somebody who stands there, and sets off in time. Late or just right: go.
         let early = needed < 0.97 * human.speed_mps;
@@ -152,6 +158,14 @@ pub(crate) fn lead_by_ways_s(human: &Vector, robot: &Vector) -> f64 {
     } else {
         0.0
     }
+}
+
+/// Whether the robot stands or hardly moves before somebody who comes towards it: it waits until this one has passed, so that
+/// going slower would keep both waiting for each other.
+fn faces(human: &Human, robot: &Robot) -> bool {
+    let way = robot.at() - human.at;
+    let toward = human.travel().dot(&way) > SAME_COS * way.norm();
+    robot.v < FACES_SHARE * robot.model.v_max_mps && toward && human.travel().dot(&robot.intent()) < -SAME_COS
 }
 
 /// People who leave the place that the robot enters: after the door has opened, one after the other.

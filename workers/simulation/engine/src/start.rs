@@ -252,6 +252,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         group: None,
         standing: false,
         lane_m: 0.0,
+        flank_m: 0.0,
         tree,
         state,
         at,
