@@ -27,6 +27,7 @@ mod refer;
 
 mod around;
 mod arrange;
+mod asker;
 mod cut;
 
 mod again;

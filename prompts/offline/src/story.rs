@@ -461,7 +461,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
 fn meant(
     story: &mut Story,
     thread: &Thread,
-    stretch: &Stretch,
+    stretch: &mut Stretch,
     found: &Found,
     text: &str,
     next: Option<Joint>,
@@ -476,6 +476,9 @@ fn meant(
             .get(mention.to + 1)
             .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
         if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
+            for word in stretch.words.iter_mut().take(mention.to + 1).skip(mention.from) {
+                word.used = false;
+            }
             continue;
         }
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
