@@ -76,8 +76,6 @@ mod twice;
 #[cfg(test)]
 mod again_tests;
 #[cfg(test)]
-mod corpus_tests;
-#[cfg(test)]
 mod tests;
 
 use socrates_model::{Location, Reading, Request};

@@ -34,14 +34,16 @@ pub(crate) struct Story {
     pub(crate) problems: Vec<Fault>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) enum Subject {
+    #[default]
     Nobody,
     Robot,
     People(Vec<usize>),
 }
 
 /// What reaches from clause to clause within a sentence.
+#[derive(Default)]
 pub(crate) struct Thread {
     pub(crate) subject: Subject,
     pub(crate) pending: Vec<usize>,
@@ -87,27 +89,7 @@ pub(crate) fn read(text: &str) -> Story {
 
 /// Reads sentences of a text about people of whom was spoken before.
 pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str) -> Story {
-    let mut thread = Thread {
-        subject: Subject::Nobody,
-        pending: Vec::new(),
-        waiting: None,
-        untaken: None,
-        vague: false,
-        made: Vec::new(),
-        doer: None,
-        led: None,
-        said: None,
-        fresh: None,
-        acts: Vec::new(),
-        speaks: false,
-        not_until: false,
-        ended: None,
-        addressed: Vec::new(),
-        listed: Vec::new(),
-        denied: None,
-        condition: false,
-        went_on: Vec::new(),
-    };
+    let mut thread = Thread::default();
     let named = sentences
         .iter()
         .flatten()
