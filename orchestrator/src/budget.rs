@@ -30,7 +30,7 @@ impl Turn<'_> {
         let tokens = input.saturating_add(output);
         let author = self.scenario(id).and_then(|scenario| scenario.spec.settings.get("author"));
         let server = author.and_then(|author| asked_by(author));
-        let price = server.and_then(|server| price_of(&policy.prices, server)).unwrap_or_default();
+        let price = server.and_then(|server| price_of(&policy.prices, server)).copied().unwrap_or_default();
         let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
         let money = u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX);
         let over = |spent: u64, limit: u64| limit > 0 && spent >= limit;
@@ -62,9 +62,47 @@ impl Turn<'_> {
     }
 }
 
-/// The price of a server with its model, `openai:gpt-4o`, or else of the model alone.
+/// The price of a server with its model, `openai:gpt-4o`: that of the longest name in the table with which the model's name begins.
+///
+/// Servers add a date to the name that was asked for, so `gpt-4o` is the price of `gpt-4o-2024-08-06` where no longer name is
+/// known. A name in the table may say the server as well, and then holds for this server only and before the same name without one.
 #[must_use]
-pub fn price_of(prices: &BTreeMap<String, (u64, u64)>, server: &str) -> Option<(u64, u64)> {
+pub fn price_of<'a, P>(prices: &'a BTreeMap<String, P>, server: &str) -> Option<&'a P> {
     let model = server.split_once(':').map_or(server, |(_, model)| model);
-    prices.get(server).or_else(|| prices.get(model)).copied()
+    let before = server.len() - model.len();
+    let begins =
+        |name: &str, known: &str| name.strip_prefix(known).is_some_and(|rest| rest.is_empty() || rest.starts_with('-'));
+    let begins = |known: &str| {
+        let whole = known.len().checked_sub(before).filter(|length| *length > 0 && begins(server, known));
+        whole.map(|length| (length, true)).or_else(|| begins(model, known).then_some((known.len(), false)))
+    };
+    let found = prices.iter().filter_map(|(known, price)| Some((begins(known)?, price)));
+    found.max_by_key(|(length, _)| *length).map(|(_, price)| price)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_price_is_that_of_the_longest_name_that_begins_the_models() {
+        let names = ["gpt-4", "gpt-4o", "gpt-4o-mini", "azure:gpt-4o", "local:llama", "qwen:7b"];
+        let prices: BTreeMap<String, &str> = names.iter().map(|name| ((*name).to_owned(), *name)).collect();
+        for (server, name) in [
+            ("openai:gpt-4o", Some("gpt-4o")),
+            ("gpt-4o", Some("gpt-4o")),
+            ("openai:gpt-4o-2024-08-06", Some("gpt-4o")),
+            ("openai:gpt-4o-mini-2024", Some("gpt-4o-mini")),
+            ("azure:gpt-4o-2024", Some("azure:gpt-4o")),
+            ("azure:gpt-4o-mini", Some("gpt-4o-mini")),
+            ("openai:gpt-4omni", None),
+            ("openai:llama", None),
+            ("local:llama", Some("local:llama")),
+            ("ollama:qwen:7b", Some("qwen:7b")),
+            ("qwen:7b", Some("qwen:7b")),
+            ("gpt-4:other", None),
+        ] {
+            assert_eq!(price_of(&prices, server).copied(), name, "{server}");
+        }
+    }
 }

@@ -118,10 +118,7 @@ fn money(model: &str, sum: &Sum, prices: &BTreeMap<String, Price>) -> Option<(f6
     if model.starts_with("offline") {
         return Some((0.0, dollars()));
     }
-    // Servers add a date to the name that was asked for: the longest name in the table that begins it wins.
-    let name = model.split_once(':').map_or(model, |(_, name)| name);
-    let found = prices.iter().filter(|(known, _)| name == known.as_str() || name.starts_with(&format!("{known}-")));
-    let (_, price) = found.max_by_key(|(known, _)| known.len())?;
+    let price = price_of(prices, model)?;
     Some((sum.cost(price), price.currency.clone()))
 }
 

@@ -1,33 +1,16 @@
 //! Requests in which somebody meets the robot twice.
 
 use socrates_model::job::Stage;
-use socrates_model::{
-    FactKind, FaultCode, HumanId, Location, Paths, PlaceClass, Predicate, Proposal, Reading, Request,
-};
+use socrates_model::{FactKind, FaultCode, HumanId, Paths, PlaceClass, Predicate, Proposal, Reading, Request};
 use socrates_prompts::Question;
 
 use crate::proposal::propose;
 use crate::read;
 use crate::solve::solve;
+use crate::tests::{self, map};
 
 fn request(rough: &str) -> Request {
-    Request {
-        location: "x".to_owned(),
-        social_context: String::new(),
-        task: "Drive along the corridor".to_owned(),
-        rough_scenario: Some(rough.to_owned()),
-        location_description: None,
-        robot: Default::default(),
-        run: Default::default(),
-        expect: Default::default(),
-        proposal: None,
-        paths: None,
-        behaviors: None,
-    }
-}
-
-fn map(name: &str) -> Location {
-    socrates_maps::shipped::load(name).unwrap()
+    tests::request("Drive along the corridor", Some(rough))
 }
 
 /// Who meets the robot how often, and where at last.

@@ -172,7 +172,14 @@ pub(crate) fn people_deed(
     let act = if joins { Act::WalkTogether } else { act };
     // `waits 5 seconds and then goes in`: whatever it did, it goes on.
     let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
-    if after && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {
+    // `follow it and want to pass`: as yet they only want to.
+    let wanted = act == Act::Pass
+        && text(at.wrapping_sub(1)) == "to"
+        && stretch
+            .words
+            .get(at.wrapping_sub(2))
+            .is_some_and(|word| matches!(word.stem.as_str(), "want" | "try" | "wish" | "hope" | "like"));
+    if after && !wanted && thread.waiting.is_none() && matches!(act, Act::Walk | Act::Pass | Act::Enter) {
         for who in people {
             let halted = story.cast.people.get_mut(*who).filter(|person| !person.rules.is_empty());
             if let Some(person) = halted {

@@ -205,8 +205,16 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
             return;
         }
     }
-    if temporal && echoes(stretch) {
+    if temporal && let Some(at) = echoes(stretch) {
         found.cue = Some((Cue::Echo, 0));
+        // `has made this gesture` is no deed of its own.
+        let makes = |word: &crate::words::Word| matches!(word.stem.as_str(), "make" | "give");
+        if let Some(verb) = at.checked_sub(1).filter(|verb| stretch.words.get(*verb).is_some_and(makes)) {
+            mark(stretch, verb, verb);
+            if let Some(flag) = taken.get_mut(verb) {
+                *flag = true;
+            }
+        }
         return;
     }
     for phrase in &lexicon().cues {
@@ -235,8 +243,8 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
     }
 }
 
-/// `upon the request`, `once the former has made this gesture`, `when he sees that`: what was said before.
-fn echoes(stretch: &mut Stretch) -> bool {
+/// Where what was said before is spoken of: `upon the request`, `once the former has made this gesture`, `when he sees that`.
+fn echoes(stretch: &mut Stretch) -> Option<usize> {
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
     let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
     let count = stretch.words.len();
@@ -258,9 +266,10 @@ fn echoes(stretch: &mut Stretch) -> bool {
                 && *k > 0
                 && matches!(stem(k - 1), "see" | "hear" | "notice")
     });
-    let Some(at) = at else { return false };
-    mark(stretch, at, (at + 1).min(count.saturating_sub(1)));
-    true
+    if let Some(at) = at {
+        mark(stretch, at, (at + 1).min(count.saturating_sub(1)));
+    }
+    at
 }
 
 fn negated(stretch: &Stretch, at: usize) -> bool {

@@ -1,6 +1,7 @@
 //! Words into sentences and clauses.
 
 use crate::arrange::arranged;
+use crate::asker::takes_part;
 use crate::headings::{described, labels, names, titled, totals};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
@@ -59,6 +60,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut pieces = pieces(text);
     totals(&mut pieces);
     names(&mut pieces);
+    takes_part(&mut pieces);
     for piece in pieces {
         match piece {
             Piece::Word(word) => {

@@ -34,6 +34,8 @@ pub(crate) struct Around {
 
 /// Who is startled stares for so long, s.
 const STARTLED_S: f64 = 8.0;
+/// Who follows and then walks on follows for so long, s.
+const FOLLOWS_S: f64 = 8.0;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -99,7 +101,7 @@ fn relation(act: Act) -> Option<Relation> {
 }
 
 /// Words for the reading line.
-fn words(act: Act, around: &Around) -> String {
+pub(crate) fn words(act: Act, around: &Around) -> String {
     let place = |class: Option<PlaceClass>, other: &str| {
         class.map_or_else(|| other.to_owned(), |class| class.name().replace('_', " "))
     };
@@ -197,6 +199,19 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
             walk_on(cast, who, trigger, &around.quote);
         } else if act == Act::GoOn {
             goes_on(cast, who, around);
+        }
+    }
+    // Who follows stays behind; who overtakes does so no longer.
+    if act == Act::Overtake && around.trigger.is_none() {
+        let behind = |read: &ReadRule| follows_on(read) && read.rule.act == Action::FollowRobot && !read.stated;
+        let rules = &mut cast.people.get_mut(who)?.rules;
+        if rules.iter().any(behind) {
+            rules.retain(|read| !behind(read));
+            cast.notes.push(format!(
+                "`{}`: human_{} comes from behind and passes the robot, so it does not follow it all the time",
+                around.quote,
+                who + 1
+            ));
         }
     }
     let excepting = cast.excepting;
@@ -341,12 +356,25 @@ fn goes_on(cast: &mut Cast, who: usize, around: &Around) {
     if !person.rules.is_empty() || around.trigger.is_some() || person.doings.len() > 1 {
         person.goes_on = Some(around.quote.clone());
     }
+    // `follows it and then walks on`: it follows no longer then.
+    if let Some(last) = person.rules.last_mut().filter(|last| around.then && follows_on(last)) {
+        last.rule.for_s = Some(FOLLOWS_S);
+    }
+}
+
+/// Whether somebody follows without an end.
+fn follows_on(read: &ReadRule) -> bool {
+    matches!(read.rule.act, Action::FollowRobot | Action::FollowHuman(_)) && read.rule.for_s.is_none()
 }
 
 /// The rule by which somebody walks on after everything else, where the text says so.
 pub(crate) fn settle_going_on(person: &mut Person) {
     let Some(quote) = person.goes_on.take() else { return };
     if person.rules.iter().any(|read| read.rule.act == Action::Navigate && read.rule.gesture.is_none()) {
+        return;
+    }
+    // Whoever follows walks on by following.
+    if person.rules.last().is_some_and(follows_on) {
         return;
     }
     let last = person.rules.last().map(|last| last.rule.when.clone());

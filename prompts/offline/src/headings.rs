@@ -124,6 +124,7 @@ const LISTS: &[&str] = &[
 
 /// `Turn-taking, block 2, trial 14.`: a title without anybody in it counts nothing; nor do `10 of 10 runs`.
 pub(crate) fn titled(words: &mut [Option<Word>]) {
+    let asks = crate::asker::told(words);
     let whole: Vec<&Word> = words.iter().flatten().collect();
     let somebody = |word: &Word| {
         lexicon().roles.contains_key(&word.stem)
@@ -135,42 +136,12 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
     let numbered = whole.len() <= 3
         && whole.iter().any(|word| word.is_digits())
         && !whole.iter().any(|word| lexicon().verbs.contains(&word.stem));
-    if nobody && (numbered || whole.len() <= 9 && heads(&whole)) {
+    if nobody && !asks && (numbered || whole.len() <= 9 && heads(&whole)) {
         label(words);
         return;
     }
     let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
-    let robot = whole.iter().any(|word| word.stem == "robot");
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
-    // `As the safety officer here I need …`; `My professor asked for two conditions.`
-    let speaker = (text(0) == "as" && matches!(text(1), "the" | "a" | "an"))
-        .then(|| (3..8).find(|k| matches!(text(*k), "i" | "we")))
-        .flatten();
-    let asker = matches!(text(0), "my" | "our")
-        && !robot
-        && (2..5).any(|k| {
-            matches!(stem(k), "ask" | "want" | "tell" | "say" | "think" | "suggest" | "require" | "insist" | "need")
-                && matches!(text(k + 1), "for" | "me" | "us" | "that" | "to" | "whether" | "if")
-        });
-    // `I manage this building and …`, `We run a pilot in a care home`: of whoever asks.
-    let own = matches!(text(0), "i" | "we")
-        && matches!(
-            text(1),
-            "teach"
-                | "manage"
-                | "run"
-                | "work"
-                | "am"
-                | "are"
-                | "study"
-                | "own"
-                | "lead"
-                | "organise"
-                | "organize"
-                | "supervise"
-        );
-    let colon = words.iter().position(|word| word.as_ref().is_some_and(|word| word.after_colon)).unwrap_or(words.len());
-    let silent = speaker.unwrap_or(if asker || own { colon } else { 0 });
     let number = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
     let mut labels = Vec::new();
     for at in 0..words.len() {
@@ -199,7 +170,6 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
             labels.extend(Some(at + 2).filter(|_| of));
         }
     }
-    labels.extend(0..silent);
     for at in labels {
         if let Some(Some(word)) = words.get_mut(at) {
             (word.label, word.used) = (true, true);
@@ -209,6 +179,9 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
 
 /// A number right before a colon names what comes: `test case 14:`, `study 2:`, `scenario for 3 planners:`.
 pub(crate) fn labels(words: &mut [Option<Word>]) {
+    if crate::asker::told(words) {
+        return;
+    }
     let start = words.iter().rposition(Option::is_none).map_or(0, |at| at + 1);
     // `Field notes, ward 7, day 2:`
     let article = |word: &Word| matches!(word.text.as_str(), "a" | "an" | "the") || word.stem == "robot";
@@ -316,6 +289,9 @@ fn word_at(pieces: &[Piece], at: usize) -> Option<&Word> {
     if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
 }
 
+/// Words before a total that say no more than that it is one: `number of pedestrians: 2`.
+const OF_TOTALS: &[&str] = &["number", "no", "n", "num", "total", "count", "amount", "of", "the", "and", "with", "a"];
+
 /// `pedestrians: 2` and `humans=4` give a number of people: `exactly 2 pedestrians`.
 pub(crate) fn totals(pieces: &mut Vec<Piece>) {
     let mut at = 0;
@@ -335,13 +311,23 @@ pub(crate) fn totals(pieces: &mut Vec<Piece>) {
             }
         };
         if let Some((noun, number, end)) = found {
-            let from =
+            // What stands before is a sentence of its own: `smoke everywhere pedestrians: 2`.
+            let before =
                 (0..at).rev().take_while(|k| matches!(pieces.get(*k), Some(Piece::Word(_)))).last().unwrap_or(at);
+            let of = |k: &usize| word_at(pieces, *k).is_some_and(|word| OF_TOTALS.contains(&word.text.as_str()));
+            let from = (before..at).rev().take_while(of).last().unwrap_or(at);
+            for piece in pieces.iter_mut().take(from).skip(before) {
+                if let Piece::Word(word) = piece {
+                    // `speed 1 pedestrians: 2` counts nobody before the colon.
+                    word.label |= word.is_digits();
+                }
+            }
             let exactly = Word { text: "exactly".to_owned(), stem: "exactly".to_owned(), ..number.clone() };
-            let _before: Vec<Piece> = pieces
-                .splice(from..=end, [Piece::Word(exactly), Piece::Word(number), Piece::Word(noun), Piece::Stop])
-                .collect();
-            at = from + 3;
+            let stop = (from > before).then_some(Piece::Stop);
+            let stops = usize::from(stop.is_some());
+            let total = [Piece::Word(exactly), Piece::Word(number), Piece::Word(noun), Piece::Stop];
+            let _before: Vec<Piece> = pieces.splice(from..=end, stop.into_iter().chain(total)).collect();
+            at = from + stops + 3;
         }
         at += 1;
     }
@@ -398,4 +384,29 @@ pub(crate) fn names(pieces: &mut [Piece]) {
 fn title_before_name(pieces: &[Piece], at: usize, names: &[String]) -> bool {
     let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
     matches!(text(at), "mr" | "mrs" | "ms" | "miss") && names.iter().any(|name| name == text(at + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::told;
+
+    #[test]
+    fn words_before_a_total_are_a_sentence_of_their_own() {
+        let reading = told("Rainy evening pedestrians: 2", "office");
+        assert_eq!(reading.humans.len(), 2);
+        assert_eq!(reading.ignored, ["rainy", "evening", "mail"]);
+        let reading = told("A nurse follows the robot visitors: 2", "office");
+        assert_eq!(reading.humans.len(), 3, "{reading:#?}");
+    }
+
+    #[test]
+    fn words_that_only_say_that_a_total_comes_are_read() {
+        for rough in ["Number of pedestrians: 2", "total pedestrians: 2.", "pedestrians: 2"] {
+            let reading = told(rough, "office");
+            assert_eq!((reading.humans.len(), reading.ignored), (2, vec!["mail".to_owned()]), "{rough}");
+        }
+        // A number before it counts nobody, and is told.
+        let reading = told("level 1 pedestrians: 2", "office");
+        assert_eq!(reading.humans.len(), 2);
+    }
 }

@@ -27,6 +27,7 @@ mod refer;
 
 mod around;
 mod arrange;
+mod asker;
 mod cut;
 
 mod again;
@@ -74,8 +75,6 @@ mod twice;
 
 #[cfg(test)]
 mod again_tests;
-#[cfg(test)]
-mod corpus_tests;
 #[cfg(test)]
 mod tests;
 

@@ -163,7 +163,8 @@ pub(crate) fn group(
 
 /// `he is a doctor`, `they are friends`: the same people by another word.
 pub(crate) fn predicate(words: &[Word], mention: Mention, before: &[Mention]) -> Mention {
-    let is = mention.from.checked_sub(1).and_then(|at| words.get(at)).is_some_and(|word| word.stem == "be");
+    let is = mention.from.checked_sub(1).and_then(|at| words.get(at));
+    let is = is.is_some_and(|word| word.stem == "be" || word.text == "am");
     let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
     match (subject, &mention.who) {
         // `she is the only one who looks`

@@ -3,6 +3,9 @@
 use socrates_model::{Action, Rule, Trigger};
 
 use crate::cast::{Person, ReadRule};
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
+use crate::words::{Piece, pieces};
 
 /// Puts the rules of a person in an order in which each of them can run.
 pub(crate) fn settle(person: &mut Person) {
@@ -17,6 +20,23 @@ pub(crate) fn settle(person: &mut Person) {
         }
     }
     alternate(&mut rules);
+    // `drops behind and follows the nurse`: whom is said by the second; the robot, which none of them names, is nobody else.
+    let led: Vec<Vec<Trigger>> = rules
+        .iter()
+        .filter(|read| matches!(read.rule.act, Action::FollowHuman(_)) && !read.then)
+        .map(|read| read.rule.when.clone())
+        .collect();
+    let vague = |read: &ReadRule| {
+        read.rule.act == Action::FollowRobot
+            && read.rule.for_s.is_none()
+            && read.rule.gesture.is_none()
+            && led.contains(&read.rule.when)
+            && !names_robot(&read.quote)
+    };
+    if rules.iter().any(vague) {
+        rules.retain(|read| !vague(read));
+        person.doings.retain(|doing| *doing != deed::words(Act::Follow, &Around::default()));
+    }
     // `until it asks; then he makes room`: what is done for a while comes before walking on at the same word.
     for at in 0..rules.len() {
         let Some(when) = rules.get(at).filter(|read| walks_on(&read.rule)).map(|read| read.rule.when.clone()) else {
@@ -52,10 +72,64 @@ fn alternate(rules: &mut [ReadRule]) {
     }
 }
 
+/// Whether words speak of the robot, by any name.
+fn names_robot(quote: &str) -> bool {
+    pieces(quote).iter().any(|piece| if let Piece::Word(word) = piece { word.stem == "robot" } else { false })
+}
+
 fn follows(rule: &Rule) -> bool {
     matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_))
 }
 
 fn walks_on(rule: &Rule) -> bool {
     rule.act == Action::Navigate && rule.gesture.is_none() && rule.for_s.is_none()
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::{Action, HumanId, Reading, Trigger};
+
+    use crate::tests::told;
+
+    fn acts(reading: &Reading, who: usize) -> Vec<(Action, Option<f64>)> {
+        reading.humans[who].rules.iter().map(|rule| (rule.act.clone(), rule.for_s)).collect()
+    }
+
+    #[test]
+    fn whoever_drops_behind_somebody_follows_him_and_not_the_robot_too() {
+        let rough =
+            "Two workers walk towards the robot. When it is within 3 m, the first drops behind and follows the other.";
+        let reading = told(rough, "office");
+        assert_eq!(acts(&reading, 0), [(Action::FollowHuman(HumanId::new(2)), None)]);
+        assert!(!reading.humans[0].summary.contains("follows the robot"), "{}", reading.humans[0].summary);
+        // Where the robot is named, both are said, and the stage that cannot have both says so.
+        let rough = rough.replace("drops behind", "walks behind the robot");
+        assert_eq!(acts(&told(&rough, "office"), 0).len(), 2);
+    }
+
+    #[test]
+    fn who_has_made_this_gesture_does_nothing_else_then() {
+        for said in ["has made this gesture", "has given that signal", "makes the sign"] {
+            let rough = format!(
+                "Two doctors stand in the corridor. The former tells the robot to wait; the latter, once the former {said}, steps aside."
+            );
+            let reading = told(&rough, "office");
+            let own = Trigger::HumanSays(HumanId::new(1), socrates_model::Gesture::Wait);
+            let waits = |who: usize| reading.humans[who].rules.iter().any(|rule| rule.when.contains(&own));
+            assert_eq!((waits(0), waits(1)), (false, true), "{said}");
+        }
+    }
+
+    #[test]
+    fn who_overtakes_or_walks_on_follows_no_longer_and_who_only_wants_to_does() {
+        let reading = told("A worker walks behind the robot and wants to pass.", "office");
+        assert_eq!(acts(&reading, 0), [(Action::FollowRobot, None)]);
+        let reading = told("A worker walks behind the robot and wants to pass. He overtakes it.", "office");
+        assert_eq!(acts(&reading, 0), []);
+        assert!(reading.notes.iter().any(|note| note.contains("comes from behind")), "{:?}", reading.notes);
+        let reading = told("A nurse follows the robot and then walks on.", "office");
+        assert_eq!(acts(&reading, 0), [(Action::FollowRobot, Some(8.0)), (Action::Navigate, None)]);
+        let reading = told("A nurse follows the robot and walks through the door.", "office");
+        assert_eq!(acts(&reading, 0), [(Action::FollowRobot, None)]);
+    }
 }

@@ -34,14 +34,16 @@ pub(crate) struct Story {
     pub(crate) problems: Vec<Fault>,
 }
 
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) enum Subject {
+    #[default]
     Nobody,
     Robot,
     People(Vec<usize>),
 }
 
 /// What reaches from clause to clause within a sentence.
+#[derive(Default)]
 pub(crate) struct Thread {
     pub(crate) subject: Subject,
     pub(crate) pending: Vec<usize>,
@@ -87,27 +89,7 @@ pub(crate) fn read(text: &str) -> Story {
 
 /// Reads sentences of a text about people of whom was spoken before.
 pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str) -> Story {
-    let mut thread = Thread {
-        subject: Subject::Nobody,
-        pending: Vec::new(),
-        waiting: None,
-        untaken: None,
-        vague: false,
-        made: Vec::new(),
-        doer: None,
-        led: None,
-        said: None,
-        fresh: None,
-        acts: Vec::new(),
-        speaks: false,
-        not_until: false,
-        ended: None,
-        addressed: Vec::new(),
-        listed: Vec::new(),
-        denied: None,
-        condition: false,
-        went_on: Vec::new(),
-    };
+    let mut thread = Thread::default();
     let named = sentences
         .iter()
         .flatten()
@@ -461,7 +443,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
 fn meant(
     story: &mut Story,
     thread: &Thread,
-    stretch: &Stretch,
+    stretch: &mut Stretch,
     found: &Found,
     text: &str,
     next: Option<Joint>,
@@ -476,6 +458,9 @@ fn meant(
             .get(mention.to + 1)
             .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
         if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
+            for word in stretch.words.iter_mut().take(mention.to + 1).skip(mention.from) {
+                word.used = false;
+            }
             continue;
         }
         let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();

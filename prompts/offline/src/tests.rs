@@ -9,7 +9,7 @@ use socrates_prompts::Question;
 
 use crate::{Offline, read, summary};
 
-fn request(task: &str, rough: Option<&str>) -> Request {
+pub(crate) fn request(task: &str, rough: Option<&str>) -> Request {
     Request { rough_scenario: rough.map(str::to_owned), ..blank(task) }
 }
 
@@ -29,7 +29,7 @@ fn blank(task: &str) -> Request {
     }
 }
 
-fn map(name: &str) -> Location {
+pub(crate) fn map(name: &str) -> Location {
     socrates_maps::shipped::load(name).unwrap()
 }
 
@@ -188,7 +188,7 @@ const READINGS: &[(&str, &str, &str)] = &[
     ),
 ];
 
-fn told(rough: &str, on: &str) -> Reading {
+pub(crate) fn told(rough: &str, on: &str) -> Reading {
     read(&request("Deliver mail", Some(rough)), &map(on))
 }
 
@@ -476,6 +476,13 @@ fn other_languages_are_named_also_without_blanks() {
         let fault = reading.problems.iter().find(|fault| fault.code == FaultCode::PLang).unwrap();
         assert!(fault.message.contains(name), "{fault}");
     }
+}
+
+#[test]
+fn who_is_only_spoken_of_by_the_asker_is_reported() {
+    let reading = told("My staff get grumpy. A nurse follows the robot.", "hospital");
+    assert_eq!(reading.humans.len(), 1);
+    assert_eq!(reading.ignored, ["staff", "grumpy", "mail"]);
 }
 
 #[test]

@@ -54,23 +54,26 @@ impl Cast {
             "he" => (MEN, WOMEN),
             _ => return self.last.clone(),
         };
+        // Whoever asks is `I`.
+        let asks = |i: usize| self.people.get(i).is_some_and(|person| person.role == crate::asker::NAME);
+        let else_of = |i: usize| of(i, other) || asks(i);
         if let [only] = self.last.as_slice()
-            && !of(*only, other)
+            && !else_of(*only)
         {
             return self.last.clone();
         }
         // `a manager shows three visitors around …; she …`
         if let ([only], true) = (self.before.as_slice(), self.last.len() > 1)
             && !self.last.contains(only)
-            && !of(*only, other)
+            && !else_of(*only)
             && !self.last.iter().any(|i| of(*i, own))
         {
             return vec![*only];
         }
         let near = || self.last.iter().copied().chain((0..self.people.len()).rev());
         let found =
-            near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !of(*i, other) && self.last.len() == 1));
-        found.or_else(|| near().find(|i| !of(*i, other))).map_or_else(|| self.last.clone(), |i| vec![i])
+            near().find(|i| of(*i, own)).filter(|_| !self.last.iter().any(|i| !else_of(*i) && self.last.len() == 1));
+        found.or_else(|| near().find(|i| !else_of(*i))).map_or_else(|| self.last.clone(), |i| vec![i])
     }
 
     /// Those who were only supposed with somebody of whom it is now said what is wanted, if they are the last ones.

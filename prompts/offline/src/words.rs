@@ -193,7 +193,7 @@ fn chained(chars: &[(usize, char)], i: usize) -> Option<usize> {
     if begins && parts.len() >= 3 && people { Some(end) } else { None }
 }
 
-/// Pushes a word and what its apostrophe hides (`don't` is `do not`, `robot's` is `robot`); says how many characters it took.
+/// Pushes a word and what its apostrophe hides (`don't` is `do not`, `I'm` is `I am`, `robot's` is `robot`); says how many characters it took.
 fn apostrophe(
     lower: &str,
     at: &dyn Fn(usize) -> Option<char>,
@@ -216,6 +216,9 @@ fn apostrophe(
         };
         out.push(Piece::Word(word(verb.to_owned(), from, to)));
         out.push(Piece::Word(word("not".to_owned(), from, to)));
+    } else if tail == "m" && lower == "i" {
+        out.push(Piece::Word(word(lower.to_owned(), from, to)));
+        out.push(Piece::Word(word("am".to_owned(), from, to)));
     } else {
         match JOINED.iter().find(|(joined, _)| *joined == lower) {
             Some((_, apart)) => out.extend(apart.iter().map(|part| Piece::Word(word((*part).to_owned(), from, to)))),
@@ -246,10 +249,13 @@ fn mended(text: &str) -> Option<&'static str> {
     {
         return None;
     }
+    // `manage` and `smoke` are what a manager and a smoker do.
+    let doer = |word: &str| text.ends_with('e') && word.strip_suffix('r') == Some(text);
     let near = |word: &&String| {
         (word.chars().count() >= 6 || letters == 5 && lex.roles.contains_key(word.as_str()) && word.len() == 5)
             && word.chars().next() == text.chars().next()
             && strsim::osa_distance(word, text) == 1
+            && !doer(word)
     };
     let mut found = lex.telling.iter().filter(near);
     let only = found.next()?;

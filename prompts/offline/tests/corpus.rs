@@ -2,7 +2,34 @@
 #![cfg(test)]
 
 use serde::Deserialize;
-use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Trigger};
+use socrates_model::job::Stage;
+use socrates_model::{Action, FactKind, Fault, Gesture, HumanId, PlaceClass, Reading, Relation, Rule, Trigger};
+use socrates_offline::Offline;
+
+mod common;
+
+/// What the grammar is worked on with: name, text, and how many in a hundred facts have to hold. How many held at the first
+/// look stands in `corpus/README.md`.
+const OPEN: [(&str, &str, usize); 14] = [
+    ("open", include_str!("../corpus/open.toml"), 95),
+    // Written before the grammar was mended for them.
+    ("open, second", include_str!("../corpus/open-2.toml"), 95),
+    // Written by people who did not know the grammar.
+    ("open, third", include_str!("../corpus/open-3.toml"), 97),
+    ("open, fourth", include_str!("../corpus/open-4.toml"), 97),
+    // Written in nine rounds while the grammar was mended, by one who knew it, each round before it was read.
+    ("open, fifth", include_str!("../corpus/open-5.toml"), 96),
+    // Written by people who did not know the grammar, each set read only when all of it had been judged.
+    ("open, sixth", include_str!("../corpus/open-6.toml"), 94),
+    ("researchers", include_str!("../corpus/open-7.toml"), 98),
+    ("practitioners", include_str!("../corpus/open-8.toml"), 98),
+    ("test engineers", include_str!("../corpus/open-9.toml"), 95),
+    ("newcomers", include_str!("../corpus/open-10.toml"), 98),
+    ("a bit of all", include_str!("../corpus/open-11.toml"), 98),
+    ("long sentences", include_str!("../corpus/open-12.toml"), 96),
+    ("a bit of all, again", include_str!("../corpus/open-13.toml"), 97),
+    ("staff", include_str!("../corpus/open-14.toml"), 98),
+];
 
 /// Facts of the sets kept aside that were right when the test saw them first.
 const FIRST_LOOKS: [usize; 3] = [107, 120, 127];
@@ -24,12 +51,7 @@ fn judge(corpus: &str) -> (usize, usize, Vec<String>) {
     let corpus: Corpus = toml::from_str(corpus).unwrap();
     let (mut right, mut all, mut wrong) = (0, 0, Vec::new());
     for case in &corpus.request {
-        let request: Request = serde_json::from_value(serde_json::json!({
-            "location": case.on, "social_context": "", "task": "Deliver mail", "rough_scenario": case.text,
-        }))
-        .unwrap();
-        let location = socrates_maps::shipped::load(&case.on).unwrap();
-        let reading = socrates_offline::read(&request, &location);
+        let reading = common::question(&case.on, case.text.as_str()).reading;
         for fact in &case.facts {
             all += 1;
             if holds(fact, &reading) {
@@ -145,58 +167,46 @@ fn reads(name: &str, corpus: &str, percent: usize) {
 
 #[test]
 fn what_people_write_is_read() {
-    reads("open", include_str!("../corpus/open.toml"), 95);
-}
-
-/// Written before the grammar was mended for them: 157 of 195 at the first look.
-#[test]
-fn what_other_people_write_is_read() {
-    reads("open, second", include_str!("../corpus/open-2.toml"), 95);
-}
-
-/// Written by people who did not know the grammar: 249 of 338 facts of the first fifty at the first look, 81 of 115 of the
-/// last twenty; 84 of those after the first fifty had been read and mended.
-#[test]
-fn what_a_third_hand_writes_is_read() {
-    reads("open, third", include_str!("../corpus/open-3.toml"), 97);
-}
-
-/// As the third: 232 of 323 facts of the first fifty at the first look, 100 of 133 of the last twenty; 110 of those when
-/// they were read, with all else mended.
-#[test]
-fn what_a_fourth_hand_writes_is_read() {
-    reads("open, fourth", include_str!("../corpus/open-4.toml"), 97);
-}
-
-/// Written in nine rounds while the grammar was mended, by one who knew it, each round before it was read: 161 of 202
-/// facts, 220 of 261, 195 of 223, 144 of 168, 133 of 154, 112 of 143, 95 of 112, 97 of 104 and 66 of 73 at the first look.
-#[test]
-fn what_goes_through_the_kinds_of_wishes_is_read() {
-    reads("open, fifth", include_str!("../corpus/open-5.toml"), 96);
-}
-
-/// Written by somebody who did not know the grammar: 352 of 379 at the first look.
-#[test]
-fn what_a_sixth_hand_writes_is_read() {
-    reads("open, sixth", include_str!("../corpus/open-6.toml"), 94);
-}
-
-/// Eight sets by eight more hands, each read only when all of it had been judged: what they were at the first look stands in
-/// `corpus/README.md`.
-#[test]
-fn what_eight_more_hands_write_is_read() {
-    for (name, corpus, percent) in [
-        ("researchers", include_str!("../corpus/open-7.toml"), 98),
-        ("practitioners", include_str!("../corpus/open-8.toml"), 98),
-        ("test engineers", include_str!("../corpus/open-9.toml"), 95),
-        ("newcomers", include_str!("../corpus/open-10.toml"), 98),
-        ("a bit of all", include_str!("../corpus/open-11.toml"), 98),
-        ("long sentences", include_str!("../corpus/open-12.toml"), 96),
-        ("a bit of all, again", include_str!("../corpus/open-13.toml"), 97),
-        ("staff", include_str!("../corpus/open-14.toml"), 95),
-    ] {
+    for (name, corpus, percent) in OPEN {
         reads(name, corpus, percent);
     }
+}
+
+/// What a stage says of the answer, if it does not take it.
+fn refused(case: &Case) -> Option<(Stage, Vec<Fault>)> {
+    let mut ask = common::question(&case.on, case.text.as_str());
+    if ask.reading.problems.iter().any(|fault| !fault.is_soft()) {
+        return None;
+    }
+    match socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask) {
+        Ok(proposal) => ask.proposal = Some(proposal),
+        Err(faults) => return Some((Stage::Proposal, faults)),
+    }
+    ask.stage = Stage::Paths;
+    if let Err(faults) = socrates_prompts::parse_paths(&Offline::answer(&ask), &ask) {
+        return Some((Stage::Paths, faults));
+    }
+    ask.stage = Stage::Behaviors;
+    socrates_prompts::parse_behaviors(&Offline::answer(&ask), &ask).err().map(|faults| (Stage::Behaviors, faults))
+}
+
+/// No answer is ever refused for its form; what a map cannot hold may still be said by the stage of paths.
+#[test]
+#[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
+fn what_people_write_is_answered_at_every_stage() {
+    let (mut all, mut failed) = (0_usize, Vec::new());
+    for (_, corpus, _) in OPEN {
+        let corpus: Corpus = toml::from_str(corpus).unwrap();
+        for case in &corpus.request {
+            all += 1;
+            if let Some((stage, faults)) = refused(case) {
+                println!("{stage}: “{}”: {}", case.text, faults.first().map(ToString::to_string).unwrap_or_default());
+                failed.push(stage);
+            }
+        }
+    }
+    println!("{} of {all} requests are refused by a stage", failed.len());
+    assert!(failed.len() * 200 <= all, "{} of {all} requests are refused by a stage", failed.len());
 }
 
 /// Written before the grammar was worked on: 78 of 91 at the first look. Its misses were read then, and the grammar was

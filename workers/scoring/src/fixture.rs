@@ -6,6 +6,21 @@ use socrates_model::{
     NodeId, Paths, Point, Pose, Recording, RecordingHeader, RunId, SceneGraph, SimTime,
 };
 
+/// A small generator, so that a property runs over the same cases each time.
+pub(crate) struct Draw(pub(crate) u64);
+
+impl Draw {
+    /// From 0 to below 1.
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
+
 /// One agent that goes through points at given times, straight and even between them.
 pub(crate) struct Walk {
     pub(crate) agent: AgentId,

@@ -273,16 +273,9 @@ impl Signal {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A small generator, so that the property runs over the same hundreds of signals each time.
-    struct Draw(u64);
+    use crate::fixture::Draw;
 
     impl Draw {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
         /// Uneven times, values on a coarse grid so that equal ones occur, and some unknown.
         fn signal(&mut self, n: usize, unknown: f64) -> Vec<(f64, f64)> {
             let mut t = self.next() * 3.0;
@@ -295,7 +288,7 @@ mod tests {
                 .collect()
         }
 
-        fn within(&mut self) -> Within {
+        fn window(&mut self) -> Within {
             let from_s = if self.next() < 0.3 { 0.0 } else { (self.next() * 20.0).floor() * 0.1 };
             let to_s = if self.next() < 0.2 { f64::INFINITY } else { from_s + (self.next() * 30.0).floor() * 0.1 };
             Within { from_s, to_s }
@@ -346,7 +339,7 @@ mod tests {
             let n = 1 + (draw.next() * 40.0) as usize;
             let raw = draw.signal(n, if round % 4 == 0 { 0.05 } else { 0.0 });
             let goal: Vec<(f64, f64)> = raw.iter().zip(draw.signal(n, 0.0)).map(|((t, _), (_, v))| (*t, v)).collect();
-            let within = draw.within();
+            let within = draw.window();
             let (signal, aim): (Signal, Signal) = (raw.iter().copied().collect(), goal.iter().copied().collect());
             let always = naive_always(&raw, within);
             assert!(same(&signal.always(within).values, &always), "always {within:?} of {raw:?}");

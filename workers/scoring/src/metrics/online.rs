@@ -382,23 +382,11 @@ mod tests {
     use super::*;
     use crate::evidence::Evidence;
     use crate::fidelity::Signals;
-    use crate::fixture::{Walk, absent, event, floor, paths, recording};
+    use crate::fixture::{Draw, Walk, absent, event, floor, paths, recording};
     use crate::metrics::{Scene, measure};
     use crate::tracks::Tracks;
 
-    /// A small generator, so that the property runs over the same walks each time.
-    struct Draw(u64);
-
     impl Draw {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn within(&mut self, low: f64, high: f64) -> f64 {
-            low + (high - low) * self.next()
-        }
-
         /// Walks about with rests, mostly where the others do.
         fn walk(&mut self, agent: AgentId) -> Walk {
             let mut stops = vec![(0.0, self.within(-6.0, 6.0), self.within(-2.0, 2.0))];
