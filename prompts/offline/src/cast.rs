@@ -330,6 +330,20 @@ impl Cast {
         }
     }
 
+    /// The people of a mention of whom a list tells what each is.
+    pub(crate) fn made_of(&mut self, mention: &Mention, declares: bool, quote: &str, roles: &[String]) -> Vec<usize> {
+        let count = u32::try_from(roles.len()).ok();
+        let all = Mention { who: Who::New { count, article: false }, role: None, ..mention.clone() };
+        let found = self.resolve(&all, declares, quote);
+        for (i, role) in found.iter().zip(roles) {
+            if let Some(person) = self.people.get_mut(*i) {
+                role.clone_into(&mut person.role);
+                person.speed_mps = lexicon().roles.get(role).and_then(|word| word.speed_mps);
+            }
+        }
+        found
+    }
+
     /// Makes a group of these people.
     pub(crate) fn group(&mut self, members: &[usize], quote: &str) {
         if members.len() < 2 || self.groups.iter().any(|(_, known, _)| members.iter().all(|i| known.contains(i))) {

@@ -1,5 +1,6 @@
 //! Words into sentences and clauses.
 
+use crate::apposed::apposed;
 use crate::arrange::arranged;
 use crate::asker::takes_part;
 use crate::headings::{described, labels, names, titled, totals};
@@ -74,12 +75,12 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
             }
             Piece::Stop => {
                 titled(&mut words);
-                found.push(arranged(stretches(settled(std::mem::take(&mut words)))));
+                found.push(arranged(stretches(apposed(settled(std::mem::take(&mut words))))));
             }
         }
     }
     titled(&mut words);
-    found.push(arranged(stretches(settled(words))));
+    found.push(arranged(stretches(apposed(settled(words)))));
     found.retain(|sentence| !sentence.is_empty());
     found
 }

@@ -25,6 +25,7 @@ mod noun;
 mod mention;
 mod refer;
 
+mod apposed;
 mod around;
 mod arrange;
 mod asker;

@@ -469,8 +469,12 @@ fn meant(
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let mut people =
-            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said);
+        let made_of: Vec<String> = words.iter().flat_map(|word| word.made_of.clone()).collect();
+        let mut people = if made_of.is_empty() {
+            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)
+        } else {
+            story.cast.made_of(mention, declares, said, &made_of)
+        };
         story.cast.call(mention, words, &people);
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.

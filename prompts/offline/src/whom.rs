@@ -250,6 +250,34 @@ impl Cast {
             {
                 return vec![1 - only.min(&1)];
             }
+            // `a family of four …; the father …`: one of them of whom is not known yet who it is.
+            const OF_FAMILY: &[&str] = &[
+                "father",
+                "mother",
+                "parent",
+                "dad",
+                "mom",
+                "child",
+                "kid",
+                "son",
+                "daughter",
+                "boy",
+                "girl",
+                "baby",
+                "husband",
+                "wife",
+                "grandmother",
+                "grandfather",
+                "granny",
+                "leader",
+            ];
+            if !plural && OF_FAMILY.contains(&role.as_str()) {
+                let unknown = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty());
+                let who = self.groups.last().and_then(|(_, members, _)| members.iter().copied().find(unknown));
+                if let Some(who) = who {
+                    return vec![who];
+                }
+            }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
             if !plural && plain(role) {
                 let men = MEN.contains(&role.as_str());

@@ -23,6 +23,8 @@ pub(crate) struct Word {
     pub(crate) after_colon: bool,
     /// Somebody's name, told by a place where it can be nothing else.
     pub(crate) name: bool,
+    /// The roles of the people that the noun stands for, where a list told them: `two people, a nurse and a visitor`.
+    pub(crate) made_of: Vec<String>,
 }
 
 impl Word {
@@ -269,7 +271,18 @@ fn word(text: String, from: usize, to: usize) -> Word {
         | "droid" => "robot".to_owned(),
         other => lexicon().stem(other),
     };
-    Word { text, stem, from, to, used: false, capital: false, label: false, after_colon: false, name: false }
+    Word {
+        text,
+        stem,
+        from,
+        to,
+        used: false,
+        capital: false,
+        label: false,
+        after_colon: false,
+        name: false,
+        made_of: Vec::new(),
+    }
 }
 
 /// Where a phrase stands in the words at or after `start`: its first and last index, and the indices of its own words.

@@ -39,6 +39,8 @@ const SEE_AHEAD_M: f64 = 4.5;
 const BERTH_M: f64 = 0.45;
 /// Who walks along faster than this is overtaken by people behind it, m/s.
 const OVERTAKEN_MPS: f64 = 0.2;
+/// Farther from its line than this, m, somebody has gone aside.
+const ASIDE_TAKEN_M: f64 = 0.2;
 /// Whoever is this far behind is passed, m.
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
@@ -134,7 +136,7 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     let speed = pace.min(0.25 + libm::sqrt(2.0 * left.max(0.0)));
     let ahead = human.route.direction(human.s + 0.5 * LOOK_AHEAD_M);
     if scene.looks {
-        human.notice.aside_m = sidestep(human, scene, &ahead);
+        human.notice.aside_m = sidestep(human, scene, &ahead, speed);
     }
     let wish = human.lane_m + human.notice.aside_m;
     // The sidestep is taken up at 0.9 m/s sideways, so that nobody jumps.
@@ -232,7 +234,7 @@ fn share(floor: &Floor, base: &Point, aside: &Vector, clearance_m: f64) -> f64 {
 }
 
 /// How far to go aside for whoever is ahead and in the way, m to the left.
-fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
+fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) -> f64 {
     let left = Vector::new(-ahead.y, ahead.x);
     // Where it walks now, beside the middle of its way.
     let beside_m = (human.at - human.route.point(human.s)).dot(&left);
@@ -249,7 +251,10 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
             continue;
         }
         let beside = way.dot(&left);
-        let closing = (human.velocity - other.velocity).dot(ahead);
+        // Who has gone aside to overtake and is slowed down beside the other still wants to get past.
+        let along =
+            if (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M { speed_mps } else { human.velocity.dot(ahead) };
+        let closing = along.max(human.velocity.dot(ahead)) - other.velocity.dot(ahead);
         let across = other.velocity.dot(&left).abs();
         // From who comes towards them people who walk together go aside together: the line that counts is that of their
         // middle, and their flank needs room. Whom they overtake they pass on both sides.
@@ -274,7 +279,7 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector) -> f64 {
         };
         // The side once taken is kept; on the same line everybody goes to the right, if there is room.
         let taken = human.aside_m - human.lane_m;
-        let mut side = if taken.abs() > 0.2 {
+        let mut side = if taken.abs() > ASIDE_TAKEN_M {
             taken.signum()
         } else if off < -0.15 {
             1.0

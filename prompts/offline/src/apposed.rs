@@ -1,0 +1,94 @@
+//! Appositions: `two people, a nurse and a visitor, come out` are two people, not four.
+
+use crate::lexicon::lexicon;
+use crate::mention::{Mention, Who, mentions};
+use crate::words::Word;
+
+/// Words between people and the list of who they are.
+const OPENS: &[&str] = &["consisting", "composed", "comprising", "made", "up", "of", "namely", "specifically"];
+
+/// A list of people: the role of each, and the place after its last word.
+struct List {
+    roles: Vec<String>,
+    end: usize,
+}
+
+/// The words of a sentence with such lists taken out; the noun before a list remembers in [`Word::made_of`] who they are.
+pub(crate) fn apposed(mut words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let mut at = 1;
+    while at < words.len() {
+        if let Some((head, list)) = apposition(&words, at) {
+            if let Some(noun) = words.get_mut(head).and_then(Option::as_mut) {
+                noun.made_of = list.roles;
+            }
+            let closing = usize::from(words.get(list.end).is_some_and(Option::is_none));
+            words.drain(at..list.end + closing);
+        } else {
+            at += 1;
+        }
+    }
+    words
+}
+
+/// The noun before the list that begins at a mark or word, and the list.
+fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
+    let opens = |k: usize| {
+        words.get(k).and_then(Option::as_ref).is_some_and(|word| OPENS.contains(&word.text.as_str()) && !word.label)
+    };
+    let mark = words.get(at).is_some_and(Option::is_none);
+    if !mark && !opens(at) {
+        return None;
+    }
+    let from = (at + usize::from(mark)..).find(|k| !opens(*k))?;
+    let list = list(words, from)?;
+    let before: Vec<(usize, Word)> =
+        words.get(..at)?.iter().enumerate().filter_map(|(k, word)| Some((k, word.clone()?))).collect();
+    let spoken: Vec<Word> = before.iter().map(|(_, word)| word.clone()).collect();
+    let head = mentions(&spoken).into_iter().rev().find(|mention| matches!(mention.who, Who::New { .. }))?;
+    let count = match head.who {
+        Who::New { count: Some(n), .. } => usize::try_from(n) == Ok(list.roles.len()),
+        // `a family`: as many as the list names.
+        Who::New { count: None, .. } => head.group,
+        _ => false,
+    };
+    let noun = before.get(head.to)?.0;
+    let adjacent = noun + 1 == at;
+    // Farther on it is a list of them only if nothing comes after it: `two people come in: a nurse and a visitor`.
+    let ends = words.get(list.end..)?.iter().all(Option::is_none);
+    let colon = words.get(at + 1).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
+    let listed = adjacent || mark && ends && (colon || head.role.is_none());
+    (count && listed).then_some((noun, list))
+}
+
+/// `a nurse, a doctor and two visitors`.
+fn list(words: &[Option<Word>], from: usize) -> Option<List> {
+    let (mut roles, mut end, mut joined) = (Vec::new(), from, false);
+    let and = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.text == "and");
+    loop {
+        let run: Vec<Word> = words.get(end..)?.iter().map_while(Clone::clone).collect();
+        let Some((count, role, length)) = item(&run) else { break };
+        for _ in 0..count {
+            roles.push(role.clone());
+        }
+        end += length;
+        let mut next = end;
+        next += usize::from(words.get(next).is_some_and(Option::is_none));
+        joined |= and(next);
+        next += usize::from(and(next));
+        let more: Vec<Word> = words.get(next..).unwrap_or_default().iter().map_while(Clone::clone).collect();
+        if next == end || item(&more).is_none() {
+            break;
+        }
+        end = next;
+    }
+    (joined && roles.len() > 1).then_some(List { roles, end })
+}
+
+/// How many, of which role, in how many words: `two visitors`. What is said of how they walk is not for a list.
+fn item(run: &[Word]) -> Option<(u32, String, usize)> {
+    let mention: Mention = mentions(run).into_iter().next().filter(|mention| mention.from == 0)?;
+    let Who::New { count: Some(count), .. } = mention.who else { return None };
+    let length = mention.to + 1;
+    let plain = run.get(..length)?.iter().all(|word| !lexicon().pace.contains_key(&word.text));
+    (plain && !mention.group && (1..=9).contains(&count)).then_some((count, mention.role?, length))
+}
