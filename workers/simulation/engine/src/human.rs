@@ -53,6 +53,8 @@ pub(crate) struct Human {
     pub(crate) lane_m: f64,
     /// From the middle of its walking group to the outermost member, m; 0 for who walks alone.
     pub(crate) flank_m: f64,
+    /// How far it stands or walks from where it would by plan, m to the left and ahead: nobody keeps to a line exactly.
+    pub(crate) sway: (f64, f64),
     pub(crate) tree: Tree,
     pub(crate) state: TreeState,
     pub(crate) route: Polyline,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, SceneGraph, Vector};
+use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, Relation, SceneGraph, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
@@ -39,6 +39,9 @@ const SEE_AHEAD_M: f64 = 4.5;
 const BERTH_M: f64 = 0.45;
 /// Who walks along faster than this is overtaken by people behind it, m/s.
 const OVERTAKEN_MPS: f64 = 0.2;
+/// So far beside the robot's line, m, and so near, m, whoever comes from behind gets past it.
+const BESIDE_M: f64 = 0.5;
+const PASSES_M: f64 = 1.6;
 /// Farther from its line than this, m, somebody has gone aside.
 const ASIDE_TAKEN_M: f64 = 0.2;
 /// Whoever is this far behind is passed, m.
@@ -158,11 +161,21 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     }
     if human.notice.straight {
         human.errand.way = None;
-        return Want::go(target, speed);
+        let drawn = scene.robot.is_some_and(|robot| passes(human, robot, &ahead));
+        return Want { drawn, ..Want::go(target, speed) };
     }
     // Pushed off its way behind a corner: round it, back to the way.
     let back = human.route.point(human.s + 0.4);
     Want::go(round(human, scene, &back).unwrap_or(base), speed)
+}
+
+/// Whether somebody from behind has gone aside and is about to get past the robot: it means to be so near, and being pushed back
+/// it would walk beside it for good.
+fn passes(human: &Human, robot: &Robot, ahead: &Vector) -> bool {
+    let way = robot.at() - human.at;
+    let along = robot.velocity.dot(ahead) > OVERTAKEN_MPS;
+    let aside = (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M && way.perp(ahead).abs() > BESIDE_M;
+    human.relation == Relation::Behind && along && aside && way.norm() < PASSES_M
 }
 
 /// How far ahead on its way somebody heads for, m. Where the way turns back that is the turn, and from right before it a point

@@ -78,7 +78,11 @@ fn spot(
     let home = human.route.point(0.0);
     let ahead = human.route.direction(0.0);
     let left = Vector::new(-ahead.y, ahead.x);
-    let wished = home + left * human.lane_m;
+    let wished = if human.route.length_m() > 0.0 {
+        home + left * human.lane_m + ahead * human.sway.1
+    } else {
+        home + Vector::new(human.sway.0, human.sway.1)
+    };
     let apart = if human.group.is_some() || door.is_some() { APART_CLOSE_M } else { APART_M };
     let behind = robot.filter(|_| human.relation == Relation::Behind);
     let mut best: Option<(f64, Point)> = None;
@@ -157,7 +161,7 @@ fn lanes(humans: &mut [Human], group: &GroupProposal) {
             let width = count.min(3);
             #[expect(clippy::cast_precision_loss, reason = "a few people")]
             let (row, flank) = (row as f64, 0.5 * (width as f64 - 1.0));
-            human.lane_m = (row - flank) * LANE_M;
+            human.lane_m = (row - flank) * LANE_M + human.sway.0;
             human.flank_m = flank * LANE_M;
         }
     }
@@ -187,6 +191,8 @@ fn stand(
     let places = places.unwrap_or_else(|| formation(&home, members.len(), body, floor, route, taken));
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
+            let swayed = at + Vector::new(human.sway.0, human.sway.1);
+            let at = if floor.clearance_m(&swayed) >= body + MARGIN_M { swayed } else { at };
             human.at = at;
             human.yaw = yaw;
             human.standing = true;

@@ -9,6 +9,7 @@ use socrates_model::{Point, Relation, Vector};
 
 use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
+use crate::start::HURRY_MPS;
 
 /// Slowest walk the controller asks for, m/s.
 const SLOWEST_MPS: f64 = 0.6;
@@ -116,7 +117,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
     if human.started && in_view && apart < FACES_M && faces(human, robot) {
-        return free;
+        return Pace { speed_mps: needed.clamp(human.speed_mps, HURRY_MPS.max(human.speed_mps)) };
     }
     if !human.started {
         // Early: somebody who stands there, and sets off in time. Late or just right: go.

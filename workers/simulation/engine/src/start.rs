@@ -27,6 +27,11 @@ use crate::setup::{PERSON_RADIUS_M, Setup};
 /// Desired speeds: mean, standard deviation and limits, m/s.
 const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 
+/// Largest distance to the left, and ahead, from where somebody stands by plan, m; who walks keeps so many times as far from its
+/// line.
+const SWAY_M: f64 = 0.05;
+const SWAY_WALKING: f64 = 2.0;
+
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
 pub(crate) const HURRY_MPS: f64 = 1.5;
 /// Later than this at the encounter is not made good on the way, s.
@@ -207,9 +212,11 @@ fn human(
         route = clear_end(route, robot_way, floor);
     }
     let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
-    let (route, marks, meetings) = in_time(setup, proposal.relation, route, marks, meetings);
+    let (route, marks, meetings) =
+        in_time(setup, proposal.relation, route, marks, meetings);
     let doors = doors_on(setup, &route);
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
+    let sway = drawn_sway(setup.seed, proposal.id);
     let mut facing = 0.0;
     if let Some(meeting) = meetings.first()
         && route.length_m() < 0.05
@@ -227,7 +234,8 @@ fn human(
         role: proposal.role.clone(),
         relation: proposal.relation,
         group: proposal.group,
-        lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { 0.0 },
+        lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { SWAY_WALKING * sway.0 },
+        sway,
         route,
         nodes: marks,
         meetings,
@@ -253,6 +261,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         standing: false,
         lane_m: 0.0,
         flank_m: 0.0,
+        sway: (0.0, 0.0),
         tree,
         state,
         at,
@@ -348,6 +357,14 @@ fn drawn_speed(seed: u64, human: HumanId) -> f64 {
     let (a, b) = (uniform(), uniform());
     let normal = libm::sqrt(-2.0 * libm::log(a)) * libm::cos(std::f64::consts::TAU * b);
     (SPEED.0 + SPEED.1 * normal).clamp(SPEED.2, SPEED.3)
+}
+
+/// Where somebody stands or walks beside where it would by plan, m; the same seed and human give the same.
+fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
+    let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["sway", &human.to_string()]));
+    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
+    let mut even = || SWAY_M * (2.0 * ((random.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0) - 1.0);
+    (even(), even())
 }
 
 /// The header of the run.
