@@ -1,7 +1,7 @@
 //! One tick of motion: paces, wishes, forces, contacts.
 
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, AgentId, HumanId, Point, Relation, SimTime};
+use socrates_model::{Action, AgentId, GroupId, HumanId, Point, Relation, SimTime};
 
 use crate::contacts::{self, Body};
 use crate::human::Human;
@@ -10,6 +10,7 @@ use crate::motion::{self, Scene, Want};
 use crate::near::{Near, Other};
 use crate::recorder::Recorder;
 use crate::rendezvous::{self, Moment};
+use crate::robot::Robot;
 use crate::run::Engine;
 use crate::walk::{self, Pairs, Steps, Walker};
 
@@ -133,6 +134,7 @@ impl Engine {
     /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.
     fn doors_and_paces(&mut self, now_s: f64) -> Vec<f64> {
         let mut paces = Vec::with_capacity(self.humans.len());
+        let nearest = self.robot.as_ref().and_then(|robot| before(robot, &self.humans));
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
@@ -142,7 +144,9 @@ impl Engine {
                 && human.notice.robot_seen.unwrap_or_else(|| {
                     self.robot.as_ref().is_some_and(|robot| self.floor.sees(&human.at, &robot.at()))
                 });
-            let moment = Moment { now_s, dt: STEP_SECS, sight, door };
+            let first =
+                asked && nearest.is_some_and(|(id, group)| id == human.id || group.is_some() && group == human.group);
+            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door };
             // Other actions have their own speed; the rendezvous waits meanwhile.
             let mut pace = if human.action == Action::Navigate {
                 rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps
@@ -182,6 +186,15 @@ impl Engine {
             }
         }
     }
+}
+
+/// Who is the nearest before the robot, and its group.
+fn before(robot: &Robot, humans: &[Human]) -> Option<(HumanId, Option<GroupId>)> {
+    let (at, intent) = (robot.at(), robot.intent());
+    let ahead = |human: &&Human| human.present() && (human.at - at).dot(&intent) > 0.0;
+    let far = |human: &Human| (human.at - at).norm_squared();
+    let nearest = humans.iter().filter(ahead).min_by(|a, b| far(a).total_cmp(&far(b)))?;
+    Some((nearest.id, nearest.group))
 }
 
 /// A human as contacts see it, at the place where it would be.

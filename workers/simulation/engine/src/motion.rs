@@ -265,8 +265,10 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
         }
         let beside = way.dot(&left);
         // Who has gone aside to overtake and is slowed down beside the other still wants to get past.
-        let along =
-            if (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M { speed_mps } else { human.velocity.dot(ahead) };
+        let overtakes = other.velocity.dot(ahead) > OVERTAKEN_MPS
+            && human.relation == Relation::Behind
+            && (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M;
+        let along = if overtakes { speed_mps } else { human.velocity.dot(ahead) };
         let closing = along.max(human.velocity.dot(ahead)) - other.velocity.dot(ahead);
         let across = other.velocity.dot(&left).abs();
         // From who comes towards them people who walk together go aside together: the line that counts is that of their

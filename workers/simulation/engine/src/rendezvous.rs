@@ -82,6 +82,8 @@ pub(crate) struct Moment {
     pub(crate) dt: f64,
     /// Whether human and robot are in line of sight.
     pub(crate) sight: bool,
+    /// Whether nobody but its own group is nearer before the robot: it is whom the robot waits for.
+    pub(crate) first: bool,
     /// State of the first door ahead of the human: how far, and whether it is open.
     pub(crate) door: Option<(f64, bool)>,
 }
@@ -116,7 +118,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
-    if human.started && in_view && apart < FACES_M && faces(human, robot) {
+    if human.started && in_view && moment.first && apart < FACES_M && faces(human, robot) {
         return Pace { speed_mps: needed.clamp(human.speed_mps, HURRY_MPS.max(human.speed_mps)) };
     }
     if !human.started {

@@ -212,8 +212,7 @@ fn human(
         route = clear_end(route, robot_way, floor);
     }
     let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
-    let (route, marks, meetings) =
-        in_time(setup, proposal.relation, route, marks, meetings);
+    let (route, marks, meetings) = in_time(setup, proposal.relation, route, marks, meetings);
     let doors = doors_on(setup, &route);
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
     let sway = drawn_sway(setup.seed, proposal.id);
