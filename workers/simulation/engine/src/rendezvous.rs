@@ -7,7 +7,7 @@
 
 use socrates_model::{Point, Relation, Vector};
 
-use crate::human::{DoorOnWay, Human};
+use crate::human::{DoorOnWay, Human, Meeting};
 use crate::robot::Robot;
 use crate::start::HURRY_MPS;
 
@@ -45,6 +45,9 @@ const FACES_M: f64 = 5.0;
 const FACES_SHARE: f64 = 0.5;
 /// Cosine from which two ways are the same or opposite: 45°.
 const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
+/// Who wants in through a door of which the robot comes out aims at being there so long after it, s: in the door both would
+/// stand.
+const LETS_OUT_S: f64 = 2.0;
 /// Somebody ahead is at the encounter so long before the robot, s.
 const AHEAD_S: f64 = 1.0;
 
@@ -64,6 +67,8 @@ pub(crate) struct Timing {
     pub(crate) happened: usize,
     /// Whether the robot's own way leads into the place that is left.
     pub(crate) robot_enters: bool,
+    /// Whether it wants in where the robot comes out.
+    pub(crate) lets_out: bool,
     /// Whether its door opens for whoever comes near, so that it need not wait for it.
     pub(crate) opens_door: bool,
 }
@@ -114,7 +119,8 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
     let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
-    let due_s = robot.eta_s(meeting.robot_s) + stands_s - meeting.lead_s;
+    let lead_s = if timing.lets_out && is_first { -LETS_OUT_S } else { meeting.lead_s };
+    let due_s = robot.eta_s(meeting.robot_s) + stands_s - lead_s;
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
@@ -237,7 +243,12 @@ pub(crate) fn timings(
                 .and_then(|order| u32::try_from(order).ok())
                 .unwrap_or(0);
             let opens_door = human.doors.first().is_some_and(|on_way| by_nearness(on_way.door));
-            Timing { leaving_order: order, robot_enters: enters(human), opens_door, ..Timing::default() }
+            let both = |met: &Meeting, own: &DoorOnWay| {
+                let comes_out = |out: &DoorOnWay| out.door == own.door && out.s < met.robot_s;
+                own.s > met.human_s && robot_doors.iter().any(comes_out)
+            };
+            let lets_out = human.meetings.first().is_some_and(|met| human.doors.iter().any(|own| both(met, own)));
+            Timing { leaving_order: order, robot_enters: enters(human), lets_out, opens_door, ..Timing::default() }
         })
         .collect()
 }
