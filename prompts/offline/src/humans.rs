@@ -350,13 +350,17 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let net = taken.net;
     let meet = *route.nodes.get(route.meet)?;
     let car = sources(human, net.location) == Some(PlaceClass::Elevator);
-    let enters = route.nodes.last().is_some_and(|last| net.inside(*last));
     let before: Vec<usize> = route.nodes.get(..route.meet)?.to_vec();
     let beyond = route.nodes.get(route.meet + 1).copied();
-    // Out of the very room that the robot enters, or of any other near by that is not on its way.
-    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
     let inside: Vec<usize> =
         place::inside(net.location, sources(human, net.location)).iter().filter_map(|id| net.index(id)).collect();
+    let inside = net.rooms_of(human.id, inside);
+    // A room with one place only is the robot's when it ends there: nobody else comes out of it.
+    let last = route.nodes.last().copied();
+    let shared = |node: &usize| Some(*node) != last && same_door(net, *node, last);
+    let enters = last.is_some_and(|last| net.inside(last)) && (car || inside.iter().any(shared));
+    // Out of the very room that the robot enters, or of any other near by that is not on its way.
+    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
     let same = |node: usize| !enters || same_door(net, node, route.nodes.last().copied());
     let start = inside
         .into_iter()
@@ -364,7 +368,7 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
             same(*node)
                 && tree.length_m(*node) >= 1.0
                 && tree.length_m(*node) <= if car { 8.0 } else { 12.0 }
-                && !(enters && !car && Some(*node) == route.nodes.last().copied())
+                && (car || Some(*node) != last)
         })
         .min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
     let inward = tree.way(start);
