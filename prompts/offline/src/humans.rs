@@ -56,6 +56,10 @@ const SHORT_TAIL: f64 = 3.0;
 /// Cost of turning into the robot's own way instead of crossing it: a room on the other side is better.
 const OWN_WAY: f64 = 3.0;
 
+/// Cost per what two ways over a corner are more alike than this, as the cosine between them.
+const SAME_CORNER: f64 = 16.0;
+const CROSSES: f64 = 0.75;
+
 /// No node: somebody with whom the robot starts is met nowhere.
 const NOWHERE: usize = usize::MAX;
 
@@ -226,6 +230,9 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
                 let own = if used.contains(&Some(*exit)) { OWN_WAY } else { 0.0 };
+                // Where the robot turns, a way that cuts the same corner does not cross its own.
+                let along = used.get(1).copied().flatten().map_or(0.0, |out| net.alike((into, out), (*entry, *exit)));
+                let own = own + SAME_CORNER * (along - CROSSES).max(0.0);
                 let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
                 let inside =
                     way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0 + if into { 2.0 } else { 0.0 };

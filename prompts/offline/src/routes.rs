@@ -162,6 +162,13 @@ impl<'a> Net<'a> {
         if norms > 1e-9 { into.dot(&out) / norms } else { 0.0 }
     }
 
+    /// How alike the directions of two ways are, either way round: 1 along each other, 0 at right angles.
+    pub(crate) fn alike(&self, one: (usize, usize), other: (usize, usize)) -> f64 {
+        let (a, b) = (self.at(one.1) - self.at(one.0), self.at(other.1) - self.at(other.0));
+        let norms = a.norm() * b.norm();
+        if norms > 1e-9 { (a.dot(&b) / norms).abs() } else { 0.0 }
+    }
+
     /// Shortest ways from a node over all nodes that are not barred.
     pub(crate) fn tree(&self, from: usize, barred: &dyn Fn(usize) -> bool) -> Tree {
         let n = self.len();

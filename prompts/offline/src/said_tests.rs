@@ -99,7 +99,7 @@ fn another_end_than_the_task_says_is_never_silent() {
     );
     assert_eq!(
         note("hospital", "Deliver sheets to the ward", "Two visitors leave the elevator."),
-        ["the robot's goal `ward`: the scenario has the robot goal at an elevator"]
+        ["the robot's goal `ward`: the scenario has its way end at an elevator"]
     );
     assert_eq!(
         note("hospital", "Bring it to ward 9", meets),
@@ -186,4 +186,18 @@ fn a_vague_number_is_told() {
 #[test]
 fn what_the_robot_carries_is_read() {
     assert_eq!(reading("office", "A person comes towards the robot.").ignored, [""; 0]);
+}
+
+#[test]
+fn who_crosses_a_robot_that_turns_does_not_cut_the_same_corner() {
+    let (_, proposal, paths) =
+        planned("hospital", "Bring pills from the pharmacy to the nurse station", "A nurse crosses its way.");
+    let (location, met) = (map("hospital"), &paths.encounters[0].node);
+    let chord = |nodes: &[socrates_model::NodeId]| {
+        let at = |id: &socrates_model::NodeId| location.graph.node(id).unwrap().at;
+        let meet = nodes.iter().position(|node| node == met).unwrap();
+        at(&nodes[meet + 1]) - at(&nodes[meet - 1])
+    };
+    let (robot, human) = (chord(&paths.robot), chord(&paths.humans[&proposal.humans[0].id]));
+    assert!((robot.dot(&human) / robot.norm() / human.norm()).abs() < 0.75, "{paths:?}");
 }

@@ -96,9 +96,7 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && found.mentions.iter().all(|mention| mention.to < *at)
             && found.robots.is_empty()
             && found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at);
-        if headed {
-            story.weak_place.get_or_insert_with(|| (class, quote.to_owned()));
-        } else if !source && (weak || in_lobby) {
+        if !headed && !source && (weak || in_lobby) {
             story.place = Some((class, quote.to_owned()));
         }
         // Where people go in words of their own is where a robot that leads them goes.
