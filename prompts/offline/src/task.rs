@@ -263,8 +263,10 @@ mod tests {
         assert_eq!(task.start, None);
     }
 
+    type Said = (String, usize);
+
     /// Names of the beginnings and goals with how many nodes of the map are called so.
-    fn ends(map: &str, text: &str) -> (Vec<(String, usize)>, Vec<(String, usize)>) {
+    fn ends(map: &str, text: &str) -> (Vec<Said>, Vec<Said>) {
         let task = read(text, &crate::tests::map(map));
         let said = |ends: &[End]| ends.iter().map(|end| (end.name.clone(), end.nodes.len())).collect();
         (said(&task.starts), said(&task.goals))

@@ -345,7 +345,7 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
         inside && person.start == Some(PlaceClass::Elevator)
     });
     // Where the scenario has the robot begin and end, whatever the task says.
-    let enters = story.robot_enters.as_ref().map(|(class, _)| *class).or(car.then_some(PlaceClass::Elevator));
+    let enters = story.robot_enters.as_ref().map(|(class, _)| *class).or_else(|| car.then_some(PlaceClass::Elevator));
     let leaves = story.robot_leaves.as_ref().map(|(class, _)| *class);
     let starts = ends_of.and_then(|card| card.start);
     let stays = ends_of.is_some_and(|card| card.ends == Ends::With);
