@@ -45,12 +45,9 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
         words.get(..at)?.iter().enumerate().filter_map(|(k, word)| Some((k, word.clone()?))).collect();
     let spoken: Vec<Word> = before.iter().map(|(_, word)| word.clone()).collect();
     let head = mentions(&spoken).into_iter().rev().find(|mention| matches!(mention.who, Who::New { .. }))?;
-    let count = match head.who {
-        Who::New { count: Some(n), .. } => usize::try_from(n) == Ok(list.roles.len()),
-        // `a family`: as many as the list names.
-        Who::New { count: None, .. } => head.group,
-        _ => false,
-    };
+    let Who::New { count, .. } = head.who else { return None };
+    // `a family`: as many as the list names.
+    let count = count.map_or(head.group, |n| usize::try_from(n) == Ok(list.roles.len()));
     let noun = before.get(head.to)?.0;
     let adjacent = noun + 1 == at;
     // Farther on it is a list of them only if nothing comes after it: `two people come in: a nurse and a visitor`.

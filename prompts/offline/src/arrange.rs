@@ -10,6 +10,7 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     if let Some(first) = found.first_mut() {
         asked(first);
     }
+    found.iter_mut().for_each(bidden);
     // `A patient, not a visitor, comes out`
     found.retain(|stretch| {
         !(stretch.joint == Joint::Comma
@@ -37,6 +38,19 @@ fn asked(first: &mut Stretch) {
         agent.remove(0);
         first.words.splice(0..0, agent);
         first.joint = Joint::When;
+    }
+}
+
+/// `steps aside when asked`, `only once told to wait`: the robot does.
+fn bidden(stretch: &mut Stretch) {
+    let temporal = matches!(stretch.joint, Joint::When | Joint::Until);
+    let Some(first) = stretch.words.first().filter(|_| temporal).cloned() else { return };
+    let asks =
+        matches!(first.stem.as_str(), "ask" | "tell" | "request" | "order" | "instruct") && first.text != first.stem;
+    let next = stretch.words.get(1).map_or("", |word| word.text.as_str());
+    if asks && matches!(next, "" | "to" | "politely" | "nicely" | "kindly" | "so") {
+        let robot = Word { text: "robot".to_owned(), stem: "robot".to_owned(), used: true, ..first };
+        stretch.words.insert(0, Word { to: robot.from, ..robot });
     }
 }
 

@@ -1,6 +1,6 @@
 //! Who does what is said: the subject of a deed, and the deed itself.
 
-use socrates_model::{HumanId, PlaceClass, Trigger};
+use socrates_model::{HumanId, PlaceClass, Relation, Trigger};
 
 use crate::cast::Cast;
 use crate::clause::Found;
@@ -51,7 +51,12 @@ pub(crate) fn subject_of(
     let robot = found.robots.iter().rev().find(|robot| **robot < at);
     // `has the robot coming up behind him`: the robot is behind.
     let after = found.mentions.iter().any(|mention| mention.from > to && mention.who == Who::Object);
-    if act == Act::Behind && after && robot.is_some_and(|robot| robot + 1 == at || robot + 2 == at) {
+    let next_to = robot.is_some_and(|robot| robot + 1 == at || robot + 2 == at);
+    if act == Act::Behind && after && next_to {
+        return Subject::Robot;
+    }
+    // `The robot comes from behind`; but `the robot is approached from behind`.
+    if act == Act::Behind && before.is_none() && joined.is_empty() && next_to && !found.passive {
         return Subject::Robot;
     }
     let robotic = matches!(
@@ -229,6 +234,9 @@ pub(crate) fn people_deed(
     let near = at_distance
         .filter(|_| !matches!(act, Act::Follow | Act::Ahead | Act::Behind | Act::Abreast))
         .map(Trigger::RobotNear);
+    if matches!(act, Act::Stay | Act::ComeOut) {
+        told_apart(&mut story.cast, people, act);
+    }
     let around = Around {
         vague: thread.vague && near.is_none(),
         trigger: thread.waiting.clone().or(near),
@@ -258,6 +266,8 @@ pub(crate) fn people_deed(
     thread.acts.push((act, around.clone()));
     for who in people {
         if let Some(rule) = deed::apply(&mut story.cast, *who, act, &around) {
+            let late = thread.delay_s.filter(|_| deed::manner(act).is_some());
+            let rule = late.and_then(|secs| deed::delay(&mut story.cast, *who, rule, secs)).unwrap_or(rule);
             thread.made.push((*who, rule));
         }
     }
@@ -280,9 +290,55 @@ pub(crate) fn people_deed(
         let all: Vec<usize> = people.iter().chain(&others).copied().collect();
         story.cast.together(&all, quote);
         story.cast.group(&all, quote);
+    } else if queues(act, (at, to), stretch) {
+        story.cast.group(people, quote);
+        for person in people.iter().filter(|_| people.len() > 1) {
+            if let Some(person) = story.cast.people.get_mut(*person) {
+                person.doings.retain(|doing| doing != "stands" && doing != QUEUES);
+                person.doings.push(QUEUES.to_owned());
+            }
+        }
     } else if matches!(act, Act::Talk | Act::WalkTogether) || found.in_group {
         story.cast.group(people, quote);
     }
     story.cast.last = people.to_vec();
     thread.doer = Some(people.to_vec());
+}
+
+/// What those do who stand one behind the other.
+pub(crate) const QUEUES: &str = "queues";
+
+/// `four people queue`, `three wait in line`: one group, one behind the other.
+fn queues(act: Act, (at, to): (usize, usize), stretch: &Stretch) -> bool {
+    let word = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let row = |k: usize| {
+        word(k) == "queue"
+            || word(k) == "line" && (text(k + 1) == "up" || k > 0 && matches!(text(k - 1), "in" | "a" | "form"))
+    };
+    matches!(act, Act::Stand | Act::Stop) && (at..=to + 3).any(row)
+}
+
+/// `people come out; one of them stays inside`: takes back of some what was said of all of them.
+fn told_apart(cast: &mut Cast, people: &[usize], act: Act) {
+    let opposite = if act == Act::Stay { Relation::Leaving } else { Relation::Staying };
+    let said = |cast: &Cast, who: usize| {
+        let person = cast.people.get(who)?;
+        let (_, quote) = person.relation.as_ref().filter(|(relation, _)| *relation == opposite)?;
+        Some((quote.clone(), person.role.clone()))
+    };
+    let Some(first) = people.first().and_then(|who| said(cast, *who)) else { return };
+    // Told alike of several, of whom these are some: the exception. Of all of them it is a contradiction.
+    let alike = (0..cast.people.len()).filter(|who| said(cast, *who).as_ref() == Some(&first)).count();
+    if alike <= people.len() || people.iter().any(|who| said(cast, *who).as_ref() != Some(&first)) {
+        return;
+    }
+    for who in people {
+        if let Some(person) = cast.people.get_mut(*who) {
+            person.relation = None;
+            person.doings.retain(|doing| {
+                !doing.starts_with("comes out of") && !doing.starts_with("leaves the") && doing != "stays"
+            });
+        }
+    }
 }

@@ -160,7 +160,7 @@ impl Cast {
                 })
             }
             Who::More(n) => match self.pick_open(*n, mention) {
-                Some(found) if *n == 1 => found,
+                Some(found) if *n == 1 && self.parted() => found,
                 Some(_) | None => self.join(*n, &self.alike(mention), declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
@@ -397,6 +397,15 @@ impl Cast {
         role.is_none_or(|role| self.people.get(i).is_some_and(|person| person.role.is_empty() || person.role == *role))
     }
 
+    /// Whether those who are there were counted for what comes after, or one of them was told apart already.
+    fn parted(&self) -> bool {
+        let idle = |i: &usize| self.people.get(*i).is_some_and(|person| person.doings.is_empty());
+        let bound = |i: &usize| self.people.get(*i).is_some_and(|person| person.bound);
+        self.sets.iter().any(|set| {
+            set.members.len() > 1 && (set.total || set.members.iter().all(idle) || set.members.iter().any(bound))
+        })
+    }
+
     /// Some of the open people of the newest set that fit.
     pub(crate) fn pick_open(&self, n: u32, mention: &Mention) -> Option<Vec<usize>> {
         let wanted = usize::try_from(n).ok()?;
@@ -429,6 +438,15 @@ impl Cast {
             format!("`{first}` gives {total} humans, but `{quote}` asks for {n} more than the {} left; correct one of the two", open.len()),
         ));
         Some(open)
+    }
+
+    /// Whom a robot that comes from behind gets past: those spoken of last, if they may go its way.
+    pub(crate) fn overtaken(&self) -> Vec<usize> {
+        let ahead = |i: &usize| {
+            let relation = self.people.get(*i).and_then(|person| person.relation.as_ref());
+            relation.is_none_or(|(relation, _)| *relation == Relation::Ahead)
+        };
+        if self.last.iter().all(ahead) { self.last.clone() } else { Vec::new() }
     }
 
     /// So many of the newest set who were not counted apart yet, though all of them did something already.

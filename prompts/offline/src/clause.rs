@@ -5,6 +5,7 @@ use socrates_model::{Gesture, PlaceClass};
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, Who, mentions};
+use crate::topic::drop_topics;
 use crate::words::find;
 use crate::{measure, message};
 
@@ -50,6 +51,8 @@ pub(crate) struct Found {
     pub(crate) obeys: bool,
     /// `in a group`.
     pub(crate) in_group: bool,
+    /// `is approached`, `gets overtaken`.
+    pub(crate) passive: bool,
     /// `there are`, `in the scenario`.
     pub(crate) declares: bool,
 }
@@ -64,6 +67,7 @@ impl Found {
 /// Reads a clause; words that something was read from are marked as used.
 pub(crate) fn read(stretch: &mut Stretch) -> Found {
     let mut found = Found { mentions: mentions(&stretch.words), ..Found::default() };
+    drop_topics(stretch, &mut found.mentions);
     for mention in &found.mentions {
         for at in mention.from..=mention.to {
             // A word between that only describes, and that no table has, is read by nobody.
@@ -93,6 +97,9 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     }
     deeds(stretch, &mut found, &mut taken, &placed);
     rest(stretch, &mut found, &taken);
+    let being = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "be" | "get"));
+    found.passive =
+        stretch.words.iter().enumerate().any(|(k, word)| word.text.ends_with("ed") && k > 0 && being(k - 1));
     found
 }
 
@@ -362,7 +369,10 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 });
             // `staring at his phone` sees no robot.
             let aside = phrase.means == Act::Look && aside(stretch, last);
+            // `come out of a room in front of the robot`: where they come out.
+            let out = phrase.means == Act::Ahead && (first..last).any(|k| text(k) == "out");
             let of_place = noun
+                || out
                 || elsewhere
                 || apart
                 || stretch.words.get(last).is_some_and(|word| word.text == "it")
@@ -567,7 +577,9 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         // `exactly three people`, but not `exactly one of them`.
         let exactly = text == "exactly" && stretch.words.get(i + 2).is_none_or(|next| next.text != "of");
         found.declares |= exists || text == "scenario" || exactly;
-        if lex.impossible.contains(&word.stem) && !word.used {
+        // `the lift opens`: of itself, and nobody does it.
+        let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors");
+        if lex.impossible.contains(&word.stem) && !word.used && !itself {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
             if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") && found.deeds.is_empty() {

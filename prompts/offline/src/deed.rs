@@ -33,7 +33,7 @@ pub(crate) struct Around {
 }
 
 /// Who is startled stares for so long, s.
-const STARTLED_S: f64 = 8.0;
+pub(crate) const STARTLED_S: f64 = 8.0;
 /// Who follows and then walks on follows for so long, s.
 const FOLLOWS_S: f64 = 8.0;
 /// Who stops and then looks stands so long before it looks, s.
@@ -392,6 +392,15 @@ pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
     if !person.rules.contains(&read) {
         person.rules.insert(0, read);
     }
+}
+
+/// Until a rule begins, so many seconds after what it waits for, it goes on as before. Returns the rule's new index.
+pub(crate) fn delay(cast: &mut Cast, who: usize, rule: usize, secs: f64) -> Option<usize> {
+    let person = cast.people.get_mut(who)?;
+    let late = person.rules.get(rule)?.clone();
+    let on = Rule { act: Action::Navigate, gesture: None, for_s: Some(secs), latched: true, ..late.rule.clone() };
+    person.rules.insert(rule, ReadRule { rule: on, stated: false, then: false, lasts: true, ..late });
+    Some(rule + 1)
 }
 
 /// Takes back what the clause before said of somebody who is excepted from it.

@@ -197,7 +197,10 @@ fn says(list: &mut List, source: &str, agent: AgentId, gesture: Gesture) {
 
 fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, proposal: &Proposal) {
     let Some(found) = proposal.groups.iter().find(|other| other.id == group) else { return };
-    if found.standing {
+    let line = crate::card::card(&proposal.pattern).is_some_and(|card| card.roles.iter().any(|role| role.line));
+    if found.standing && line {
+        list.setup(true, source, format!("{group} stands in line"), Predicate::Queues { group, gap_m: [0.5, 1.6] });
+    } else if found.standing {
         list.setup(true, source, format!("{group} stands in a circle"), Predicate::Formation { group, spread_m: 1.8 });
     } else {
         list.setup(true, source, format!("{group} walks together"), Predicate::WalksTogether { group, spread_m: 2.5 });
@@ -225,17 +228,21 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
     }
     // Who walks on after what it did does what everybody does: nothing more is to be seen.
     let before = human.rules.iter().position(|own| own == rule).and_then(|at| at.checked_sub(1));
-    let then = before.and_then(|at| human.rules.get(at)).is_some_and(|last| last.when == rule.when);
-    if rule.act == Action::Navigate && rule.gesture.is_none() && then {
+    let last = before.and_then(|at| human.rules.get(at)).filter(|last| last.when == rule.when);
+    let walks = |rule: &Rule| rule.act == Action::Navigate && rule.gesture.is_none();
+    if walks(rule) && (last.is_some() || rule.for_s.is_some()) {
         return;
     }
+    // What it does only a while after what it waits for.
+    let late_s = last.filter(|last| walks(last)).and_then(|last| last.for_s).unwrap_or(0.0);
     let plain = seen.is_none();
     if let Some(predicate) = seen {
         list.setup(true, source, text, predicate);
     }
     if stated || plain && rule.gesture.is_none() {
         let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
-        let predicate = Predicate::Reacts { human: id, when: rule.when.clone(), act: rule.act.clone(), within_s: 3.0 };
+        let predicate =
+            Predicate::Reacts { human: id, when: rule.when.clone(), act: rule.act.clone(), within_s: 3.0 + late_s };
         // The deed itself is the must; its exact moment is judged beside it.
         list.setup(plain, source, format!("{} {id} {}", when.join(" and "), done(&rule.act)), predicate);
     }

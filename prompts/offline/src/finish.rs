@@ -38,6 +38,9 @@ impl Story {
                 && let Some(person) = self.cast.people.get_mut(who)
             {
                 person.start = Some(PlaceClass::Elevator);
+                for doing in person.doings.iter_mut().filter(|doing| *doing == "comes out of the room") {
+                    "leaves the elevator".clone_into(doing);
+                }
             }
         }
         for person in &mut self.cast.people {
@@ -131,6 +134,13 @@ impl Story {
                 continue;
             }
             let Some(person) = self.cast.people.get_mut(who) else { continue };
+            // Who is scared and stays does not run: there is nowhere to run to.
+            for read in person.rules.iter_mut().filter(|read| read.rule.act == Action::RunAway && !read.stated) {
+                (read.rule.act, read.rule.for_s) = (Action::LookAtRobot, Some(deed::STARTLED_S));
+                for doing in person.doings.iter_mut().filter(|doing| *doing == "runs away") {
+                    "startled".clone_into(doing);
+                }
+            }
             if !person.doings.iter().any(|doing| doing == "startled") {
                 continue;
             }

@@ -56,6 +56,10 @@ const SHORT_TAIL: f64 = 3.0;
 /// Cost of turning into the robot's own way instead of crossing it: a room on the other side is better.
 const OWN_WAY: f64 = 3.0;
 
+/// Cost per what two ways over a corner are more alike than this, as the cosine between them.
+const SAME_CORNER: f64 = 16.0;
+const CROSSES: f64 = 0.75;
+
 /// No node: somebody with whom the robot starts is met nowhere.
 const NOWHERE: usize = usize::MAX;
 
@@ -226,6 +230,9 @@ fn crossing(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<W
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
                 let own = if used.contains(&Some(*exit)) { OWN_WAY } else { 0.0 };
+                // Where the robot turns, a way that cuts the same corner does not cross its own.
+                let along = used.get(1).copied().flatten().map_or(0.0, |out| net.alike((into, out), (*entry, *exit)));
+                let own = own + SAME_CORNER * (along - CROSSES).max(0.0);
                 let into = net.inside(*exit) || net.kind(*exit) == PlaceClass::Doorway;
                 let inside =
                     way.iter().filter(|node| net.inside(**node)).count() as f64 * 3.0 + if into { 2.0 } else { 0.0 };
@@ -350,13 +357,17 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let net = taken.net;
     let meet = *route.nodes.get(route.meet)?;
     let car = sources(human, net.location) == Some(PlaceClass::Elevator);
-    let enters = route.nodes.last().is_some_and(|last| net.inside(*last));
     let before: Vec<usize> = route.nodes.get(..route.meet)?.to_vec();
     let beyond = route.nodes.get(route.meet + 1).copied();
-    // Out of the very room that the robot enters, or of any other near by that is not on its way.
-    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
     let inside: Vec<usize> =
         place::inside(net.location, sources(human, net.location)).iter().filter_map(|id| net.index(id)).collect();
+    let inside = net.rooms_of(human.id, inside);
+    // A room with one place only is the robot's when it ends there: nobody else comes out of it.
+    let last = route.nodes.last().copied();
+    let shared = |node: &usize| Some(*node) != last && same_door(net, *node, last);
+    let enters = last.is_some_and(|last| net.inside(last)) && (car || inside.iter().any(shared));
+    // Out of the very room that the robot enters, or of any other near by that is not on its way.
+    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
     let same = |node: usize| !enters || same_door(net, node, route.nodes.last().copied());
     let start = inside
         .into_iter()
@@ -364,7 +375,7 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
             same(*node)
                 && tree.length_m(*node) >= 1.0
                 && tree.length_m(*node) <= if car { 8.0 } else { 12.0 }
-                && !(enters && !car && Some(*node) == route.nodes.last().copied())
+                && (car || Some(*node) != last)
         })
         .min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
     let inward = tree.way(start);

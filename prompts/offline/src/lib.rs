@@ -20,10 +20,12 @@ mod aside;
 mod lexicon;
 mod words;
 
+mod named;
 mod noun;
 
 mod mention;
 mod refer;
+mod topic;
 
 mod apposed;
 mod around;
@@ -76,6 +78,8 @@ mod twice;
 
 #[cfg(test)]
 mod again_tests;
+#[cfg(test)]
+mod said_tests;
 #[cfg(test)]
 mod tests;
 

@@ -58,13 +58,12 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
             "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
             "second" | "minute" => {
                 let secs = (if unit == "minute" { number * 60.0 } else { number }).clamp(0.5, 120.0);
-                let about = |k: usize| i.checked_sub(k).is_some_and(|k| text(k) == "after");
-                let after = about(1)
-                    || about(2)
-                        && matches!(
-                            before,
-                            "about" | "some" | "another" | "roughly" | "approximately" | "only" | "just"
-                        )
+                // `after just a few seconds`
+                let roughly = |word: &str| {
+                    matches!(word, "a" | "about" | "some" | "another" | "roughly" | "approximately" | "only" | "just")
+                };
+                let about = (0..i).rev().find(|k| !roughly(text(*k)));
+                let after = about.is_some_and(|k| text(k) == "after")
                     || before == "at"
                     || matches!(text(unit_at + 1), "later" | "after")
                     || text(unit_at + 1) == "in" && text(unit_at + 2).is_empty();

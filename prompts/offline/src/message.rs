@@ -107,6 +107,15 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         mark_each(stretch, &verb);
         return;
     }
+    // `waves at the robot`: a greeting.
+    let greets = stem(first) == "wave"
+        && stretch.words.get(last + 1).is_some_and(|word| matches!(word.text.as_str(), "at" | "to"))
+        && (last + 2..last + 4).any(|k| stem(k) == "robot");
+    if greets {
+        found.gesture = Some(Gesture::Acknowledged);
+        mark_each(stretch, &verb);
+        return;
+    }
     let mute = MUTE.iter().find(|(words, _)| verb.iter().any(|i| words.contains(&stem(*i))));
     if let Some((_, gesture)) = mute {
         found.gesture = Some(*gesture);

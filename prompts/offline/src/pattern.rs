@@ -27,6 +27,8 @@ pub(crate) fn of(story: &Story, wanted: Option<&str>) -> Option<String> {
         if car { "entering_elevator" } else { "room_exit" }
     } else if apart && does(&Action::Block) {
         "corridor_follow_and_block"
+    } else if group && people.iter().any(|person| person.doings.iter().any(|doing| doing == crate::bind::QUEUES)) {
+        "queue"
     } else if group && relation(Relation::Static) {
         "group_passing"
     } else if does(&Action::RunAway) {

@@ -15,6 +15,7 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
             deed::relate(&mut story.cast, *who, relation, quote);
             let doing = if relation == Relation::Ahead { "walks ahead of the robot" } else { "walks beside the robot" };
             if let Some(person) = story.cast.people.get_mut(*who) {
+                person.doings.retain(|known| known != doing && known != "walks");
                 person.doings.push(doing.to_owned());
             }
         }

@@ -1,8 +1,17 @@
 //! Ways through the scene graph: shortest ones round what is barred, and the robot's ways over a meeting node.
 
-use socrates_model::{Location, NodeId, PlaceClass, Point};
+use std::collections::BTreeMap;
+
+use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
 
 use crate::place;
+
+/// A way that begins or ends where the task says by name is better than any other; else the nearer the better, per m.
+const CALLED: f64 = 40.0;
+const OFF: f64 = 0.6;
+/// What a meeting costs per m beyond so many from where the task begins and ends.
+const ASTRAY: f64 = 0.3;
+const NEARBY_M: f64 = 12.0;
 
 /// The scene graph by index.
 pub(crate) struct Net<'a> {
@@ -11,6 +20,11 @@ pub(crate) struct Net<'a> {
     at: Vec<Point>,
     near: Vec<Vec<(usize, f64)>>,
     inside: Vec<bool>,
+    /// How far each node is from the places where the robot's task begins and ends by name, m; empty without such places.
+    start_m: Vec<f64>,
+    goal_m: Vec<f64>,
+    /// The rooms that people come out of by name.
+    rooms: BTreeMap<HumanId, Vec<usize>>,
 }
 
 /// Shortest ways from one node to all others.
@@ -36,7 +50,62 @@ impl<'a> Net<'a> {
             }
         }
         let inside = ids.iter().map(|id| place::is_inside(location, id)).collect();
-        Self { location, at: graph.nodes.iter().map(|node| node.at).collect(), ids, near, inside }
+        Self {
+            location,
+            at: graph.nodes.iter().map(|node| node.at).collect(),
+            ids,
+            near,
+            inside,
+            start_m: Vec::new(),
+            goal_m: Vec::new(),
+            rooms: BTreeMap::new(),
+        }
+    }
+
+    /// With the places where the robot's task begins and ends by name.
+    pub(crate) fn with_ends(mut self, start: &[NodeId], goal: &[NodeId]) -> Self {
+        let far = |net: &Self, ids: &[NodeId]| {
+            let trees: Vec<Tree> =
+                ids.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect();
+            let nearest = |node: usize| trees.iter().map(|tree| tree.length_m(node)).fold(f64::INFINITY, f64::min);
+            if trees.is_empty() { Vec::new() } else { (0..net.len()).map(nearest).collect() }
+        };
+        (self.start_m, self.goal_m) = (far(&self, start), far(&self, goal));
+        self
+    }
+
+    /// With the rooms that people come out of by name.
+    pub(crate) fn with_rooms(mut self, rooms: BTreeMap<HumanId, Vec<usize>>) -> Self {
+        self.rooms = rooms;
+        self
+    }
+
+    /// The places inside that somebody may come from: those of the room by name, if it has one.
+    pub(crate) fn rooms_of(&self, human: HumanId, all: Vec<usize>) -> Vec<usize> {
+        match self.rooms.get(&human) {
+            Some(own) if all.iter().any(|node| own.contains(node)) => {
+                all.into_iter().filter(|node| own.contains(node)).collect()
+            }
+            Some(_) | None => all,
+        }
+    }
+
+    /// How well a node suits as the end of a way that the robot's task names; 0 where it names none.
+    pub(crate) fn called(&self, node: usize, goal: bool) -> f64 {
+        match (if goal { &self.goal_m } else { &self.start_m }).get(node) {
+            Some(m) if *m < 1e-9 => CALLED,
+            Some(m) => -OFF * m.min(100.0),
+            None => 0.0,
+        }
+    }
+
+    /// What it costs a meeting to lie far from where the task begins and ends by name.
+    pub(crate) fn astray(&self, node: usize) -> f64 {
+        [&self.start_m, &self.goal_m]
+            .into_iter()
+            .filter_map(|all| all.get(node))
+            .map(|m| ASTRAY * (m.min(100.0) - NEARBY_M).max(0.0))
+            .sum()
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -91,6 +160,13 @@ impl<'a> Net<'a> {
         let (into, out) = (self.at(b) - self.at(a), self.at(c) - self.at(b));
         let norms = into.norm() * out.norm();
         if norms > 1e-9 { into.dot(&out) / norms } else { 0.0 }
+    }
+
+    /// How alike the directions of two ways are, either way round: 1 along each other, 0 at right angles.
+    pub(crate) fn alike(&self, one: (usize, usize), other: (usize, usize)) -> f64 {
+        let (a, b) = (self.at(one.1) - self.at(one.0), self.at(other.1) - self.at(other.0));
+        let norms = a.norm() * b.norm();
+        if norms > 1e-9 { (a.dot(&b) / norms).abs() } else { 0.0 }
     }
 
     /// Shortest ways from a node over all nodes that are not barred.
@@ -193,15 +269,18 @@ pub(crate) fn over(net: &Net<'_>, meet: usize, wish: &Wish) -> Vec<Route> {
         }
         // Rooms are where people come from; the robot goes there only when its task says so.
         let tree = net.tree(*arm, &|node| node == meet);
-        let ends = |class: Option<PlaceClass>| {
+        let ends = |class: Option<PlaceClass>, goal: bool| {
             let mut found: Vec<(f64, usize)> = (0..net.len())
                 .filter(|end| tree.length_m(*end).is_finite() && *end != meet)
-                .map(|end| (end_score(net, end, tree.length_m(end) + step, class, wish), end))
+                .map(|end| {
+                    let score = end_score(net, end, tree.length_m(end) + step, class, wish);
+                    (score + net.called(end, goal), end)
+                })
                 .collect();
             found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             found.into_iter().take(ENDS).map(|(_, end)| tree.way(end)).filter(|way| !way.is_empty()).collect::<Vec<_>>()
         };
-        arms.push((*arm, ends(wish.start), ends(wish.goal)));
+        arms.push((*arm, ends(wish.start, false), ends(wish.goal, true)));
     }
     let mut routes = Vec::new();
     for (a, starts, _) in &arms {
@@ -264,8 +343,9 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
     }
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
     score += 0.3 * of_place as f64;
-    for (end, class) in [(nodes.first(), wish.start), (nodes.last(), wish.goal)] {
+    for (end, class, goal) in [(nodes.first(), wish.start, false), (nodes.last(), wish.goal, true)] {
         let Some(end) = end else { continue };
+        score += net.called(*end, goal);
         match class {
             Some(class) if net.is(*end, class) => score += 4.0,
             Some(_) => {}

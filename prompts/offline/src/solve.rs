@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use socrates_maps::{DistanceField, Sight};
 use socrates_model::{
-    Action, Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
+    Action, Encounter, FORMAT, FactKind, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass,
+    Proposal, Relation,
 };
 use socrates_prompts::Question;
 
@@ -13,8 +14,10 @@ use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
 use crate::edit_paths;
 use crate::humans::{Taken, Way, way};
+use crate::named;
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
+use crate::task::{self, End};
 use crate::twice;
 
 /// Meeting nodes that are tried, and ways of the robot over each.
@@ -42,12 +45,18 @@ struct Solution {
 
 /// Answers a paths question. `None` where the map has no way at all that fits.
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
-    let net = Net::new(&question.location);
+    let task = crate::task::read(&question.request.task, &question.location);
+    let net = Net::new(&question.location)
+        .with_ends(
+            ends(&question.location, &task.starts, proposal.robot.start),
+            ends(&question.location, &task.goals, proposal.robot.goal),
+        )
+        .with_rooms(rooms(question));
     let told = |code: FaultCode| {
         let robot = |fault: &&socrates_model::Fault| fault.code == code && !fault.at.contains("human");
         u32::try_from(question.feedback.iter().filter(robot).count()).unwrap_or(0)
     };
-    let via = crate::task::read(&question.request.task).via.map(|(class, _)| class);
+    let via = task.via.map(|(class, _)| class);
     let wish = Wish { via, ..wish(proposal, told(FaultCode::GShort)) };
     // Who got stuck is not led through doorways and aisles again.
     let wish = Wish { roomy: question.feedback.iter().any(|fault| fault.code == FaultCode::DStuck), ..wish };
@@ -103,6 +112,41 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
         }
     }
     Some(paths)
+}
+
+/// The places where the task has the way begin or end by name, unless the scenario has it begin or end elsewhere.
+fn ends<'a>(location: &Location, named: &'a [End], class: Option<PlaceClass>) -> &'a [NodeId] {
+    let nodes = task::nodes(named);
+    let suits = |class: PlaceClass| nodes.iter().any(|node| location.graph.node_is(node, class));
+    if class.is_none_or(suits) { nodes } else { &[] }
+}
+
+/// The rooms that people come out of, where the text names them: `out of the kitchen`.
+fn rooms(question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
+    let net = Net::new(&question.location);
+    let mut found = BTreeMap::new();
+    for fact in &question.reading.facts {
+        if let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
+            fact.kind
+            && let Some(from) = ["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "]
+                .iter()
+                .find_map(|word| fact.quote.split_once(word))
+            && let Some(room) = named::find(
+                &question.location,
+                from.1
+                    .split_whitespace()
+                    .take(5)
+                    .collect::<Vec<_>>()
+                    .join(" ")
+                    .split([',', ';', '.'])
+                    .next()
+                    .unwrap_or_default(),
+            )
+        {
+            found.insert(human, room.nodes.iter().filter_map(|id| net.index(id)).collect());
+        }
+    }
+    found
 }
 
 /// Whether a fault is one of the place of the meeting. A slip of the pen is none: then the same paths are written again.
@@ -163,8 +207,15 @@ fn enters(net: &Net<'_>, proposal: &Proposal) -> Option<Vec<usize>> {
     let indoors =
         proposal.humans.iter().find(|human| matches!(human.relation, Relation::Leaving | Relation::Staying))?;
     let class = indoors.start.unwrap_or(PlaceClass::Room);
-    let goes_in = proposal.robot.goal == Some(class) || class == PlaceClass::Elevator;
-    let cars: Vec<usize> = place::inside(net.location, Some(class)).iter().filter_map(|id| net.index(id)).collect();
+    let car = class == PlaceClass::Elevator;
+    let goes_in = proposal.robot.goal == Some(class) || car;
+    let all: Vec<usize> = place::inside(net.location, Some(class)).iter().filter_map(|id| net.index(id)).collect();
+    // Into a room that others come out of the robot goes where it has a place besides theirs.
+    let roomy = |node: &usize| {
+        let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| &door.id);
+        car || all.iter().any(|other| other != node && door(*other).is_some() && door(*other) == door(*node))
+    };
+    let cars: Vec<usize> = all.iter().copied().filter(roomy).collect();
     if goes_in && !cars.is_empty() { Some(cars) } else { None }
 }
 
@@ -210,7 +261,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
     let sources: Option<Vec<Tree>> = leaver.map(|human| {
         let inside = place::inside(net.location, human.start);
-        inside.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect()
+        let inside = net.rooms_of(human.id, inside.iter().filter_map(|id| net.index(id)).collect());
+        inside.into_iter().map(|node| net.tree(node, &|_| false)).collect()
     });
     let many = proposal.humans.len() > 3;
     let overtaken = proposal.humans.iter().any(overtakes).then(|| DistanceField::new(&net.location.grid));
@@ -237,7 +289,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
                 let nearest = trees.iter().map(|tree| tree.length_m(*node)).fold(f64::INFINITY, f64::min);
                 if nearest > 12.0 { -20.0 } else { -0.4 * (nearest - 3.0).max(0.0) }
             });
-            (own + cross + room + far + layout(found, arms, clear_m), *node)
+            (own + cross + room + far + layout(found, arms, clear_m) - net.astray(*node), *node)
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));

@@ -78,6 +78,10 @@ pub(crate) struct Thread {
     pub(crate) addressed: Vec<usize>,
     /// What was said not to be done: `the first does not stop; the others do`.
     pub(crate) denied: Option<Act>,
+    /// How long after what it waits for the deed begins, s.
+    pub(crate) delay_s: Option<f64>,
+    /// The clause before names people who do nothing in it.
+    pub(crate) paused: bool,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -242,8 +246,16 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if !found.acts() {
         return quiet(story, thread, &found, &meant, stretch, &quote, next);
     }
+    let said = matches!(thread.waiting, Some(Trigger::RobotSays(_) | Trigger::HumanSays(..)));
+    let reacts = found.deeds.iter().any(|deed| deed::manner(deed.act).is_some());
+    // `she does not react; after six seconds she steps aside anyway`: not because it asked.
+    thread.delay_s = found.after_s.filter(|_| said && reacts && !thread.paused && thread.acts.is_empty());
+    thread.paused = false;
     if let Some(secs) = found.after_s {
-        thread.waiting = Some(Trigger::AfterSecs(secs));
+        // `The robot asks, and after a few seconds he steps aside`: so long after that, not after the start.
+        if thread.delay_s.is_none() {
+            thread.waiting = Some(Trigger::AfterSecs(secs));
+        }
     } else if let Some((cue, _)) = found.cue {
         thread.waiting = trigger(cue, &found, thread);
         thread.vague = found.distance_m.is_none();
@@ -319,6 +331,12 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             Subject::Robot
         } else {
             subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast)
+        };
+        // `An employee walks along. The robot comes from behind and wants to overtake.`: him.
+        let object = if matches!(act, Act::Behind | Act::Overtake) && subject == Subject::Robot && object.is_empty() {
+            story.cast.overtaken()
+        } else {
+            object
         };
         let answers = !told.is_empty() && !by_robot && subject == Subject::Robot;
         let subject = if answers { Subject::People(told.clone()) } else { subject };
@@ -469,6 +487,7 @@ fn meant(
         let said = text.get(from..to).unwrap_or_default();
         let declares = found.declares
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
+        let known = story.cast.people.len();
         let made_of: Vec<String> = words.iter().flat_map(|word| word.made_of.clone()).collect();
         let mut people = if made_of.is_empty() {
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)
@@ -476,6 +495,12 @@ fn meant(
             story.cast.made_of(mention, declares, said, &made_of)
         };
         story.cast.call(mention, words, &people);
+        // `a few people`, `several nurses`
+        let vague =
+            words.iter().any(|word| matches!(word.text.as_str(), "few" | "several" | "some" | "handful" | "many"));
+        if vague && mention.word.is_empty() && people.len() > 1 && people.iter().all(|i| *i >= known) {
+            story.cast.notes.push(format!("`{said}` names no number; it was read as {} humans", people.len()));
+        }
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);

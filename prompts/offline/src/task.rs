@@ -1,10 +1,25 @@
 //! The robot's task: from where, to where, and what is only said.
 
-use socrates_model::PlaceClass;
+use socrates_model::{Location, NodeId, PlaceClass};
 
-use crate::clause;
-use crate::cut::sentences;
+use crate::clause::{self, Found, mark};
+use crate::cut::{Stretch, sentences};
 use crate::lexicon::lexicon;
+use crate::named;
+use crate::words::Word;
+
+/// One end of the robot's way by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct End {
+    /// As the task says it.
+    pub(crate) name: String,
+    /// The nodes that the map calls so; none where it knows no such place.
+    pub(crate) nodes: Vec<NodeId>,
+    /// Class of those nodes, or of the words.
+    pub(crate) class: Option<PlaceClass>,
+    /// Whether the map has exactly this one: `ward 2`, not only some ward.
+    pub(crate) exact: bool,
+}
 
 /// What was read of the task.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,13 +27,21 @@ pub(crate) struct Task {
     pub(crate) start: Option<(PlaceClass, String)>,
     pub(crate) goal: Option<(PlaceClass, String)>,
     pub(crate) via: Option<(PlaceClass, String)>,
+    /// Beginnings and goals by name, in the order of the text; the first that the map knows counts.
+    pub(crate) starts: Vec<End>,
+    pub(crate) goals: Vec<End>,
     /// Words that ask for the way back.
     pub(crate) back: Option<String>,
     pub(crate) ignored: Vec<String>,
 }
 
+/// The nodes where a way begins or ends by name.
+pub(crate) fn nodes(ends: &[End]) -> &[NodeId] {
+    ends.iter().find(|end| !end.nodes.is_empty()).map_or(&[], |end| &end.nodes)
+}
+
 /// Reads a task such as `Take the elevator to deliver supplies` or `Bring mail from the lobby to the kitchen`.
-pub(crate) fn read(text: &str) -> Task {
+pub(crate) fn read(text: &str, location: &Location) -> Task {
     let mut task = Task::default();
     for mut stretch in sentences(text).into_iter().flatten() {
         let quote = stretch.quote(text).to_owned();
@@ -37,7 +60,11 @@ pub(crate) fn read(text: &str) -> Task {
             }
             continue;
         }
+        let named = named_ends(&mut task, &mut stretch, &found, text, location);
         for (class, at) in found.places {
+            if named.iter().any(|(from, to)| (*from..=*to).contains(&at)) {
+                continue;
+            }
             let before: Vec<&str> = (1..=3)
                 .filter_map(|back| at.checked_sub(back))
                 .filter_map(|i| stretch.words.get(i))
@@ -62,6 +89,7 @@ pub(crate) fn read(text: &str) -> Task {
                 *slot = Some((class, quote.clone()));
             }
         }
+        load(&mut stretch);
         for word in stretch.words {
             let lex = lexicon();
             let known =
@@ -71,26 +99,200 @@ pub(crate) fn read(text: &str) -> Task {
             }
         }
     }
+    // The name tells more than the kind of place.
+    for (slot, ends) in [(&mut task.start, &task.starts), (&mut task.goal, &task.goals)] {
+        let known = ends.iter().find(|end| !end.nodes.is_empty()).or_else(|| ends.first());
+        let class = known.and_then(|end| end.class.map(|class| (class, end)));
+        if let Some((class, end)) = class.filter(|(_, end)| slot.is_none() || !end.nodes.is_empty()) {
+            *slot = Some((class, end.name.clone()));
+        }
+    }
     task
+}
+
+/// Words before the beginning of a way, before its end, and before where the work is.
+const FROM: &[&str] = &["from"];
+const TO: &[&str] = &["to", "into", "towards", "toward", "reach", "visit"];
+const IN: &[&str] = &["in", "at", "inside"];
+/// Words between such a word and the name.
+const FILL: &[&str] = &[
+    "the", "a", "an", "its", "their", "our", "my", "your", "this", "that", "next", "nearest", "closest", "main", "new",
+];
+/// What a robot does for itself: `Go to charge`.
+const ITSELF: &[&str] = &["charge", "recharge", "refuel", "park", "work", "human"];
+
+/// Takes the ends of the way that a clause names; says which words those are.
+fn named_ends(
+    task: &mut Task,
+    stretch: &mut Stretch,
+    found: &Found,
+    said: &str,
+    location: &Location,
+) -> Vec<(usize, usize)> {
+    let lex = lexicon();
+    let mut taken = Vec::new();
+    for at in 0..stretch.words.len() {
+        let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+        let goes = TO.contains(&text(at));
+        if !goes && !FROM.contains(&text(at)) && !IN.contains(&text(at)) {
+            continue;
+        }
+        let from = (at + 1..).find(|k| !FILL.contains(&text(*k))).unwrap_or(at + 1);
+        let content = |word: &Word| {
+            word.stem != "robot" && (!lex.stop.contains(&word.text) || word.is_digits()) && word.text != "another"
+        };
+        let count = stretch.words.iter().skip(from).take(4).take_while(|word| content(word)).count();
+        // `from one corner to another`, `to the other end`, `to the nurse`
+        let person = found.mentions.iter().any(|mention| (from..from + count).contains(&mention.to));
+        if count == 0 || person {
+            continue;
+        }
+        let words = stretch.words.get(from..from + count).unwrap_or_default();
+        let (Some(first), Some(last)) = (words.first(), words.last()) else { continue };
+        let name = said.get(first.from..last.to).unwrap_or_default().to_owned();
+        let known = named::find(location, &name);
+        let class =
+            found.places.iter().find(|(_, place)| (from..from + count).contains(place)).map(|(class, _)| *class);
+        // `in the office`, in an office
+        let everywhere =
+            IN.contains(&text(at)) && named::telling(&name).iter().all(|word| location.name.contains(word));
+        let verb = from == at + 1
+            && (lex.verbs.contains(&first.stem)
+                || lex.task.contains(&first.stem)
+                || ITSELF.contains(&first.stem.as_str()));
+        let article = from > at + 1 || count == stretch.words.len() - from;
+        let wanted = match (&known, class) {
+            (Some(_), _) => !everywhere && (!verb || class.is_some()),
+            (None, _) if named::telling(&name).is_empty() => false,
+            (None, Some(class)) => goes || FROM.contains(&text(at)) || class == PlaceClass::Room,
+            (None, None) => !IN.contains(&text(at)) && article && !verb,
+        };
+        if !wanted {
+            continue;
+        }
+        let exact = known.as_ref().is_some_and(|known| known.exact);
+        let of_map = known.as_ref().map(|known| known.class).filter(|class| *class != PlaceClass::Plain);
+        let end =
+            End { name, nodes: known.map(|known| known.nodes).unwrap_or_default(), class: of_map.or(class), exact };
+        if FROM.contains(&text(at)) {
+            task.starts.push(end)
+        } else {
+            task.goals.push(end)
+        }
+        taken.push((from, from + count - 1));
+    }
+    for (from, to) in &taken {
+        mark(stretch, *from, *to);
+    }
+    taken
+}
+
+/// What the robot carries is part of its task, which the reading repeats: `deliver mail`.
+fn load(stretch: &mut Stretch) {
+    let carries = |word: &Word| {
+        matches!(
+            word.stem.as_str(),
+            "deliver"
+                | "bring"
+                | "carry"
+                | "transport"
+                | "fetch"
+                | "collect"
+                | "pick"
+                | "drop"
+                | "take"
+                | "delivery"
+                | "distribute"
+                | "haul"
+                | "move"
+                | "return"
+                | "hand"
+                | "clean"
+                | "pull"
+                | "push"
+                | "get"
+        )
+    };
+    let ends = |word: &Word| {
+        matches!(
+            word.text.as_str(),
+            "from"
+                | "to"
+                | "into"
+                | "in"
+                | "at"
+                | "on"
+                | "via"
+                | "through"
+                | "along"
+                | "past"
+                | "with"
+                | "while"
+                | "by"
+        )
+    };
+    let mut carried = false;
+    for word in &mut stretch.words {
+        carried = (carried || carries(word)) && !ends(word);
+        word.used |= carried;
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn of(text: &str) -> Task {
+        super::read(text, &crate::tests::map("office"))
+    }
+
     #[test]
     fn start_goal_and_leftovers_are_told_apart() {
-        let task = read("Take the elevator to deliver supplies");
+        let task = of("Take the elevator to deliver supplies");
         assert_eq!(task.goal.unwrap().0, PlaceClass::Elevator);
-        assert_eq!(task.ignored, ["supplies"]);
-        let task = read("Bring mail from the exit to the meeting room via the corridor");
+        assert_eq!(task.ignored, [""; 0]);
+        assert_eq!(of("Deliver juggled mail and juggle").ignored, ["juggle"]);
+        let task = of("Bring mail from the exit to the meeting room via the corridor");
         assert_eq!(task.start.unwrap().0, PlaceClass::Exit);
         assert_eq!(task.goal.unwrap().0, PlaceClass::Room);
         assert_eq!(task.via.unwrap().0, PlaceClass::Corridor);
-        let task = read("Deliver mail to the kitchen and come back to the exit");
+        let task = of("Deliver mail to the kitchen and come back to the exit");
         assert_eq!((task.goal.unwrap().0, task.back.as_deref()), (PlaceClass::Room, Some("come back to the exit")));
-        assert_eq!(read("Return the cup to the kitchen").back, None);
-        let task = read("Deliver coffee from one corner of the warehouse to another.");
+        assert_eq!(of("Return the cup to the kitchen").back, None);
+        let task = of("Deliver coffee from one corner of the warehouse to another.");
         assert_eq!(task.start, None);
+    }
+
+    type Said = (String, usize);
+
+    /// Names of the beginnings and goals with how many nodes of the map are called so.
+    fn ends(map: &str, text: &str) -> (Vec<Said>, Vec<Said>) {
+        let task = read(text, &crate::tests::map(map));
+        let said = |ends: &[End]| ends.iter().map(|end| (end.name.clone(), end.nodes.len())).collect();
+        (said(&task.starts), said(&task.goals))
+    }
+
+    #[test]
+    fn ends_of_the_way_are_found_by_name() {
+        let one = |name: &str, n: usize| vec![(name.to_owned(), n)];
+        for (map, text, start, goal) in [
+            (
+                "hospital",
+                "Take pills from the pharmacy to the nurse station",
+                one("pharmacy", 1),
+                one("nurse station", 1),
+            ),
+            ("office", "Drive to the reception", vec![], one("reception", 2)),
+            ("office", "Wash the cups in the kitchen", vec![], one("kitchen", 1)),
+            ("warehouse", "Bring a pallet to the loading dock", vec![], one("loading dock", 1)),
+            ("hospital", "Bring blood to the laboratory", vec![], one("laboratory", 0)),
+            ("hospital", "Bring linen to ward 1", vec![], one("ward 1", 1)),
+            ("office", "Deliver a parcel to the manager", vec![], vec![]),
+            ("office", "Deliver a parcel to the other end of the corridor", vec![], vec![]),
+            ("office", "Clean the floor in the office in the evening", vec![], vec![]),
+            ("office", "Go to charge", vec![], vec![]),
+        ] {
+            assert_eq!(ends(map, text), (start, goal), "{text}");
+        }
     }
 }

@@ -56,6 +56,7 @@ fn told(story: &mut Story, thread: &mut Thread, found: &Found, quote: &str) {
 /// A clause that only says when: it times the deeds before it, or those still to come.
 pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Found, quote: &str) {
     let Some((cue, _)) = found.cue else { return };
+    thread.paused = false;
     place_of(story, found, stretch, &thread.subject, quote);
     if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
         story.robot_says.push((gesture, quote.to_owned()));
@@ -266,6 +267,7 @@ pub(crate) fn quiet(
     if people.is_empty() {
         return;
     }
+    thread.paused = true;
     if found.in_group {
         story.cast.group(&people, quote);
     }

@@ -5,6 +5,7 @@ use socrates_model::{
     Action, FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request,
 };
 
+use crate::card::Ends;
 use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
@@ -36,7 +37,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
     let mut story = rough.map(story::read).unwrap_or_default();
-    let mut task = task::read(&asked.story);
+    let mut task = task::read(&asked.story, location);
     let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
     let context = aside::split(&request.social_context);
     for (at, found) in [("rough_scenario", &told), ("task", &asked), ("social_context", &context)] {
@@ -333,6 +334,55 @@ fn errand(task: &Task, reading: &mut Reading) {
     }
 }
 
+/// Says where the robot's way begins or ends otherwise than its task says by name.
+fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) {
+    let ends_of = reading.pattern.as_deref().and_then(crate::card::card);
+    let car = story.cast.people.iter().any(|person| {
+        let inside = person
+            .relation
+            .as_ref()
+            .is_some_and(|(relation, _)| matches!(relation, Relation::Leaving | Relation::Staying));
+        inside && person.start == Some(PlaceClass::Elevator)
+    });
+    // Where the scenario has the robot begin and end, whatever the task says.
+    let enters = story.robot_enters.as_ref().map(|(class, _)| *class).or_else(|| car.then_some(PlaceClass::Elevator));
+    let leaves = story.robot_leaves.as_ref().map(|(class, _)| *class);
+    let starts = ends_of.and_then(|card| card.start);
+    let stays = ends_of.is_some_and(|card| card.ends == Ends::With);
+    let leaves_people = ends_of.is_some_and(|card| card.ends == Ends::From);
+    for (what, named, other, people) in
+        [("start", &task.starts, leaves.or(starts), leaves_people), ("goal", &task.goals, enters, stays)]
+    {
+        let known = named.iter().find(|end| !end.nodes.is_empty());
+        for end in named {
+            let missing = end.nodes.is_empty();
+            // That the map has no such kind of place is said as a fault.
+            if missing && end.class.is_some_and(|class| !place::has(location, class)) {
+                continue;
+            }
+            let instead = if let Some(class) = other.filter(|class| end.class != Some(*class)) {
+                {
+                    let ends = if what == "start" { "begin" } else { "end" };
+                    format!("the scenario has its way {ends} at {}", place::an(class))
+                }
+            } else if people {
+                format!("in this scenario the robot's {what} is with the people")
+            } else if missing {
+                let place = known.map(|known| format!("`{}`", known.name));
+                let place = place.or_else(|| end.class.map(place::an));
+                let place = place
+                    .map_or_else(|| "a place that suits the scenario".to_owned(), |place| format!("{place} instead"));
+                format!("this map has no place of that name; the robot's {what} is {place}")
+            } else if !end.exact {
+                "this map has no place of that number; one of the same name is taken".to_owned()
+            } else {
+                continue;
+            };
+            reading.notes.push(format!("the robot's {what} `{}`: {instead}", end.name));
+        }
+    }
+}
+
 /// Words that want a deed more than once; what somebody does is played once.
 const OFTEN: &[&str] =
     &["again and again", "over and over", "time and again", "repeatedly", "several times", "many times"];
@@ -351,6 +401,7 @@ fn often(request: &Request, reading: &mut Reading) {
 
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     errand(task, reading);
+    ends(story, task, location, reading);
     often(request, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);

@@ -90,7 +90,13 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
         let weak =
             story.place.as_ref().is_none_or(|(old, _)| class == PlaceClass::Elevator && *old != PlaceClass::Elevator);
         let in_lobby = class == PlaceClass::ElevatorLobby && text(*at) == "lobby";
-        if !source && (weak || in_lobby) {
+        // `come out of a room and walk to the loading dock`: where people go is not where they are met.
+        let headed = before(*at, stretch, &["to", "into", "for"])
+            && matches!(class, PlaceClass::Exit | PlaceClass::Room | PlaceClass::OpenArea)
+            && found.mentions.iter().all(|mention| mention.to < *at)
+            && found.robots.is_empty()
+            && found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at);
+        if !headed && !source && (weak || in_lobby) {
             story.place = Some((class, quote.to_owned()));
         }
         // Where people go in words of their own is where a robot that leads them goes.

@@ -1,0 +1,131 @@
+//! Places by the names that a map gives them: `the nurse station`, `ward 2`, `the packing area`.
+
+use socrates_model::{GraphNode, Location, NodeId, PlaceClass};
+
+use crate::lexicon::lexicon;
+
+/// Words of types that say what kind of place it is, not which one.
+const KINDS: &[&str] = &[
+    "area",
+    "room",
+    "corridor",
+    "hallway",
+    "intersection",
+    "crossing",
+    "junction",
+    "passageway",
+    "passage",
+    "aisle",
+    "door",
+    "doorway",
+    "exit",
+    "elevator",
+    "lift",
+    "end",
+    "open",
+    "blind",
+    "corner",
+    "narrow",
+    "wide",
+    "node",
+    "space",
+    "zone",
+    "place",
+    "floor",
+    "main",
+    "station",
+    "desk",
+    "bay",
+    "in",
+];
+
+/// Other words for the same place.
+const SAME: &[(&str, &str)] = &[
+    ("conference", "meeting"),
+    ("pantry", "kitchen"),
+    ("kitchenette", "kitchen"),
+    ("canteen", "kitchen"),
+    ("dispensary", "pharmacy"),
+    ("packaging", "packing"),
+    ("foyer", "lobby"),
+];
+
+/// A place of a map by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Found {
+    /// The nodes that are called so.
+    pub(crate) nodes: Vec<NodeId>,
+    /// Class of the first of them.
+    pub(crate) class: PlaceClass,
+    /// Whether a number in the name is one of the map's: `ward 2`.
+    pub(crate) exact: bool,
+}
+
+fn tokens(text: &str) -> Vec<String> {
+    text.split(|c: char| !c.is_alphanumeric())
+        .map(str::to_lowercase)
+        .filter(|word| !word.is_empty())
+        .map(|word| SAME.iter().find(|(other, _)| *other == word).map_or(word, |(_, name)| (*name).to_owned()))
+        .map(|word| if number(&word) { word } else { lexicon().stem(&word) })
+        .collect()
+}
+
+fn number(word: &str) -> bool {
+    word.chars().all(|c| c.is_ascii_digit())
+}
+
+/// The words of a name that tell one place from others of its kind; none in `the room`.
+pub(crate) fn telling(name: &str) -> Vec<String> {
+    tokens(name)
+        .into_iter()
+        .filter(|word| number(word) || word.chars().count() > 1)
+        .filter(|word| !KINDS.contains(&word.as_str()) && !lexicon().stop.contains(word))
+        .collect()
+}
+
+/// The nodes of a map whose type, or whose door, has most of the words of a name; `None` where it has none of them.
+pub(crate) fn find(location: &Location, name: &str) -> Option<Found> {
+    let wanted = telling(name);
+    let own = |node: &GraphNode| {
+        let mut own = tokens(&node.kind);
+        own.extend(location.door_of(&node.id).map(|door| tokens(&door.id)).unwrap_or_default());
+        own
+    };
+    // A number alone is no name: `room 214` is none of the map's.
+    let hits = |node: &GraphNode| {
+        let own = own(node);
+        let words = wanted.iter().filter(|word| own.contains(word) && !number(word)).count();
+        if words == 0 { 0 } else { wanted.iter().filter(|word| own.contains(word)).count() }
+    };
+    let most = location.graph.nodes.iter().map(hits).max().filter(|most| *most > 0)?;
+    let found: Vec<&GraphNode> = location.graph.nodes.iter().filter(|node| hits(node) == most).collect();
+    let first = found.first()?;
+    let there = own(first);
+    Some(Found {
+        class: PlaceClass::of_type(&first.kind),
+        exact: wanted.iter().all(|word| !number(word) || there.contains(word)),
+        nodes: found.into_iter().map(|node| node.id.clone()).collect(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ids(map: &str, name: &str) -> Vec<String> {
+        let location = socrates_maps::shipped::load(map).unwrap();
+        find(&location, name).map(|found| found.nodes.iter().map(ToString::to_string).collect()).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_map_knows_its_own_names() {
+        assert_eq!(ids("hospital", "nurse station"), ["ns"]);
+        assert_eq!(ids("hospital", "ward 2"), ["p2"]);
+        assert_eq!(ids("hospital", "wards"), ["p1", "p2"]);
+        assert_eq!(ids("office", "reception desk"), ["r1", "r2"]);
+        assert_eq!(ids("warehouse", "loading bay"), ["kx"]);
+        for (map, name) in [("hospital", "laboratory"), ("office", "room 214"), ("hospital", "charging station")] {
+            assert!(ids(map, name).is_empty(), "{name}");
+        }
+    }
+}
