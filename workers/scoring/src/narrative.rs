@@ -184,7 +184,11 @@ pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
     let judged_outcomes = outcome().filter(|(_, finding)| finding.standing != Standing::NotApplicable).count();
     if judged_outcomes > 0 {
         let good = outcome().filter(|(_, f)| matches!(f.standing, Standing::Holds | Standing::Late)).count();
-        parts.push(format!("{good} of {judged_outcomes} outcome clauses"));
+        let missed =
+            |finding: &crate::fidelity::Finding| matches!(finding.standing, Standing::Fails | Standing::NotTriggered);
+        let first = outcome().find(|(_, finding)| missed(finding));
+        let not = first.map_or_else(String::new, |(clause, _)| format!(", not: {}", clause.text));
+        parts.push(format!("{good} of {judged_outcomes} outcome clauses{not}"));
     }
     let stuck = scene
         .signals

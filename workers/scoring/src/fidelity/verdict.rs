@@ -31,10 +31,8 @@ pub fn rule(
     reference: Option<Verdict>,
 ) -> Ruling {
     let total = judged.deciding().count();
-    let seen =
-        judged.deciding().filter(|(_, finding)| matches!(finding.standing, Standing::Holds | Standing::Late)).count();
     let has_robot = evidence.recording.header.agents.iter().any(|info| info.agent == socrates_model::AgentId::Robot);
-    let tally = format!("{seen} of {total} setup clauses");
+    let tally = tally(judged);
     let invalid = |why: String| Ruling { verdict: Verdict::Invalid, text: why, score: 0.0 };
     if evidence.proposal.is_none() && evidence.paths.is_none() {
         return invalid("nothing to verify: there is neither a proposal nor paths".to_owned());
@@ -86,6 +84,21 @@ pub fn rule(
         text.push_str(&format!(" · seen from {from:.1} s to {to:.1} s"));
     }
     Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
+}
+
+/// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.
+fn tally(judged: &Judged) -> String {
+    let count = |wanted: Standing| judged.deciding().filter(|(_, finding)| finding.standing == wanted).count();
+    let (late, unjudged) = (count(Standing::Late), judged.unjudged().count());
+    let seen = count(Standing::Holds) + late;
+    let mut text = format!("{seen} of {} setup clauses", judged.deciding().count() + unjudged);
+    if late > 0 {
+        text.push_str(&format!(", {late} of them late"));
+    }
+    if let Some((clause, finding)) = judged.unjudged().next() {
+        text.push_str(&format!(", {unjudged} not applicable: {}: {}", clause.id, finding.evidence));
+    }
+    text
 }
 
 /// First and last time of the evidence of deciding clauses.
