@@ -3,11 +3,11 @@
 use socrates_model::reading::{Fact, FactKind};
 use socrates_model::report::Standing;
 use socrates_model::{
-    Action, Clause, ClauseRole, FORMAT, Gesture, HumanId, PlaceClass, Predicate, Reading, Relation, Report, Rule,
-    Trigger, Verdict,
+    Action, Clause, ClauseRole, EventKind, FORMAT, Gesture, HumanId, PlaceClass, Predicate, Reading, Relation, Report,
+    Rule, Trigger, Verdict,
 };
 
-use crate::fixture::{Walk, floor, paths, recording};
+use crate::fixture::{Walk, event, floor, node, paths, recording};
 use crate::scenarios::{Case, corridor, must, proposal};
 
 const H1: HumanId = HumanId::new(1);
@@ -196,4 +196,35 @@ fn the_first_outcome_that_is_missing_and_what_came_late_are_told() {
     assert_eq!(report.verdict, Verdict::RealisedLate, "{}", report.verdict_text);
     assert!(report.verdict_text.contains("setup clauses, 1 of them late · "), "{}", report.verdict_text);
     assert!(report.robot_text.contains("outcome clauses, not: the robot keeps 2 m"), "{}", report.robot_text);
+}
+
+#[test]
+fn the_story_tells_when_somebody_goes_whom_it_follows_and_who_is_come_to() {
+    let mut plan = proposal(3, vec![]);
+    plan.humans[1].rules = vec![Rule {
+        when: vec![Trigger::Always],
+        act: Action::FollowHuman(H1),
+        gesture: None,
+        for_s: None,
+        latched: false,
+    }];
+    plan.humans[2].relation = Relation::Static;
+    let ways = paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m"), (&["b", "m", "a"], ""), (&["m"], "m")]);
+    let case = Case { place: corridor(), plan, ways, reading: None };
+    let walks = |number: u32, y: f64| Walk::human_through(number, &[(0., 8., y), (4., 8., y), (24., -8., y)]);
+    let mut run = recording(
+        &[Walk::robot(-8., -0.5, 0.8, 0.), walks(1, 0.5), walks(2, 1.1), Walk::human(3, 0., 1.2, 0., 0.)],
+        24.,
+        0.01,
+    );
+    for (number, leaf) in [(1, "RegularNav"), (2, "FollowHuman"), (3, "RegularNav")] {
+        event(&mut run, 0.0, EventKind::Leaf { human: HumanId::new(number), leaf: leaf.into() });
+    }
+    event(&mut run, 10.0, EventKind::Encounter { human: HumanId::new(3), node: node("m"), gap_s: 0.0, nth: 1 });
+    let report = case.judge(&run);
+    for line in ["4.0 s  human_1 sets off", "0.0 s  human_2 follows human_1", "10.0 s  the robot comes to human_3 at m"]
+    {
+        assert!(report.story.iter().any(|told| told == line), "{line}: {:?}", report.story);
+    }
+    assert!(!report.story.iter().any(|told| told.contains("human_3 walks on")), "it never walks: {:?}", report.story);
 }

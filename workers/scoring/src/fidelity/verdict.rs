@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{Predicate, Verdict};
+use socrates_model::{Predicate, Relation, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -72,7 +72,16 @@ pub fn rule(
     let by_reference = matches!(reference, Some(Verdict::Realised | Verdict::RealisedLate));
     let prevented = lost && by_reference && evidence.recording.header.planner != REFERENCE;
     let mut text = tally;
-    if let Some(gap) = gaps.values().map(|gap| gap.abs()).max_by(f64::total_cmp) {
+    // Whoever stands there all the time is met at no time of its own.
+    let stands = |name: &str| {
+        evidence.proposal.is_some_and(|proposal| {
+            let who = name.split(' ').next().unwrap_or(name);
+            let human = proposal.humans.iter().find(|human| human.id.to_string() == who);
+            human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying))
+        })
+    };
+    let timed = gaps.iter().filter(|(name, _)| !stands(name)).map(|(_, gap)| gap.abs());
+    if let Some(gap) = timed.max_by(f64::total_cmp) {
         text.push_str(&format!(" · encounter gap {gap:.1} s"));
     }
     if let Some((clause, finding)) = culprit {
