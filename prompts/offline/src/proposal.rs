@@ -273,7 +273,6 @@ fn when(text: &str) -> Option<RobotWhen> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::tests::{map, proposed, request};
 
     #[test]

@@ -49,7 +49,7 @@ pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -
     };
     let near = door.and_then(|id| place.graph.node(id)).map(|node| node.at);
     let (from, to) = narrowest(field, &place.graph.polyline(nodes), near)?;
-    let id = door.or(nodes.first()).map(ToString::to_string)?;
+    let id = door.or_else(|| nodes.first()).map(ToString::to_string)?;
     let kind = if class(first) == Some(PlaceClass::Elevator) { DoorKind::Elevator } else { DoorKind::Room };
     let inside = nodes.first().cloned().into_iter().collect();
     Some(Door { id, kind, from, to, opens: DoorOpens::Always, hold_s: 0.0, inside })
