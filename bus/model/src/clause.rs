@@ -162,7 +162,7 @@ pub enum Predicate {
         /// For how long.
         for_s: f64,
     },
-    /// The human looks at the robot (heading within 20°) while stopped, for `for_s`.
+    /// The human looks at the robot (heading within 20°) while stopped, for `for_s`; it has seen it then.
     Looks {
         /// Who.
         human: HumanId,
@@ -210,7 +210,7 @@ pub enum Predicate {
     Leaves {
         /// Who.
         human: HumanId,
-        /// The door, or empty for the door of the human's first node.
+        /// The door, or empty for the door of the human's first node; where its room has none, the opening.
         #[serde(default)]
         door: String,
     },
@@ -218,7 +218,7 @@ pub enum Predicate {
     StaysInside {
         /// Who.
         human: HumanId,
-        /// The door, or empty for the door of the human's first node.
+        /// The door, or empty for the door of the human's first node; where its room has none, the opening.
         #[serde(default)]
         door: String,
     },
@@ -226,7 +226,7 @@ pub enum Predicate {
     Enters {
         /// Who.
         human: HumanId,
-        /// The door, or empty for the one nearest to the human's last node.
+        /// The door, or empty for that of the human's last node, the opening of its room, or the nearest door.
         #[serde(default)]
         door: String,
     },

@@ -96,6 +96,7 @@ impl Default for RobotRequest {
 #[serde(deny_unknown_fields, default)]
 pub struct RunRequest {
     /// Simulation seeds: `"1"`, `"1..20"`, `"1,4,9"`. Default `"1"`.
+    #[serde(deserialize_with = "seeds_text")]
     pub seeds: String,
     /// `"auto"` (until done, at most 120 s) or seconds such as `"60s"`. Default `auto`.
     pub duration: String,
@@ -109,6 +110,21 @@ impl Default for RunRequest {
     fn default() -> Self {
         Self { seeds: "1".to_owned(), duration: "auto".to_owned(), author: "auto".to_owned(), variants: 1 }
     }
+}
+
+/// Reads the seeds, and says how to write them where they are no text.
+fn seeds_text<'de, D: serde::Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    struct Text;
+    impl serde::de::Visitor<'_> for Text {
+        type Value = String;
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("seeds as a text in quotation marks: \"1..3\" or \"1,2,3\"")
+        }
+        fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<String, E> {
+            Ok(text.to_owned())
+        }
+    }
+    from.deserialize_str(Text)
 }
 
 /// Facts that win over what the text says.
@@ -292,6 +308,9 @@ mod tests {
             request.run.seeds = text.into();
             assert_eq!(request.seeds().unwrap().len(), count);
         }
+        let list = serde_json::from_str::<RunRequest>(r#"{"seeds": [1, 2, 3]}"#).unwrap_err().to_string();
+        assert!(list.contains(r#"expected seeds as a text in quotation marks: "1..3" or "1,2,3""#), "{list}");
+        assert_eq!(serde_json::from_str::<RunRequest>(r#"{"seeds": "1,2"}"#).unwrap().seeds, "1,2");
         request.run.seeds = "9..1".into();
         assert!(request.seeds().is_err());
     }

@@ -16,6 +16,12 @@ const MARK_SECS: f64 = 5.0;
 /// Below this speed somebody stands, m/s.
 const STANDS_MPS: f64 = 0.1;
 
+/// Height of the heading where nothing in it takes more than its line, px.
+const HEAD_PX: f64 = 118.0;
+/// Most lines of the verdict's reason and of what the robot did: enough for a sentence with its cause at the end.
+const LINES: usize = 4;
+/// From one line of the heading to the next, px.
+const LINE_PX: f64 = 18.0;
 /// Height of the small map beside the heading, px.
 const LOCATOR_PX: f64 = 96.0;
 
@@ -37,20 +43,24 @@ pub fn run_picture(
         .flat_map(|info| recording.track(info.agent).filter(|state| there.is(state)).map(|state| state.point()))
         .chain(way.iter().copied())
         .collect();
-    let head = 118.0;
-    let frame = Frame::focused(location, &seen, 1160.0, 800.0, (20.0, head));
-    let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, head)).cells;
+    let mut frame = Frame::focused(location, &seen, 1160.0, 800.0, (20.0, HEAD_PX));
+    let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, HEAD_PX)).cells;
     let (w, h) = frame.size();
     let width = (w + 40.0).max(760.0);
+    let words = width - 40.0 - if focused { 210.0 } else { 0.0 };
+    let told = report.map(|report| Told::of(report, words));
+    let head = told.as_ref().map_or(HEAD_PX, |told| told.bottom().max(HEAD_PX));
+    frame.at.1 = head;
     let height = head + h + 40.0 + legend_px(recording.header.agents.len()) + 14.0;
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
-    let mut words = width - 40.0;
     if focused {
         draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, (190.0, LOCATOR_PX));
-        words -= 210.0;
     }
-    draw_heading(&mut svg, report, title, words);
+    svg.heading((20.0, 34.0), &wrapped(title, words, 24.0, 1).concat(), 24.0, palette::INK);
+    if let Some(told) = told {
+        told.draw(&mut svg);
+    }
     svg.begin_clip(frame.at, frame.size());
     draw_floor(&mut svg, location, &frame);
     draw_graph(&mut svg, location, &frame, palette::UNKNOWN, 1.5);
@@ -113,26 +123,59 @@ pub fn run_picture(
     svg.finish()
 }
 
-/// Title, verdict and what the robot did, each cut where it is too long.
-fn draw_heading(svg: &mut Svg, report: Option<&Report>, title: &str, width: f64) {
-    svg.heading((20.0, 34.0), &wrapped(title, width, 24.0, 1).concat(), 24.0, palette::INK);
-    let Some(report) = report else { return };
-    let good = matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate);
-    let color = if good { palette::GOOD } else { palette::BAD };
-    let verdict = report.verdict.name().replace('_', " ");
-    let pill = text_width(&verdict, 15.0) + 22.0;
-    svg.rect((20.0, 46.0), (pill, 24.0), &format!("rx=\"12\" fill=\"{color}\""));
-    let middle = 20.0 + pill / 2.0;
-    svg.text(
-        (middle, 63.0),
-        &verdict,
-        "font-size=\"15\" text-anchor=\"middle\" fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"0.6\"",
-    );
-    let first = wrapped(&report.verdict_text, width - pill - 12.0, 15.0, 1).concat();
-    svg.text((32.0 + pill, 63.0), &first, &format!("font-size=\"15\" fill=\"{}\"", palette::INK));
-    let robot = format!("{} · seed {}", report.robot_text, report.seed);
-    for (line, y) in wrapped(&robot, width, 14.0, 2).iter().zip([90.0, 108.0]) {
-        svg.text((20.0, y), line, &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET));
+/// What the heading tells of a run: its verdict with the reason beside it, and what the robot did, in lines.
+struct Told {
+    verdict: String,
+    color: &'static str,
+    pill: f64,
+    reason: Vec<String>,
+    robot: Vec<String>,
+}
+
+impl Told {
+    fn of(report: &Report, width: f64) -> Self {
+        let good = matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate);
+        let verdict = report.verdict.name().replace('_', " ");
+        let pill = text_width(&verdict, 15.0) + 22.0;
+        Self {
+            color: if good { palette::GOOD } else { palette::BAD },
+            reason: wrapped(&report.verdict_text, width - pill - 12.0, 15.0, LINES),
+            robot: wrapped(&format!("{} · seed {}", report.robot_text, report.seed), width, 14.0, LINES),
+            verdict,
+            pill,
+        }
+    }
+
+    /// Where the line of this number is, px.
+    fn y(line: usize) -> f64 {
+        #[expect(clippy::cast_precision_loss, reason = "a few lines")]
+        let line = line as f64;
+        63.0 + line * LINE_PX
+    }
+
+    /// Lines of the robot begin below those of the reason, a little apart.
+    fn robot_y(&self, line: usize) -> f64 {
+        Self::y(self.reason.len() + line) + 9.0
+    }
+
+    fn bottom(&self) -> f64 {
+        self.robot_y(self.robot.len()) - 8.0
+    }
+
+    fn draw(&self, svg: &mut Svg) {
+        svg.rect((20.0, 46.0), (self.pill, 24.0), &format!("rx=\"12\" fill=\"{}\"", self.color));
+        svg.text(
+            (20.0 + self.pill / 2.0, 63.0),
+            &self.verdict,
+            "font-size=\"15\" text-anchor=\"middle\" fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"0.6\"",
+        );
+        for (line, text) in self.reason.iter().enumerate() {
+            let style = format!("font-size=\"15\" fill=\"{}\"", palette::INK);
+            svg.text((32.0 + self.pill, Self::y(line)), text, &style);
+        }
+        for (line, text) in self.robot.iter().enumerate() {
+            svg.text((20.0, self.robot_y(line)), text, &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET));
+        }
     }
 }
 
@@ -226,5 +269,22 @@ fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, fr
         let which = if again.contains(human) { format!("{}: ", ordinal(*nth)) } else { String::new() };
         let words = format!("{which}{:.1} s", event.time.secs());
         draw_label(svg, labels, (x, y), &words, (palette::INK, 15.0), 11.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_reason_goes_on_in_lines_and_the_map_moves_down() {
+        let run = crate::fixture::walk(1);
+        let short = Told::of(&crate::fixture::report(&run, "9 of 9 setup clauses"), 900.0);
+        assert_eq!((short.reason.len(), short.robot_y(0)), (1, 90.0));
+        let why = "9 of 10 setup clauses · encounter gap 0.0 s · c6: trigger at 6.6 s (when the robot says EXCUSE_ME), \
+                   but human_1 never gives way to the robot";
+        let long = Told::of(&crate::fixture::report(&run, why), 700.0);
+        assert!(long.reason.len() > 1 && long.bottom() > short.bottom(), "{:?}", long.reason);
+        assert_eq!(long.reason.join(" "), why, "nothing of the cause is cut");
     }
 }

@@ -243,8 +243,8 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
         let predicate =
             Predicate::Reacts { human: id, when: rule.when.clone(), act: rule.act.clone(), within_s: 3.0 + late_s };
-        // The deed itself is the must; its exact moment is judged beside it.
-        list.setup(plain, source, format!("{} {id} {}", when.join(" and "), done(&rule.act)), predicate);
+        // Asked for with its reason, it is a must with its reason: the deed alone may come of itself.
+        list.setup(true, source, format!("{} {id} {}", when.join(" and "), done(&rule.act)), predicate);
     }
 }
 
@@ -358,5 +358,23 @@ fn of_card(list: &mut List, part: &Part<'_>, proposal: &Proposal, location: &Loc
             let must = clause.must && (part.by_card || clause.role == ClauseRole::Outcome);
             list.add(clause.role, must, "", text, predicate);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{map, proposed, request};
+
+    #[test]
+    fn a_reaction_asked_for_with_its_reason_is_a_must_with_its_reason() {
+        let rough = "A picker stands in the narrow aisle. When the robot asks to pass, the picker steps aside.";
+        let proposal = proposed(&request("Bring an empty tote to the packing area", Some(rough)), &map("warehouse"));
+        let reacts: Vec<&Clause> = proposal
+            .expected_events
+            .iter()
+            .filter(|clause| matches!(clause.predicate, Predicate::Reacts { act: Action::GiveWay, .. }))
+            .collect();
+        assert!(!reacts.is_empty() && reacts.iter().all(|clause| clause.must), "{:#?}", proposal.expected_events);
     }
 }

@@ -15,6 +15,8 @@ use crate::{NAME, default_cast, events, pattern, place, prose};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
+/// What a story is about that no card tells.
+const ABOUT: &str = "People and the robot meet.";
 
 /// Answers a proposal question.
 pub(crate) fn propose(question: &Question) -> Proposal {
@@ -46,8 +48,8 @@ pub(crate) fn propose(question: &Question) -> Proposal {
     let part = events::Part { card: found, by_card, read: &read };
     let robot = robot(reading, request, found, &humans, location);
     let (title, about, id) = found.map_or_else(
-        || ("A free scenario".to_owned(), "People and the robot meet.".to_owned(), FREE.to_owned()),
-        |card| (card.title.clone(), card.about.clone(), card.id.clone()),
+        || ("A free scenario".to_owned(), ABOUT.to_owned(), FREE.to_owned()),
+        |card| (card.title.clone(), about(card, by_card, &humans), card.id.clone()),
     );
     let mut humans = humans;
     for fact in &reading.facts {
@@ -232,6 +234,14 @@ fn robot(
     RobotProposal { task, start, goal, script, expected_behavior: expected }
 }
 
+/// What a card says it is about, where its parts are played: people who overtake do not come towards the robot.
+fn about(card: &Card, by_card: bool, humans: &[HumanProposal]) -> String {
+    let played = card.roles.iter().filter(|role| role.count[0] > 0).all(|role| {
+        humans.iter().any(|human| human.relation == role.relation && (!role.group || human.group.is_some()))
+    });
+    if by_card || played { card.about.clone() } else { ABOUT.to_owned() }
+}
+
 /// Whoever waits for a word of the robot must hear it.
 pub(crate) fn hear(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
     for heard in humans.iter().flat_map(|human| &human.rules).flat_map(|rule| &rule.when) {
@@ -258,5 +268,19 @@ fn when(text: &str) -> Option<RobotWhen> {
         "human" => Some(RobotWhen::HumanNear(number().unwrap_or(3.0))),
         "after" => number().map(RobotWhen::AfterSecs),
         _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::{map, proposed, request};
+
+    #[test]
+    fn the_story_tells_of_a_card_only_what_the_people_do() {
+        let about = |rough: &str| proposed(&request("Bring a blood sample", Some(rough)), &map("hospital")).description;
+        let over = about("Two paramedics walking together overtake the robot while a patient comes the other way.");
+        assert!(!over.contains("towards the robot. It happens"), "{over}");
+        let towards = about("Three nurses walk together towards the robot in the corridor.");
+        assert!(towards.starts_with("People walk together towards the robot."), "{towards}");
     }
 }

@@ -55,6 +55,11 @@ fn parsed<T>(found: Result<T, Vec<socrates_model::Fault>>) -> T {
     found.unwrap_or_else(|faults| panic!("{faults:#?}"))
 }
 
+/// The proposal as its stage would make it.
+pub(crate) fn proposed(request: &Request, location: &Location) -> Proposal {
+    answers(request, location, 1).1
+}
+
 /// Proposal and paths as the stages would make them.
 fn answers(request: &Request, location: &Location, seed: u64) -> (Question, Proposal, Paths) {
     let mut ask = question(Stage::Proposal, request, location, seed);

@@ -34,6 +34,8 @@ mod score;
 mod stage;
 
 #[cfg(test)]
+mod asked;
+#[cfg(test)]
 mod crowds;
 #[cfg(test)]
 mod fixture;

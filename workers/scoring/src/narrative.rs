@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, ordinal};
+use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, Relation, ordinal};
 
 use crate::fidelity::{Judged, Signals, does, to_millis};
 use crate::metrics::Scene;
@@ -13,15 +13,31 @@ use crate::tracks::MOVING_MPS;
 const MAX_LINES: usize = 120;
 /// Shorter stops of the robot are not worth a line, s.
 const STOP_SECS: f64 = 0.8;
+/// Who moves so soon after it is to walk goes at once, s.
+const AT_ONCE_SECS: f64 = 0.3;
 
 /// One line per thing that happened, in time order: `3.2 s  human_1 sees the robot at 4.8 m`.
 pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     let mut lines: Vec<(f64, String)> = Vec::new();
     let mut add = |t: f64, text: String| lines.push((t, text));
-    let again = several(&signals.evidence.recording.events);
-    for event in &signals.evidence.recording.events {
-        if let Some(text) = told(&event.kind, &again) {
-            add(event.time.secs(), text);
+    let events = &signals.evidence.recording.events;
+    let again = several(events);
+    let mut led: BTreeSet<HumanId> = BTreeSet::new();
+    for (index, event) in events.iter().enumerate() {
+        let t = event.time.secs();
+        if let EventKind::Leaf { human, leaf } = &event.kind {
+            let first = led.insert(*human);
+            if does(leaf, &Action::Navigate) {
+                // Who is sent on its way and held back for a while goes when it goes.
+                let next = events.iter().skip(index + 1).find(|later| is_leaf_of(&later.kind, *human));
+                if let Some(goes) = goes_at(signals, *human, t, next.map_or(f64::INFINITY, |next| next.time.secs())) {
+                    add(goes, format!("{human} {}", if first { "sets off" } else { "walks on" }));
+                }
+                continue;
+            }
+        }
+        if let Some(text) = told(signals, &event.kind, &again) {
+            add(t, text);
         }
     }
     let has_gestures =
@@ -56,16 +72,37 @@ fn several(events: &[Event]) -> BTreeSet<HumanId> {
     events.iter().filter_map(|event| again(&event.kind)).collect()
 }
 
+fn is_leaf_of(kind: &EventKind, human: HumanId) -> bool {
+    matches!(kind, EventKind::Leaf { human: who, .. } if *who == human)
+}
+
+/// When somebody who is to walk from a time on first moves, before another time; `None` where it never does.
+fn goes_at(signals: &Signals<'_>, human: HumanId, from_s: f64, to_s: f64) -> Option<f64> {
+    let Some(track) = signals.tracks.human(human) else { return Some(from_s) };
+    let moves = track.present().find(|sample| sample.t >= from_s && sample.t < to_s && sample.speed() > MOVING_MPS)?;
+    Some(if moves.t - from_s <= AT_ONCE_SECS { from_s } else { moves.t })
+}
+
+/// Whether somebody stands where the robot comes by: then there is no time of its own to compare.
+fn stands(signals: &Signals<'_>, human: HumanId) -> bool {
+    let relation = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map(|human| human.relation);
+    matches!(relation, Some(Relation::Static | Relation::Staying))
+}
+
 /// An event in words; steps along paths are not told.
-fn told(kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
+fn told(signals: &Signals<'_>, kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
     Some(match kind {
         EventKind::Gesture { gesture: Gesture::None, .. } | EventKind::Node { .. } => return None,
         EventKind::Gesture { agent, gesture } => format!("{agent} says {gesture}"),
         EventKind::Leaf { human, leaf } => match phrase(leaf) {
             Some(words) => format!("{human} {words}"),
+            None if does(leaf, &Action::FollowHuman(*human)) => format!("{human} follows {}", leader(signals, *human)),
             None => format!("{human} runs {leaf}"),
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
+        EventKind::Encounter { human, node, .. } if stands(signals, *human) => {
+            format!("the robot comes to {human} at {node}")
+        }
         EventKind::Encounter { human, node, gap_s, nth } => {
             let which = if again.contains(human) { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
             format!("{human} and the robot meet{which} at {node}, gap {:.1} s", to_millis(*gap_s).abs())
@@ -77,6 +114,13 @@ fn told(kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
         EventKind::Stuck { agent } => format!("{agent} is stuck"),
         EventKind::End { reason } => format!("the run ends: {reason}"),
     })
+}
+
+/// Whom somebody follows who follows another human.
+fn leader(signals: &Signals<'_>, human: HumanId) -> String {
+    let rules = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(&[][..], |who| &who.rules);
+    let led = rules.iter().find_map(|rule| if let Action::FollowHuman(id) = rule.act { Some(id) } else { None });
+    led.map_or_else(|| "another human".to_owned(), |id| id.to_string())
 }
 
 /// What a leaf does, in words.
@@ -184,7 +228,11 @@ pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
     let judged_outcomes = outcome().filter(|(_, finding)| finding.standing != Standing::NotApplicable).count();
     if judged_outcomes > 0 {
         let good = outcome().filter(|(_, f)| matches!(f.standing, Standing::Holds | Standing::Late)).count();
-        parts.push(format!("{good} of {judged_outcomes} outcome clauses"));
+        let missed =
+            |finding: &crate::fidelity::Finding| matches!(finding.standing, Standing::Fails | Standing::NotTriggered);
+        let first = outcome().find(|(_, finding)| missed(finding));
+        let not = first.map_or_else(String::new, |(clause, _)| format!(", not: {}", clause.text));
+        parts.push(format!("{good} of {judged_outcomes} outcome clauses{not}"));
     }
     let stuck = scene
         .signals

@@ -35,15 +35,24 @@ fn block_mark(moment: &Moment) -> Mark {
     Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()))
 }
 
-fn look_mark(moment: &Moment) -> Mark {
-    let still = (MOVING_MPS - moment.human.speed()) / MOVING_MPS;
-    let turned = (LOOK_RAD - moment.human.bearing(&moment.robot.at).abs()) / LOOK_RAD;
-    let seen = match moment.sight {
-        Some(true) => 1.0,
-        Some(false) => -1.0,
-        None => (LOOK_REACH_M - moment.distance_m) / LOOK_REACH_M,
+/// How far somebody looks at the robot at each moment: stopped and turned to it (`spec/case_studies`), having seen it since
+/// it began. Whose eyes follow a robot that a door frame hides for a moment looks all the same. A moment at which it
+/// `may` not be a look never is one.
+fn look_marks(moments: &[Moment], may: impl Fn(f64) -> bool) -> Vec<Mark> {
+    let mut seen = false;
+    let mark = |moment: &Moment| {
+        let still = (MOVING_MPS - moment.human.speed()) / MOVING_MPS;
+        let turned = (LOOK_RAD - moment.human.bearing(&moment.robot.at).abs()) / LOOK_RAD;
+        let kept = still.min(turned).min(if may(moment.t) { 1.0 } else { -0.1 });
+        let reach = match moment.sight {
+            Some(true) => 1.0,
+            Some(false) => -1.0,
+            None => (LOOK_REACH_M - moment.distance_m) / LOOK_REACH_M,
+        };
+        seen = kept >= 0.0 && (seen || reach >= 0.0);
+        Mark::new(moment.t, kept.min(if seen { 1.0 } else { reach }))
     };
-    Mark::new(moment.t, still.min(turned).min(seen))
+    moments.iter().map(mark).collect()
 }
 
 fn flee_mark(moment: &Moment) -> Mark {
@@ -77,11 +86,7 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         let spans = signals.leaves_of(human).iter();
         spans.filter(|span| does(&span.name, &Action::LookAtRobot)).any(|span| t >= span.from_s && t <= span.to_s)
     };
-    let mark = |moment: &Moment| {
-        let mark = look_mark(moment);
-        if by_rule && !runs(moment.t) { Mark::new(mark.t, mark.margin.min(-0.1)) } else { mark }
-    };
-    let marks = signals.of(human).iter().map(mark).collect();
+    let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
     lasting(signals, human, marks, for_s, GESTURE_M, &format!("stopped and looking at the robot for {for_s:.1} s"))
 }
 
@@ -262,7 +267,7 @@ fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>,
             (marks.collect(), 0.3)
         }
         Action::Block => (moments.iter().map(block_mark).collect(), 0.5),
-        Action::LookAtRobot => (moments.iter().map(look_mark).collect(), 0.5),
+        Action::LookAtRobot => (look_marks(moments, |_| true), 0.5),
         Action::Approach => {
             let marks = moments.iter().map(|m| {
                 let nearing = -m.human.velocity.dot(&m.away()) - 0.2;

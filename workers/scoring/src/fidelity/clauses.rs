@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::convert::identity;
 
 use socrates_model::report::Standing;
-use socrates_model::{Clause, ClauseResult, ClauseRole, HumanId, Predicate, Relation, ordinal, rule::RobotDo};
+use socrates_model::{
+    Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, ordinal, rule::RobotDo,
+};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
@@ -40,6 +42,13 @@ impl Judged {
         })
     }
 
+    /// Clauses that should decide and could not be judged.
+    pub fn unjudged(&self) -> impl Iterator<Item = &(Clause, Finding)> {
+        self.clauses.iter().filter(|(clause, finding)| {
+            clause.role == ClauseRole::Setup && clause.must && finding.standing == Standing::NotApplicable
+        })
+    }
+
     /// The clauses as the report has them.
     #[must_use]
     pub fn results(&self) -> Vec<ClauseResult> {
@@ -67,6 +76,9 @@ impl Judged {
 pub fn judge(signals: &Signals<'_>) -> Judged {
     let mut clauses: Vec<Clause> =
         signals.evidence.proposal.map_or_else(Vec::new, |proposal| proposal.expected_events.clone());
+    for clause in &mut clauses {
+        clause.must |= asked(signals, clause);
+    }
     clauses.extend(demanded(signals, &clauses));
     clauses.sort_by_key(|clause| clause.role == ClauseRole::Outcome);
     let flaws = flaws(signals);
@@ -86,6 +98,18 @@ pub fn judge(signals: &Signals<'_>) -> Judged {
         .collect();
     let uncovered = coverage::uncovered(signals.evidence, &clauses);
     Judged { clauses, flaws, uncovered }
+}
+
+/// Whether the request asks for the very reaction of a clause: then it decides, whatever the proposal says of it. A run
+/// in which its reason came and it did not is never realised.
+fn asked(signals: &Signals<'_>, clause: &Clause) -> bool {
+    let Predicate::Reacts { human, act, .. } = &clause.predicate else { return false };
+    let facts = signals.evidence.reading.map_or(&[][..], |reading| &reading.facts);
+    clause.role == ClauseRole::Setup
+        && facts.iter().any(|fact| {
+            fact.id == clause.source
+                && matches!(&fact.kind, FactKind::Reacts { human: who, rule } if who == human && rule.act == *act)
+        })
 }
 
 /// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and

@@ -1,11 +1,12 @@
 //! Monitors of doors and lines of sight: leaves, enters, stays inside, door opens, hidden until, robot enters last,
 //! robot leaves first.
 
-use socrates_model::{AgentId, Door, HumanId, Location, Point, Relation};
+use socrates_model::{AgentId, Door, HumanId, Location, NodeId, Point, Relation};
 
 use crate::fidelity::doors::{crossings, inside_point};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
+use crate::fidelity::openings::{opening, way_out};
 use crate::fidelity::signals::{Moment, Signals};
 use crate::temporal::{Signal, Within};
 use crate::tracks::{Sample, Track};
@@ -17,11 +18,21 @@ const SIGHT_SLACK_M: f64 = 0.3;
 /// A door lets through a line of sight so long before its opening is told, s.
 const OPENING_SECS: f64 = 0.1;
 
-/// The door a clause means, with a point behind it, or why there is none.
-fn door_of<'a>(signals: &Signals<'a>, door: &str, human: Option<HumanId>) -> Result<(&'a Door, Point), Finding> {
+/// The door a clause means, with a point behind it, or why there is none. A room without a door has an opening.
+fn door_of(signals: &Signals<'_>, door: &str, human: Option<HumanId>) -> Result<(Door, Point), Finding> {
     let Some(place) = signals.evidence.location else {
         return Err(Finding::not_applicable("there is no map, so there are no doors"));
     };
+    if door.is_empty()
+        && let Some(id) = human
+        && guess(signals, place, human).is_none()
+        && let Some(found) = way_out_of(signals, place, id)
+    {
+        let inside = inside_point(&found, place);
+        return inside
+            .map(|inside| (found, inside))
+            .ok_or_else(|| Finding::not_applicable("the opening has no inside"));
+    }
     if place.doors.is_empty() {
         return Err(Finding::not_applicable(format!("the map `{}` declares no doors", place.name)));
     }
@@ -33,7 +44,7 @@ fn door_of<'a>(signals: &Signals<'a>, door: &str, human: Option<HumanId>) -> Res
         return Err(Finding::not_applicable(format!("{what}; the map has {}", names.join(", "))));
     };
     inside_point(found, place)
-        .map(|inside| (found, inside))
+        .map(|inside| (found.clone(), inside))
         .ok_or_else(|| Finding::not_applicable(format!("the door `{}` names no node behind it", found.id)))
 }
 
@@ -47,6 +58,12 @@ fn guess<'a>(signals: &Signals<'a>, place: &'a Location, human: Option<HumanId>)
     let meetings = paths.encounters.iter().map(|encounter| &encounter.node);
     let starts = paths.humans.values().filter_map(|nodes| nodes.first());
     meetings.chain(paths.robot.last()).chain(starts).find_map(|node| place.door_of(node))
+}
+
+/// The opening that somebody's way leads out through; for who stays, the nearest way out of its room.
+fn way_out_of(signals: &Signals<'_>, place: &Location, human: HumanId) -> Option<Door> {
+    let (way, field) = (signals.evidence.paths?.humans.get(&human)?, signals.field.as_ref()?);
+    opening(place, field, way).or_else(|| opening(place, field, &way_out(&place.graph, way.first()?)?))
 }
 
 fn person<'a>(signals: &'a Signals<'_>, human: HumanId) -> Result<&'a Track, Finding> {
@@ -63,7 +80,7 @@ pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Resul
         let text = format!("{human} starts {:.1} m outside the door `{}`", -depth, door.id);
         return Ok(Finding::fails(depth.min(-0.01), vec![0.0], text));
     }
-    let found = crossings(door, &inside, &track.samples);
+    let found = crossings(&door, &inside, &track.samples);
     let out: Vec<f64> = found.iter().filter(|crossing| crossing.outward).map(|crossing| crossing.t).collect();
     let end = track.samples.last().map_or(0.0, |sample| -door.depth_m(&sample.at, &inside));
     let list = out.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
@@ -87,13 +104,10 @@ pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Resul
 /// The human starts outside and crosses the door line inward exactly once.
 pub(super) fn enters(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
     let track = person(signals, human)?;
-    let (door, inside) = match destination(signals, human).filter(|_| door.is_empty()) {
-        Some(door) => door_of(signals, &door.id, Some(human))?,
-        None => door_of(signals, door, Some(human))?,
-    };
+    let (door, inside) = if door.is_empty() { destination(signals, human)? } else { door_of(signals, door, None)? };
     let Some(start) = track.samples.first() else { return Err(Finding::not_applicable("the recording is empty")) };
     let depth = door.depth_m(&start.at, &inside);
-    let found = crossings(door, &inside, &track.samples);
+    let found = crossings(&door, &inside, &track.samples);
     let inward: Vec<f64> = found.iter().filter(|crossing| !crossing.outward).map(|crossing| crossing.t).collect();
     let end = track.samples.last().map_or(0.0, |sample| door.depth_m(&sample.at, &inside));
     let list = inward.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
@@ -118,22 +132,35 @@ pub(super) fn enters(signals: &Signals<'_>, human: HumanId, door: &str) -> Resul
     }
 }
 
-/// The door that a human's way leads into: the one of its last node, else the nearest to it.
-fn destination<'a>(signals: &Signals<'a>, human: HumanId) -> Option<&'a Door> {
-    let place = signals.evidence.location?;
-    let last = signals.evidence.paths?.humans.get(&human)?.last()?;
+/// The door that a human's way leads into: the one of its last node, else the opening of the room of that node, else
+/// the nearest door to it.
+fn destination(signals: &Signals<'_>, human: HumanId) -> Result<(Door, Point), Finding> {
+    let usual = || door_of(signals, "", Some(human));
+    let way = signals.evidence.paths.and_then(|paths| paths.humans.get(&human));
+    let Some((place, way, last)) =
+        signals.evidence.location.zip(way).and_then(|(place, way)| Some((place, way, way.last()?)))
+    else {
+        return usual();
+    };
+    if place.door_of(last).is_none() {
+        let back: Vec<NodeId> = way.iter().rev().cloned().collect();
+        let found = signals.field.as_ref().and_then(|field| opening(place, field, &back));
+        if let Some(found) = found.and_then(|door| Some((inside_point(&door, place)?, door))) {
+            return Ok((found.1, found.0));
+        }
+    }
     let near = || {
         let at = signals.node(last)?;
         place.doors.iter().min_by(|a, b| (a.middle() - at).norm().total_cmp(&(b.middle() - at).norm()))
     };
-    place.door_of(last).or_else(near)
+    place.door_of(last).or_else(near).map_or_else(usual, |door| door_of(signals, &door.id, None))
 }
 
 /// The human is behind the door for the whole run.
 pub(super) fn stays_inside(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
     let track = person(signals, human)?;
     let (door, inside) = door_of(signals, door, Some(human))?;
-    let out = crossings(door, &inside, &track.samples).into_iter().find(|crossing| crossing.outward);
+    let out = crossings(&door, &inside, &track.samples).into_iter().find(|crossing| crossing.outward);
     let least = track.samples.iter().map(|s| (door.depth_m(&s.at, &inside), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let (depth, at) = least.unwrap_or((0.0, 0.0));
     let text = match out {
@@ -191,7 +218,7 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
     let opened = door_of(signals, "", Some(human))
         .ok()
         .filter(|(door, _)| !signals.doors.stands_open(&door.id))
-        .and_then(|(door, _)| Some((door, signals.doors.first_open_s(&door.id)?)));
+        .and_then(|(door, _)| signals.doors.first_open_s(&door.id).map(|t| (door, t)));
     // Hidden until seen near by, or through the open door: (not seen) U (seen and (near or open)). Seen or not has no
     // size of its own, so that the margin is that of the distance, or of the time since the door opened.
     let moments = signals.of(human);
@@ -199,7 +226,7 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
     let crisp = |moment: &Moment| if moment.sight == Some(true) { f64::INFINITY } else { f64::NEG_INFINITY };
     let seen: Signal = moments.iter().map(|moment| (moment.t, crisp(moment))).collect();
     let near: Signal = moments.iter().map(|moment| (moment.t, limit - moment.distance_m)).collect();
-    let open_s = opened.map_or(f64::INFINITY, |(_, t)| t - OPENING_SECS);
+    let open_s = opened.as_ref().map_or(f64::INFINITY, |(_, t)| t - OPENING_SECS);
     let open: Signal = moments.iter().map(|moment| (moment.t, moment.t - open_s)).collect();
     let margin = seen.not().until(&seen.and(&near.or(&open)), Within::EVER).now().unwrap_or(f64::NEG_INFINITY);
     let mut text = format!("first line of sight at {:.1} s from {:.1} m", first.t, first.distance_m);
@@ -224,12 +251,12 @@ pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Findin
     let Some(robot) = &signals.tracks.robot else {
         return Err(Finding::not_applicable("there is no robot in the recording"));
     };
-    let entry = crossings(door, &inside, &robot.samples).into_iter().find(|crossing| !crossing.outward);
+    let entry = crossings(&door, &inside, &robot.samples).into_iter().find(|crossing| !crossing.outward);
     let mut last: Option<(f64, AgentId)> = None;
     let mut inside_still = Vec::new();
     for track in &signals.tracks.humans {
         let leaves = track.human().and_then(|id| signals.evidence.proposal?.human(id)).map(|human| human.relation);
-        let out = crossings(door, &inside, &track.samples)
+        let out = crossings(&door, &inside, &track.samples)
             .into_iter()
             .filter(|crossing| crossing.outward)
             .map(|c| c.t)
@@ -273,11 +300,11 @@ pub(super) fn robot_leaves_first(signals: &Signals<'_>) -> Result<Finding, Findi
         .humans
         .iter()
         .filter_map(|track| {
-            let entry = crossings(door, &inside, &track.samples).into_iter().find(|crossing| !crossing.outward)?;
+            let entry = crossings(&door, &inside, &track.samples).into_iter().find(|crossing| !crossing.outward)?;
             Some((entry.t, track.agent))
         })
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let exit = crossings(door, &inside, &robot.samples).into_iter().find(|crossing| crossing.outward);
+    let exit = crossings(&door, &inside, &robot.samples).into_iter().find(|crossing| crossing.outward);
     Ok(match (exit, first) {
         (None, Some((t, who))) => {
             let text = format!("{who} enters `{}` at {t:.1} s, the robot never leaves", door.id);

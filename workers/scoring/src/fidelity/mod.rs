@@ -17,6 +17,7 @@ mod gaps;
 mod groups;
 mod leaves;
 mod meeting;
+mod openings;
 mod plausible;
 mod reactions;
 mod ring;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{Predicate, Verdict};
+use socrates_model::{Predicate, Relation, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -31,10 +31,8 @@ pub fn rule(
     reference: Option<Verdict>,
 ) -> Ruling {
     let total = judged.deciding().count();
-    let seen =
-        judged.deciding().filter(|(_, finding)| matches!(finding.standing, Standing::Holds | Standing::Late)).count();
     let has_robot = evidence.recording.header.agents.iter().any(|info| info.agent == socrates_model::AgentId::Robot);
-    let tally = format!("{seen} of {total} setup clauses");
+    let tally = tally(judged);
     let invalid = |why: String| Ruling { verdict: Verdict::Invalid, text: why, score: 0.0 };
     if evidence.proposal.is_none() && evidence.paths.is_none() {
         return invalid("nothing to verify: there is neither a proposal nor paths".to_owned());
@@ -74,7 +72,16 @@ pub fn rule(
     let by_reference = matches!(reference, Some(Verdict::Realised | Verdict::RealisedLate));
     let prevented = lost && by_reference && evidence.recording.header.planner != REFERENCE;
     let mut text = tally;
-    if let Some(gap) = gaps.values().map(|gap| gap.abs()).max_by(f64::total_cmp) {
+    // Whoever stands there all the time is met at no time of its own.
+    let stands = |name: &str| {
+        evidence.proposal.is_some_and(|proposal| {
+            let who = name.split(' ').next().unwrap_or(name);
+            let human = proposal.humans.iter().find(|human| human.id.to_string() == who);
+            human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying))
+        })
+    };
+    let timed = gaps.iter().filter(|(name, _)| !stands(name)).map(|(_, gap)| gap.abs());
+    if let Some(gap) = timed.max_by(f64::total_cmp) {
         text.push_str(&format!(" · encounter gap {gap:.1} s"));
     }
     if let Some((clause, finding)) = culprit {
@@ -86,6 +93,21 @@ pub fn rule(
         text.push_str(&format!(" · seen from {from:.1} s to {to:.1} s"));
     }
     Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
+}
+
+/// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.
+fn tally(judged: &Judged) -> String {
+    let count = |wanted: Standing| judged.deciding().filter(|(_, finding)| finding.standing == wanted).count();
+    let (late, unjudged) = (count(Standing::Late), judged.unjudged().count());
+    let seen = count(Standing::Holds) + late;
+    let mut text = format!("{seen} of {} setup clauses", judged.deciding().count() + unjudged);
+    if late > 0 {
+        text.push_str(&format!(", {late} of them late"));
+    }
+    if let Some((clause, finding)) = judged.unjudged().next() {
+        text.push_str(&format!(", {unjudged} not applicable: {}: {}", clause.id, finding.evidence));
+    }
+    text
 }
 
 /// First and last time of the evidence of deciding clauses.

@@ -1,0 +1,230 @@
+//! What a request asks for shows in the verdict: reactions, ways out of rooms without doors, looks, and the counts of clauses.
+
+use socrates_model::reading::{Fact, FactKind};
+use socrates_model::report::Standing;
+use socrates_model::{
+    Action, Clause, ClauseRole, EventKind, FORMAT, Gesture, HumanId, PlaceClass, Predicate, Reading, Relation, Report,
+    Rule, Trigger, Verdict,
+};
+
+use crate::fixture::{Walk, event, floor, node, paths, recording};
+use crate::scenarios::{Case, corridor, must, proposal};
+
+const H1: HumanId = HumanId::new(1);
+
+fn found<'a>(report: &'a Report, id: &str) -> &'a socrates_model::ClauseResult {
+    report.clauses.iter().find(|clause| clause.id == id).unwrap()
+}
+
+/// Somebody stands beside the robot's way; the robot asks to pass, and it is to step aside then.
+fn asked_to_give_way() -> Case {
+    let when = vec![Trigger::RobotSays(Gesture::ExcuseMe)];
+    let rule = Rule { when: when.clone(), act: Action::GiveWay, gesture: None, for_s: Some(3.0), latched: true };
+    let reacts = Predicate::Reacts { human: H1, when, act: Action::GiveWay, within_s: 3.0 };
+    let mut plan = proposal(
+        1,
+        vec![
+            Clause { source: "f1".into(), ..must("c1", Predicate::GivesWay { human: H1 }) },
+            Clause { source: "f1".into(), must: false, ..must("c2", reacts) },
+        ],
+    );
+    plan.humans[0].relation = Relation::Static;
+    plan.humans[0].rules = vec![rule.clone()];
+    let fact = Fact { id: "f1".into(), quote: "steps aside".into(), kind: FactKind::Reacts { human: H1, rule } };
+    Case {
+        place: corridor(),
+        plan,
+        ways: paths(&["a", "m", "b"], &[(&["m"], "m")]),
+        reading: Some(Reading { format: FORMAT, facts: vec![fact], ..Reading::default() }),
+    }
+}
+
+fn asks(from: f64) -> Walk {
+    Walk::through(
+        socrates_model::AgentId::Robot,
+        &[(0., -8., -0.6), (8., -3., -0.6), (20., -3., -0.6), (34., 8., -0.6)],
+    )
+    .says(from, from + 2.0, Gesture::ExcuseMe)
+}
+
+#[test]
+fn an_asked_reaction_that_does_not_come_contradicts_whatever_else_was_seen() {
+    let case = asked_to_give_way();
+    // It stands 0.3 m beside the line all the time the robot asks, and has gone aside when the robot passes in the end.
+    let stays = Walk::human_through(1, &[(0., 0., -0.3), (18., 0., -0.3), (19., 0., 0.6), (40., 0., 0.6)]);
+    let report = case.judge(&recording(&[asks(9.0), stays.leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Holds);
+    assert_eq!(report.verdict, Verdict::Contradicted, "{}", report.verdict_text);
+    assert!(
+        found(&report, "c2").must && report.verdict_text.contains("c2: trigger at 9.0 s"),
+        "{}",
+        report.verdict_text
+    );
+
+    let yields = || Walk::human_through(1, &[(0., 0., -0.3), (9.2, 0., -0.3), (10., 0., 0.6), (40., 0., 0.6)]);
+    let report = case.judge(&recording(&[asks(9.0), yields().leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01));
+    assert_eq!(report.verdict, Verdict::Realised, "{}", report.verdict_text);
+
+    // The robot never asks: the scenario was not triggered, even though it goes aside of itself.
+    let report = case.judge(&recording(&[asks(90.0), yields().leaf(0.0, 1)], 34.0, 0.01));
+    assert_eq!(report.verdict, Verdict::NotTriggered, "{}", report.verdict_text);
+}
+
+/// A room without a door behind the wall x = 4, the robot on the corridor before it.
+fn from_a_room() -> Case {
+    let place = floor(
+        &[(4., 0.6, 4.2, 4.), (4., -4., 4.2, -0.6), (4., 4., 9., 4.2), (4., -4.2, 9., -4.), (9., -4., 9.2, 4.)],
+        &[
+            ("r", "KITCHEN", 7., 0.),
+            ("d", "DOORWAY", 4.1, 0.),
+            ("m", "INTERSECTION", 1., 0.),
+            ("s", "CORRIDOR", 1., -8.),
+            ("n", "CORRIDOR", 1., 8.),
+        ],
+        &[("r", "d"), ("d", "m"), ("s", "m"), ("m", "n")],
+    );
+    let mut plan = proposal(1, vec![must("c1", Predicate::Leaves { human: H1, door: String::new() })]);
+    plan.humans[0].relation = Relation::Leaving;
+    Case { place, plan, ways: paths(&["s", "m", "n"], &[(&["r", "d", "m", "s"], "m")]), reading: None }
+}
+
+#[test]
+fn coming_out_of_a_room_without_a_door_is_judged_at_its_opening() {
+    let case = from_a_room();
+    let robot = || Walk::robot(1.4, -8., 0., 0.8);
+    let out = Walk::human_through(1, &[(0., 7., 0.), (6., 7., 0.), (12., 0.4, 0.), (20., 0.4, -8.)]);
+    let report = case.judge(&recording(&[robot(), out], 20.0, 0.01));
+    assert_eq!(report.verdict, Verdict::Realised, "{}", report.verdict_text);
+    assert!(
+        found(&report, "c1").evidence.starts_with("human_1 leaves through `d` at 8."),
+        "{}",
+        found(&report, "c1").evidence
+    );
+
+    let waits = Walk::human_through(1, &[(0., 2., 0.), (8., 2., 0.), (12., 0.4, 0.), (20., 0.4, -8.)]);
+    let report = case.judge(&recording(&[robot(), waits], 20.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Fails, "who waits in the corridor does not come out");
+    let stays = Walk::human_through(1, &[(0., 7., 0.), (8., 7., 0.), (12., 4.8, 0.), (20., 7., 0.)]);
+    let report = case.judge(&recording(&[robot(), stays], 20.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Fails, "who turns back in the room does not come out");
+}
+
+#[test]
+fn who_goes_into_a_room_without_a_door_or_stays_in_it_is_judged_there_too() {
+    let mut case = from_a_room();
+    case.ways = paths(&["s", "m", "n"], &[(&["n", "m", "d", "r"], "m")]);
+    case.plan.expected_events = vec![must("c1", Predicate::Enters { human: H1, door: String::new() })];
+    case.plan.humans[0].relation = Relation::Crossing;
+    let into = Walk::human_through(1, &[(0., 0.4, 8.), (9., 0.4, 0.), (16., 7., 0.)]);
+    let report = case.judge(&recording(&[Walk::robot(1.8, -8., 0., 0.8), into], 20.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
+    case.ways = paths(&["s", "m", "n"], &[(&["r"], "")]);
+    case.plan.expected_events = vec![must("c1", Predicate::StaysInside { human: H1, door: String::new() })];
+    let report = case.judge(&recording(&[Walk::robot(1.8, -8., 0., 0.8), Walk::human(1, 7., 0., 0., 0.)], 20.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
+}
+
+#[test]
+fn a_must_that_cannot_be_judged_is_told_and_not_counted_as_seen() {
+    let mut case = from_a_room();
+    // A corridor is no room that one could come out of.
+    case.place.graph.nodes[0].kind = "CORRIDOR".into();
+    let robot = Walk::robot(1.4, -8., 0., 0.8);
+    let out = Walk::human_through(1, &[(0., 7., 0.), (6., 7., 0.), (12., 0.4, 0.), (20., 0.4, -8.)]);
+    let report = case.judge(&recording(&[robot, out], 20.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::NotApplicable);
+    assert!(
+        report.verdict_text.contains(", 1 not applicable: c1: the map `floor` declares no doors"),
+        "{}",
+        report.verdict_text
+    );
+    let counted: Vec<usize> = report.verdict_text.split(' ').filter_map(|word| word.parse().ok()).take(2).collect();
+    assert_eq!(counted[0] + 1, counted[1], "{}", report.verdict_text);
+}
+
+#[test]
+fn a_look_that_follows_the_robot_behind_a_corner_for_a_moment_goes_on() {
+    // A pier at x = 0 hides the robot from the one who looks, from about 5 s to 7 s.
+    let mut place = corridor();
+    let pier = floor(&[(-0.8, -0.6, 0.8, 0.2)], &[], &[]);
+    for (cell, other) in place.grid.cells.iter_mut().zip(&pier.grid.cells) {
+        if *other == socrates_model::Cell::Occupied {
+            *cell = *other;
+        }
+    }
+    let mut plan = proposal(1, vec![must("c1", Predicate::Looks { human: H1, for_s: 8.0 })]);
+    plan.place = PlaceClass::Corridor;
+    plan.humans[0].relation = Relation::Static;
+    let case = Case { place, plan, ways: paths(&["a", "m", "b"], &[(&["m"], "")]), reading: None };
+    let robot = || Walk::robot(-4., -1.1, 0.6, 0.);
+    let (x, y) = (0.0, 1.1);
+    let mut run = recording(&[robot(), Walk::human(1, x, y, 0., 0.)], 14.0, 0.01);
+    let turned = |run: &mut socrates_model::Recording, until_s: f64| {
+        let id = socrates_model::AgentId::Human(H1).number();
+        for state in run.frames.iter_mut().filter(|state| state.agent == id) {
+            let t = state.tick as f64 * 0.01;
+            state.yaw = if t <= until_s { (-1.1 - y).atan2(-4.0 + 0.6 * t - x) } else { 2.0 };
+        }
+    };
+    turned(&mut run, 14.0);
+    let report = case.judge(&run);
+    assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
+    turned(&mut run, 7.0);
+    let report = case.judge(&run);
+    assert_ne!(found(&report, "c1").standing, Standing::Holds, "who turns away looks no more");
+    // Who has not seen the robot does not look at it, however it stands.
+    let hidden = recording(&[Walk::robot(0., -1.1, 0., 0.), Walk::human(1, x, y, 0., 0.).facing(-1.57)], 12.0, 0.01);
+    assert_ne!(found(&case.judge(&hidden), "c1").standing, Standing::Holds);
+}
+
+#[test]
+fn the_first_outcome_that_is_missing_and_what_came_late_are_told() {
+    let keeps = Clause {
+        role: ClauseRole::Outcome,
+        text: "the robot keeps 2 m from everybody".into(),
+        ..must("o1", Predicate::RobotKeeps { min_m: 2.0 })
+    };
+    let arrives = Clause { role: ClauseRole::Outcome, ..must("o2", Predicate::RobotArrives) };
+    let case = Case {
+        place: corridor(),
+        plan: proposal(1, vec![must("c1", Predicate::OnTime { human: H1, gap_s: 3.0 }), keeps, arrives]),
+        ways: paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m")]),
+        reading: None,
+    };
+    let late = Walk::human_through(1, &[(0., 8., 0.5), (4., 8., 0.5), (24., -8., 0.5)]);
+    let report = case.judge(&recording(&[Walk::robot(-8., -0.5, 0.8, 0.), late], 24.0, 0.01));
+    assert_eq!(report.verdict, Verdict::RealisedLate, "{}", report.verdict_text);
+    assert!(report.verdict_text.contains("setup clauses, 1 of them late · "), "{}", report.verdict_text);
+    assert!(report.robot_text.contains("outcome clauses, not: the robot keeps 2 m"), "{}", report.robot_text);
+}
+
+#[test]
+fn the_story_tells_when_somebody_goes_whom_it_follows_and_who_is_come_to() {
+    let mut plan = proposal(3, vec![]);
+    plan.humans[1].rules = vec![Rule {
+        when: vec![Trigger::Always],
+        act: Action::FollowHuman(H1),
+        gesture: None,
+        for_s: None,
+        latched: false,
+    }];
+    plan.humans[2].relation = Relation::Static;
+    let ways = paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m"), (&["b", "m", "a"], ""), (&["m"], "m")]);
+    let case = Case { place: corridor(), plan, ways, reading: None };
+    let walks = |number: u32, y: f64| Walk::human_through(number, &[(0., 8., y), (4., 8., y), (24., -8., y)]);
+    let mut run = recording(
+        &[Walk::robot(-8., -0.5, 0.8, 0.), walks(1, 0.5), walks(2, 1.1), Walk::human(3, 0., 1.2, 0., 0.)],
+        24.,
+        0.01,
+    );
+    for (number, leaf) in [(1, "RegularNav"), (2, "FollowHuman"), (3, "RegularNav")] {
+        event(&mut run, 0.0, EventKind::Leaf { human: HumanId::new(number), leaf: leaf.into() });
+    }
+    event(&mut run, 10.0, EventKind::Encounter { human: HumanId::new(3), node: node("m"), gap_s: 0.0, nth: 1 });
+    let report = case.judge(&run);
+    for line in ["4.0 s  human_1 sets off", "0.0 s  human_2 follows human_1", "10.0 s  the robot comes to human_3 at m"]
+    {
+        assert!(report.story.iter().any(|told| told == line), "{line}: {:?}", report.story);
+    }
+    assert!(!report.story.iter().any(|told| told.contains("human_3 walks on")), "it never walks: {:?}", report.story);
+}
