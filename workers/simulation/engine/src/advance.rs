@@ -20,6 +20,9 @@ const AT_ONCE: usize = 32;
 /// Between people of a group who go one behind the other, m.
 const IN_LINE_M: f64 = 0.8;
 
+/// People nearer than this before the robot are before it together, m.
+const BEFORE_M: f64 = 8.0;
+
 /// Lists that every tick fills anew; kept, so that no tick makes any.
 #[derive(Debug, Default)]
 pub(crate) struct Desk {
@@ -188,11 +191,14 @@ impl Engine {
     }
 }
 
-/// Who is the nearest before the robot, and its group.
+/// Of several people before the robot the nearest, and its group: whoever comes alone is passed, and nobody waits.
 fn before(robot: &Robot, humans: &[Human]) -> Option<(HumanId, Option<GroupId>)> {
     let (at, intent) = (robot.at(), robot.intent());
-    let ahead = |human: &&Human| human.present() && (human.at - at).dot(&intent) > 0.0;
-    let far = |human: &Human| (human.at - at).norm_squared();
+    let far = |human: &Human| (human.at - at).norm();
+    let ahead = |human: &&Human| human.present() && far(human) < BEFORE_M && (human.at - at).dot(&intent) > 0.0;
+    if humans.iter().filter(ahead).count() < 2 {
+        return None;
+    }
     let nearest = humans.iter().filter(ahead).min_by(|a, b| far(a).total_cmp(&far(b)))?;
     Some((nearest.id, nearest.group))
 }

@@ -49,6 +49,8 @@ mod door_runs;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod group_runs;
+#[cfg(test)]
 mod meeting_runs;
 #[cfg(test)]
 mod model_runs;

@@ -177,7 +177,9 @@ fn a_group_meets_the_robot_twice_together() {
         made.proposal.groups.push(socrates_model::GroupProposal { id: group, members, standing: false });
         let met = numbered(&run(Setup { seed, ..made }));
         assert_eq!(met.len(), 4, "seed {seed}: {met:?}");
-        assert!(met.iter().all(|(.., gap)| gap.abs() <= 4.0), "seed {seed}: {met:?}");
+        // Round the block takes the fastest walk there is: the whole group is a little late for the second.
+        let within = |nth: u32| if nth == 1 { 4.0 } else { 7.0 };
+        assert!(met.iter().all(|(_, nth, _, gap)| gap.abs() <= within(*nth)), "seed {seed}: {met:?}");
     }
 }
 

@@ -40,7 +40,7 @@ const BERTH_M: f64 = 0.45;
 /// Who walks along faster than this is overtaken by people behind it, m/s.
 const OVERTAKEN_MPS: f64 = 0.2;
 /// So far beside the robot's line, m, and so near, m, whoever comes from behind gets past it.
-const BESIDE_M: f64 = 0.5;
+const BESIDE_M: f64 = 0.4;
 const PASSES_M: f64 = 1.6;
 /// Farther from its line than this, m, somebody has gone aside.
 const ASIDE_TAKEN_M: f64 = 0.2;
@@ -175,7 +175,9 @@ fn passes(human: &Human, robot: &Robot, ahead: &Vector) -> bool {
     let way = robot.at() - human.at;
     let along = robot.velocity.dot(ahead) > OVERTAKEN_MPS;
     let aside = (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M && way.perp(ahead).abs() > BESIDE_M;
-    human.relation == Relation::Behind && along && aside && way.norm() < PASSES_M
+    // Where the floor leaves it no wider berth.
+    let narrow = human.notice.share < 1.0;
+    human.relation == Relation::Behind && narrow && along && aside && way.norm() < PASSES_M
 }
 
 /// How far ahead on its way somebody heads for, m. Where the way turns back that is the turn, and from right before it a point

@@ -48,6 +48,8 @@ const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Who wants in through a door of which the robot comes out aims at being there so long after it, s: in the door both would
 /// stand.
 const LETS_OUT_S: f64 = 2.0;
+/// A robot that starts farther than this behind a door starts inside, m.
+const INSIDE_M: f64 = 0.5;
 /// Somebody ahead is at the encounter so long before the robot, s.
 const AHEAD_S: f64 = 1.0;
 
@@ -244,7 +246,7 @@ pub(crate) fn timings(
                 .unwrap_or(0);
             let opens_door = human.doors.first().is_some_and(|on_way| by_nearness(on_way.door));
             let both = |met: &Meeting, own: &DoorOnWay| {
-                let comes_out = |out: &DoorOnWay| out.door == own.door && out.s < met.robot_s;
+                let comes_out = |out: &DoorOnWay| out.door == own.door && out.s > INSIDE_M && out.s < met.robot_s;
                 own.s > met.human_s && robot_doors.iter().any(comes_out)
             };
             let lets_out = human.meetings.first().is_some_and(|met| human.doors.iter().any(|own| both(met, own)));

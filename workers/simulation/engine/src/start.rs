@@ -29,7 +29,7 @@ const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 
 /// Largest distance to the left, and ahead, from where somebody stands by plan, m; who walks keeps so many times as far from its
 /// line.
-const SWAY_M: f64 = 0.05;
+const SWAY_M: f64 = 0.04;
 const SWAY_WALKING: f64 = 2.0;
 
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.

@@ -1,0 +1,118 @@
+//! Runs of people who walk together, of whoever overtakes, and of what a seed changes.
+
+use socrates_model::{AgentId, AgentState, GroupId, GroupProposal, Recording, Relation};
+
+use crate::fixture::{Cast, Liner, carve, location, setup};
+use crate::run::Engine;
+use crate::setup::Setup;
+
+/// A corridor along x of this width, with a doorway of 1 m at x = 15 if asked for.
+fn corridor(width_m: f64, doorway: bool) -> socrates_model::Location {
+    let (low, high) = (3.0 - width_m / 2.0, 3.0 + width_m / 2.0);
+    let free = if doorway {
+        vec![(0.1, low, 14.9, high), (14.8, 2.5, 15.2, 3.5), (15.1, low, 29.9, high)]
+    } else {
+        vec![(0.1, low, 29.9, high)]
+    };
+    location(
+        carve(30.0, 6.0, &free),
+        &[("a", 2.0, 3.0), ("b", 8.0, 3.0), ("c", 15.0, 3.0), ("d", 22.0, 3.0), ("e", 28.0, 3.0)],
+        &[("a", "b"), ("b", "c"), ("c", "d"), ("d", "e")],
+    )
+}
+
+const THERE: &[&str] = &["a", "b", "c", "d", "e"];
+const BACK: &[&str] = &["e", "d", "c", "b", "a"];
+
+fn grouped(mut made: Setup) -> Setup {
+    let group = GroupId(1);
+    for human in &mut made.proposal.humans {
+        human.group = Some(group);
+    }
+    let members = made.proposal.humans.iter().map(|human| human.id).collect();
+    made.proposal.groups.push(GroupProposal { id: group, members, standing: false });
+    made
+}
+
+fn run(made: Setup) -> Recording {
+    let mut driver = Liner::of(&made);
+    Engine::new(made).unwrap().run(Some(&mut driver), &mut |_, _| {})
+}
+
+fn robot(recording: &Recording) -> Vec<AgentState> {
+    recording.track(AgentId::Robot).cloned().collect()
+}
+
+fn human(recording: &Recording, number: u32) -> Vec<AgentState> {
+    recording.track(AgentId::from_number(number)).cloned().collect()
+}
+
+/// Where somebody is as it is level with the robot along x.
+fn level(recording: &Recording, number: u32) -> Option<f64> {
+    let (robot, track) = (robot(recording), human(recording, number));
+    let beside = robot.iter().zip(&track).find(|(robot, human)| human.x <= robot.x);
+    beside.map(|(robot, human)| human.y - robot.y)
+}
+
+#[test]
+fn a_group_goes_aside_together_and_leaves_the_robot_the_other_side() {
+    for seed in 1..=6 {
+        let cast = [Cast(Relation::Frontal, BACK, vec![]), Cast(Relation::Frontal, BACK, vec![])];
+        let made = grouped(setup(corridor(2.6, false), THERE, &cast, &[(1, "c"), (2, "c")]));
+        let recording = run(Setup { seed, ..made });
+        let sides: Vec<f64> = (1..=2).map(|number| level(&recording, number).unwrap()).collect();
+        assert!(sides[0].signum() == sides[1].signum(), "seed {seed}: {sides:?}");
+        assert!(sides.iter().all(|aside| aside.abs() > 0.55), "seed {seed}: {sides:?}");
+    }
+}
+
+#[test]
+fn a_group_falls_into_line_before_a_doorway_and_gets_through() {
+    for seed in 1..=6 {
+        let cast: Vec<Cast<'_>> = (0..3).map(|_| Cast(Relation::Frontal, BACK, vec![])).collect();
+        let made = grouped(setup(corridor(2.6, true), &["a", "b"], &cast, &[]));
+        let still = Setup { seed, planner: "none".into(), duration_s: Some(60.0), ..made };
+        let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
+        // From 2 m before the doorway to 2 m behind it in less than 8 s: nobody is wedged in.
+        for number in 1..=3 {
+            let track = human(&recording, number);
+            let near = track.iter().filter(|at| (at.x - 15.0).abs() < 2.0).count();
+            #[expect(clippy::cast_precision_loss, reason = "a few thousand samples")]
+            let secs = near as f64 * 60.0 / track.len() as f64;
+            assert!(track.last().unwrap().x < 4.0 && secs < 8.0, "seed {seed}, human_{number}: {secs:.1} s");
+        }
+    }
+}
+
+#[test]
+fn whoever_comes_from_behind_gets_past_the_robot_where_there_is_just_room() {
+    for width_m in [2.4, 2.6] {
+        for seed in 1..=4 {
+            let cast = [Cast(Relation::Behind, THERE, vec![])];
+            let mut made = setup(corridor(width_m, false), &THERE[1..], &cast, &[(1, "c")]);
+            made.proposal.humans[0].speed_mps = Some(1.4);
+            let recording = run(Setup { seed, ..made });
+            let (robot, human) = (robot(&recording), human(&recording, 1));
+            let past = robot.iter().zip(&human).any(|(robot, human)| human.x > robot.x + 1.0 && robot.x < 27.0);
+            assert!(past, "{width_m} m, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn seeds_differ_also_for_people_whose_speed_is_given() {
+    let run = |seed: u64| {
+        let cast = [Cast(Relation::Frontal, BACK, vec![]), Cast(Relation::Static, &["d"], vec![])];
+        let mut made = setup(corridor(2.6, false), THERE, &cast, &[(1, "c")]);
+        for human in &mut made.proposal.humans {
+            human.speed_mps = Some(1.2);
+        }
+        run(Setup { seed, ..made })
+    };
+    let (one, same, other) = (run(1), run(1), run(2));
+    assert_eq!(one.hash(), same.hash());
+    for number in 1..=2 {
+        let at = |recording: &Recording| human(recording, number)[0].y;
+        assert!((at(&one) - at(&other)).abs() > 1e-6, "human_{number} stands where it stood");
+    }
+}
