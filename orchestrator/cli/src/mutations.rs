@@ -500,7 +500,7 @@ mod tests {
         for prepared in shipped(&config)
             .unwrap()
             .iter()
-            .filter(|prepared| prepared.name.contains("frontal") || prepared.name.contains("group"))
+            .filter(|prepared| ["frontal", "group", "crossing"].iter().any(|kind| prepared.name.contains(kind)))
         {
             let scenario = realised(prepared.clone(), 1).await.unwrap();
             let report = &scenario.report;

@@ -32,7 +32,7 @@ const OPEN: [(&str, &str, usize); 14] = [
 ];
 
 /// Facts of the sets kept aside that were right when the test saw them first.
-const FIRST_LOOKS: [usize; 3] = [107, 120, 127];
+const FIRST_LOOKS: [usize; 4] = [107, 120, 127, 179];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -237,6 +237,7 @@ fn what_is_kept_aside_is_read_no_worse_than_at_first() {
         ("third", include_str!("../corpus/sealed-3.toml"), FIRST_LOOKS[0]),
         ("fifth", include_str!("../corpus/sealed-5.toml"), FIRST_LOOKS[1]),
         ("sixth", include_str!("../corpus/sealed-6.toml"), FIRST_LOOKS[2]),
+        ("seventh", include_str!("../corpus/sealed-7.toml"), FIRST_LOOKS[3]),
     ] {
         let (right, all, _unread) = judge(corpus);
         println!("kept aside, {name}: {right} of {all} facts");

@@ -10,12 +10,22 @@ use socrates_model::Request;
 /// Seeds that every request is answered with.
 const SEEDS: std::ops::RangeInclusive<u64> = 1..=3;
 
+const FURTHER: &str = r#"
+location = "warehouse"
+social_context = "An ordinary day"
+task = "Bring a box from the loading dock to the exit"
+rough_scenario = "A worker comes towards the robot at a blind corner and steps aside."
+"#;
+
 async fn table() -> Confusion {
     let mut all = Vec::new();
     for name in socrates_maps::shipped::names() {
         let location = socrates_maps::shipped::load(name).expect("a shipped location loads");
-        for (_, text) in socrates_maps::shipped::requests(name) {
-            let request: Request = toml::from_str(text).expect("a shipped request is read");
+        let shipped = socrates_maps::shipped::requests(name).into_iter().map(|(_, text)| text.to_owned());
+        // A long way to a blind corner leaves room for an encounter elsewhere.
+        let further = (*name == "warehouse").then(|| FURTHER.to_owned());
+        for text in shipped.chain(further) {
+            let request: Request = toml::from_str(&text).expect("the request is read");
             let reading = socrates_offline::read(&request, &location);
             for seed in SEEDS {
                 let papers = Papers::first(request.clone(), reading.clone(), location.clone(), seed);
