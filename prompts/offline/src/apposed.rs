@@ -41,14 +41,13 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
     }
     let from = (at + usize::from(mark)..).find(|k| !opens(*k))?;
     let list = list(words, from)?;
-    let before: Vec<(usize, Word)> =
-        words.get(..at)?.iter().enumerate().filter_map(|(k, word)| Some((k, word.clone()?))).collect();
-    let spoken: Vec<Word> = before.iter().map(|(_, word)| word.clone()).collect();
+    let (places, spoken): (Vec<usize>, Vec<Word>) =
+        words.get(..at)?.iter().enumerate().filter_map(|(k, word)| Some((k, word.clone()?))).unzip();
     let head = mentions(&spoken).into_iter().rev().find(|mention| matches!(mention.who, Who::New { .. }))?;
     let Who::New { count, .. } = head.who else { return None };
     // `a family`: as many as the list names.
     let count = count.map_or(head.group, |n| usize::try_from(n) == Ok(list.roles.len()));
-    let noun = before.get(head.to)?.0;
+    let noun = *places.get(head.to)?;
     let adjacent = noun + 1 == at;
     // Farther on it is a list of them only if nothing comes after it: `two people come in: a nurse and a visitor`.
     let ends = words.get(list.end..)?.iter().all(Option::is_none);
@@ -61,22 +60,17 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
 fn list(words: &[Option<Word>], from: usize) -> Option<List> {
     let (mut roles, mut end, mut joined) = (Vec::new(), from, false);
     let and = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.text == "and");
-    loop {
-        let run: Vec<Word> = words.get(end..)?.iter().map_while(Clone::clone).collect();
-        let Some((count, role, length)) = item(&run) else { break };
-        for _ in 0..count {
-            roles.push(role.clone());
-        }
-        end += length;
-        let mut next = end;
-        next += usize::from(words.get(next).is_some_and(Option::is_none));
+    let item_at = |k: usize| item(&words.get(k..)?.iter().map_while(Clone::clone).collect::<Vec<Word>>());
+    let mut next = from;
+    while let Some((count, role, length)) = item_at(next) {
+        roles.extend((0..count).map(|_| role.clone()));
+        end = next + length;
+        next = end + usize::from(words.get(end).is_some_and(Option::is_none));
         joined |= and(next);
         next += usize::from(and(next));
-        let more: Vec<Word> = words.get(next..).unwrap_or_default().iter().map_while(Clone::clone).collect();
-        if next == end || item(&more).is_none() {
+        if next == end {
             break;
         }
-        end = next;
     }
     (joined && roles.len() > 1).then_some(List { roles, end })
 }

@@ -101,6 +101,11 @@ pub(crate) fn plain(role: &str) -> bool {
     matches!(role, "man" | "woman" | "guy" | "lady" | "gentleman" | "boy" | "girl" | "adult")
 }
 
+/// How fast people of a role usually walk, if that is another speed than everybody's, m/s.
+fn usual_mps(role: &str) -> Option<f64> {
+    lexicon().roles.get(role).and_then(|word| word.speed_mps)
+}
+
 /// Words for people that only say that they are there.
 const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
 
@@ -338,7 +343,7 @@ impl Cast {
         for (i, role) in found.iter().zip(roles) {
             if let Some(person) = self.people.get_mut(*i) {
                 role.clone_into(&mut person.role);
-                person.speed_mps = lexicon().roles.get(role).and_then(|word| word.speed_mps);
+                person.speed_mps = usual_mps(role);
             }
         }
         found
@@ -482,7 +487,7 @@ impl Cast {
                 ),
             ));
         }
-        let speed = mention.role.as_ref().and_then(|role| lexicon().roles.get(role)).and_then(|word| word.speed_mps);
+        let speed = mention.role.as_deref().and_then(usual_mps);
         for _ in 0..wanted.min(READ_AT_MOST.saturating_sub(from)) {
             self.people.push(Person {
                 role: mention.role.clone().unwrap_or_default(),

@@ -279,6 +279,11 @@ fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(us
     }
 }
 
+/// Whether somebody follows the robot or another human.
+pub(crate) fn follows(human: &HumanProposal) -> bool {
+    human.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)))
+}
+
 /// Behind: the robot's way, from its start or from before it.
 fn behind(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
     let net = taken.net;
@@ -296,12 +301,11 @@ fn behind(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) 
     // Somebody who only walks along is met on the way, before others are.
     let meet = if along && route.meet > 1 { route.meet - 1 } else { route.meet };
     // Who overtakes is level with the robot early, so that the way is long enough to get past it.
-    let follows = human.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)));
     let early = (1..=meet).find(|i| {
         let known = route.nodes.get(*i).is_some_and(|node| net.is(*node, taken.place));
         known && net.length_m(route.nodes.get(..=*i).unwrap_or_default()) >= EARLY_M
     });
-    let meet = if follows { meet } else { early.unwrap_or(meet) };
+    let meet = if follows(human) { meet } else { early.unwrap_or(meet) };
     let cost = if before.is_some() { 0.0 } else { 1.0 };
     Some(Way { nodes, meet: *route.nodes.get(meet)?, cost })
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use socrates_maps::{DistanceField, Sight};
 use socrates_model::{
-    Action, Encounter, FORMAT, FactKind, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass,
-    Proposal, Relation,
+    Encounter, FORMAT, FactKind, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Proposal,
+    Relation,
 };
 use socrates_prompts::Question;
 
@@ -13,7 +13,7 @@ use crate::NAME;
 use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
 use crate::edit_paths;
-use crate::humans::{Taken, Way, way};
+use crate::humans::{Taken, Way, follows, way};
 use crate::named;
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
@@ -46,12 +46,14 @@ struct Solution {
 /// Answers a paths question. `None` where the map has no way at all that fits.
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let task = crate::task::read(&question.request.task, &question.location);
-    let net = Net::new(&question.location)
+    let net = Net::new(&question.location);
+    let rooms = rooms(&net, question);
+    let net = net
         .with_ends(
             ends(&question.location, &task.starts, proposal.robot.start),
             ends(&question.location, &task.goals, proposal.robot.goal),
         )
-        .with_rooms(rooms(question));
+        .with_rooms(rooms);
     let told = |code: FaultCode| {
         let robot = |fault: &&socrates_model::Fault| fault.code == code && !fault.at.contains("human");
         u32::try_from(question.feedback.iter().filter(robot).count()).unwrap_or(0)
@@ -121,28 +123,23 @@ fn ends<'a>(location: &Location, named: &'a [End], class: Option<PlaceClass>) ->
     if class.is_none_or(suits) { nodes } else { &[] }
 }
 
+/// Words before the name of a room that somebody comes out of.
+const OUT_OF: &[&str] = &["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "];
+
 /// The rooms that people come out of, where the text names them: `out of the kitchen`.
-fn rooms(question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
-    let net = Net::new(&question.location);
+fn rooms(net: &Net<'_>, question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
     let mut found = BTreeMap::new();
     for fact in &question.reading.facts {
-        if let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
+        let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
             fact.kind
-            && let Some(from) = ["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "]
-                .iter()
-                .find_map(|word| fact.quote.split_once(word))
-            && let Some(room) = named::find(
-                &question.location,
-                from.1
-                    .split_whitespace()
-                    .take(5)
-                    .collect::<Vec<_>>()
-                    .join(" ")
-                    .split([',', ';', '.'])
-                    .next()
-                    .unwrap_or_default(),
-            )
-        {
+        else {
+            continue;
+        };
+        let Some((_, from)) = OUT_OF.iter().find_map(|word| fact.quote.split_once(word)) else { continue };
+        let words: Vec<&str> = from.split_whitespace().take(5).collect();
+        let name = words.join(" ");
+        let name = name.split([',', ';', '.']).next().unwrap_or_default();
+        if let Some(room) = named::find(&question.location, name) {
             found.insert(human, room.nodes.iter().filter_map(|id| net.index(id)).collect());
         }
     }
@@ -256,7 +253,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
     let found = card(&proposal.pattern);
     let wide = found.and_then(|card| card.width_m);
-    let field = (standing > 0 || wide.is_some()).then(|| DistanceField::new(&net.location.grid));
+    let overtaken = proposal.humans.iter().any(overtakes);
+    let field = (standing > 0 || wide.is_some() || overtaken).then(|| DistanceField::new(&net.location.grid));
     // People who come out are met near the place that they leave.
     let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
     let sources: Option<Vec<Tree>> = leaver.map(|human| {
@@ -265,7 +263,6 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
         inside.into_iter().map(|node| net.tree(node, &|_| false)).collect()
     });
     let many = proposal.humans.len() > 3;
-    let overtaken = proposal.humans.iter().any(overtakes).then(|| DistanceField::new(&net.location.grid));
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
@@ -300,7 +297,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             if let Some(mut solution) = people(net, proposal, route, crowded) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
-                let squeezed = overtaken.as_ref().map_or(0.0, |field| squeezed(net, field, &solution.route));
+                let squeezed =
+                    field.as_ref().filter(|_| overtaken).map_or(0.0, |field| squeezed(net, field, &solution.route));
                 solution.score +=
                     rank + hidden - if many || wish.roomy { 3.0 * tight } else { 0.0 } - SQUEEZED * squeezed;
                 found.push(solution);
@@ -312,8 +310,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
 
 /// Whether somebody comes from behind to get past the robot.
 fn overtakes(human: &HumanProposal) -> bool {
-    let follows = |act: &Action| matches!(act, Action::FollowRobot | Action::FollowHuman(_));
-    human.relation == Relation::Behind && !human.rules.iter().any(|rule| follows(&rule.act))
+    human.relation == Relation::Behind && !follows(human)
 }
 
 /// How many nodes from the meeting on, as far as it takes to get past the robot, leave no room for that.

@@ -2,9 +2,6 @@
 
 use socrates_model::{FactKind, PlaceClass, Reading};
 
-/// What somebody does who comes out of a place that its own clause does not name.
-const OUT_OF_ROOM: &str = "comes out of the room";
-
 /// The reading in one line, for people to correct before anything runs:
 /// `3 humans · 2 leave the elevator · 1 startled, stays · place: elevator · robot: enter elevator`.
 #[must_use]
@@ -18,14 +15,9 @@ pub fn summary(reading: &Reading) -> String {
     }
     let mut alike: Vec<(String, String, usize)> = Vec::new();
     for human in reading.humans.iter().filter(|human| !human.summary.is_empty()) {
-        let mut says = human.summary.clone();
-        // `When the doors open, a few people exit`: the room that they come out of is the car.
-        if reading.place == Some(PlaceClass::Elevator) {
-            says = says.replace(OUT_OF_ROOM, "leaves the elevator");
-        }
-        match alike.iter_mut().find(|(text, role, _)| *text == says && *role == human.role) {
+        match alike.iter_mut().find(|(text, role, _)| *text == human.summary && *role == human.role) {
             Some((_, _, count)) => *count += 1,
-            None => alike.push((says, human.role.clone(), 1)),
+            None => alike.push((human.summary.clone(), human.role.clone(), 1)),
         }
     }
     let roles = reading.humans.iter().any(|human| reading.humans.first().is_some_and(|first| first.role != human.role));

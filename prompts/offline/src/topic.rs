@@ -1,5 +1,6 @@
 //! Who is only spoken of: `they discuss a patient`, `two nurses talk about a visitor`.
 
+use crate::clause::mark;
 use crate::cut::Stretch;
 use crate::mention::Mention;
 
@@ -21,8 +22,6 @@ pub(crate) fn drop_topics(stretch: &mut Stretch, mentions: &mut Vec<Mention>) {
         mentions.iter().filter(|mention| topic(mention)).map(|mention| (mention.from, mention.to)).collect();
     mentions.retain(|mention| !topic(mention));
     for (from, to) in spoken_of {
-        for word in stretch.words.iter_mut().take(to + 1).skip(from) {
-            word.used = true;
-        }
+        mark(stretch, from, to);
     }
 }

@@ -361,10 +361,8 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
                 continue;
             }
             let instead = if let Some(class) = other.filter(|class| end.class != Some(*class)) {
-                {
-                    let ends = if what == "start" { "begin" } else { "end" };
-                    format!("the scenario has its way {ends} at {}", place::an(class))
-                }
+                let ends = if what == "start" { "begin" } else { "end" };
+                format!("the scenario has its way {ends} at {}", place::an(class))
             } else if people {
                 format!("in this scenario the robot's {what} is with the people")
             } else if missing {

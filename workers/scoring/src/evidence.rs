@@ -1,6 +1,6 @@
 //! What a report is made from.
 
-use socrates_model::{Location, Paths, Proposal, Reading, Recording, Request};
+use socrates_model::{HumanId, Location, Paths, Proposal, Reading, Recording, Relation, Request};
 
 /// Everything known about one run. Only the recording is needed; what is missing is said in the report.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +24,13 @@ pub struct Evidence<'a> {
 }
 
 impl<'a> Evidence<'a> {
+    /// Whether somebody stands where the robot comes by: then there is no time of its own to compare.
+    #[must_use]
+    pub fn stands(&self, human: HumanId) -> bool {
+        let human = self.proposal.and_then(|proposal| proposal.human(human));
+        human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying))
+    }
+
     /// Evidence of a recording alone.
     #[must_use]
     pub const fn of(recording: &'a Recording) -> Self {

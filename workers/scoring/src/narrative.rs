@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, Relation, ordinal};
+use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, ordinal};
 
 use crate::fidelity::{Judged, Signals, does, to_millis};
 use crate::metrics::Scene;
@@ -83,12 +83,6 @@ fn goes_at(signals: &Signals<'_>, human: HumanId, from_s: f64, to_s: f64) -> Opt
     Some(if moves.t - from_s <= AT_ONCE_SECS { from_s } else { moves.t })
 }
 
-/// Whether somebody stands where the robot comes by: then there is no time of its own to compare.
-fn stands(signals: &Signals<'_>, human: HumanId) -> bool {
-    let relation = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map(|human| human.relation);
-    matches!(relation, Some(Relation::Static | Relation::Staying))
-}
-
 /// An event in words; steps along paths are not told.
 fn told(signals: &Signals<'_>, kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
     Some(match kind {
@@ -100,7 +94,7 @@ fn told(signals: &Signals<'_>, kind: &EventKind, again: &BTreeSet<HumanId>) -> O
             None => format!("{human} runs {leaf}"),
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
-        EventKind::Encounter { human, node, .. } if stands(signals, *human) => {
+        EventKind::Encounter { human, node, .. } if signals.evidence.stands(*human) => {
             format!("the robot comes to {human} at {node}")
         }
         EventKind::Encounter { human, node, gap_s, nth } => {

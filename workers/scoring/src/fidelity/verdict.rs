@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{Predicate, Relation, Verdict};
+use socrates_model::{Predicate, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -74,11 +74,8 @@ pub fn rule(
     let mut text = tally;
     // Whoever stands there all the time is met at no time of its own.
     let stands = |name: &str| {
-        evidence.proposal.is_some_and(|proposal| {
-            let who = name.split(' ').next().unwrap_or(name);
-            let human = proposal.humans.iter().find(|human| human.id.to_string() == who);
-            human.is_some_and(|human| matches!(human.relation, Relation::Static | Relation::Staying))
-        })
+        let who = name.split(' ').next().and_then(|who| who.parse().ok());
+        who.is_some_and(|who| evidence.stands(who))
     };
     let timed = gaps.iter().filter(|(name, _)| !stands(name)).map(|(_, gap)| gap.abs());
     if let Some(gap) = timed.max_by(f64::total_cmp) {

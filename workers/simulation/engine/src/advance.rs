@@ -137,7 +137,9 @@ impl Engine {
     /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.
     fn doors_and_paces(&mut self, now_s: f64) -> Vec<f64> {
         let mut paces = Vec::with_capacity(self.humans.len());
-        let nearest = self.robot.as_ref().and_then(|robot| before(robot, &self.humans));
+        // Whoever meets nobody waits for nobody.
+        let meets = self.humans.iter().any(|human| !human.meetings.is_empty());
+        let nearest = self.robot.as_ref().filter(|_| meets).and_then(|robot| before(robot, &self.humans));
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
@@ -194,12 +196,11 @@ impl Engine {
 /// Of several people before the robot the nearest, and its group: whoever comes alone is passed, and nobody waits.
 fn before(robot: &Robot, humans: &[Human]) -> Option<(HumanId, Option<GroupId>)> {
     let (at, intent) = (robot.at(), robot.intent());
-    let far = |human: &Human| (human.at - at).norm();
-    let ahead = |human: &&Human| human.present() && far(human) < BEFORE_M && (human.at - at).dot(&intent) > 0.0;
-    if humans.iter().filter(ahead).count() < 2 {
-        return None;
-    }
-    let nearest = humans.iter().filter(ahead).min_by(|a, b| far(a).total_cmp(&far(b)))?;
+    let ahead = humans.iter().filter(|human| human.present() && (human.at - at).dot(&intent) > 0.0);
+    let mut ahead = ahead.map(|human| ((human.at - at).norm(), human)).filter(|(far_m, _)| *far_m < BEFORE_M);
+    let (first, second) = (ahead.next()?, ahead.next()?);
+    let (_, nearest) =
+        [second].into_iter().chain(ahead).fold(first, |one, other| if other.0 < one.0 { other } else { one });
     Some((nearest.id, nearest.group))
 }
 

@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use socrates_model::request::Waypoints;
 use socrates_model::{
-    Action, Behaviors, Cell, Command, Encounter, GraphEdge, GraphNode, Grid, HumanBehavior, HumanId, HumanProposal,
-    Location, NodeId, Observation, Paths, PlaceClass, Point, Polyline, Pose, Proposal, Relation, RobotDriver,
-    RobotModel, RobotProposal, Rule, RunId, SceneGraph,
+    Action, Behaviors, Cell, Command, Encounter, GraphEdge, GraphNode, Grid, GroupId, GroupProposal, HumanBehavior,
+    HumanId, HumanProposal, Location, NodeId, Observation, Paths, PlaceClass, Point, Polyline, Pose, Proposal,
+    Recording, Relation, RobotDriver, RobotModel, RobotProposal, Rule, RunId, SceneGraph,
 };
 
+use crate::run::Engine;
 use crate::setup::Setup;
 
 pub(crate) const RES: f64 = 0.1;
@@ -124,6 +125,23 @@ pub(crate) fn setup(location: Location, robot: &[&str], cast: &[Cast<'_>], meet:
         robot: RobotModel::default(),
         waypoints: Waypoints::Via,
     }
+}
+
+/// All of them walk as one group.
+pub(crate) fn grouped(mut made: Setup) -> Setup {
+    let group = GroupId(1);
+    for human in &mut made.proposal.humans {
+        human.group = Some(group);
+    }
+    let members = made.proposal.humans.iter().map(|human| human.id).collect();
+    made.proposal.groups.push(GroupProposal { id: group, members, standing: false });
+    made
+}
+
+/// The run beside a robot that drives along its line.
+pub(crate) fn run(made: Setup) -> Recording {
+    let mut driver = Liner::of(&made);
+    Engine::new(made).unwrap().run(Some(&mut driver), &mut |_, _| {})
 }
 
 pub(crate) fn rule(when: socrates_model::Trigger, act: Action) -> Rule {

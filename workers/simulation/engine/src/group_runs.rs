@@ -1,8 +1,8 @@
 //! Runs of people who walk together, of whoever overtakes, and of what a seed changes.
 
-use socrates_model::{AgentId, AgentState, GroupId, GroupProposal, Recording, Relation};
+use socrates_model::{AgentId, AgentState, Recording, Relation};
 
-use crate::fixture::{Cast, Liner, carve, location, setup};
+use crate::fixture::{Cast, carve, grouped, location, run, setup};
 use crate::run::Engine;
 use crate::setup::Setup;
 
@@ -23,21 +23,6 @@ fn corridor(width_m: f64, doorway: bool) -> socrates_model::Location {
 
 const THERE: &[&str] = &["a", "b", "c", "d", "e"];
 const BACK: &[&str] = &["e", "d", "c", "b", "a"];
-
-fn grouped(mut made: Setup) -> Setup {
-    let group = GroupId(1);
-    for human in &mut made.proposal.humans {
-        human.group = Some(group);
-    }
-    let members = made.proposal.humans.iter().map(|human| human.id).collect();
-    made.proposal.groups.push(GroupProposal { id: group, members, standing: false });
-    made
-}
-
-fn run(made: Setup) -> Recording {
-    let mut driver = Liner::of(&made);
-    Engine::new(made).unwrap().run(Some(&mut driver), &mut |_, _| {})
-}
 
 fn robot(recording: &Recording) -> Vec<AgentState> {
     recording.track(AgentId::Robot).cloned().collect()

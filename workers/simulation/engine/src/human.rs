@@ -124,6 +124,11 @@ impl Human {
         Vector::new(cos, sin)
     }
 
+    /// How far it has gone aside from its line for whoever is in its way, m to the left.
+    pub(crate) fn gone_aside_m(&self) -> f64 {
+        self.aside_m - self.lane_m
+    }
+
     /// Direction of travel: along the way while there is some left, else where it faces.
     pub(crate) fn travel(&self) -> Vector {
         if self.velocity.norm() > 0.2 {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use socrates_model::{EventKind, Recording, Relation};
 
-use crate::fixture::{Cast, Liner, carve, location, setup};
+use crate::fixture::{Cast, carve, grouped, location, run, setup};
 use crate::run::Engine;
 use crate::setup::Setup;
 
@@ -23,11 +23,6 @@ fn ring() -> socrates_model::Location {
         ],
         &[("w", "w2"), ("w2", "m"), ("m", "e"), ("e", "ne"), ("ne", "nw"), ("nw", "m")],
     )
-}
-
-fn run(made: Setup) -> Recording {
-    let mut driver = Liner::of(&made);
-    Engine::new(made).unwrap().run(Some(&mut driver), &mut |_, _| {})
 }
 
 /// Encounters as they happened: human, node, gap.
@@ -168,13 +163,8 @@ fn a_group_meets_the_robot_twice_together() {
     for seed in 1..=3 {
         let way = ["e", "m", "nw", "ne", "e"];
         let cast = [Cast(Relation::Frontal, &way, vec![]), Cast(Relation::Frontal, &way, vec![])];
-        let mut made = setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &[(1, "m"), (2, "m"), (1, "e"), (2, "e")]);
-        let group = socrates_model::GroupId(1);
-        for human in &mut made.proposal.humans {
-            human.group = Some(group);
-        }
-        let members = made.proposal.humans.iter().map(|human| human.id).collect();
-        made.proposal.groups.push(socrates_model::GroupProposal { id: group, members, standing: false });
+        let meet = [(1, "m"), (2, "m"), (1, "e"), (2, "e")];
+        let made = grouped(setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &meet));
         let met = numbered(&run(Setup { seed, ..made }));
         assert_eq!(met.len(), 4, "seed {seed}: {met:?}");
         // Round the block takes the fastest walk there is: the whole group is a little late for the second.

@@ -174,7 +174,7 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
 fn passes(human: &Human, robot: &Robot, ahead: &Vector) -> bool {
     let way = robot.at() - human.at;
     let along = robot.velocity.dot(ahead) > OVERTAKEN_MPS;
-    let aside = (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M && way.perp(ahead).abs() > BESIDE_M;
+    let aside = human.gone_aside_m().abs() > ASIDE_TAKEN_M && way.perp(ahead).abs() > BESIDE_M;
     // Where the floor leaves it no wider berth.
     let narrow = human.notice.share < 1.0;
     human.relation == Relation::Behind && narrow && along && aside && way.norm() < PASSES_M
@@ -254,6 +254,7 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
     // Where it walks now, beside the middle of its way.
     let beside_m = (human.at - human.route.point(human.s)).dot(&left);
     let left_m = human.route.length_m() - human.s;
+    let taken = human.gone_aside_m();
     let mut nearest = (SEE_AHEAD_M, 0.0);
     for other in scene.others {
         if other.id == Some(human.id) || human.group.is_some() && other.group == human.group {
@@ -266,16 +267,14 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
             continue;
         }
         let beside = way.dot(&left);
+        let (along, others) = (human.velocity.dot(ahead), other.velocity.dot(ahead));
         // Who has gone aside to overtake and is slowed down beside the other still wants to get past.
-        let overtakes = other.velocity.dot(ahead) > OVERTAKEN_MPS
-            && human.relation == Relation::Behind
-            && (human.aside_m - human.lane_m).abs() > ASIDE_TAKEN_M;
-        let along = if overtakes { speed_mps } else { human.velocity.dot(ahead) };
-        let closing = along.max(human.velocity.dot(ahead)) - other.velocity.dot(ahead);
+        let overtakes = others > OVERTAKEN_MPS && human.relation == Relation::Behind && taken.abs() > ASIDE_TAKEN_M;
+        let closing = if overtakes { along.max(speed_mps) } else { along } - others;
         let across = other.velocity.dot(&left).abs();
         // From who comes towards them people who walk together go aside together: the line that counts is that of their
         // middle, and their flank needs room. Whom they overtake they pass on both sides.
-        let together = human.flank_m > 0.0 && other.velocity.dot(ahead) < OVERTAKEN_MPS;
+        let together = human.flank_m > 0.0 && others < OVERTAKEN_MPS;
         let (line_m, flank_m) = if together { (0.0, human.flank_m) } else { (human.lane_m, 0.0) };
         let need = human.radius_m + other.radius_m + BERTH_M + flank_m;
         // Beside the line that it would keep to without anybody in the way.
@@ -295,7 +294,6 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
                 >= human.radius_m + 0.05
         };
         // The side once taken is kept; on the same line everybody goes to the right, if there is room.
-        let taken = human.aside_m - human.lane_m;
         let mut side = if taken.abs() > ASIDE_TAKEN_M {
             taken.signum()
         } else if off < -0.15 {

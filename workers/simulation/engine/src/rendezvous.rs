@@ -7,7 +7,7 @@
 
 use socrates_model::{Point, Relation, Vector};
 
-use crate::human::{DoorOnWay, Human, Meeting};
+use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
 use crate::start::HURRY_MPS;
 
@@ -69,8 +69,6 @@ pub(crate) struct Timing {
     pub(crate) happened: usize,
     /// Whether the robot's own way leads into the place that is left.
     pub(crate) robot_enters: bool,
-    /// Whether it wants in where the robot comes out.
-    pub(crate) lets_out: bool,
     /// Whether its door opens for whoever comes near, so that it need not wait for it.
     pub(crate) opens_door: bool,
 }
@@ -121,8 +119,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
         if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
     let stands_s = if robot.v < STANDS_MPS && moment.now_s > STANDS_FROM_S { STANDS_S } else { 0.0 };
-    let lead_s = if timing.lets_out && is_first { -LETS_OUT_S } else { meeting.lead_s };
-    let due_s = robot.eta_s(meeting.robot_s) + stands_s - lead_s;
+    let due_s = robot.eta_s(meeting.robot_s) + stands_s - meeting.lead_s;
     let needed = left / due_s.max(0.05);
     let apart = (human.at - robot.at()).norm();
     let in_view = moment.sight && apart < VIEW_M;
@@ -204,6 +201,19 @@ fn near_along(robot: &Robot, at: &Point, reach_m: f64) -> bool {
     aside < 2.5 && s - robot.s <= reach_m
 }
 
+/// Has those who want in where the robot comes out be at their first meeting after it.
+pub(crate) fn let_out(humans: &mut [Human], robot_doors: &[DoorOnWay]) {
+    for Human { meetings, doors, .. } in humans {
+        let Some(met) = meetings.first_mut() else { continue };
+        let comes_out = |own: &DoorOnWay, out: &DoorOnWay| {
+            out.door == own.door && out.s > INSIDE_M && out.s < met.robot_s && own.s > met.human_s
+        };
+        if doors.iter().any(|own| robot_doors.iter().any(|out| comes_out(own, out))) {
+            met.lead_s = -LETS_OUT_S;
+        }
+    }
+}
+
 /// Speed of somebody who keeps level with the robot.
 fn beside(human: &Human, robot: &Robot) -> f64 {
     let (s, _) = human.route.project_within(&robot.at(), human.s - 4.0, human.s + 4.0);
@@ -245,12 +255,7 @@ pub(crate) fn timings(
                 .and_then(|order| u32::try_from(order).ok())
                 .unwrap_or(0);
             let opens_door = human.doors.first().is_some_and(|on_way| by_nearness(on_way.door));
-            let both = |met: &Meeting, own: &DoorOnWay| {
-                let comes_out = |out: &DoorOnWay| out.door == own.door && out.s > INSIDE_M && out.s < met.robot_s;
-                own.s > met.human_s && robot_doors.iter().any(comes_out)
-            };
-            let lets_out = human.meetings.first().is_some_and(|met| human.doors.iter().any(|own| both(met, own)));
-            Timing { leaving_order: order, robot_enters: enters(human), lets_out, opens_door, ..Timing::default() }
+            Timing { leaving_order: order, robot_enters: enters(human), opens_door, ..Timing::default() }
         })
         .collect()
 }

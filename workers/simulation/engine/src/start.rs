@@ -351,9 +351,7 @@ pub(crate) fn doors_on(setup: &Setup, route: &Polyline) -> Vec<DoorOnWay> {
 fn drawn_speed(seed: u64, human: HumanId) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["speed", &human.to_string()]));
     // Box and Muller's transform of two uniform draws in (0, 1].
-    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
-    let mut uniform = || ((random.next_u64() >> 11) as f64 + 1.0) / 9_007_199_254_740_992.0;
-    let (a, b) = (uniform(), uniform());
+    let (a, b) = (even(&mut random) + EVEN_STEP, even(&mut random) + EVEN_STEP);
     let normal = libm::sqrt(-2.0 * libm::log(a)) * libm::cos(std::f64::consts::TAU * b);
     (SPEED.0 + SPEED.1 * normal).clamp(SPEED.2, SPEED.3)
 }
@@ -361,9 +359,17 @@ fn drawn_speed(seed: u64, human: HumanId) -> f64 {
 /// Where somebody stands or walks beside where it would by plan, m; the same seed and human give the same.
 fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
     let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["sway", &human.to_string()]));
-    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
-    let mut even = || SWAY_M * (2.0 * ((random.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0) - 1.0);
-    (even(), even())
+    let mut sway = || SWAY_M * (2.0 * even(&mut random) - 1.0);
+    (sway(), sway())
+}
+
+/// Between two numbers that [`even`] may give.
+const EVEN_STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
+
+/// From 0 to below 1.
+#[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
+fn even(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * EVEN_STEP
 }
 
 /// The header of the run.

@@ -7,7 +7,7 @@ use socrates_model::{
     Trigger, Vector,
 };
 
-use crate::fixture::{Cast, Liner, carve, hall, id, location, rule, setup};
+use crate::fixture::{Cast, Liner, carve, hall, id, location, rule, run, setup};
 use crate::run::Engine;
 use crate::setup::Setup;
 
@@ -35,11 +35,6 @@ fn crossing() -> socrates_model::Location {
         ],
         &[("w", "w2"), ("w2", "m"), ("m", "e2"), ("e2", "e"), ("n", "m"), ("m", "s")],
     )
-}
-
-fn run(setup: Setup) -> Recording {
-    let mut driver = Liner::of(&setup);
-    Engine::new(setup).unwrap().run(Some(&mut driver), &mut |_, _| {})
 }
 
 fn gaps(recording: &Recording) -> BTreeMap<u32, f64> {
