@@ -18,6 +18,7 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
             && matches!(mentions(stretch.words.get(1..).unwrap_or_default()).as_slice(), [only] if only.from == 0 && only.to + 2 == stretch.words.len()))
     });
     measured(&mut found);
+    bracketed(&mut found);
     pair(&mut found);
     resumed(&mut found);
     parted(&mut found);
@@ -158,31 +159,82 @@ fn measured(found: &mut Vec<Stretch>) {
     }
 }
 
+/// `only the first gives way (robot within 2 m)`: a measure of the robot in brackets says when.
+fn bracketed(found: &mut [Stretch]) {
+    for at in 1..found.len() {
+        let acts = found
+            .get(at - 1)
+            .is_some_and(|before| before.words.iter().any(|word| lexicon().verbs.contains(&word.stem)));
+        let Some(measure) = found.get_mut(at).filter(|measure| acts && measure.joint == Joint::Comma) else { continue };
+        let word = |k: usize| measure.words.get(k);
+        let robot = word(0).is_some_and(|word| word.stem == "robot")
+            || word(1).is_some_and(|word| word.stem == "robot") && word(0).is_some_and(|word| word.text == "the");
+        let unit = measure.words.iter().any(|word| matches!(word.stem.as_str(), "meter" | "centimeter"));
+        let verb = measure.words.iter().any(|word| {
+            lexicon().verbs.contains(&word.stem) && !matches!(word.stem.as_str(), "be" | "close" | "near")
+        });
+        if robot && unit && !verb && measure.words.len() <= 8 {
+            measure.joint = Joint::When;
+        }
+    }
+}
+
 /// `the robot asks two loaders, who stand in its way, to make room`: what is asked goes with who asks.
 fn parted(found: &mut Vec<Stretch>) {
+    asked_of(found);
     for at in 2..found.len() {
         let rest = found.get(at).is_some_and(|rest| {
             rest.joint == Joint::Comma
                 && rest.words.first().is_some_and(|word| word.text == "to")
                 && rest.words.get(1).is_some_and(|word| lexicon().known.contains(&word.stem))
         });
-        let Some(who) = (1..at).rev().find(|k| found.get(*k).is_some_and(|who| who.joint == Joint::Who)) else {
+        let between = |who: &Stretch| matches!(who.joint, Joint::Who | Joint::When);
+        let Some(who) = (1..at).rev().find(|k| found.get(*k).is_some_and(between)) else {
             continue;
         };
-        let asks = found.get(who - 1).is_some_and(|asks| {
-            asks.words.iter().any(|word| {
-                matches!(
-                    word.stem.as_str(),
-                    "ask" | "tell" | "signal" | "order" | "request" | "beckon" | "instruct" | "motion" | "gesture"
-                )
-            })
-        });
+        let asks = found.get(who - 1).is_some_and(|asks| asks.words.iter().any(asks_for));
         if rest && asks {
             let rest = found.remove(at);
             if let Some(asks) = found.get_mut(who - 1) {
                 asks.words.extend(rest.words);
             }
             return;
+        }
+    }
+}
+
+/// Verbs by which somebody wants something of somebody else.
+fn asks_for(word: &Word) -> bool {
+    matches!(
+        word.stem.as_str(),
+        "ask" | "tell" | "signal" | "order" | "request" | "beckon" | "instruct" | "motion" | "gesture"
+    )
+}
+
+/// `it signals a picker who comes from the right to go first`: what is asked stands behind whom it is asked of.
+fn asked_of(found: &mut [Stretch]) {
+    for at in 1..found.len() {
+        let verb = |word: &Word| lexicon().verbs.contains(&word.stem) || lexicon().known.contains(&word.stem);
+        let open = found.get(at - 1).is_some_and(|asks| {
+            let asked = asks.words.iter().position(asks_for);
+            asked.is_some_and(|asked| {
+                // Nothing is asked for as yet.
+                !asks.words.iter().skip(asked).any(|word| matches!(word.text.as_str(), "to" | "for" | "that"))
+                    && mentions(&asks.words).last().is_some_and(|last| last.to + 1 == asks.words.len())
+            })
+        });
+        let Some(who) = found.get(at).filter(|who| open && who.joint == Joint::Who) else { continue };
+        let to = (2..who.words.len()).rev().find(|k| {
+            who.words.get(*k).is_some_and(|word| word.text == "to")
+                && who.words.get(k + 1).is_some_and(|word| verb(word) && word.text == word.stem)
+                && !who.words.get(k - 1).is_some_and(|word| {
+                    matches!(word.stem.as_str(), "want" | "try" | "wish" | "need" | "like" | "refuse" | "close" | "next")
+                })
+        });
+        let Some(to) = to else { continue };
+        let rest = found.get_mut(at).map(|who| who.words.split_off(to)).unwrap_or_default();
+        if let Some(asks) = found.get_mut(at - 1) {
+            asks.words.extend(rest);
         }
     }
 }

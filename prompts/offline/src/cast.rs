@@ -335,6 +335,18 @@ impl Cast {
         }
     }
 
+    /// Gives people the names that stand beside who they are.
+    pub(crate) fn name(&mut self, people: &[usize], names: &[&String]) {
+        if people.len() != names.len() {
+            return;
+        }
+        for (i, name) in people.iter().zip(names) {
+            if let Some(person) = self.people.get_mut(*i) {
+                person.name = Some((*name).clone());
+            }
+        }
+    }
+
     /// The people of a mention of whom a list tells what each is.
     pub(crate) fn made_of(&mut self, mention: &Mention, declares: bool, quote: &str, roles: &[String]) -> Vec<usize> {
         let count = u32::try_from(roles.len()).ok();

@@ -266,7 +266,8 @@ fn echoes(stretch: &mut Stretch) -> Option<usize> {
                 && matches!(stem(k - 1), "do" | "say" | "ask" | "signal" | "request" | "tell")
             || matches!(stem(*k), "ask" | "say" | "signal" | "request" | "tell" | "gesture")
                 && *k > 0
-                && stem(k - 1) == "do"
+                // `if it does ask`, `once it has asked`
+                && matches!(stem(k - 1), "do" | "have")
                 && k + 2 >= count
             || matches!(text(*k), "that" | "this")
                 && k + 1 == count

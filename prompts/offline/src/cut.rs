@@ -3,9 +3,12 @@
 use crate::apposed::apposed;
 use crate::arrange::arranged;
 use crate::asker::takes_part;
+use crate::called::called;
+use crate::clock::clock;
 use crate::headings::{described, labels, names, titled, totals};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
+use crate::preamble::preamble;
 use crate::words::{Piece, Word, pieces};
 
 /// How a clause is joined to the one before it.
@@ -60,8 +63,11 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut colon = false;
     let mut pieces = pieces(text);
     totals(&mut pieces);
-    names(&mut pieces);
+    clock(&mut pieces);
+    let known = called(&mut pieces);
+    names(&mut pieces, known);
     takes_part(&mut pieces);
+    preamble(&mut pieces);
     for piece in pieces {
         match piece {
             Piece::Word(word) => {
@@ -240,6 +246,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     let opens = i == 0 || words.get(i - 1).is_some_and(Option::is_none) || before == "and" || before == "then";
     let seeing = |k: usize| (sees(k) || stem(k) == "hear") && text(k).ends_with("ing");
     let counted = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
+    let message = |verb: &str| matches!(verb, "signal" | "tell" | "indicate" | "show" | "gesture" | "announce" | "inform");
     match text(i) {
         "and" if text(i + 1) == "a" && text(i + 2) == "half" => (None, 1),
         "at" if text(i + 1) == "that" && matches!(text(i + 2), "he" | "she" | "they" | "it") => (Some(Joint::Said), 2),
@@ -333,7 +340,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         // `does not move unless the robot asks` is `… until it asks`.
         "until" | "till" | "unless" => (Some(Joint::Until), 1),
         "who" | "whom" | "which" if before != "of" => (Some(Joint::Who), 1),
-        "that" if person => (Some(Joint::Who), 1),
+        // `signals to the visitors that they may go first`
+        "that" if person && !(i.saturating_sub(5)..i).any(|k| message(stem(k))) => (Some(Joint::Who), 1),
         "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 1),
         _ => (None, 1),
     }
@@ -386,6 +394,13 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 | "does"
                 | "do"
                 | "did"
+                | "should"
+                | "would"
+                | "will"
+                | "can"
+                | "could"
+                | "may"
+                | "must"
                 | "point"
         ),
         "does" | "do" | "did" => {
@@ -419,6 +434,11 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                     | "signal"
                     | "gesture"
                     | "sign"
+                    | "this"
+                    | "that"
+                    | "so"
+                    | "asked"
+                    | "signalled"
                     | "stops"
                     | "arrives"
                     | "appears"

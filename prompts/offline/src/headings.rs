@@ -333,8 +333,9 @@ pub(crate) fn totals(pieces: &mut Vec<Piece>) {
     }
 }
 
-/// Marks names everywhere, once one place shows that they are names: `Anna follows Tom. Tom stops.`
-pub(crate) fn names(pieces: &mut [Piece]) {
+/// Marks names everywhere, those that are known and those of which one place shows that they are names:
+/// `Anna follows Tom. Tom stops.`
+pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     let lex = lexicon();
     let word = |k: usize| word_at(pieces, k);
     let strange = |word: &Word| {
@@ -359,7 +360,7 @@ pub(crate) fn names(pieces: &mut [Piece]) {
                 )
             })
     };
-    let mut found: Vec<String> = Vec::new();
+    let mut found: Vec<String> = known;
     for k in 0..pieces.len() {
         let Some(name) = word(k).filter(|word| strange(word)) else { continue };
         // `Anna and Ben both cross`

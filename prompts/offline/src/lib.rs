@@ -31,6 +31,9 @@ mod apposed;
 mod around;
 mod arrange;
 mod asker;
+mod called;
+mod clock;
+mod preamble;
 mod cut;
 
 mod again;

@@ -188,7 +188,10 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                 };
             }
             // `no other people`
-            let more = usize::from(matches!(text(at + 1), "other" | "more" | "further" | "additional" | "others"));
+            let more = usize::from(
+                matches!(text(at + 1), "other" | "more" | "further" | "additional" | "others")
+                    || lex.ordinals.contains_key(text(at + 1)),
+            );
             return noun(words, at + 1 + more, lex).and_then(|end| made(Who::Nobody, None, end));
         }
         "both" | "neither" => {
@@ -244,7 +247,11 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                 Some(end) => made(Who::All, None, end),
                 None if start > at + 1 => made(Who::All, None, start - 1),
                 // `each steps aside`
-                None if text(at) == "each" && words.get(at + 1).is_none_or(|word| lex.verbs.contains(&word.stem)) => {
+                None if text(at) == "each"
+                    // `the first and the second each wave`
+                    && (at == 0 || matches!(text(at - 1), "and" | "then" | "but" | "they"))
+                    && words.get(at + 1).is_none_or(|word| lex.verbs.contains(&word.stem)) =>
+                {
                     made(Who::All, None, at)
                 }
                 None => None,
@@ -292,6 +299,13 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
     if let Some(mention) = others(words, at, lex, &role) {
         return Some(mention);
     }
+    // `worker number 6`
+    if lex.roles.contains_key(stem(at))
+        && matches!(text(at + 1), "number" | "no" | "nr")
+        && let Some(number) = words.get(at + 2).filter(|word| word.is_digits()).and_then(Word::count)
+    {
+        return made(Who::Number(number), role(at), at + 2);
+    }
     if lex.roles.contains_key(stem(at))
         && !text(at).ends_with("ple")
         && let Some(number) = words.get(at + 1).filter(|word| word.is_digits()).and_then(Word::count)
@@ -331,7 +345,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             && !lex.roles.contains_key(&next.stem)
             && !lex.things.contains(&next.stem)
     });
-    if letter(at) == Some(1) && finite && acts(at + 1) {
+    // `B follows A`
+    let last = at + 1 == words.len() && at > 0 && acts(at - 1);
+    if letter(at) == Some(1) && (finite && acts(at + 1) || last) {
         return made(Who::Number(1), None, at);
     }
     if let Some(number) =
@@ -507,7 +523,9 @@ fn counted(
         && words.get(at).is_some_and(|word| word.capital)
         && noun(words, at, lex).is_none()
         && stranger(words, at, true, lex).is_some_and(|end| {
-            words.get(end + 1).is_some_and(|word| lex.verbs.contains(&word.stem) || word.text == "who")
+            // `Blood samples are urgent` names nobody.
+            words.get(at..=end).is_some_and(|name| name.iter().all(|word| word.capital))
+                && words.get(end + 1).is_some_and(|word| lex.verbs.contains(&word.stem) || word.text == "who")
         })
     {
         return made(Who::Definite { plural: false, count: None }, role(at), false, at);

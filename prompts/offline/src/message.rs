@@ -164,7 +164,12 @@ fn own_way(stretch: &Stretch, first: usize, last: usize) -> Option<usize> {
     match text(next) {
         "to" if goes(next + 1) => Some(next + 1),
         "for" if (next + 1..next + 4).any(way) => (next + 1..next + 4).find(|k| way(*k)),
-        "if" | "whether" => None,
+        // `asks whether it may pass`
+        "if" | "whether" => (stem(next + 1) == "robot"
+            && matches!(stem(next + 2), "may" | "can" | "could" | "might")
+            && goes(next + 3)
+            && first.checked_sub(1).is_some_and(|k| stem(k) == "robot"))
+        .then_some(next + 3),
         _ if way(next) => Some(next),
         _ => None,
     }

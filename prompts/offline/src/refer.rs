@@ -167,6 +167,10 @@ pub(crate) fn predicate(words: &[Word], mention: Mention, before: &[Mention]) ->
     let is = is.is_some_and(|word| word.stem == "be" || word.text == "am");
     let subject = before.last().filter(|last| is && last.to + 2 == mention.from);
     match (subject, &mention.who) {
+        // `he is one of our pickers`
+        (Some(subject), Who::PartOf(1) | Who::PartOfNew(1, _)) if subject.who == Who::Same => {
+            Mention { who: Who::Same, ..mention }
+        }
         // `she is the only one who looks`
         (Some(subject), Who::ToldApart) if subject.who != Who::Nobody => {
             Mention { who: if subject.who == Who::All { Who::All } else { Who::Same }, ..mention }

@@ -273,11 +273,30 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         joined.clear();
     }
     let listed = std::mem::take(&mut thread.listed);
+    // `a doctor and a nurse who come round the corner`: both do.
+    let both = stretch.joint == Joint::Who
+        && !listed.is_empty()
+        && found.mentions.is_empty()
+        && stretch.words.first().is_some_and(|word| {
+            word.text == word.stem && lexicon().verbs.contains(&word.stem) || word.text == "are"
+        });
+    let previous = match previous {
+        Subject::People(people) if both && people.iter().all(|i| !listed.contains(i)) => {
+            let all: Vec<usize> = listed.iter().chain(&people).copied().collect();
+            story.cast.together(&all, &quote);
+            Subject::People(all)
+        }
+        previous => previous,
+    };
     // `… standing together`, `have an operator and a trainee stroll`
     let shared = |to: usize| {
         stretch.words.get(to + 1).is_some_and(|word| {
             word.text.ends_with("ing")
                 || word.text == word.stem && lexicon().verbs.contains(&word.stem) && word.stem != "be"
+        }) || (to + 1..to + 6).any(|k| {
+            // `I'd like a porter and a patient from ward 6 to come out`
+            stretch.words.get(k).is_some_and(|word| word.text == "to")
+                && stretch.words.get(k + 1).is_some_and(|word| lexicon().verbs.contains(&word.stem))
         })
     };
     if joined.is_empty()
@@ -470,7 +489,11 @@ fn meant(
     let spoken_of = story.cast.last.clone();
     for mention in &found.mentions {
         // `my staff get grumpy` tells of whoever asks.
-        let owner = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "my" | "our"));
+        let owned = |word: &crate::words::Word| matches!(word.text.as_str(), "my" | "our");
+        let people = matches!(mention.who, Who::New { count: None, .. });
+        let owner = |k: usize| {
+            stretch.words.get(k).is_some_and(owned) || people && k > 0 && stretch.words.get(k - 1).is_some_and(owned)
+        };
         let told = stretch
             .words
             .get(mention.to + 1)
@@ -495,6 +518,8 @@ fn meant(
             story.cast.made_of(mention, declares, said, &made_of)
         };
         story.cast.call(mention, words, &people);
+        let names: Vec<&String> = words.iter().flat_map(|word| &word.called).collect();
+        story.cast.name(&people, &names);
         // `a few people`, `several nurses`
         let vague =
             words.iter().any(|word| matches!(word.text.as_str(), "few" | "several" | "some" | "handful" | "many"));

@@ -215,7 +215,7 @@ pub(crate) fn quiet(
             return;
         }
     }
-    if people.is_empty() && robot_leads(found) && found.mentions.is_empty() {
+    if people.is_empty() && robot_leads(found) && found.mentions.is_empty() && stretch.joint != Joint::Who {
         thread.subject = Subject::Robot;
     }
     let behind = stretch.words.iter().position(|word| word.text == "behind");
@@ -238,7 +238,10 @@ pub(crate) fn quiet(
     }
     if people.is_empty() {
         if !found.robots.is_empty() {
-            thread.subject = Subject::Robot;
+            // `who has never seen a robot` tells of whom the sentence tells.
+            if stretch.joint != Joint::Who {
+                thread.subject = Subject::Robot;
+            }
         } else if let Subject::People(last) = &thread.subject
             && (found.in_group || found.pace_mps.is_some() || found.lasts_s.is_some())
         {

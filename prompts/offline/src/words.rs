@@ -25,6 +25,8 @@ pub(crate) struct Word {
     pub(crate) name: bool,
     /// The roles of the people that the noun stands for, where a list told them: `two people, a nurse and a visitor`.
     pub(crate) made_of: Vec<String>,
+    /// Names of those for whom the noun stands: `Dele, the porter`.
+    pub(crate) called: Vec<String>,
 }
 
 impl Word {
@@ -218,6 +220,10 @@ fn apostrophe(
         };
         out.push(Piece::Word(word(verb.to_owned(), from, to)));
         out.push(Piece::Word(word("not".to_owned(), from, to)));
+    } else if tail == "s" && matches!(lower, "he" | "she" | "who" | "there") {
+        // `he's` is `he is`; `it's` and `robot's` stay what they are.
+        out.push(Piece::Word(word(lower.to_owned(), from, to)));
+        out.push(Piece::Word(word("is".to_owned(), from, to)));
     } else if tail == "m" && lower == "i" {
         out.push(Piece::Word(word(lower.to_owned(), from, to)));
         out.push(Piece::Word(word("am".to_owned(), from, to)));
@@ -282,6 +288,7 @@ fn word(text: String, from: usize, to: usize) -> Word {
         after_colon: false,
         name: false,
         made_of: Vec::new(),
+        called: Vec::new(),
     }
 }
 

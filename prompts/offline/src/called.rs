@@ -1,0 +1,214 @@
+//! Names of people beside who they are: `Dele, the porter`, `our foreman, Marek`, `her colleague Jonas`,
+//! `two loaders, Chuy and Big Tom`.
+
+use crate::lexicon::lexicon;
+use crate::noun::plural;
+use crate::words::{Piece, Word};
+
+/// Words before a name that belong to it.
+const TITLES: &[&str] = &["mr", "mrs", "ms", "miss", "prof", "sister", "dr"];
+/// Words before who somebody is.
+const WHOSE: &[&str] = &["our", "the", "a", "an", "my", "her", "his", "their", "your", "this", "that", "another"];
+/// Words that begin where somebody is from.
+const FROM: &[&str] = &["from", "on", "in", "of", "at", "with", "by"];
+/// So many words at most say who somebody is, and as many where from.
+const SPAN: usize = 5;
+
+/// Takes names that stand beside who somebody is out of the text, and returns them in order: the noun remembers them in
+/// [`Word::called`], and whoever is called so later is the same.
+pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
+    let mut known: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < pieces.len() {
+        if let Some(found) = several(pieces, at).or_else(|| before(pieces, at)).or_else(|| after(pieces, at)) {
+            for name in &found.names {
+                if !known.contains(name) {
+                    known.push(name.clone());
+                }
+            }
+            if let Some(Piece::Word(noun)) = pieces.get_mut(found.noun) {
+                noun.called.clone_from(&found.names);
+            }
+            // Whoever is introduced by name is one: `Dele, our porter` is a porter.
+            if let Some(Piece::Word(whose)) = found.whose.and_then(|whose| pieces.get_mut(whose)) {
+                "a".clone_into(&mut whose.text);
+                "a".clone_into(&mut whose.stem);
+            }
+            for at in found.noun..found.end {
+                if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+                    // `our foreman on shift 2`
+                    word.label |= word.is_digits();
+                }
+            }
+            for (from, to) in found.drop.into_iter().rev() {
+                pieces.drain(from..to);
+            }
+        }
+        at += 1;
+    }
+    known
+}
+
+/// Who has which names, and what of the text only says so.
+struct Found {
+    /// Where the noun stands.
+    noun: usize,
+    /// Where what says who somebody is ends.
+    end: usize,
+    /// Where the word before it stands that is to be an article.
+    whose: Option<usize>,
+    names: Vec<String>,
+    /// Stretches that go, in order.
+    drop: Vec<(usize, usize)>,
+}
+
+fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
+    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
+}
+
+fn text(pieces: &[Piece], at: usize) -> &str {
+    word(pieces, at).map_or("", |word| word.text.as_str())
+}
+
+fn comma(pieces: &[Piece], at: usize) -> bool {
+    matches!(pieces.get(at), Some(Piece::Comma))
+}
+
+/// Whether a clause part ends here.
+fn ends(pieces: &[Piece], at: usize) -> bool {
+    !matches!(pieces.get(at), Some(Piece::Word(_)))
+}
+
+fn role(pieces: &[Piece], at: usize) -> bool {
+    word(pieces, at).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
+}
+
+/// A word with a capital that no table has.
+fn capital(pieces: &[Piece], at: usize) -> bool {
+    word(pieces, at).is_some_and(|word| {
+        word.capital
+            && word.text.len() > 1
+            && word.text.chars().all(char::is_alphabetic)
+            && !lexicon().has(word)
+            && !lexicon().roles.contains_key(&word.stem)
+            && !lexicon().places.iter().any(|place| place.items == [crate::lexicon::Item::Word(word.text.clone())])
+    })
+}
+
+/// A name with what belongs to it, `old Mrs. Whitcombe`: its last word, by which somebody is called, and where it ends.
+fn name(pieces: &[Piece], at: usize) -> Option<(String, usize)> {
+    let belongs = |k: &usize| {
+        TITLES.contains(&text(pieces, *k))
+            || lexicon().adjectives.contains(text(pieces, *k))
+            || matches!(text(pieces, *k), "poor" | "little" | "dear" | "good")
+    };
+    let first = (at..at + 3).take_while(belongs).last().map_or(at, |last| last + 1);
+    let last = (first..first + 2).take_while(|k| capital(pieces, *k)).last()?;
+    Some((word(pieces, last)?.stem.clone(), last + 1))
+}
+
+/// `our oldest picker from shift 2`: the noun, and where that ends.
+fn described(pieces: &[Piece], at: usize) -> Option<(usize, usize)> {
+    // `one of our pickers`
+    let start = if text(pieces, at) == "one" && text(pieces, at + 1) == "of" { at + 2 } else { at };
+    if !WHOSE.contains(&text(pieces, start)) {
+        return None;
+    }
+    let run = (start + 1..start + 1 + SPAN).take_while(|k| word(pieces, *k).is_some() && !FROM.contains(&text(pieces, *k)));
+    let run: Vec<usize> = run.collect();
+    let last = *run.last()?;
+    let known = run.iter().rev().copied().find(|k| role(pieces, *k));
+    // `the dietician`
+    let noun = known.unwrap_or(last);
+    let strange = word(pieces, noun).is_some_and(|word| {
+        !lexicon().has(word) && word.text.len() > 4 && !word.capital && word.text.chars().all(char::is_alphabetic)
+    });
+    if noun != last || known.is_none() && !strange {
+        return None;
+    }
+    // `from ward 6`, `on shift 2`
+    let end = if FROM.contains(&text(pieces, last + 1)) {
+        (last + 1..last + 2 + SPAN).find(|k| ends(pieces, *k))?
+    } else {
+        last + 1
+    };
+    Some((noun, end))
+}
+
+/// `Dele, the porter, …`
+fn before(pieces: &[Piece], at: usize) -> Option<Found> {
+    // Inside a name no name begins.
+    if at > 0 && (capital(pieces, at - 1) || TITLES.contains(&text(pieces, at - 1))) {
+        return None;
+    }
+    let (name, mark) = name(pieces, at)?;
+    if !comma(pieces, mark) {
+        return None;
+    }
+    let (noun, end) = described(pieces, mark + 1)?;
+    if !ends(pieces, end) {
+        return None;
+    }
+    let one_of = text(pieces, mark + 1) == "one";
+    let whose = mark + if one_of { 3 } else { 1 };
+    // The first mark goes with the name; the second one parts nothing any more, if the sentence goes on.
+    let mut drop = vec![(at, whose)];
+    let listed = text(pieces, end + 1) == "and" || lexicon().roles.contains_key(text(pieces, end + 2));
+    if comma(pieces, end) && !listed {
+        drop.push((end, end + 1));
+    }
+    Some(Found { noun, end, whose: Some(whose), names: vec![name], drop })
+}
+
+/// `our foreman, Marek, …`, `her colleague Jonas`
+fn after(pieces: &[Piece], at: usize) -> Option<Found> {
+    if !role(pieces, at) || word(pieces, at).is_some_and(|word| plural(word) || !word.called.is_empty() || word.stem == "doctor" && word.text == "dr") {
+        return None;
+    }
+    if let Some((name, end)) = name(pieces, at + 1) {
+        // `employee Tom waves`, and not `nurse Station`
+        let goes_on = ends(pieces, end) || word(pieces, end).is_some_and(|word| !word.capital);
+        return goes_on.then(|| Found { noun: at, end: at, whose: None, names: vec![name], drop: vec![(at + 1, end)] });
+    }
+    // `our foreman on shift 2, Marek, …`
+    let from = FROM.contains(&text(pieces, at + 1));
+    let mark = if from { (at + 1..at + 2 + SPAN).find(|k| ends(pieces, *k))? } else { at + 1 };
+    if !comma(pieces, mark) {
+        return None;
+    }
+    let (name, end) = name(pieces, mark + 1)?;
+    let other = |k: usize| text(pieces, k) == "and" || capital(pieces, k);
+    if !ends(pieces, end) || comma(pieces, end) && other(end + 1) {
+        return None;
+    }
+    let close = usize::from(comma(pieces, end));
+    Some(Found { noun: at, end: mark, whose: None, names: vec![name], drop: vec![(mark, end + close)] })
+}
+
+/// `two loaders, Chuy and Big Tom, …`
+fn several(pieces: &[Piece], at: usize) -> Option<Found> {
+    if !role(pieces, at) || !word(pieces, at).is_some_and(plural) || !comma(pieces, at + 1) {
+        return None;
+    }
+    let count = (1..=4).filter_map(|back| at.checked_sub(back)).find_map(|k| word(pieces, k).and_then(Word::count))?;
+    let mut names = Vec::new();
+    let mut next = at + 2;
+    while let Some((name, end)) = name(pieces, next) {
+        names.push(name);
+        next = end;
+        let mark = usize::from(comma(pieces, next));
+        let and = usize::from(text(pieces, next + mark) == "and");
+        if mark + and == 0 || name_ends(pieces, next + mark + and) {
+            break;
+        }
+        next += mark + and;
+    }
+    let close = usize::from(comma(pieces, next));
+    let all = usize::try_from(count) == Ok(names.len()) && names.len() > 1;
+    all.then(|| Found { noun: at, end: at, whose: None, names, drop: vec![(at + 1, next + close)] })
+}
+
+/// Whether no name begins here.
+fn name_ends(pieces: &[Piece], at: usize) -> bool {
+    name(pieces, at).is_none()
+}
