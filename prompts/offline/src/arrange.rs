@@ -3,6 +3,7 @@
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::lexicon;
 use crate::mention::{Who, mentions};
+use crate::negation::denied;
 use crate::words::Word;
 
 /// The clauses in the order in which they are read: what stands before who does it comes after, and names go together.
@@ -17,6 +18,7 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
             && stretch.words.first().is_some_and(|word| word.text == "not")
             && matches!(mentions(stretch.words.get(1..).unwrap_or_default()).as_slice(), [only] if only.from == 0 && only.to + 2 == stretch.words.len()))
     });
+    denied(&mut found);
     measured(&mut found);
     bracketed(&mut found);
     pair(&mut found);

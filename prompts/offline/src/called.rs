@@ -18,6 +18,7 @@ const SPAN: usize = 5;
 /// [`Word::called`], and whoever is called so later is the same.
 pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
     let mut known: Vec<String> = Vec::new();
+    second(pieces);
     let mut at = 0;
     while at < pieces.len() {
         if let Some(found) = several(pieces, at).or_else(|| before(pieces, at)).or_else(|| after(pieces, at)) {
@@ -46,7 +47,47 @@ pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
         }
         at += 1;
     }
+    alone(pieces, &mut known);
     known
+}
+
+/// `a second person, a visitor walking behind it`: a second visitor.
+fn second(pieces: &mut Vec<Piece>) {
+    let mut at = 0;
+    while at + 5 < pieces.len() {
+        let one = matches!(text(pieces, at), "a" | "the")
+            && (lexicon().ordinals.contains_key(text(pieces, at + 1)) || text(pieces, at + 1) == "other")
+            || text(pieces, at + 1) == "another";
+        let generic = word(pieces, at + 2)
+            .and_then(|word| lexicon().roles.get(&word.stem))
+            .is_some_and(|role| role.generic);
+        let other = comma(pieces, at + 3) && matches!(text(pieces, at + 4), "a" | "an");
+        let noun = (at + 5..at + 8).take_while(|k| word(pieces, *k).is_some()).find(|k| role(pieces, *k));
+        if one && generic && other && noun.is_some() && !comma(pieces, noun.unwrap_or(at) + 1) {
+            pieces.drain(at + 2..at + 5);
+        }
+        at += 1;
+    }
+}
+
+/// `Mrs. Aydin from ward 3`, `we've got Petra in accounting`: names that nothing else tells.
+fn alone(pieces: &[Piece], known: &mut Vec<String>) {
+    for at in 0..pieces.len() {
+        let titled = matches!(text(pieces, at), "mr" | "mrs" | "ms" | "miss");
+        let got = matches!(text(pieces, at), "got" | "picture" | "imagine" | "meet");
+        let from = |k: usize| matches!(text(pieces, k), "in" | "from" | "at" | "of");
+        let placed = ends(pieces, at.wrapping_sub(1)) && from(at + 1);
+        let start = if titled || got { at + 1 } else { at };
+        if !(titled || got || placed) || !capital(pieces, start) {
+            continue;
+        }
+        if let Some((name, end)) = name(pieces, start)
+            && (titled || from(end) || ends(pieces, end))
+            && !known.contains(&name)
+        {
+            known.push(name);
+        }
+    }
 }
 
 /// Who has which names, and what of the text only says so.

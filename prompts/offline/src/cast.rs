@@ -141,7 +141,7 @@ impl Cast {
                     self.forget(&found);
                     Some(found)
                 } else if self.listing {
-                    self.pick_open(*n, mention)
+                    self.pick_nameless(*n).or_else(|| self.pick_open(*n, mention))
                 } else if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)
                 } else {
@@ -377,8 +377,8 @@ impl Cast {
 
     /// From here to the end of the sentence, people are those of the newest set of whom nothing is known yet.
     pub(crate) fn lists(&mut self) {
-        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| !person.bound);
-        self.listing = self.sets.last().is_some_and(|set| set.members.len() > 1 && set.members.iter().all(plain));
+        let plain = |i: &usize| self.people.get(*i).is_some_and(|person| !person.bound || person.role.is_empty());
+        self.listing = self.sets.last().is_some_and(|set| set.members.iter().all(plain));
     }
 
     /// Takes `a nurse and two visitors` as one set.
@@ -433,6 +433,16 @@ impl Cast {
             } else {
                 None
             }
+        })
+    }
+
+    /// Some of the newest set of whom nothing says who they are: `two people who …: a nurse and a visitor`.
+    fn pick_nameless(&self, n: u32) -> Option<Vec<usize>> {
+        let wanted = usize::try_from(n).ok()?;
+        let nameless = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty());
+        self.sets.iter().rev().find_map(|set| {
+            let found: Vec<usize> = set.members.iter().copied().filter(nameless).take(wanted).collect();
+            (found.len() == wanted).then_some(found)
         })
     }
 

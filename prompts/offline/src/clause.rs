@@ -5,6 +5,7 @@ use socrates_model::{Gesture, PlaceClass};
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, Who, mentions};
+use crate::negation::negated;
 use crate::topic::drop_topics;
 use crate::words::find;
 use crate::{measure, message};
@@ -280,44 +281,6 @@ fn echoes(stretch: &mut Stretch) -> Option<usize> {
     at
 }
 
-fn negated(stretch: &Stretch, at: usize) -> bool {
-    let before =
-        |back: usize| at.checked_sub(back).and_then(|i| stretch.words.get(i)).map_or("", |word| word.text.as_str());
-    // `will not stop looking` looks on.
-    if before(1) == "stop" && matches!(before(2), "not" | "never") {
-        return false;
-    }
-    // `never turns round to look`, `does not want to move`
-    let to = before(1) == "to"
-        && (2..=5).any(|back| matches!(before(back), "not" | "never"))
-        && !(2..=5)
-            .take_while(|back| !matches!(before(*back), "not" | "never"))
-            .any(|back| before(back) == "robot" || before(back) == "until");
-    if to {
-        return true;
-    }
-    // `never so much as glances`, `not even once looks`
-    let reach = (1..=6)
-        .find(|back| {
-            !matches!(
-                before(*back),
-                "so" | "much" | "as" | "a" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually"
-            )
-        })
-        .unwrap_or(1);
-    (1..=2).chain([reach]).any(|back| {
-        matches!(before(back), "not" | "never" | "without" | "cannot" | "refuses" | "refuse" | "fails" | "fail" | "nor")
-            || before(back) == "of" && before(back + 1) == "instead"
-            || before(back) == "than" && before(back + 1) == "rather"
-    }) || (0..at).any(|i| stretch.words.get(i).is_some_and(|word| matches!(word.text.as_str(), "neither" | "none")))
-        // `at no point does she look`
-        || (0..at).any(|i| {
-            let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-            text(i) == "no"
-                && matches!(text(i + 1), "one" | "point" | "time" | "moment" | "circumstances" | "way" | "case")
-        })
-}
-
 fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &[bool]) {
     // The name of a gesture is no deed: `with a WAIT gesture`.
     for i in 0..stretch.words.len() {
@@ -410,7 +373,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
     let directed = has(&[Act::Toward, Act::Behind, Act::Cross, Act::Overtake]);
     let telling = found.deeds.iter().any(|deed| !matches!(deed.act, Act::Walk | Act::Pass | Act::Stand | Act::Stop));
     let directs = found.deeds.iter().any(|deed| {
-        !matches!(deed.act, Act::Walk | Act::Pass | Act::Stand | Act::Stop | Act::GoOn | Act::Ignore | Act::Abreast)
+        // `walks on without a glance at it`
+        !deed.negated
+            && !matches!(
+                deed.act,
+                Act::Walk | Act::Pass | Act::Stand | Act::Stop | Act::GoOn | Act::Ignore | Act::Abreast
+            )
     });
     let follows = has(&[Act::Follow]);
     let stands = has(&[Act::Block, Act::Look]);
@@ -558,7 +526,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             found.obeys = true;
             used.push(i);
         }
-        if text == "group" && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {
+        if matches!(text, "group" | "dyad") && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {
             found.in_group = true;
             used.push(i);
         }

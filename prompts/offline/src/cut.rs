@@ -6,6 +6,7 @@ use crate::asker::takes_part;
 use crate::called::called;
 use crate::clock::clock;
 use crate::headings::{described, labels, names, titled, totals};
+use crate::interject::interjected;
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
 use crate::preamble::preamble;
@@ -64,6 +65,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut pieces = pieces(text);
     totals(&mut pieces);
     clock(&mut pieces);
+    interjected(&mut pieces);
     let known = called(&mut pieces);
     names(&mut pieces, known);
     takes_part(&mut pieces);
@@ -275,7 +277,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "by" if text(i + 1) == "the" && text(i + 2) == "time" => (Some(Joint::When), 3),
         "the"
-            if matches!(text(i + 1), "moment" | "instant")
+            if (matches!(text(i + 1), "moment" | "instant")
+                || matches!(text(i + 1), "second" | "minute")
+                    && (matches!(text(i + 2), "he" | "she" | "it" | "they") || stem(i + 3) == "robot"))
                 && !matches!(before, "at" | "for" | "of" | "last" | "in" | "from" | "until")
                 && words.get(i + 2).is_some_and(Option::is_some) =>
         {
@@ -301,6 +305,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "each" | "every" | "any" if text(i + 1) == "time" => (Some(Joint::When), 2),
         "that" if i > 0 && sees(i - 1) && (stem(i + 1) == "robot" || stem(i + 2) == "robot") => (Some(Joint::Comma), 1),
         "when" | "whenever" | "upon" | "if" => (Some(Joint::When), 1),
+        // `Should the robot say excuse me, …`
+        "should" if i == 0 && (stem(1) == "robot" || stem(2) == "robot") => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
         "on" if text(i + 1) == "being" => (Some(Joint::When), 1),
@@ -351,10 +357,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
 fn trails(before: &[Option<Word>]) -> bool {
     let last = before.last().and_then(Option::as_ref);
     last.is_some_and(|word| {
-        matches!(
-            word.stem.as_str(),
-            "go" | "run" | "walk" | "come" | "hurry" | "trail" | "chase" | "tag" | "look" | "jog" | "rush"
-        )
+        matches!(word.stem.as_str(), "trail" | "chase" | "tag" | "look" | "along" | "straight" | "right")
+            || lexicon().kind("go").contains(&word.stem)
     })
 }
 

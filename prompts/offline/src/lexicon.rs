@@ -298,6 +298,12 @@ impl Lexicon {
         self.telling.extend(telling);
     }
 
+    /// Verbs of a kind, as phrases name it: `go`.
+    pub(crate) fn kind(&self, name: &str) -> &BTreeSet<String> {
+        static NONE: BTreeSet<String> = BTreeSet::new();
+        self.classes.get(name).map_or(&NONE, |kind| kind)
+    }
+
     /// Whether one of the tables of plain words has it, as written or in its base form.
     pub(crate) fn has(&self, word: &Word) -> bool {
         [&self.known, &self.stop, &self.labels, &self.task, &self.nowhere, &self.adjectives, &self.things]

@@ -24,6 +24,7 @@ mod named;
 mod noun;
 
 mod mention;
+mod negation;
 mod refer;
 mod topic;
 
@@ -33,6 +34,7 @@ mod arrange;
 mod asker;
 mod called;
 mod clock;
+mod interject;
 mod preamble;
 mod cut;
 
@@ -81,6 +83,8 @@ mod twice;
 
 #[cfg(test)]
 mod again_tests;
+#[cfg(test)]
+mod mention_tests;
 #[cfg(test)]
 mod said_tests;
 #[cfg(test)]

@@ -426,6 +426,8 @@ fn counted(
                 && text(next + 1) != "them";
         let part = count.unwrap_or(1);
         let who = match of.count {
+            // `the two of them`
+            None if the && of.role.is_none() => Who::All,
             _ if listed => Who::New { count, article: true },
             Some(whole) if whole > part => Who::PartOfNew(part, whole),
             Some(_) | None => Who::PartOf(part),
@@ -501,6 +503,15 @@ fn counted(
         return made(Who::Definite { plural: false, count: None }, role(at + 1), false, at + 1);
     }
     // `his mother`, `her colleague`: known or new.
+    // `her registrar waits`, which no table has
+    if matches!(text(at), "his" | "her" | "their" | "our" | "my")
+        && noun(words, at + 1, lex).is_none()
+        && words.get(at + 1).is_some_and(crate::noun::agentive)
+        && let Some(end) = stranger(words, at + 1, true, lex)
+        && words.get(end + 1).is_none_or(|word| lex.verbs.contains(&word.stem) || word.text == "who")
+    {
+        return made(Who::Definite { plural: false, count: None }, role(end), false, end);
+    }
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && let Some(end) = noun(words, at + 1, lex).filter(|end| {
             // `our porter Dennis`
@@ -532,6 +543,9 @@ fn counted(
     }
     if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
         let many = words.get(end).is_some_and(plural);
+        // `the new guy` is somebody else than who was spoken of.
+        let the = the && !(text(next) == "new" && !many);
+        let article = article || text(next) == "new" && !many;
         let who = match (the, count, more) {
             (_, Some(n), true) => Who::More(n),
             (true, count, _) => Who::Definite { plural: many, count },
@@ -568,41 +582,4 @@ fn counted(
         Who::Bare(n)
     };
     made(who, None, false, next - 1)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::cut::sentences;
-
-    fn who(text: &str) -> Vec<Who> {
-        mentions(&sentences(text)[0][0].words).into_iter().map(|mention| mention.who).collect()
-    }
-
-    #[test]
-    fn counts_are_read_from_nouns_for_people_only() {
-        assert_eq!(who("two busy employees walk"), [Who::New { count: Some(2), article: false }]);
-        assert_eq!(
-            who("a few people"),
-            [Who::New { count: Some(3), article: false }].map(|_| Who::New { count: Some(3), article: false })
-        );
-        assert_eq!(who("a group of 4 employees talking"), [Who::New { count: Some(4), article: true }]);
-        assert_eq!(who("the robot drives to room 214"), []);
-        assert_eq!(who("the robot passes rack 7"), []);
-        assert_eq!(who("during the night shift of 12"), []);
-        assert_eq!(who("within 3 m of the robot"), []);
-    }
-
-    #[test]
-    fn references_are_told_from_new_people() {
-        assert_eq!(who("2 leave the elevator"), [Who::Bare(2)]);
-        assert_eq!(who("one of them stays"), [Who::PartOf(1)]);
-        assert_eq!(who("other one follows the robot"), [Who::Other(Some(1))]);
-        assert_eq!(who("the others wait"), [Who::Other(None)]);
-        assert_eq!(who("the second person stops"), [Who::Ordinal(2)]);
-        assert_eq!(who("human 2 stops"), [Who::Number(2)]);
-        assert_eq!(who("another nurse waits"), [Who::More(1)]);
-        assert_eq!(who("no people are there"), [Who::Nobody]);
-        assert_eq!(who("both stop"), [Who::All]);
-    }
 }

@@ -41,6 +41,8 @@ pub(crate) const BANDS: &[(&str, Option<u32>)] = &[
     ("pair", Some(2)),
     ("couple", Some(2)),
     ("duo", Some(2)),
+    ("dyad", Some(2)),
+    ("triad", Some(3)),
     ("trio", Some(3)),
     ("quartet", Some(4)),
     ("foursome", Some(4)),
@@ -102,7 +104,8 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
             };
             matches!(
                 next.text.as_str(),
-                "station" | "badge" | "desk" | "bed" | "uniform" | "trolley" | "cart" | "area" | "office" | "lounge"
+                "station" | "badge" | "desk" | "bed" | "uniform" | "trolley" | "cart" | "area" | "office" | "lounge" | "effect" | "behaviour" | "behavior" | "traffic"
+                    | "transport" | "flow" | "safety" | "experience" | "entrance" | "satisfaction"
             ) || !generic && lex.places.iter().any(place)
         })
     });
@@ -135,7 +138,12 @@ const PREPOSITIONS: &[&str] = &[
 
 /// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
 pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
-    if !introduced {
+    // `a patient with a walking frame` has a thing with him.
+    let back = |k: usize| at.checked_sub(k).and_then(|k| words.get(k));
+    let has = back(1).is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "his" | "her"))
+        && back(2).is_some_and(|word| word.text == "with")
+        && back(3).is_some_and(|word| lex.roles.contains_key(&word.stem));
+    if !introduced || has {
         return None;
     }
     let unknown = |k: usize| {
@@ -164,11 +172,14 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
         })
     };
     // `the guide` is who guides.
-    if words.get(at).is_some_and(|word| matches!(word.text.as_str(), "guide" | "escort"))
-        && words
-            .get(at + 1)
-            .is_none_or(|next| lex.verbs.contains(&next.stem) || matches!(next.text.as_str(), "and" | "who" | "of"))
-    {
+    let leads = |k: usize| {
+        words.get(k).is_some_and(|word| matches!(word.text.as_str(), "guide" | "escort"))
+            && words
+                .get(k + 1)
+                .is_none_or(|next| lex.verbs.contains(&next.stem) || matches!(next.text.as_str(), "and" | "who" | "of"))
+    };
+    // `a tour guide`
+    if let Some(at) = [at, at + 1].into_iter().find(|k| leads(*k) && (*k == at || unknown(at))) {
         return Some(at);
     }
     // The last of at most three words, so that `a sales assistant waits` is an assistant.
@@ -204,7 +215,7 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
 }
 
 /// Whether a word has the ending of those who do something: `physiotherapist`, `accountant`, `welder`.
-fn agentive(word: &Word) -> bool {
+pub(crate) fn agentive(word: &Word) -> bool {
     const ENDS: &[&str] = &["er", "or", "ist", "ian", "ant", "eer", "ee", "man", "woman", "person", "ess"];
     word.stem.len() >= 5 && ENDS.iter().any(|end| word.stem.ends_with(end))
 }

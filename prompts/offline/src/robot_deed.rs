@@ -41,6 +41,9 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         Act::Abreast => set(story, Relation::Abreast),
         Act::Gesture => story.robot_says.extend(found.gesture.map(|gesture| (gesture, quote.to_owned()))),
         Act::Enter => {
+            // `comes out of the room that … wants to enter`, `gets out just as the robot wants to get in`
+            let left = || story.cast.people.iter().rev().find_map(|person| person.start);
+            let class = class.or_else(left);
             story.robot_enters = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_enters.take())
         }
         Act::ComeOut => {

@@ -215,7 +215,13 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         return;
     }
     // `two people: a nurse who …, and a visitor who …` lists those two.
-    if stretch.words.first().is_some_and(|word| word.after_colon) {
+    // `three of the five, namely two nurses and a visitor, …` lists those three.
+    let namely = stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "namely" | "specifically"));
+    if namely {
+        let last = story.cast.last.clone();
+        story.cast.together(&last, &quote);
+    }
+    if namely || stretch.words.first().is_some_and(|word| word.after_colon) {
         story.cast.lists();
     }
     let nobody = found.mentions.iter().any(|mention| mention.who == Who::Nobody && mention.role.is_none());

@@ -7,6 +7,7 @@ use crate::cut::{Joint, Stretch};
 use crate::deed;
 use crate::lexicon::{Act, Cue};
 use crate::mention::Who;
+use crate::robot_deed::robot_deed;
 use crate::story::{Story, Subject, Thread};
 use crate::whereabouts::place_of;
 
@@ -58,6 +59,10 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
     let Some((cue, _)) = found.cue else { return };
     thread.paused = false;
     place_of(story, found, stretch, &thread.subject, quote);
+    // `just as the robot wants to get in`
+    if found.deeds.iter().any(|deed| deed.act == Act::Enter) && robot_first(found) && !found.robots.is_empty() {
+        robot_deed(story, Act::Enter, found, &[], quote);
+    }
     if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
         story.robot_says.push((gesture, quote.to_owned()));
         thread.said = Some(Trigger::RobotSays(gesture));

@@ -236,6 +236,21 @@ impl Cast {
             // `a couple …; the husband …, his wife …`, `one of two guards …, his partner …`: of those who are there.
             const OF_THEM: &[&str] =
                 &["husband", "wife", "partner", "companion", "colleague", "friend", "mate", "buddy", "coworker"];
+            // `only one reacts, whereas her two colleagues …`
+            if plural
+                && OF_THEM.contains(&role.as_str())
+                && let Some(n) = count
+                && let Some(found) = self.pick_open(n, &Mention { role: None, ..mention.clone() })
+            {
+                return found;
+            }
+            // `her two sons …, but the boys …`
+            if plural && count.is_none() && (plain(role) || matches!(role.as_str(), "kid" | "child")) {
+                let set = self.latest();
+                if set.len() > 1 && set.len() < self.people.len() {
+                    return set;
+                }
+            }
             if !plural
                 && OF_THEM.contains(&role.as_str())
                 && let Some(found) = self.pick_open(1, &Mention { role: None, ..mention.clone() })

@@ -104,6 +104,10 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             let label = clock || version || tagged || lettered;
             out.push(Piece::Word(Word { label, ..word(digits, byte(start), byte(i)) }));
             i += usize::from(lettered);
+        } else if let Some(end) = short(&at, i) {
+            // `i.e. roughly 2 m`, `e.g. stepping aside`
+            out.push(Piece::Comma);
+            i = end;
         } else if let Some(mark) = listed(&at, i, out.last()) {
             out.push(Piece::Stop);
             i = mark;
@@ -155,6 +159,15 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
         }
     }
     crate::again::joined(out)
+}
+
+/// `i.e.`, `e.g.`, `viz.`, `sc.`, `etc.`: where that ends.
+fn short(at: &dyn Fn(usize) -> Option<char>, i: usize) -> Option<usize> {
+    if i > 0 && at(i - 1).is_some_and(char::is_alphanumeric) {
+        return None;
+    }
+    let is = |text: &str| text.chars().enumerate().all(|(k, c)| at(i + k) == Some(c)).then(|| i + text.len());
+    ["i.e.", "e.g.", "viz.", "sc.", "etc."].iter().find_map(|text| is(text))
 }
 
 /// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.

@@ -1,0 +1,122 @@
+//! Words between marks that say nothing of the scene: `never, under any circumstances, steps aside`, `the girl, bless her, stares`.
+
+use crate::words::{Piece, Word};
+
+/// Such words, without the marks around them.
+const SAID: &[&[&str]] = &[
+    &["under", "any", "circumstances"],
+    &["by", "contrast"],
+    &["in", "contrast"],
+    &["by", "comparison"],
+    &["of", "course"],
+    &["of", "all", "things"],
+    &["for", "once"],
+    &["for", "example"],
+    &["for", "instance"],
+    &["as", "usual"],
+    &["as", "per", "usual"],
+    &["as", "always"],
+    &["as", "ever"],
+    &["as", "one", "should"],
+    &["as", "expected"],
+    &["bless", "him"],
+    &["bless", "her"],
+    &["bless", "them"],
+    &["poor", "thing"],
+    &["poor", "soul"],
+    &["mind", "you"],
+    &["i", "think"],
+    &["i", "guess"],
+    &["i", "suppose"],
+    &["i", "believe"],
+    &["if", "you", "like"],
+    &["if", "you", "will"],
+    &["if", "possible"],
+    &["if", "you", "please"],
+    &["to", "be", "honest"],
+    &["to", "be", "fair"],
+    &["to", "be", "precise"],
+    &["on", "the", "other", "hand"],
+    &["on", "the", "contrary"],
+    &["so", "to", "speak"],
+    &["that", "is"],
+    &["that", "is", "to", "say"],
+    &["at", "least"],
+    &["at", "most"],
+    &["after", "all"],
+    &["once", "again"],
+    &["by", "the", "way"],
+    &["in", "turn"],
+    &["in", "fact"],
+    &["in", "particular"],
+    &["in", "general"],
+    &["as", "it", "were"],
+    &["as", "before"],
+    &["if", "at", "all"],
+    &["all", "being", "well"],
+    &["i", "mean"],
+    &["you", "know"],
+    &["you", "see"],
+    &["sort", "of"],
+    &["kind", "of"],
+    &["more", "or", "less"],
+    &["however"],
+    &["nonetheless"],
+    &["nevertheless"],
+    &["though"],
+    &["frankly"],
+    &["naturally"],
+    &["obviously"],
+    &["please"],
+    &["say"],
+    &["basically"],
+    &["ideally"],
+    &["preferably"],
+    &["specifically"],
+    &["conversely"],
+    &["moreover"],
+    &["furthermore"],
+    &["additionally"],
+    &["respectively"],
+    &["likewise"],
+    &["accordingly"],
+    &["consequently"],
+    &["therefore"],
+    &["unsurprisingly"],
+    &["sic"],
+];
+
+/// Takes such words out of the text, with the marks around them where both are commas.
+pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
+    let mut at = 0;
+    while at < pieces.len() {
+        let found = SAID.iter().map(|said| said.len()).filter(|_| opens(pieces, at)).zip(SAID).find(|(length, said)| {
+            said.iter().enumerate().all(|(k, wanted)| text(pieces, at + k) == *wanted) && comma(pieces, at + length)
+        });
+        if let Some((length, _)) = found {
+            // Behind a stop the comma goes with them; between commas both go.
+            let from = if at > 0 && comma(pieces, at - 1) { at - 1 } else { at };
+            pieces.drain(from..=at + length);
+            at = from;
+        } else {
+            at += 1;
+        }
+    }
+}
+
+/// Whether such words may begin here.
+fn opens(pieces: &[Piece], at: usize) -> bool {
+    at == 0 || !matches!(pieces.get(at - 1), Some(Piece::Word(_)))
+}
+
+fn comma(pieces: &[Piece], at: usize) -> bool {
+    matches!(pieces.get(at), Some(Piece::Comma))
+}
+
+fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
+    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
+}
+
+fn text(pieces: &[Piece], at: usize) -> &str {
+    word(pieces, at).map_or("", |word| word.text.as_str())
+}
