@@ -78,7 +78,15 @@ fn list(words: &[Option<Word>], from: usize) -> Option<List> {
 /// How many, of which role, in how many words: `two visitors`. What is said of how they walk is not for a list.
 fn item(run: &[Word]) -> Option<(u32, String, usize)> {
     let mention: Mention = mentions(run).into_iter().next().filter(|mention| mention.from == 0)?;
-    let Who::New { count: Some(count), .. } = mention.who else { return None };
+    // `a family, mother, father and girl, …`
+    let bare = !run.first().is_some_and(|word| {
+        matches!(word.text.as_str(), "the" | "this" | "that" | "her" | "his" | "their" | "our" | "my" | "its")
+    });
+    let count = match mention.who {
+        Who::New { count: Some(count), .. } => count,
+        Who::Definite { plural: false, count: None } if bare => 1,
+        _ => return None,
+    };
     let length = mention.to + 1;
     let plain = run.get(..length)?.iter().all(|word| !lexicon().pace.contains_key(&word.text));
     (plain && !mention.group && (1..=9).contains(&count)).then_some((count, mention.role?, length))

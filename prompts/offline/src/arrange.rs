@@ -18,6 +18,7 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
             && stretch.words.first().is_some_and(|word| word.text == "not")
             && matches!(mentions(stretch.words.get(1..).unwrap_or_default()).as_slice(), [only] if only.from == 0 && only.to + 2 == stretch.words.len()))
     });
+    of_them(&mut found);
     denied(&mut found);
     measured(&mut found);
     bracketed(&mut found);
@@ -26,6 +27,29 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     parted(&mut found);
     named(&mut found);
     fronted(apposed(found))
+}
+
+/// `of the two who remain, one makes room`: one of them.
+fn of_them(found: &mut [Stretch]) {
+    let text = |stretch: &Stretch, k: usize| stretch.words.get(k).map(|word| word.text.clone()).unwrap_or_default();
+    let whole = found.iter().position(|stretch| {
+        text(stretch, 0) == "of"
+            && matches!(text(stretch, 1).as_str(), "the" | "these" | "those")
+            && stretch.words.get(2).is_some_and(|word| word.count().is_some_and(|n| n > 1))
+    });
+    let Some(whole) = whole else { return };
+    for stretch in found.iter_mut().skip(whole + 1) {
+        let at = usize::from(matches!(text(stretch, 0).as_str(), "only" | "just" | "exactly"));
+        let Some(one) = stretch.words.get(at).filter(|word| word.count().is_some() && !word.is_digits()).cloned() else {
+            continue;
+        };
+        // `one of them`, `one nurse` say it themselves.
+        if stretch.words.get(at + 1).is_some_and(|next| lexicon().verbs.contains(&next.stem)) {
+            let word = |text: &str| Word { text: text.to_owned(), stem: text.to_owned(), used: true, ..one.clone() };
+            stretch.words.splice(at + 1..at + 1, [word("of"), word("them")]);
+            return;
+        }
+    }
 }
 
 /// `Asked by the robot to wait, the packer stops`: when the robot asks.
@@ -51,6 +75,13 @@ fn bidden(stretch: &mut Stretch) {
     let asks =
         matches!(first.stem.as_str(), "ask" | "tell" | "request" | "order" | "instruct") && first.text != first.stem;
     let next = stretch.words.get(1).map_or("", |word| word.text.as_str());
+    // `makes room upon request`
+    if first.text == "request" && stretch.words.len() == 1 {
+        let robot = Word { text: "robot".to_owned(), stem: "robot".to_owned(), used: true, ..first.clone() };
+        let asks = Word { text: "asks".to_owned(), stem: "ask".to_owned(), ..first };
+        stretch.words = vec![robot, asks];
+        return;
+    }
     if asks && matches!(next, "" | "to" | "politely" | "nicely" | "kindly" | "so") {
         let robot = Word { text: "robot".to_owned(), stem: "robot".to_owned(), used: true, ..first };
         stretch.words.insert(0, Word { to: robot.from, ..robot });

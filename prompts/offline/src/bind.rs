@@ -42,9 +42,12 @@ pub(crate) fn subject_of(
     let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty() && !object(from));
     // `Behind the robot comes a doctor`: who does it stands after the verb.
     let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
+    // `coming towards it there is a driver`
+    let there = found.declares && !found.robots.iter().any(|robot| *robot < at);
     if before.is_none()
         && turned
-        && let Some((_, _, some)) = meant.iter().find(|(from, _, some)| *from == to + 1 && !some.is_empty())
+        && let Some((_, _, some)) =
+            meant.iter().find(|(from, _, some)| (*from == to + 1 || there && *from > to) && !some.is_empty())
     {
         return people(some);
     }
@@ -210,7 +213,10 @@ pub(crate) fn people_deed(
         }
         thread.led = Some((people.to_vec(), followers));
     }
-    let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at) { object } else { None };
+    // `follows the facilitator rather than the robot`
+    let rather = |robot: usize| (1..=3).filter_map(|back| robot.checked_sub(back)).any(|k| matches!(text(k), "than" | "not"));
+    let object =
+        if act == Act::Follow && found.robots.iter().all(|robot| *robot < at || rather(*robot)) { object } else { None };
     let startled = (at..=to).any(|i| {
         stretch
             .words

@@ -76,7 +76,11 @@ fn alone(pieces: &[Piece], known: &mut Vec<String>) {
         let titled = matches!(text(pieces, at), "mr" | "mrs" | "ms" | "miss");
         let got = matches!(text(pieces, at), "got" | "picture" | "imagine" | "meet");
         let from = |k: usize| matches!(text(pieces, k), "in" | "from" | "at" | "of");
-        let placed = ends(pieces, at.wrapping_sub(1)) && from(at + 1);
+        // `Petra in accounting is …`; `Avoidance in its mildest form: …` is nobody
+        let goes_on = |k: usize| word(pieces, k).is_some_and(|word| lexicon().verbs.contains(&word.stem));
+        let placed = ends(pieces, at.wrapping_sub(1))
+            && from(at + 1)
+            && (at + 3..at + 6).any(|k| goes_on(k) || comma(pieces, k) && text(pieces, k + 1) == "who");
         let start = if titled || got { at + 1 } else { at };
         if !(titled || got || placed) || !capital(pieces, start) {
             continue;

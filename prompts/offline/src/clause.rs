@@ -147,6 +147,14 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
             if found.mentions.iter().any(|mention| (mention.from..mention.to).contains(&end)) {
                 continue;
             }
+            // `does not lift a finger`
+            let lifts = stretch.words.get(end).is_some_and(|word| word.text == "lift")
+                && end.checked_sub(1).and_then(|i| stretch.words.get(i)).is_some_and(|word| {
+                    matches!(word.text.as_str(), "not" | "to" | "never" | "will" | "would" | "can" | "could")
+                });
+            if lifts {
+                continue;
+            }
             // `makes room` is no room.
             let made = at.first().and_then(|i| i.checked_sub(1)).and_then(|i| stretch.words.get(i));
             // `leave room for it`, but `leave room 3`.
@@ -357,6 +365,14 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             if ends {
                 continue;
             }
+            // `finding its path obstructed`: nobody is said to do it.
+            let found_so = phrase.means == Act::Block
+                && stretch.words.get(first).is_some_and(|word| word.text.ends_with("ed"))
+                && stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "finding" | "seeing"))
+                && stretch.words.get(last + 1).is_none_or(|word| word.text != "by");
+            if found_so {
+                continue;
+            }
             let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
             found.deeds.push(Deed {
                 act: if aside { Act::Ignore } else { phrase.means },
@@ -551,7 +567,9 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         if lex.impossible.contains(&word.stem) && !word.used && !itself {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
-            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") && found.deeds.is_empty() {
+            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") 
+                && found.deeds.iter().all(|deed| matches!(deed.act, Act::Ignore | Act::Look | Act::Talk))
+            {
                 seated.push(Deed { act: Act::Stand, at: i, to: i, negated: false });
             }
         }

@@ -6,7 +6,7 @@ use crate::asker::takes_part;
 use crate::called::called;
 use crate::clock::clock;
 use crate::headings::{described, labels, names, titled, totals};
-use crate::interject::interjected;
+use crate::interject::{interjected, notions};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
 use crate::preamble::preamble;
@@ -66,6 +66,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     totals(&mut pieces);
     clock(&mut pieces);
     interjected(&mut pieces);
+    notions(&mut pieces);
     let known = called(&mut pieces);
     names(&mut pieces, known);
     takes_part(&mut pieces);
@@ -309,6 +310,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "should" if i == 0 && (stem(1) == "robot" || stem(2) == "robot") => (Some(Joint::When), 1),
         "once" if opens || !text(i + 1).is_empty() && !before.is_empty() => (Some(Joint::When), 1),
         "on" | "after" if sees(i + 1) || stem(i + 1) == "hear" => (Some(Joint::When), 1),
+        "on" if text(i + 1) == "request" && words.get(i + 2).is_none_or(Option::is_none) => (Some(Joint::When), 1),
         "on" if text(i + 1) == "being" => (Some(Joint::When), 1),
         "on" if matches!(text(i + 1), "this" | "that" | "the" | "his" | "her" | "its" | "their") && said(i + 2) => {
             (Some(Joint::When), 1)
@@ -386,6 +388,7 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
         "he" | "she" | "they" => !matches!(
             before,
             "where"
+                | "wherever"
                 | "what"
                 | "how"
                 | "that"

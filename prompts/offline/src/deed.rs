@@ -72,7 +72,7 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
 }
 
 /// How an act sets somebody to the robot's way.
-fn relation(act: Act) -> Option<Relation> {
+pub(crate) fn relation(act: Act) -> Option<Relation> {
     Some(match act {
         Act::Toward => Relation::Frontal,
         Act::Overtake | Act::Behind => Relation::Behind,

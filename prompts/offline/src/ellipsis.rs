@@ -72,6 +72,25 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
     }
 }
 
+/// `The one who stays`: whoever was said to do so before, if that is somebody else than was guessed.
+pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> Option<usize> {
+    let [only] = found.deeds.as_slice() else { return None };
+    if !found.mentions.is_empty() || only.negated {
+        return None;
+    }
+    let relation = deed::relation(only.act)?;
+    let is = |i: &usize| {
+        story.cast.people.get(*i).is_some_and(|person| person.relation.as_ref().is_some_and(|(own, _)| *own == relation))
+    };
+    let set = story.cast.latest();
+    let mut fitting = set.iter().copied().filter(is);
+    let who = fitting.next().filter(|_| fitting.next().is_none())?;
+    if who != guessed && let Some(person) = story.cast.people.get_mut(guessed) {
+        person.bound = person.relation.is_some() || !person.rules.is_empty();
+    }
+    Some(who)
+}
+
 /// `obeys`, `does so`: what the robot, or somebody else, asked for just before.
 pub(crate) fn obeys(
     story: &mut Story,
@@ -95,7 +114,13 @@ pub(crate) fn obeys(
         (true, Subject::People(people)) => people.clone(),
         (true, Subject::Robot | Subject::Nobody) => return false,
     };
-    let around = Around { trigger: Some(said), lasts_s: found.lasts_s, quote: quote.to_owned(), ..Around::default() };
+    // Whoever asked to be followed is followed.
+    let object = match said {
+        Trigger::HumanSays(id, Gesture::FollowMe) => Some(id),
+        _ => None,
+    };
+    let around =
+        Around { trigger: Some(said), object, lasts_s: found.lasts_s, quote: quote.to_owned(), ..Around::default() };
     for who in &people {
         let _rule = deed::apply(&mut story.cast, *who, act, &around);
     }
@@ -128,6 +153,11 @@ pub(crate) fn repeat(
         let around = Around { trigger: thread.waiting.clone(), quote: quote.to_owned(), ..Around::default() };
         acts.push((Act::Stop, around));
         thread.untaken = None;
+    }
+    // `a guide asks two guests to follow her, and both do so`
+    let asked = matches!(thread.said, Some(Trigger::HumanSays(..))) && acts.iter().all(|(act, _)| *act == Act::Gesture);
+    if does && asked && !acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
+        return;
     }
     // `the robot tells them to go ahead, which they do`
     if does && acts.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {

@@ -1,5 +1,6 @@
 //! Words between marks that say nothing of the scene: `never, under any circumstances, steps aside`, `the girl, bless her, stares`.
 
+use crate::lexicon::lexicon;
 use crate::words::{Piece, Word};
 
 /// Such words, without the marks around them.
@@ -84,6 +85,20 @@ const SAID: &[&[&str]] = &[
     &["therefore"],
     &["unsurprisingly"],
     &["sic"],
+    &["folks"],
+    &["guys"],
+    &["team"],
+    &["everyone"],
+    &["hi", "all"],
+    &["hello", "all"],
+    &["hi", "team"],
+    &["morning", "all"],
+    &["afternoon", "all"],
+    &["good", "morning"],
+    &["listen"],
+    &["right"],
+    &["well"],
+    &["look"],
 ];
 
 /// Takes such words out of the text, with the marks around them where both are commas.
@@ -100,6 +115,37 @@ pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
             at = from;
         } else {
             at += 1;
+        }
+    }
+}
+
+/// `Following Hall's notion of personal space, …`, `a leader-follower triad`: words that speak of no follower and no leader.
+pub(crate) fn notions(pieces: &mut [Piece]) {
+    let mut told = Vec::new();
+    for at in 0..pieces.len() {
+        let first = at == 0 || matches!(pieces.get(at - 1), Some(Piece::Stop | Piece::Colon));
+        if first && matches!(text(pieces, at), "following" | "given" | "considering" | "regarding") {
+            let end = (at + 1..at + 12).find(|k| comma(pieces, *k));
+            let body = |k: usize| {
+                word(pieces, k).is_some_and(|word| word.stem == "robot" || lexicon().roles.contains_key(&word.stem))
+            };
+            told.extend(end.filter(|end| !(at..*end).any(body)).map(|end| at..end).into_iter().flatten());
+        }
+        // Joined by a hyphen, two who deal with each other name a kind of thing.
+        let joined = word(pieces, at).zip(word(pieces, at + 1)).is_some_and(|(one, other)| {
+            let role = |word: &Word| {
+                lexicon().roles.contains_key(&word.stem) || matches!(word.stem.as_str(), "robot" | "follower")
+            };
+            one.to + 1 == other.from && role(one) && role(other)
+        });
+        let hyphen = joined && word(pieces, at + 2).is_some_and(|next| !lexicon().verbs.contains(&next.stem));
+        if hyphen && !matches!(text(pieces, at + 2), "and" | "who" | "in" | "on" | "at") {
+            told.extend([at, at + 1]);
+        }
+    }
+    for at in told {
+        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+            word.label = true;
         }
     }
 }

@@ -278,6 +278,14 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                         | "until"
                         | "for"
                         | "past"
+                        | "like"
+                        | "wherever"
+                        | "everywhere"
+                        | "closely"
+                        | "when"
+                        | "while"
+                        | "without"
+                        | "but"
                         | "robot"
                 )
             }) =>
@@ -503,6 +511,13 @@ fn counted(
         return made(Who::Definite { plural: false, count: None }, role(at + 1), false, at + 1);
     }
     // `his mother`, `her colleague`: known or new.
+    // `her two colleagues`
+    if matches!(text(at), "his" | "her" | "their" | "our" | "my")
+        && let Some(n) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
+        && let Some(end) = noun(words, at + 2, lex)
+    {
+        return made(Who::Definite { plural: true, count: Some(n) }, role(end), false, end);
+    }
     // `her registrar waits`, which no table has
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && noun(words, at + 1, lex).is_none()

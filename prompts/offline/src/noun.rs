@@ -138,6 +138,18 @@ const PREPOSITIONS: &[&str] = &[
 
 /// A word that no table has and that does what only people do: `two assistants come out`, `a florist who …`.
 pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexicon) -> Option<usize> {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    // `the guide` is who guides.
+    let leads = |k: usize| {
+        words.get(k).is_some_and(|word| matches!(word.text.as_str(), "guide" | "escort"))
+            && words
+                .get(k + 1)
+                .is_none_or(|next| lex.verbs.contains(&next.stem) || matches!(next.text.as_str(), "and" | "who" | "of"))
+    };
+    // `a tour guide`
+    if let Some(at) = [at, at + 1].into_iter().find(|k| leads(*k) && (*k == at || text(at) == "tour")) {
+        return Some(at);
+    }
     // `a patient with a walking frame` has a thing with him.
     let back = |k: usize| at.checked_sub(k).and_then(|k| words.get(k));
     let has = back(1).is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "his" | "her"))
@@ -171,17 +183,6 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
                 )
         })
     };
-    // `the guide` is who guides.
-    let leads = |k: usize| {
-        words.get(k).is_some_and(|word| matches!(word.text.as_str(), "guide" | "escort"))
-            && words
-                .get(k + 1)
-                .is_none_or(|next| lex.verbs.contains(&next.stem) || matches!(next.text.as_str(), "and" | "who" | "of"))
-    };
-    // `a tour guide`
-    if let Some(at) = [at, at + 1].into_iter().find(|k| leads(*k) && (*k == at || unknown(at))) {
-        return Some(at);
-    }
     // The last of at most three words, so that `a sales assistant waits` is an assistant.
     let describes = |k: usize| unknown(k) || words.get(k).is_some_and(|word| lex.adjectives.contains(&word.text));
     for end in at..at + 3 {

@@ -52,6 +52,8 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
 /// Whether a mention says that somebody is there.
 fn introduces(mention: &Mention) -> bool {
     match &mention.who {
+        // `how a dyad affects the robot`
+        Who::New { .. } if mention.group && mention.role.is_none() => false,
         Who::New { count, .. } => count.is_some(),
         Who::Definite { .. } => mention.role.is_some(),
         Who::More(_) | Who::PartOfNew(..) | Who::AllOf(_) | Who::OrdinalOf { .. } | Who::Number(_) => {
@@ -82,6 +84,9 @@ fn general(words: &[Word], found: &[Mention]) -> bool {
             !(0..mention.from).any(|k| THERE.contains(&text(k)) && mention.from - k <= 3)
                 || mention.from > 1 && text(mention.from - 1) == "with"
         }
+        Who::New { .. } if mention.group && mention.role.is_none() => true,
+        // `this one is about …`
+        Who::Definite { plural: false, count: Some(1) } if mention.role.is_none() => true,
         Who::All | Who::Ordinal(_) | Who::ToldApart | Who::Bare(1) => true,
         Who::New { .. }
         | Who::More(_)

@@ -82,6 +82,8 @@ pub(crate) struct Thread {
     pub(crate) delay_s: Option<f64>,
     /// The clause before names people who do nothing in it.
     pub(crate) paused: bool,
+    /// Who was told apart by nothing but what the relative clause says: `the one who stays`.
+    pub(crate) apart: Option<usize>,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -148,7 +150,7 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
 
 fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let quote = stretch.quote(text).to_owned();
-    let found = clause::read(stretch);
+    let mut found = clause::read(stretch);
     for i in &found.nowhere {
         let word = stretch.words.get(*i).map_or("", |word| word.text.as_str());
         story.problems.push(Fault::new(
@@ -236,7 +238,22 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             ),
         ));
     }
+    if let Some(apart) = thread.apart.take().filter(|_| stretch.joint == Joint::Who)
+        && let Some(who) = ellipsis::told_before(story, &found, apart)
+    {
+        story.cast.last = vec![who];
+        thread.subject = Subject::People(vec![who]);
+        if found.gesture.is_none() {
+            return;
+        }
+        found.deeds.clear();
+    }
     let meant = meant(story, thread, stretch, &found, text, next);
+    let one = found.mentions.iter().any(|mention| mention.who == Who::ToldApart && !found.acts());
+    thread.apart = match meant.as_slice() {
+        [(_, _, people)] if one && next == Some(Joint::Who) => people.first().copied(),
+        _ => None,
+    };
     if !stretch.also.is_empty() {
         also_called(story, &meant, stretch);
     }
@@ -461,7 +478,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         }
         if by_robot && act == Act::Gesture && !object.is_empty() {
             thread.subject = Subject::People(object);
-        } else if subject != Subject::Nobody && !(by_robot && matches!(previous, Subject::People(_))) {
+        } else if subject != Subject::Nobody
+            && !(by_robot && matches!(previous, Subject::People(_)))
+            // `The robot, finding its way obstructed by a visitor, asks …`
+            && !(passive && previous == Subject::Robot && stretch.words.first().is_some_and(|word| word.text == "finding"))
+        {
             thread.subject = subject;
         }
     }

@@ -244,6 +244,19 @@ impl Cast {
             {
                 return found;
             }
+            // `a mother, a father and a girl …; the parents …, the kid …`
+            let kin = |words: &[&str]| -> Vec<usize> {
+                let is = |i: &usize| self.people.get(*i).is_some_and(|person| words.contains(&person.role.as_str()));
+                (0..self.people.len()).filter(is).collect()
+            };
+            let found = match role.as_str() {
+                "parent" if plural => kin(&["mother", "father", "mom", "dad"]),
+                "kid" | "child" if !plural => kin(&["girl", "boy", "son", "daughter", "toddler", "baby"]),
+                _ => Vec::new(),
+            };
+            if found.len() == if plural { 2 } else { 1 } {
+                return found;
+            }
             // `her two sons …, but the boys …`
             if plural && count.is_none() && (plain(role) || matches!(role.as_str(), "kid" | "child")) {
                 let set = self.latest();
