@@ -6,6 +6,7 @@ use crate::asker::takes_part;
 use crate::headings::{described, labels, names, titled, totals};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
+use crate::notes::notes;
 use crate::words::{Piece, Word, pieces};
 
 /// How a clause is joined to the one before it.
@@ -58,7 +59,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut found = Vec::new();
     let mut words: Vec<Option<Word>> = Vec::new();
     let mut colon = false;
-    let mut pieces = pieces(text);
+    let mut pieces = notes(text, pieces(text));
     totals(&mut pieces);
     names(&mut pieces);
     takes_part(&mut pieces);

@@ -27,6 +27,10 @@ mod mention;
 mod refer;
 mod topic;
 
+mod actors;
+mod arrows;
+mod notes;
+
 mod apposed;
 mod around;
 mod arrange;

@@ -264,7 +264,8 @@ fn mended(text: &str) -> Option<&'static str> {
     if found.next().is_some() { None } else { Some(only) }
 }
 
-fn word(text: String, from: usize, to: usize) -> Word {
+/// A word by its letters, with its place in the text.
+pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
     let text = mended(&text).map_or(text, str::to_owned);
     let stem = match text.as_str() {
         "robot" | "robots" | "robot's" | "it" | "its" | "itself" | "amr" | "agv" | "cobot" | "bot" | "machine"
