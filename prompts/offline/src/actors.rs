@@ -162,7 +162,7 @@ impl Labels {
     }
 
     fn noun_follows(&self, at: usize) -> bool {
-        !self.items.marked(at + 1) && role(&self.items, at + 1).is_some()
+        self.items.0.get(at + 1).is_some_and(|item| item.marks.is_empty() && !item.equals()) && role(&self.items, at + 1).is_some()
     }
 
     /// `E1`, `w2`.
@@ -236,7 +236,8 @@ impl Labels {
         }
         let letter = self.letter(at).filter(|letter| self.letters.contains(letter) && self.free(at))?;
         // `A nurse` is a nurse, unless others are told by letters in the same way.
-        let article = letter == 'A' && !self.items.marked(at + 1) && {
+        let joined = self.items.0.get(at + 1).is_some_and(|next| matches!(next.gap.trim(), "-" | "–" | "+" | "=" | "/"));
+        let article = letter == 'A' && !self.items.marked(at + 1) && !joined && {
             let next = self.items.word(at + 1);
             let acts = next.is_some_and(|next| {
                 lexicon().verbs.contains(&next.stem) && next.text != next.stem && next.text.ends_with('s')
@@ -547,10 +548,14 @@ impl Written {
         let roles = (1..=count).map(|number| self.roles.get(&number).cloned().unwrap_or_default()).collect();
         let mut people = Item::said(if count == 1 { "person" } else { "people" }, &at);
         people.word.made_of = roles;
+        let mut marks = vec![Mark::Stop];
         if let Some(next) = items.0.get_mut(start) {
-            next.marks.push(Mark::Stop);
+            std::mem::swap(&mut next.marks, &mut marks);
         }
-        let number = Item::said(&count.to_string(), &at).with(&[Mark::Stop]);
+        if !marks.contains(&Mark::Stop) {
+            marks.push(Mark::Stop);
+        }
+        let number = Item::said(&count.to_string(), &at).with(&marks);
         let _none: Vec<Item> = items.0.splice(start..start, [number, people]).collect();
         items
     }
@@ -565,8 +570,19 @@ impl Written {
             }
             // `n=2`
             let sample = from > 0 && number.equals() && self.out.get(from - 1).is_some_and(|item| item.word.text == "n");
-            let run: Vec<Word> = self.out.iter().skip(from + 1).take(4).map(|item| item.word.clone()).collect();
+            let near = |(k, item): &(usize, &Item)| *k == 0 || item.marks.is_empty() && !item.equals() && !item.word.used;
+            let words = self.out.iter().skip(from + 1).take(4).enumerate().take_while(near);
+            let run: Vec<Word> = words.map(|(_, item)| item.word.clone()).collect();
             let end = noun(&run, 0, lexicon());
+            // `pedestrians: 2`
+            let before = from.checked_sub(1).and_then(|k| self.out.get(k)).filter(|noun| {
+                let given = number.equals() || number.marks == [Mark::Colon];
+                given && plural(&noun.word) && lexicon().roles.contains_key(&noun.word.stem)
+            });
+            if let Some(noun) = before.filter(|_| self.out.get(from + 1).is_none_or(|next| !next.marks.is_empty())) {
+                let role = lexicon().roles.get(&noun.word.stem).filter(|role| !role.generic).map(|_| noun.word.stem.clone());
+                return Some((from - 1, from, role.unwrap_or_default()));
+            }
             let of = self.out.get(from + 1).is_some_and(|item| !item.marks.is_empty());
             match end.filter(|_| !of) {
                 Some(end) => {

@@ -30,6 +30,7 @@ mod topic;
 mod actors;
 mod arrows;
 mod notes;
+mod terse;
 
 mod apposed;
 mod around;

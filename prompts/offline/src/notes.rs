@@ -120,6 +120,7 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
     let items = ends(items);
     let mut items = crate::arrows::arrows(items);
     aims(&mut items);
+    let items = crate::terse::terse(items);
     let mut out = Vec::with_capacity(items.0.len() * 2);
     for item in items.0 {
         if item.arrow && item.marks.is_empty() {
@@ -129,7 +130,26 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
         out.push(Piece::Word(item.word));
     }
     out.extend(tail.into_iter().map(piece));
+    if std::env::var("NOTES").is_ok() { eprintln!("NOTES {}", written(&out)); } // DEBUG
     out
+}
+
+/// Pieces as a line of text: words in lower case, those of nobody in brackets.
+fn written(pieces: &[Piece]) -> String {
+    let mut line = String::new();
+    for piece in pieces {
+        match piece {
+            Piece::Word(word) if word.label => line.push_str(&format!(" [{}]", word.text)),
+            Piece::Word(word) if !word.made_of.is_empty() => {
+                line.push_str(&format!(" {}({})", word.text, word.made_of.join(" ")));
+            }
+            Piece::Word(word) => line.push_str(&format!(" {}", word.text)),
+            Piece::Comma => line.push(','),
+            Piece::Colon => line.push(':'),
+            Piece::Stop => line.push('.'),
+        }
+    }
+    line.trim_start_matches(['.', ' ']).to_owned()
 }
 
 fn piece(mark: Mark) -> Piece {
@@ -173,7 +193,7 @@ const SHORT: &[(&str, &[&str])] = &[
     ("behav", &["behavior"]),
     ("intersec", &["intersection"]),
     ("elev", &["elevator"]),
-    ("w/o", &["without"]),
+    ("loc", &["location"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -211,6 +231,14 @@ fn shorthand(items: Items) -> Items {
             continue;
         }
         let digits = item.word.is_digits();
+        // `2x employee`
+        if item.word.text == "x" && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {
+            continue;
+        }
+        let many = k > 1 && items.0.get(k - 1).is_some_and(|x| x.word.text == "x" && x.gap.is_empty());
+        if many && before != "1" && item.word.text == item.word.stem && lexicon().roles.contains_key(&item.word.stem) {
+            item.word.text.push('s');
+        }
         // `w/ bot`, where the stroke is no end of a sentence.
         if before == "with" && item.gap.starts_with('/') {
             item.marks.clear();

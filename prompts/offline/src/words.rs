@@ -231,7 +231,18 @@ fn apostrophe(
 }
 
 /// Words that people write together.
-const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother", &["each", "other"])];
+const JOINED: &[(&str, &[&str])] = &[
+    ("infront", &["in", "front"]),
+    ("eachother", &["each", "other"]),
+    ("dont", &["do", "not"]),
+    ("doesnt", &["does", "not"]),
+    ("didnt", &["did", "not"]),
+    ("wont", &["will", "not"]),
+    ("isnt", &["is", "not"]),
+    ("arent", &["are", "not"]),
+    ("shouldnt", &["should", "not"]),
+    ("cant", &["can", "not"]),
+];
 
 /// The word that was meant by a slip of the pen: the only one of the tables that is one letter away.
 ///
