@@ -11,6 +11,9 @@ pub(crate) fn terse(mut items: Items) -> Items {
         passed(&mut items, at);
         verbless(&mut items, at);
         denied(&mut items, at);
+        numbered(&mut items, at);
+        answered(&mut items, at);
+        from_behind(&mut items, at);
         at += 1;
     }
     items
@@ -29,6 +32,67 @@ fn overview(items: &mut Items, at: usize) {
     let many = matches!(items.text(at), "multi" | "single" | "two" | "dual") && hyphen(at + 1) && generic(at + 1) && items.marked(at + 2);
     if (heading && items.marked(at)) || many {
         items.label(at, at + 2);
+    }
+}
+
+/// Whether a number is that of a step: `1. the robot asks; 2. ped 1 steps aside`.
+fn step(items: &Items, at: usize) -> bool {
+    let digits = items.word(at).is_some_and(|word| word.is_digits() && word.text.len() <= 2);
+    let after = items.0.get(at + 1).is_some_and(|next| next.gap.starts_with(['.', ')']) && next.gap.len() > 1);
+    let before = items.begins(at) || items.has(at, Mark::Colon) || items.has(at, Mark::Comma);
+    let total = at > 0 && lexicon().roles.contains_key(items.stem(at - 1));
+    digits && after && before && !total
+}
+
+/// Numbers of steps count nobody.
+fn numbered(items: &mut Items, at: usize) {
+    let first = items.text(at) == "1" && step(items, at);
+    let second = first.then(|| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k))).flatten();
+    if second.is_none() {
+        return;
+    }
+    for k in at..items.0.len() {
+        if step(items, k)
+            && let Some(item) = items.0.get_mut(k)
+        {
+            (item.word.label, item.word.used) = (true, true);
+        }
+    }
+}
+
+/// `robot asks to pass; then ped 1 steps aside` is one sentence.
+fn answered(items: &mut Items, at: usize) {
+    let semicolon = items.0.get(at).is_some_and(|item| item.marks == [Mark::Stop] && item.gap.trim() == ";");
+    if items.text(at) != "then" || !semicolon || at == 0 {
+        return;
+    }
+    let mut from = items.start(at - 1);
+    while items.word(from).is_some_and(|word| word.label || word.text == "the") {
+        from += 1;
+    }
+    if robot(items, from)
+        && let Some(item) = items.0.get_mut(at)
+    {
+        item.marks = vec![Mark::Comma];
+    }
+}
+
+/// `same direction, from rear`: who comes from behind is not ahead.
+fn from_behind(items: &mut Items, at: usize) {
+    let same = items.text(at) == "same" && matches!(items.text(at + 1), "direction" | "heading" | "way");
+    if !same {
+        return;
+    }
+    let (from, end) = (items.start(at), items.end(at).min(items.0.len()));
+    let rear = (from..end).any(|k| {
+        items.text(k) == "rear" && items.text(k.wrapping_sub(1)) != "to"
+            || items.text(k) == "behind" && items.text(k.wrapping_sub(1)) == "from"
+            || items.stem(k) == "overtake"
+    });
+    if rear {
+        for item in items.0.iter_mut().take(at + 2).skip(at) {
+            (item.word.label, item.word.used) = (true, true);
+        }
     }
 }
 
