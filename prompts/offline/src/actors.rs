@@ -110,9 +110,9 @@ impl Labels {
         let mut bare = BTreeSet::new();
         for k in 0..count {
             if let Some(letter) = labels.letter(k) {
-                if labels.generic(k) || labels.role_before(k) {
+                if labels.generic(k) || labels.role_before(k) || labels.bracketed(k) {
                     labels.letters.insert(letter);
-                } else if labels.free(k) && labels.declares(k) {
+                } else if matches!(letter, 'A'..='H' | 'X'..='Z') && labels.free(k) && labels.declares(k) {
                     bare.insert(letter);
                 }
             }
@@ -143,7 +143,15 @@ impl Labels {
     /// A capital letter alone.
     fn letter(&self, at: usize) -> Option<char> {
         let word = self.items.word(at).filter(|word| word.capital && !word.label && word.text.len() == 1)?;
-        word.text.chars().next().map(|c| c.to_ascii_uppercase()).filter(|c| matches!(c, 'A'..='H' | 'X'..='Z'))
+        word.text.chars().next().map(|c| c.to_ascii_uppercase()).filter(char::is_ascii_uppercase)
+    }
+
+    /// `nurse (N)`.
+    fn bracketed(&self, at: usize) -> bool {
+        let closes = self.items.0.get(at + 1).is_some_and(Item::closes);
+        let opens = self.items.0.get(at).is_some_and(|item| item.opens() && !item.closes());
+        let role = at > 0 && self.items.word(at - 1).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !plural(word));
+        closes && opens && role
     }
 
     fn generic(&self, at: usize) -> bool {
@@ -259,12 +267,21 @@ impl Labels {
     fn list(&self, at: usize) -> Option<(Vec<Key>, usize)> {
         let (first, mut end) = self.key(at)?;
         let mut keys = vec![first];
+        // `follows agent 1, agent 3 stops` is no list.
+        let heads = self.items.marked(at) || self.items.0.get(at).is_some_and(Item::opens);
+        let generic = GENERIC.contains(&self.items.stem(at));
         loop {
             let gap = self.items.0.get(end).map_or("", |item| item.gap.trim()).to_owned();
             let and = matches!(self.items.text(end), "and" | "or") && !self.items.marked(end);
-            let comma = self.items.has(end, Mark::Comma) && gap == "," || gap == ", and";
+            let comma = heads && (self.items.has(end, Mark::Comma) && gap == "," || gap == ", and");
             let at = end + usize::from(and || self.items.text(end) == "and");
-            let next = self.key(at).filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
+            // `ped 1+2`, `actors 1 and 2`
+            let bare = || {
+                let number = self.items.text(at).parse().ok().filter(|n| (1..=9).contains(n))?;
+                let ends = self.items.word(at + 1).is_none_or(|next| !next.is_digits() && !matches!(next.stem.as_str(), "meter" | "second" | "m" | "s"));
+                (generic && ends && matches!(keys.last(), Some(Key::Number(_)))).then_some((Key::Number(number), at + 1))
+            };
+            let next = self.key(at).or_else(bare).filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
             let Some((key, to)) = next else { break };
             if let (true, Some(Key::Letter(from)), Key::Letter(to)) = (matches!(gap.as_str(), "-" | "–"), keys.last().copied(), key) {
                 keys.extend((from..=to).skip(1).map(Key::Letter));
@@ -287,6 +304,14 @@ impl Labels {
             if self.listed && let Some(number) = listed(gap).filter(|_| role(&self.items, k).is_some()) {
                 found.insert(Key::Number(number));
             }
+        }
+        // `nurse (N)`, `patient (P)`: in the order in which they are told.
+        let row = found.iter().zip('A'..='Z').all(|(key, letter)| *key == Key::Letter(letter));
+        if !row && found.iter().all(|key| matches!(key, Key::Letter(_))) {
+            let first = |key: &Key| (0..self.items.0.len()).find(|k| self.list(*k).is_some_and(|(keys, _)| keys.contains(key)));
+            let mut keys: Vec<Key> = found.into_iter().collect();
+            keys.sort_by_key(first);
+            return keys.into_iter().zip(1..).collect();
         }
         let most = found.iter().map(|key| if let Key::Number(n) = key { *n } else { 0 }).max().unwrap_or(0);
         if most > 0 {

@@ -141,6 +141,9 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     if robot(items, start) || matches!(items.text(start), "the" | "a") && robot(items, start + 1) {
         return Some(Condition::Said);
     }
+    if matches!(items.stem(start), "door" | "elevator" | "lift") && (start..to).any(|k| items.stem(k) == "open") {
+        return Some(Condition::Said);
+    }
     if length && (matches!(items.text(start), "distance" | "within" | "at" | "d" | "range" | "gap")) {
         return Some(Condition::Distance);
     }

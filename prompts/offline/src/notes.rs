@@ -115,7 +115,7 @@ impl Items {
 /// Writes notes out; other texts stay as they are.
 pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
     let (items, tail) = itemized(text, pieces);
-    let items = shorthand(items);
+    let items = shorthand(steps(items));
     let items = crate::actors::actors(items);
     let items = ends(items);
     let mut items = crate::arrows::arrows(items);
@@ -194,6 +194,7 @@ const SHORT: &[(&str, &[&str])] = &[
     ("intersec", &["intersection"]),
     ("elev", &["elevator"]),
     ("loc", &["location"]),
+    ("cond", &["condition"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -203,6 +204,25 @@ const NAMES: &[&str] = &[
     "rev", "build", "version", "ver", "v", "tc", "scn", "reg", "id", "map", "sw", "fw", "release", "timeout", "speed",
     "seed", "firmware", "revision", "sprint",
 ];
+
+/// `1) the doctor comes out 2) he waits`: a sentence for each.
+fn steps(mut items: Items) -> Items {
+    let mut open = false;
+    for k in 0..items.0.len() {
+        let Some(item) = items.0.get(k) else { break };
+        open = item.opens() || open && !item.closes();
+        let step = !open && item.word.is_digits() && item.word.text.len() <= 2 && !item.word.label;
+        if step && items.0.get(k + 1).is_some_and(|next| next.gap.starts_with(')')) {
+            for item in items.0.iter_mut().take(k + 2).skip(k) {
+                item.marks = vec![Mark::Stop];
+            }
+            if let Some(item) = items.0.get_mut(k) {
+                (item.word.label, item.word.used) = (true, true);
+            }
+        }
+    }
+    items
+}
 
 /// Signs and short forms as words.
 fn shorthand(items: Items) -> Items {
@@ -264,7 +284,7 @@ fn shorthand(items: Items) -> Items {
             Some("and")
         } else if digits && item.gap.contains(['<', '≤']) {
             Some("within")
-        } else if digits && item.gap.ends_with('+') {
+        } else if digits && item.gap.ends_with('+') && item.gap != "+" {
             Some("after")
         } else {
             None
@@ -350,7 +370,7 @@ fn place(items: &Items, last: usize, first: usize) -> bool {
 
 /// What opens a sentence that tells how a test is judged, with what must follow.
 const AIMS: &[&str] =
-    &["expected", "expectation", "expect", "exp", "pass", "fail", "criterion", "criteria", "crit", "log", "note", "timeout", "success", "ok"];
+    &["expected", "expectation", "expect", "exp", "pass", "post", "result", "outcome", "verify", "assert", "metric", "metrics", "kpi", "t", "fail", "criterion", "criteria", "crit", "log", "note", "timeout", "success", "ok"];
 
 /// `expected: bot reaches goal`, `pass crit: bot thru in <20s`, `fail if bot speed > 0.3m/s`: nobody does it.
 fn aims(items: &mut Items) {
@@ -360,7 +380,7 @@ fn aims(items: &mut Items) {
         let opens = AIMS.contains(&items.text(at));
         let colon = (at + 1..(at + 4).min(end)).find(|k| items.has(*k, Mark::Colon));
         let body = colon.or_else(|| (matches!(items.text(at + 1), "if" | "when")).then_some(at + 2));
-        let measured = matches!(items.text(at), "log" | "timeout");
+        let measured = matches!(items.text(at), "log" | "timeout") || items.text(at) == "t" && items.text(at + 1) == "max";
         let person = |k: usize| lexicon().roles.contains_key(items.stem(k)) || lexicon().numbers.contains_key(items.text(k));
         let from = body.unwrap_or(at);
         let of_robot = robot(items, from) || items.text(from) == "no" || !(from..end).any(person);

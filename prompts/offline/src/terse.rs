@@ -9,6 +9,8 @@ pub(crate) fn terse(mut items: Items) -> Items {
     while at < items.0.len() {
         overview(&mut items, at);
         passed(&mut items, at);
+        visible(&mut items, at);
+        wants_in(&mut items, at);
         verbless(&mut items, at);
         denied(&mut items, at);
         numbered(&mut items, at);
@@ -107,6 +109,30 @@ fn passed(items: &mut Items, at: usize) {
     {
         let past = ["drives", "past"].map(|text| Item::said(text, &item));
         let _old: Vec<Item> = items.0.splice(at + 1..at + 2, past).collect();
+    }
+}
+
+/// `robot at elevator, wants in` wants to get in.
+fn wants_in(items: &mut Items, at: usize) {
+    if items.stem(at) == "want"
+        && items.text(at + 1) == "in"
+        && !items.marked(at + 1)
+        && items.marked(at + 2)
+        && let Some(item) = items.0.get(at + 1).cloned()
+    {
+        let get = ["to", "get"].map(|text| Item::said(text, &item));
+        let _none: Vec<Item> = items.0.splice(at + 1..at + 1, get).collect();
+    }
+}
+
+/// `bot visible` is visible.
+fn visible(items: &mut Items, at: usize) {
+    if robot(items, at)
+        && items.text(at + 1) == "visible"
+        && !items.marked(at + 1)
+        && let Some(item) = items.0.get(at + 1).cloned()
+    {
+        items.0.insert(at + 1, Item::said("is", &item));
     }
 }
 
