@@ -9,6 +9,7 @@ use crate::headings::{described, labels, names, titled, totals};
 use crate::interject::{interjected, notions};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
+use crate::notes::notes;
 use crate::preamble::preamble;
 use crate::words::{Piece, Word, pieces};
 
@@ -62,7 +63,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut found = Vec::new();
     let mut words: Vec<Option<Word>> = Vec::new();
     let mut colon = false;
-    let mut pieces = pieces(text);
+    let mut pieces = notes(text, pieces(text));
     totals(&mut pieces);
     clock(&mut pieces);
     interjected(&mut pieces);

@@ -43,6 +43,7 @@ const HEADS: &[&str] = &[
     "try",
     "attempt",
     "regression",
+    "repro",
     "phase",
     "part",
 ];

@@ -28,6 +28,11 @@ mod negation;
 mod refer;
 mod topic;
 
+mod actors;
+mod arrows;
+mod notes;
+mod terse;
+
 mod apposed;
 mod around;
 mod arrange;

@@ -14,7 +14,7 @@ const MUTE: &[(&[&str], Gesture)] = &[
     (&["request", "beep", "honk", "buzz", "chime", "horn", "ring", "hoot", "toot"], Gesture::ExcuseMe),
     (&["hand", "hands", "palm", "arm", "flag"], Gesture::Wait),
     (&["thumb", "nod", "greet"], Gesture::Acknowledged),
-    (&["acknowledge", "thank"], Gesture::Acknowledged),
+    (&["acknowledge", "thank", "confirm"], Gesture::Acknowledged),
 ];
 
 /// A gesture needs a verb (or the word `gesture`) and a message near it; a raised hand and a horn are their own.

@@ -1,6 +1,6 @@
 //! What the text says of the robot.
 
-use socrates_model::Relation;
+use socrates_model::{PlaceClass, Relation};
 
 use crate::clause::Found;
 use crate::deed::{self, Around};
@@ -41,10 +41,16 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         Act::Abreast => set(story, Relation::Abreast),
         Act::Gesture => story.robot_says.extend(found.gesture.map(|gesture| (gesture, quote.to_owned()))),
         Act::Enter => {
-            // `comes out of the room that … wants to enter`, `gets out just as the robot wants to get in`
-            let left = || story.cast.people.iter().rev().find_map(|person| person.start);
-            let class = class.or_else(left);
-            story.robot_enters = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_enters.take())
+            // `while she comes out of the room, the robot wants to get in`
+            let there = || {
+                let left = story.cast.last.iter().find_map(|who| story.cast.people.get(*who)?.start);
+                let inside = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
+                left.or(story.place.as_ref().map(|(class, _)| *class)).filter(inside)
+            };
+            story.robot_enters = class
+                .or_else(|| if story.robot_enters.is_none() { there() } else { None })
+                .map(|class| (class, quote.to_owned()))
+                .or_else(|| story.robot_enters.take())
         }
         Act::ComeOut => {
             story.robot_leaves = class.map(|class| (class, quote.to_owned())).or_else(|| story.robot_leaves.take())

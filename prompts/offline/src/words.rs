@@ -172,7 +172,7 @@ fn short(at: &dyn Fn(usize) -> Option<char>, i: usize) -> Option<usize> {
 
 /// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.
 fn abbreviated(before: Option<&Piece>) -> bool {
-    let short = ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min"];
+    let short = ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min", "exp", "cond"];
     matches!(before, Some(Piece::Word(word)) if short.contains(&word.text.as_str()))
 }
 
@@ -250,7 +250,18 @@ fn apostrophe(
 }
 
 /// Words that people write together.
-const JOINED: &[(&str, &[&str])] = &[("infront", &["in", "front"]), ("eachother", &["each", "other"])];
+const JOINED: &[(&str, &[&str])] = &[
+    ("infront", &["in", "front"]),
+    ("eachother", &["each", "other"]),
+    ("dont", &["do", "not"]),
+    ("doesnt", &["does", "not"]),
+    ("didnt", &["did", "not"]),
+    ("wont", &["will", "not"]),
+    ("isnt", &["is", "not"]),
+    ("arent", &["are", "not"]),
+    ("shouldnt", &["should", "not"]),
+    ("cant", &["can", "not"]),
+];
 
 /// The word that was meant by a slip of the pen: the only one of the tables that is one letter away.
 ///
@@ -283,7 +294,8 @@ fn mended(text: &str) -> Option<&'static str> {
     if found.next().is_some() { None } else { Some(only) }
 }
 
-fn word(text: String, from: usize, to: usize) -> Word {
+/// A word by its letters, with its place in the text.
+pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
     let text = mended(&text).map_or(text, str::to_owned);
     let stem = match text.as_str() {
         "robot" | "robots" | "robot's" | "it" | "its" | "itself" | "amr" | "agv" | "cobot" | "bot" | "machine"
