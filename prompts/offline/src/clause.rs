@@ -240,7 +240,10 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         let free = |i: usize| !taken.get(i).copied().unwrap_or(true);
         let Some(at) = find(&stretch.words, phrase, 0, false, &free) else { continue };
         let first = at.first().copied().unwrap_or(0);
-        if negated(stretch, first) {
+        // `I'd like to see it ask them`
+        let word = |back: usize| first.checked_sub(back).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str());
+        let wished = word(1) == "to" && matches!(word(2), "like" | "want" | "love" | "need" | "wanted");
+        if negated(stretch, first) || wished && !temporal {
             continue;
         }
         for i in &at {

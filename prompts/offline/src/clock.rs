@@ -69,7 +69,7 @@ fn hour(pieces: &[Piece], at: usize) -> Option<usize> {
         return Some(at + 1);
     }
     let closes = word(pieces, at + 1).is_none()
-        || matches!(text(pieces, at + 1), "when" | "as" | "because" | "so" | "and" | "he" | "she" | "they" | "i" | "we");
+        || matches!(text(pieces, at + 1), "when" | "as" | "because" | "so" | "and" | "he" | "she" | "they" | "i" | "we" | "our" | "my" | "the" | "this");
     // `after two, …` may be two of those who are there; `at ten` may not.
     let told = matches!(before, "at" | "around" | "past")
         || n > 6 && BEFORE.contains(&before);

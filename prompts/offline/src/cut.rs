@@ -151,6 +151,13 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             i += 2;
             continue;
         }
+        // `towards the robot, which asks him to wait`
+        let robot = out.len().checked_sub(2).and_then(|k| out.get(k)).cloned().flatten().filter(|word| word.stem == "robot");
+        if let (Some(robot), "which", true) = (robot, word(i), out.last().is_some_and(Option::is_none)) {
+            out.push(Some(robot));
+            i += 1;
+            continue;
+        }
         let mut item = item.clone();
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
@@ -333,7 +340,17 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         // `one after another`, `one after the other` is a manner.
         "after" if before == "one" && (text(i + 1) == "another" || text(i + 2) == "other") => (None, 1),
         "after" if text(i + 1) == "which" => (Some(Joint::Then), 2),
-        "after" if text(i + 1) == "that" && words.get(i + 2).is_none_or(Option::is_none) => (Some(Joint::Then), 2),
+        "after"
+            if text(i + 1) == "that"
+                && words.get(i + 2).is_none_or(|next| {
+                    next.as_ref().is_none_or(|next| {
+                        next.text != next.stem && next.text.ends_with('s') && lexicon().verbs.contains(&next.stem)
+                            || matches!(next.text.as_str(), "he" | "she" | "they" | "it")
+                    })
+                }) =>
+        {
+            (Some(Joint::Then), 2)
+        }
         "after" if matches!(before, "second" | "minute") && matches!(text(i + 2), "start" | "beginning" | "outset") => {
             (None, 1)
         }

@@ -132,7 +132,9 @@ pub(crate) fn titled(words: &mut [Option<Word>]) {
             || word.stem == "robot"
             || matches!(word.text.as_str(), "he" | "she" | "they" | "them" | "who")
     };
-    let nobody = !whole.iter().any(|word| somebody(word));
+    // `Pilot trial 3`
+    let titles = |at: usize| at == 0 && head(&whole, 0) && head(&whole, 1);
+    let nobody = !whole.iter().enumerate().any(|(at, word)| somebody(word) && !titles(at));
     // `Regression 204.`
     let numbered = whole.len() <= 3
         && whole.iter().any(|word| word.is_digits())

@@ -194,6 +194,14 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             );
             return noun(words, at + 1 + more, lex).and_then(|end| made(Who::Nobody, None, end));
         }
+        // `his instructor neither runs away nor steps aside`
+        "neither"
+            if at > 0
+                && lex.roles.contains_key(stem(at - 1))
+                && words.iter().skip(at).any(|word| word.text == "nor") =>
+        {
+            return None;
+        }
         "both" | "neither" => {
             let of = of_them(at + 1);
             let named = of.as_ref().map(|of| of.end).or_else(|| noun(words, at + 1, lex));
@@ -306,6 +314,13 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
     }
     if let Some(mention) = others(words, at, lex, &role) {
         return Some(mention);
+    }
+    // `number five does not`
+    if text(at) == "number"
+        && let Some(number) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 0)
+        && words.get(at + 2).is_none_or(|word| lex.verbs.contains(&word.stem))
+    {
+        return made(Who::Number(number), None, at + 1);
     }
     // `worker number 6`
     if lex.roles.contains_key(stem(at))
@@ -575,7 +590,9 @@ fn counted(
     // A number alone speaks of people only where it can stand for them: `2 leave`, `one stays`, `two more`.
     let n = count?;
     let label = lex.labels.contains(before) && (words.get(next - 1).is_some_and(Word::is_digits))
-        || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot");
+        || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot")
+        // `truck 7 is late`
+        || lex.things.contains(before) && !lex.verbs.contains(before) && words.get(next - 1).is_some_and(Word::is_digits);
     let unit = words.get(next).is_some_and(|word| {
         matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "pm" | "am")
     });

@@ -59,6 +59,23 @@ pub(crate) fn negated(stretch: &Stretch, at: usize) -> bool {
 pub(crate) fn denied(found: &mut [Stretch]) {
     for at in 1..found.len() {
         let denies = |word: &Word| matches!(word.text.as_str(), "without" | "no");
+        // `must not stop and stare`
+        let not = found.get(at - 1).and_then(|before| {
+            let not = before.words.iter().position(|word| word.text == "not")?;
+            let verb = before.words.get(not + 1..).is_some_and(|words| {
+                words.iter().any(|word| word.text == word.stem && lexicon().verbs.contains(&word.stem))
+            });
+            before.words.get(not).cloned().filter(|_| verb)
+        });
+        if let (Some(not), Some(stretch)) = (not, found.get_mut(at).filter(|stretch| stretch.joint == Joint::And)) {
+            let base = stretch.words.first().is_some_and(|word| {
+                matches!(word.text.as_str(), "stare" | "look" | "watch" | "block" | "follow" | "stop" | "wait" | "wave")
+            });
+            if base {
+                stretch.words.insert(0, not);
+                continue;
+            }
+        }
         let before = found.get(at - 1).and_then(|before| {
             let deny = before.words.iter().position(denies)?;
             // Nothing else is said behind the word that denies: a list goes on.

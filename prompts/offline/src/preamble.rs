@@ -1,20 +1,28 @@
 //! What is told before the story: `This one is about gestures between humans: …`, `Tenants have complained that it frightens people.`
 
+use crate::lexicon::lexicon;
 use crate::mention::{Mention, Who, mentions};
 use crate::words::{Piece, Word};
 
-/// Words of whoever asks, and of studies.
-const ASKING: &[&str] = &[
+/// Words of whoever asks, of studies, and of what people are like in general.
+const SIGNS: &[&str] = &[
     "i", "we", "us", "my", "our", "you", "your", "study", "literature", "experiment", "research", "about",
-    "interested", "wonder", "question", "hypothesis", "claim", "claims", "complained", "complain", "report", "reported",
+    "interested", "wonder", "question", "questionnaire", "hypothesis", "claim", "claims", "complained", "complain",
+    "report", "reported", "afraid", "scared", "like", "love", "hate", "tend", "cause", "worry", "worries", "cope",
+    "copes", "rate", "proof", "afraid", "affraid", "usually", "often", "always", "normally", "sometimes", "whether",
+    "how", "isn", "people",
 ];
+/// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
+const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
 /// Words by which such a part speaks of somebody who is there after all.
-const THERE: &[&str] = &["there", "have", "want", "need", "like", "simulate", "show", "put", "add", "imagine", "let", "make", "with"];
+const THERE: &[&str] =
+    &["there", "have", "want", "need", "simulate", "show", "put", "add", "imagine", "let", "make", "create", "with"];
 
 /// Makes nobody's a part of the text that speaks of people in general before the story names those who are in it.
 ///
 /// The words stay unused, so that what they wish for is reported as not understood.
 pub(crate) fn preamble(pieces: &mut [Piece]) {
+    trials(pieces);
     let mut parts: Vec<(usize, usize)> = Vec::new();
     let mut from = 0;
     for at in 0..=pieces.len() {
@@ -37,9 +45,13 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
             (words, found)
         })
         .collect();
-    let Some(first) = spoken.iter().position(|(_, found)| found.iter().any(introduces)) else { return };
+    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| introduces(words, mention))) else { return };
     let silent: Vec<(usize, usize)> =
-        parts.iter().zip(&spoken).take(first).filter(|(_, (words, found))| general(words, found)).map(|(part, _)| *part).collect();
+        parts.iter().zip(&spoken).take(first).filter(|((_, to), (words, found))| {
+            // `Role reversal, the human guides: an intern …`
+            let heads = matches!(pieces.get(*to), Some(Piece::Colon)) && words.len() <= 9;
+            general(words, found, heads)
+        }).map(|(part, _)| *part).collect();
     for (from, to) in silent {
         for piece in pieces.iter_mut().take(to).skip(from) {
             if let Piece::Word(word) = piece {
@@ -49,13 +61,35 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
     }
 }
 
+/// `(n = 24 participants)`: so many take part in a study, and not in the scene, if that is told of others.
+fn trials(pieces: &mut [Piece]) {
+    let word = |k: usize| if let Some(Piece::Word(word)) = pieces.get(k) { Some(word) } else { None };
+    let role = |k: usize| {
+        word(k).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| !role.generic)
+    };
+    let scene = (0..pieces.len()).any(role);
+    let told: Vec<usize> = (0..pieces.len())
+        .filter(|k| {
+            let many = word(*k).and_then(Word::count).is_some_and(|n| n > 6);
+            scene && many && word(k + 1).is_some_and(|noun| matches!(noun.stem.as_str(), "participant" | "subject"))
+        })
+        .flat_map(|k| [k, k + 1])
+        .collect();
+    for at in told {
+        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+            word.label = true;
+        }
+    }
+}
+
 /// Whether a mention says that somebody is there.
-fn introduces(mention: &Mention) -> bool {
+fn introduces(words: &[Word], mention: &Mention) -> bool {
+    let owned = opines(words, mention);
     match &mention.who {
         // `how a dyad affects the robot`
         Who::New { .. } if mention.group && mention.role.is_none() => false,
-        Who::New { count, .. } => count.is_some(),
-        Who::Definite { .. } => mention.role.is_some(),
+        Who::New { count, .. } => count.is_some_and(|n| n > 1) || count.is_some() && mention.role.is_some(),
+        Who::Definite { .. } => mention.role.is_some() && !owned,
         Who::More(_) | Who::PartOfNew(..) | Who::AllOf(_) | Who::OrdinalOf { .. } | Who::Number(_) => {
             true
         }
@@ -75,18 +109,24 @@ fn introduces(mention: &Mention) -> bool {
 }
 
 /// Whether a part speaks of people in general.
-fn general(words: &[Word], found: &[Mention]) -> bool {
+fn general(words: &[Word], found: &[Mention], heads: bool) -> bool {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let asks = words.iter().any(|word| ASKING.contains(&word.text.as_str()) || ASKING.contains(&word.stem.as_str()));
+    let signs = words.iter().any(|word| SIGNS.contains(&word.text.as_str()));
     let kind = |mention: &Mention| match mention.who {
-        // `people in our ward`; but `I want people who …`, `with visitors`
+        // `people in our ward`; but `I want people who …`
         Who::New { count: None, .. } => {
             !(0..mention.from).any(|k| THERE.contains(&text(k)) && mention.from - k <= 3)
                 || mention.from > 1 && text(mention.from - 1) == "with"
         }
         Who::New { .. } if mention.group && mention.role.is_none() => true,
-        // `this one is about …`
-        Who::Definite { plural: false, count: Some(1) } if mention.role.is_none() => true,
+        // `somebody`, where nothing is asked for
+        Who::New { count: Some(1), .. } if mention.role.is_none() => {
+            (signs || ASKS.contains(&text(0))) && !words.iter().any(wishes)
+        }
+        // `this one is about …`, `the human guides`
+        Who::Definite { .. } if mention.role.is_none() => !mention.group,
+        // `our safety officer wants proof`
+        Who::Definite { .. } => opines(words, mention),
         Who::All | Who::Ordinal(_) | Who::ToldApart | Who::Bare(1) => true,
         Who::New { .. }
         | Who::More(_)
@@ -96,7 +136,6 @@ fn general(words: &[Word], found: &[Mention]) -> bool {
         | Who::Bare(_)
         | Who::Other(_)
         | Who::Some { .. }
-        | Who::Definite { .. }
         | Who::AllBut(_)
         | Who::OrdinalOf { .. }
         | Who::Same
@@ -105,5 +144,24 @@ fn general(words: &[Word], found: &[Mention]) -> bool {
         | Who::Number(_)
         | Who::Nobody => false,
     };
-    asks && !found.is_empty() && found.iter().all(kind)
+    (signs || heads || ASKS.contains(&text(0))) && !found.is_empty() && found.iter().all(kind)
+}
+
+/// Whether a word asks for a scene.
+fn wishes(word: &Word) -> bool {
+    word.text != "with" && THERE.contains(&word.text.as_str())
+        || matches!(word.text.as_str(), "scene" | "scenario" | "case" | "please" | "if")
+}
+
+/// Whether somebody of whoever asks only has an opinion: `our safety officer wants proof that …`, `our porters like to …`.
+fn opines(words: &[Word], mention: &Mention) -> bool {
+    let own = words.get(mention.from).is_some_and(|word| matches!(word.text.as_str(), "our" | "my"));
+    let verb = words.get(mention.to + 1).map_or("", |word| word.text.as_str());
+    own && matches!(
+        verb,
+        "want" | "wants" | "wanted" | "insist" | "insists" | "complain" | "complains" | "complained" | "say" | "says"
+            | "said" | "claim" | "claims" | "think" | "thinks" | "worry" | "worries" | "hate" | "hates" | "love"
+            | "loves" | "like" | "likes" | "tend" | "need" | "needs" | "keep" | "keeps" | "get" | "have"
+            | "drives" | "works"
+    )
 }

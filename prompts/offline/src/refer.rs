@@ -21,8 +21,14 @@ pub(crate) fn others(
     let before = if at == 0 { "" } else { text(at - 1) };
     let manner = text(at) == "each" && text(at + 1) == "other"
         || text(at) == "other"
-            && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind"))
-        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind");
+            && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind" | "to"))
+        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind")
+        // `from one side to the other`
+        || text(at) == "the"
+            && text(at + 1) == "other"
+            && before == "to"
+            && at > 2
+            && matches!(text(at - 2), "side" | "end" | "wall");
     if manner {
         return None;
     }
@@ -31,6 +37,10 @@ pub(crate) fn others(
         // `one after another` is a manner, nobody new.
         "another" if at > 0 && matches!(text(at - 1), "after" | "to" | "from") => None,
         "another" => {
+            let unit = words.get(at + 2).is_some_and(|word| matches!(word.stem.as_str(), "second" | "meter" | "minute"));
+            if unit && count(at + 1).is_some() {
+                return None;
+            }
             let several = count(at + 1).filter(|n| *n > 0 && text(at + 1) != "one");
             let start = at + 1 + usize::from(several.is_some() || text(at + 1) == "one");
             let end = noun(words, start, lex).or_else(|| if thing(words, start) { None } else { Some(start - 1) })?;

@@ -76,6 +76,10 @@ pub(crate) struct Thread {
     pub(crate) listed: Vec<usize>,
     /// To whom the last gesture was made.
     pub(crate) addressed: Vec<usize>,
+    /// `not by himself, only after …`: who does not do what is denied, but then.
+    pub(crate) only: Vec<usize>,
+    /// The clause before is nothing but `only`.
+    pub(crate) only_then: bool,
     /// What was said not to be done: `the first does not stop; the others do`.
     pub(crate) denied: Option<Act>,
     /// How long after what it waits for the deed begins, s.
@@ -150,6 +154,11 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
 
 fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let quote = stretch.quote(text).to_owned();
+    // `…, only after the robot has said EXCUSE_ME`: then it is done after all.
+    if matches!(stretch.words.as_slice(), [word] if matches!(word.text.as_str(), "only" | "just")) && next == Some(Joint::When) {
+        thread.only_then = !thread.only.is_empty();
+        return;
+    }
     let mut found = clause::read(stretch);
     for i in &found.nowhere {
         let word = stretch.words.get(*i).map_or("", |word| word.text.as_str());
@@ -449,6 +458,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                     deed::rule_out(&mut story.cast, *who, act, quote);
                 }
                 thread.denied = Some(act);
+                thread.only.clone_from(people);
                 let people: Vec<String> = people.iter().map(|i| format!("human_{}", i + 1)).collect();
                 story
                     .cast
@@ -480,6 +490,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             thread.subject = Subject::People(object);
         } else if subject != Subject::Nobody
             && !(by_robot && matches!(previous, Subject::People(_)))
+            // `comes out of the room the robot is going into and gives way`
+            && !(subject == Subject::Robot
+                && act == Act::Enter
+                && found.deeds.first().is_some_and(|first| first.act == Act::ComeOut && first.at < at)
+                && !found.mentions.is_empty())
             // `The robot, finding its way obstructed by a visitor, asks …`
             && !(passive && previous == Subject::Robot && stretch.words.first().is_some_and(|word| word.text == "finding"))
         {

@@ -140,6 +140,18 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         return;
     }
     // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
+    if std::mem::take(&mut thread.only_then)
+        && let Some(act) = thread.denied.filter(|act| deed::manner(*act).is_some())
+    {
+        let around = deed::Around { trigger: Some(when), quote: quote.to_owned(), ..deed::Around::default() };
+        for who in std::mem::take(&mut thread.only) {
+            if let Some(person) = story.cast.people.get_mut(who) {
+                person.never.retain(|(never, _)| *never != act);
+            }
+            let _rule = deed::apply(&mut story.cast, who, act, &around);
+        }
+        return;
+    }
     if back {
         for (who, rule) in std::mem::take(&mut thread.made) {
             if let Some(read) = story.cast.people.get_mut(who).and_then(|p| p.rules.get_mut(rule)) {

@@ -101,7 +101,17 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             let tagged = back(1) == Some('#') || back(1) == Some('-') && back(2).is_some_and(char::is_uppercase);
             let lettered = at(i).is_some_and(|c| c.is_uppercase() && c != 'M' && c != 'S')
                 && !at(i + 1).is_some_and(char::is_alphanumeric);
-            let label = clock || version || tagged || lettered;
+            // `a 7-point scale`; but `a 2-person group`, `3-meter`
+            let joined: String = if at(i) == Some('-') {
+                (i + 1..).map_while(|k| at(k).filter(|c| c.is_lowercase())).collect()
+            } else {
+                String::new()
+            };
+            let unit = lexicon().stem(&joined);
+            let named = joined.len() > 1
+                && !lexicon().roles.contains_key(&unit)
+                && !matches!(unit.as_str(), "meter" | "second" | "centimeter" | "minute");
+            let label = clock || version || tagged || lettered || named;
             out.push(Piece::Word(Word { label, ..word(digits, byte(start), byte(i)) }));
             i += usize::from(lettered);
         } else if let Some(end) = short(&at, i) {
