@@ -155,7 +155,10 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
 fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let quote = stretch.quote(text).to_owned();
     // `…, only after the robot has said EXCUSE_ME`: then it is done after all.
-    if matches!(stretch.words.as_slice(), [word] if matches!(word.text.as_str(), "only" | "just")) && next == Some(Joint::When) {
+    if stretch.joint == Joint::Comma
+        && matches!(stretch.words.as_slice(), [word] if matches!(word.text.as_str(), "only" | "just"))
+        && next == Some(Joint::When)
+    {
         thread.only_then = !thread.only.is_empty();
         return;
     }
