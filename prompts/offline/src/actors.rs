@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::lexicon::lexicon;
 use crate::mention::{Who, mentions};
-use crate::noun::{noun, plural, stranger};
+use crate::noun::{band, noun, plural, stranger};
 use crate::notes::{Item, Items, Mark};
 use crate::words::Word;
 
@@ -15,6 +15,8 @@ use crate::words::Word;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Number(u32),
+    /// `E1`, `w2`.
+    Code(char, u32),
     Letter(char),
 }
 
@@ -88,6 +90,10 @@ fn role(items: &Items, from: usize) -> Option<(String, usize)> {
     }
     let run = items.run(start);
     let lex = lexicon();
+    // `ped 1 and ped 2: couple, hand in hand`
+    if run.len() == 1 && band(&run, 0).is_some() {
+        return Some((String::new(), start + 1));
+    }
     let end = noun(&run, 0, lex).or_else(|| stranger(&run, 0, true, lex)).or_else(|| {
         // A word that nobody knows, alone: `actor 1 (docker)`.
         let alone = run.len() == 1 && run.first().is_some_and(|word| word.text.len() >= 4 && !lex.has(word));
@@ -110,7 +116,12 @@ impl Labels {
         let mut bare = BTreeSet::new();
         for k in 0..count {
             if let Some(letter) = labels.letter(k) {
-                if labels.generic(k) || labels.role_before(k) || labels.bracketed(k) {
+                // `ped A/B`, `actors A and B`
+                let joined = labels.items.0.get(k).is_some_and(|item| matches!(item.gap.trim(), "/" | "+" | "&"));
+                let and = labels.items.text(k.wrapping_sub(1)) == "and" && !labels.items.marked(k);
+                let before = k.checked_sub(1 + usize::from(and)).filter(|_| joined || and);
+                let second = before.and_then(|back| labels.letter(back)).is_some_and(|letter| labels.letters.contains(&letter));
+                if second || labels.generic(k) || labels.role_before(k) || labels.bracketed(k) {
                     labels.letters.insert(letter);
                 } else if matches!(letter, 'A'..='H' | 'X'..='Z') && labels.free(k) && labels.declares(k) {
                     bare.insert(letter);
@@ -126,7 +137,11 @@ impl Labels {
                     })
                 });
                 let told = labels.items.has(k + 1, Mark::Colon) || labels.items.0.get(k + 1).is_some_and(Item::equals);
-                if number > 0 && labels.free(k) && (person || of_role || told) {
+                let bracketed = labels.items.0.get(k).is_some_and(Item::opens)
+                    && k > 0
+                    && (labels.role_at(k - 1) || labels.items.word(k - 1).is_some_and(|word| word.is_digits() || word.stem == "group"));
+                let named = labels.named(k);
+                if number > 0 && (labels.free(k) && (person || of_role || told || bracketed) || named) {
                     labels.families.insert(family);
                 }
             }
@@ -142,7 +157,10 @@ impl Labels {
 
     /// A capital letter alone.
     fn letter(&self, at: usize) -> Option<char> {
-        let word = self.items.word(at).filter(|word| word.capital && !word.label && word.text.len() == 1)?;
+        let item = self.items.0.get(at)?;
+        // `actor_a`
+        let tied = item.gap == "_" && at > 0 && GENERIC.contains(&self.items.stem(at - 1));
+        let word = Some(&item.word).filter(|word| (word.capital || tied) && !word.label && word.text.len() == 1)?;
         word.text.chars().next().map(|c| c.to_ascii_uppercase()).filter(char::is_ascii_uppercase)
     }
 
@@ -152,6 +170,16 @@ impl Labels {
         let opens = self.items.0.get(at).is_some_and(|item| item.opens() && !item.closes());
         let role = at > 0 && self.items.word(at - 1).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !plural(word));
         closes && opens && role
+    }
+
+    fn role_at(&self, at: usize) -> bool {
+        self.items.word(at).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
+    }
+
+    /// `doctor D1`.
+    fn named(&self, at: usize) -> bool {
+        let beside = self.items.0.get(at).is_some_and(|item| item.gap == " " && item.word.capital);
+        at > 0 && beside && self.role_at(at - 1) && self.items.word(at - 1).is_some_and(|word| !plural(word))
     }
 
     fn generic(&self, at: usize) -> bool {
@@ -184,9 +212,9 @@ impl Labels {
     /// Whether a letter or code stands where people are named: `rooms A, B and C` are none.
     fn free(&self, at: usize) -> bool {
         let Some(item) = self.items.0.get(at) else { return false };
-        let chained = matches!(item.gap.trim(), "," | "+" | "-") && at > 0 && self.letter(at - 1).is_some();
+        let chained = matches!(item.gap.trim(), "," | "+" | "-" | "/") && at > 0 && self.letter(at - 1).is_some();
         if chained && self.letter(at).is_some() {
-            return self.free(at - 1);
+            return self.generic(at - 1) || self.free(at - 1);
         }
         let joined = item.gap.contains(['+', '(']) || item.arrow;
         at == 0
@@ -231,11 +259,14 @@ impl Labels {
             let letter = self.letter(at + 1).filter(|letter| self.letters.contains(letter))?;
             return Some((Key::Letter(letter), at + 2));
         }
-        if let Some((family, number)) = self.coded(at)
-            && self.families.contains(&family)
+        let code = |at: usize| self.coded(at).filter(|(family, _)| self.families.contains(family));
+        if let Some((family, number)) = code(at + 1).filter(|_| self.named(at + 1)) {
+            return Some((Key::Code(family, number), at + 2));
+        }
+        if let Some((family, number)) = code(at)
             && !(at > 0 && !self.items.marked(at) && lexicon().labels.contains(self.items.stem(at - 1)))
         {
-            return Some((Key::Number(number), at + 1));
+            return Some((Key::Code(family, number), at + 1));
         }
         if (self.tags && item.gap.ends_with('#') || self.listed && item.gap.ends_with('(') && self.items.0.get(at + 1).is_none_or(Item::closes))
             && let Some(number) = item.word.text.parse::<u32>().ok().filter(|n| (1..=9).contains(n))
@@ -283,11 +314,9 @@ impl Labels {
             };
             let next = self.key(at).or_else(bare).filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
             let Some((key, to)) = next else { break };
-            if let (true, Some(Key::Letter(from)), Key::Letter(to)) = (matches!(gap.as_str(), "-" | "–"), keys.last().copied(), key) {
-                keys.extend((from..=to).skip(1).map(Key::Letter));
-            } else {
-                keys.push(key);
-            }
+            let range = keys.last().copied().filter(|_| matches!(gap.as_str(), "-" | "–")).map_or_else(Vec::new, |last| between(last, key));
+            keys.extend(range);
+            keys.push(key);
             end = to;
         }
         Some((keys, end))
@@ -305,20 +334,39 @@ impl Labels {
                 found.insert(Key::Number(number));
             }
         }
-        // `nurse (N)`, `patient (P)`: in the order in which they are told.
+        let codes: BTreeSet<char> = found.iter().filter_map(|key| if let Key::Code(family, _) = key { Some(*family) } else { None }).collect();
+        let numbers = found.iter().any(|key| matches!(key, Key::Number(_)));
+        let letters = found.iter().any(|key| matches!(key, Key::Letter(_)));
         let row = found.iter().zip('A'..='Z').all(|(key, letter)| *key == Key::Letter(letter));
-        if !row && found.iter().all(|key| matches!(key, Key::Letter(_))) {
+        // `nurse (N)` and `patient (P)`, `doctor D1` and `patient P1`: in the order in which they are told.
+        if !row && (letters || codes.len() > 1 && !numbers) {
             let first = |key: &Key| (0..self.items.0.len()).find(|k| self.list(*k).is_some_and(|(keys, _)| keys.contains(key)));
             let mut keys: Vec<Key> = found.into_iter().collect();
             keys.sort_by_key(first);
             return keys.into_iter().zip(1..).collect();
         }
-        let most = found.iter().map(|key| if let Key::Number(n) = key { *n } else { 0 }).max().unwrap_or(0);
-        if most > 0 {
-            found.extend((1..=most).map(Key::Number));
+        if letters {
+            return found.into_iter().zip(1..).collect();
         }
-        found.into_iter().zip(1..).collect()
+        let number = |key: &Key| if let Key::Number(n) | Key::Code(_, n) = key { *n } else { 0 };
+        let most = found.iter().map(number).max().unwrap_or(0);
+        found.extend((1..=most).map(Key::Number));
+        found.into_iter().map(|key| (key, number(&key))).collect()
     }
+}
+
+/// The labels between two: of `A-D`, B and C.
+fn between(from: Key, to: Key) -> Vec<Key> {
+    if let (Key::Letter(from), Key::Letter(to)) = (from, to) {
+        return (from..to).skip(1).map(Key::Letter).collect();
+    }
+    if let (Key::Code(family, from), Key::Code(_, to)) = (from, to) {
+        return (from..to).skip(1).map(|n| Key::Code(family, n)).collect();
+    }
+    if let (Key::Number(from), Key::Number(to)) = (from, to) {
+        return (from..to).skip(1).map(Key::Number).collect();
+    }
+    Vec::new()
 }
 
 /// The number of `(2)` at the end of a gap.
@@ -415,7 +463,7 @@ impl Labels {
         let Some(item) = items.0.get(at) else { return end };
         let next = items.0.get(end);
         // `worker A`
-        if end >= at + 2 && self.letter(end - 1).is_some() && self.role_before(end - 1) {
+        if end >= at + 2 && (self.letter(end - 1).is_some() && self.role_before(end - 1) || self.named(end - 1)) {
             let named = items.stem(end - 2);
             if lexicon().roles.get(named).is_some_and(|role| !role.generic) {
                 written.define(numbers, named);
@@ -508,6 +556,7 @@ impl Written {
         let from = self.out.iter().rposition(|item| !item.marks.is_empty() || item.arrow).unwrap_or(0);
         let run: Vec<Word> = self.out.get(from..).unwrap_or_default().iter().map(|item| item.word.clone()).collect();
         let grouped = run.last().is_some_and(|word| word.stem == "group");
+        let mut banded = false;
         let people = if grouped {
             // `standing grp`
             let adjective = |word: &Word| lexicon().adjectives.contains(&word.text) || matches!(word.text.as_str(), "a" | "the");
@@ -518,6 +567,7 @@ impl Written {
             if let Some(role) = found.as_ref().and_then(|mention| mention.role.clone()) {
                 self.define(numbers, &role);
             }
+            banded = found.as_ref().is_some_and(|mention| mention.group);
             found.map(|mention| (mention.from, mention.to))
         };
         let Some((first, last)) = people else { return false };
@@ -525,6 +575,9 @@ impl Written {
         let mut words = spoken(numbers, self.out.get(first).unwrap_or(at));
         if grouped {
             words.extend(["stand", "in", "a", "group"].map(|text| Item::said(text, at)));
+        }
+        if banded {
+            words.extend(["in", "a", "group"].map(|text| Item::said(text, at)));
         }
         if let (Some(new), Some(old)) = (words.first_mut(), self.out.get(first)) {
             (new.marks, new.arrow, new.gap) = (old.marks.clone(), old.arrow, old.gap.clone());
@@ -539,7 +592,7 @@ impl Written {
 
     /// The text, with a sentence that says who is there.
     fn finish(mut self) -> Items {
-        let count = u32::try_from(self.keys.len()).unwrap_or(u32::MAX);
+        let count = self.keys.values().copied().max().unwrap_or(0);
         let total = self.total(count);
         if let Some((_, _, role)) = &total
             && !self.roles.values().all(String::is_empty)

@@ -8,7 +8,12 @@ pub(crate) fn arrows(items: Items) -> Items {
     let mut items = items;
     let mut at = 0;
     while at < items.0.len() {
-        if items.0.get(at).is_some_and(|item| item.arrow) {
+        // `dist < 1.5 m: runs`
+        let colon = items.has(at, Mark::Colon) && at > 0 && {
+            let from = (0..at).rev().find(|k| items.marked(*k)).unwrap_or(0);
+            matches!(condition(&items, from, at), Some(Condition::Distance | Condition::Contact | Condition::Time))
+        };
+        if colon || items.0.get(at).is_some_and(|item| item.arrow) {
             at = row(&mut items, at);
         } else {
             at += 1;
@@ -87,6 +92,12 @@ fn opened(items: &mut Items, from: usize, condition: Condition) -> usize {
         Condition::Time => &["after"],
     };
     insert(items, from, words, &item);
+    if condition == Condition::Distance && items.text(from + words.len()) == "d" {
+        let at = from + words.len();
+        if let Some(item) = items.0.get_mut(at) {
+            (item.word.label, item.word.used) = (true, true);
+        }
+    }
     if condition == Condition::Contact {
         let first = from + words.len();
         let end = items.mark(first);
@@ -160,7 +171,7 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     let (Some((first, last)), Some((next, end))) = (person, other) else { return None };
     let words = |from: usize, to: usize| (from..to).map(|k| items.text(k).to_owned()).collect::<Vec<String>>();
     let does = (start..to).any(|k| lexicon().verbs.contains(items.stem(k)));
-    (does && words(first, last) != words(next, end)).then_some(Condition::Said)
+    (does && words(first, last) != words(next, end)).then_some(Condition::Meets)
 }
 
 /// The people named right here, up to where the rest begins: `human 1 and human 2`, `nurse`.

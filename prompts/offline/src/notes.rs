@@ -117,7 +117,7 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
     let (items, tail) = itemized(text, pieces);
     let items = shorthand(steps(items));
     let items = crate::actors::actors(items);
-    let items = ends(items);
+    let items = triggers(ends(items));
     let mut items = crate::arrows::arrows(items);
     aims(&mut items);
     let items = crate::terse::terse(items);
@@ -170,6 +170,11 @@ fn itemized(text: &str, pieces: Vec<Piece>) -> (Items, Vec<Mark>) {
                 if arrow {
                     marks.retain(|mark| *mark != Mark::Comma);
                 }
+                // `\n- ped 2: crossing`
+                let line = gap.rsplit_once('\n').map(|(_, line)| line.trim_start());
+                if line.is_some_and(|line| line.starts_with(['-', '*', '•', '·'])) && !marks.contains(&Mark::Stop) {
+                    marks = vec![Mark::Stop];
+                }
                 last = word.to;
                 items.push(Item { marks: std::mem::take(&mut marks), gap, arrow, word });
             }
@@ -178,7 +183,16 @@ fn itemized(text: &str, pieces: Vec<Piece>) -> (Items, Vec<Mark>) {
             Piece::Stop => marks.push(Mark::Stop),
         }
     }
-    (Items(items), marks)
+    let mut items = Items(items);
+    for k in 1..items.0.len() {
+        // `\nped 2: crossing`
+        let line = items.0.get(k).is_some_and(|item| item.gap.contains('\n') && !item.arrow);
+        let colon = (k + 1..k + 4).find(|next| items.marked(*next)).is_some_and(|next| items.has(next, Mark::Colon));
+        if line && colon && !items.has(k, Mark::Stop) && let Some(item) = items.0.get_mut(k) {
+            item.marks = vec![Mark::Stop];
+        }
+    }
+    (items, marks)
 }
 
 /// Short forms of words.
@@ -195,6 +209,9 @@ const SHORT: &[(&str, &[&str])] = &[
     ("elev", &["elevator"]),
     ("loc", &["location"]),
     ("cond", &["condition"]),
+    ("actor", &["human"]),
+    ("actors", &["humans"]),
+    ("ack", &["acknowledges"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -353,6 +370,28 @@ fn ends(mut items: Items) -> Items {
             let count = words.len();
             let _old: Vec<Item> = items.0.splice(from..next, words).collect();
             at = from + count;
+        }
+        at += 1;
+    }
+    items
+}
+
+/// `trigger: robot within 1 m; reaction: the employee stops`: an arrow.
+fn triggers(mut items: Items) -> Items {
+    let mut at = 0;
+    while at < items.0.len() {
+        let cue = matches!(items.text(at), "trigger" | "cue" | "event" | "stimulus") && items.begins(at) && items.has(at + 1, Mark::Colon);
+        let next = items.end(at);
+        let answer = matches!(items.text(next), "reaction" | "response" | "action" | "effect" | "behavior" | "behaviour" | "then");
+        if cue && answer && items.has(next + 1, Mark::Colon) {
+            if let Some(item) = items.0.get_mut(next + 1) {
+                (item.arrow, item.marks) = (true, Vec::new());
+            }
+            items.0.remove(next);
+            if let Some(item) = items.0.get_mut(at + 1) {
+                item.marks = vec![Mark::Stop];
+            }
+            items.0.remove(at);
         }
         at += 1;
     }

@@ -88,7 +88,7 @@ fn from_behind(items: &mut Items, at: usize) {
     let (from, end) = (items.start(at), items.end(at).min(items.0.len()));
     let rear = (from..end).any(|k| {
         items.text(k) == "rear" && items.text(k.wrapping_sub(1)) != "to"
-            || items.text(k) == "behind" && items.text(k.wrapping_sub(1)) == "from"
+            || items.text(k) == "behind" && (items.text(k.wrapping_sub(1)) == "from" || robot(items, k + 1) || robot(items, k + 2))
             || items.stem(k) == "overtake"
     });
     if rear {
@@ -172,6 +172,29 @@ fn verbless(items: &mut Items, at: usize) {
         return;
     }
     let alone = items.marked(at) && items.marked(at + 1) && !items.begins(at);
+    // `steps left`
+    let moves = at.checked_sub(1).is_some_and(|k| matches!(items.stem(k), "step" | "move" | "shift" | "swerve" | "dodge"));
+    if matches!(items.text(at), "left" | "right") && moves && !items.marked(at) && items.marked(at + 1) {
+        let side = ["to", "the", "side"].map(|text| Item::said(text, &item));
+        if let Some(word) = items.0.get_mut(at) {
+            (word.word.label, word.word.used) = (true, true);
+        }
+        let _none: Vec<Item> = items.0.splice(at..at, side).collect();
+        return;
+    }
+    // `oncoming, group`
+    if items.text(at) == "group" && alone {
+        let group = ["in", "a"].map(|text| Item::said(text, &item));
+        let marks = item.marks;
+        let _none: Vec<Item> = items.0.splice(at..at, group).collect();
+        if let Some(word) = items.0.get_mut(at + 2) {
+            word.marks.clear();
+        }
+        if let Some(word) = items.0.get_mut(at) {
+            word.marks = marks;
+        }
+        return;
+    }
     if items.text(at) == "static" && (after || alone) && let Some(word) = items.0.get_mut(at) {
         ("stands".clone_into(&mut word.word.text), "stand".clone_into(&mut word.word.stem));
     }
@@ -202,6 +225,8 @@ const DEEDS: &[(&str, &str)] = &[
     ("evasion", "yield"),
     ("avoidance", "yield"),
     ("dodge", "yield"),
+    ("deviation", "yield"),
+    ("contact", "look"),
 ];
 
 /// The verb of a denied deed.
@@ -222,7 +247,11 @@ fn denied(items: &mut Items, at: usize) {
     let opens = items.marked(at) || matches!(items.text(at.wrapping_sub(1)), "and" | "or" | "but") || subject(items, at);
     // `no ped reaction`
     let people = lexicon().roles.contains_key(items.stem(at + 1)) && !items.marked(at + 1) && !items.marked(at + 2);
-    let of = at + 1 + usize::from(people);
+    let eye = matches!(items.text(at + 1), "eye" | "visual") && items.text(at + 2) == "contact";
+    let of = at + 1 + usize::from(people || eye);
+    if items.text(of) == "contact" && !eye {
+        return;
+    }
     let Some(verb) = verb(items, of).filter(|_| opens && !items.marked(of)) else { return };
     let Some(item) = items.0.get(at).cloned() else { return };
     let from = items.start(at);
