@@ -45,7 +45,7 @@ struct Labels {
 
 /// Rewrites labels; a text without any stays as it is.
 pub(crate) fn actors(items: Items) -> Items {
-    let items = generic_roles(items);
+    let items = listed_roles(generic_roles(items));
     let labels = Labels::of(items);
     let keys = labels.keys();
     if keys.is_empty() {
@@ -77,6 +77,40 @@ fn generic_roles(items: Items) -> Items {
         }
         at += 1;
     }
+    items
+}
+
+/// `roles: doctor + visitor` are two people.
+fn listed_roles(mut items: Items) -> Items {
+    let heads = |k: &usize| matches!(items.text(*k), "role" | "roles" | "cast") && items.begins(*k);
+    let Some(at) = (0..items.0.len()).find(heads) else { return items };
+    let end = items.end(at).min(items.0.len());
+    let (mut roles, mut k) = (Vec::new(), at + 1);
+    while k < end {
+        let Some((name, to)) = role(&items, k) else { break };
+        roles.push(name);
+        k = to + usize::from(items.text(to) == "and");
+    }
+    if roles.len() < 2 || k < end {
+        return items;
+    }
+    let count = u32::try_from(roles.len()).unwrap_or(u32::MAX);
+    // `human_count 2`
+    for k in 0..at {
+        let counts = items.word(k).and_then(Word::count) == Some(count);
+        let generic = |back: usize| k.checked_sub(back).is_some_and(|k| GENERIC.contains(&items.stem(k)));
+        let from = if generic(1) { Some(k - 1) } else if generic(2) && matches!(items.text(k - 1), "count" | "number") { Some(k - 2) } else { None };
+        if counts && let Some(from) = from {
+            for item in items.0.iter_mut().take(k + 1).skip(from) {
+                (item.word.label, item.word.used) = (true, true);
+            }
+        }
+    }
+    let Some(first) = items.0.get(at).cloned() else { return items };
+    let mut people = Item::said("people", &first);
+    people.word.made_of = roles;
+    let number = Item::said(&count.to_string(), &first).with(&first.marks);
+    let _old: Vec<Item> = items.0.splice(at..end, [number, people]).collect();
     items
 }
 

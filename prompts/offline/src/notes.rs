@@ -115,7 +115,9 @@ impl Items {
 /// Writes notes out; other texts stay as they are.
 pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
     let (items, tail) = itemized(text, pieces);
-    let items = shorthand(steps(items));
+    let mut items = shorthand(steps(items));
+    crate::terse::numbered(&mut items);
+    let items = crate::terse::located(items);
     let items = crate::actors::actors(items);
     let items = triggers(ends(items));
     let mut items = crate::arrows::arrows(items);
@@ -400,11 +402,13 @@ fn triggers(mut items: Items) -> Items {
 
 /// Whether the words up to this one name a place.
 fn place(items: &Items, last: usize, first: usize) -> bool {
-    (first..=last).any(|k| {
-        lexicon().places.iter().any(|place| {
-            matches!(place.items.last(), Some(crate::lexicon::Item::Word(word)) if word == items.text(k))
-        })
-    })
+    (first..=last).any(|k| names_place(items, k))
+}
+
+/// Whether a word ends the name of a place.
+pub(crate) fn names_place(items: &Items, at: usize) -> bool {
+    let ends = |items_: &[crate::lexicon::Item]| matches!(items_.last(), Some(crate::lexicon::Item::Word(word)) if word == items.text(at));
+    lexicon().places.iter().any(|place| ends(&place.items))
 }
 
 /// What opens a sentence that tells how a test is judged, with what must follow.

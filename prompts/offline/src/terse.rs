@@ -13,7 +13,7 @@ pub(crate) fn terse(mut items: Items) -> Items {
         wants_in(&mut items, at);
         verbless(&mut items, at);
         denied(&mut items, at);
-        numbered(&mut items, at);
+        ward(&mut items, at);
         answered(&mut items, at);
         from_behind(&mut items, at);
         at += 1;
@@ -47,13 +47,11 @@ fn step(items: &Items, at: usize) -> bool {
 }
 
 /// Numbers of steps count nobody.
-fn numbered(items: &mut Items, at: usize) {
-    let first = items.text(at) == "1" && step(items, at);
-    let second = first.then(|| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k))).flatten();
-    if second.is_none() {
-        return;
-    }
-    for k in at..items.0.len() {
+pub(crate) fn numbered(items: &mut Items) {
+    let first = (0..items.0.len()).find(|k| items.text(*k) == "1" && step(items, *k));
+    let second = first.and_then(|at| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k)));
+    let Some(from) = first.filter(|_| second.is_some()) else { return };
+    for k in from..items.0.len() {
         if step(items, k)
             && let Some(item) = items.0.get_mut(k)
         {
@@ -77,6 +75,39 @@ fn answered(items: &mut Items, at: usize) {
     {
         item.marks = vec![Mark::Comma];
     }
+}
+
+/// `corridor ward B` is a corridor.
+fn ward(items: &mut Items, at: usize) {
+    let place = matches!(items.text(at), "corridor" | "hallway" | "aisle" | "doorway" | "intersection" | "elevator" | "lobby");
+    let of = matches!(items.text(at + 1), "ward" | "room" | "floor" | "level" | "wing" | "unit" | "block" | "building");
+    let named = items.word(at + 2).is_some_and(|word| word.is_digits() || word.capital && word.text.len() == 1);
+    if place && of && named && !items.marked(at + 1) && !items.marked(at + 2) {
+        items.label(at + 1, at + 3);
+    }
+}
+
+/// `location: corridor` is said first: what is named in passing is no place of the encounter.
+pub(crate) fn located(mut items: Items) -> Items {
+    let names = |k: &usize| {
+        let word = matches!(items.text(*k), "location" | "place" | "where" | "site" | "environment" | "env" | "venue");
+        let given = items.has(k + 1, Mark::Colon) || items.0.get(k + 1).is_some_and(Item::equals) || items.end(*k) == k + 2;
+        *k > 0 && word && given && items.begins(*k) && items.end(*k) <= k + 6
+    };
+    let Some(from) = (0..items.0.len()).find(names) else { return items };
+    let to = items.end(from).min(items.0.len());
+    if !(from + 1..to).any(|k| crate::notes::names_place(&items, k)) {
+        return items;
+    }
+    let mut moved: Vec<Item> = items.0.drain(from..to).collect();
+    if let Some(first) = moved.first_mut() {
+        first.marks.clear();
+    }
+    if let Some(first) = items.0.first_mut() {
+        first.marks = vec![Mark::Stop];
+    }
+    let _none: Vec<Item> = items.0.splice(0..0, moved).collect();
+    items
 }
 
 /// `same direction, from rear`: who comes from behind is not ahead.
