@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::lexicon::lexicon;
 use crate::mention::{Who, mentions};
-use crate::noun::{band, noun, plural, stranger};
 use crate::notes::{Item, Items, Mark};
+use crate::noun::{band, noun, plural, stranger};
 use crate::words::Word;
 
 /// What a label is made of.
@@ -22,14 +22,24 @@ enum Key {
 
 /// Words before a number or a letter that make it somebody's label.
 const GENERIC: &[&str] = &[
-    "actor", "pedestrian", "person", "human", "participant", "subject", "agent", "individual", "bystander", "confederate",
+    "actor",
+    "pedestrian",
+    "person",
+    "human",
+    "participant",
+    "subject",
+    "agent",
+    "individual",
+    "bystander",
+    "confederate",
 ];
 
 /// Words behind which a letter is a label.
 const BEFORE: &[&str] = &[
-    "and", "with", "to", "from", "behind", "follow", "past", "when", "while", "but", "then", "if", "after", "before", "only",
-    "both", "beside", "towards", "toward", "at", "until", "once", "both", "as", "signal", "tell", "ask", "wave", "than",
-    "next", "near", "help", "lead", "meet", "pass", "overtake", "group", "or", "not", "for", "does", "do",
+    "and", "with", "to", "from", "behind", "follow", "past", "when", "while", "but", "then", "if", "after", "before",
+    "only", "both", "beside", "towards", "toward", "at", "until", "once", "both", "as", "signal", "tell", "ask",
+    "wave", "than", "next", "near", "help", "lead", "meet", "pass", "overtake", "group", "or", "not", "for", "does",
+    "do",
 ];
 
 /// Labels of a text: the families of letters and digits that stand for people, and the number of each.
@@ -64,7 +74,10 @@ fn generic_roles(items: Items) -> Items {
         let generic = lexicon().roles.get(items.stem(at)).is_some_and(|role| role.generic)
             && items.word(at).is_some_and(|word| !word.label);
         let opens = items.0.get(at + 1).is_some_and(|item| item.opens() && !item.closes());
-        if generic && opens && let Some((role, end)) = role(&items, at + 1) {
+        if generic
+            && opens
+            && let Some((role, end)) = role(&items, at + 1)
+        {
             let closes = items.0.get(end).is_none_or(Item::closes);
             if closes && !role.is_empty() && !items.has(end, Mark::Colon) || closes && end >= items.0.len() {
                 let marks = items.0.get(at).map(|item| item.marks.clone()).unwrap_or_default();
@@ -99,7 +112,13 @@ fn listed_roles(mut items: Items) -> Items {
     for k in 0..at {
         let counts = items.word(k).and_then(Word::count) == Some(count);
         let generic = |back: usize| k.checked_sub(back).is_some_and(|k| GENERIC.contains(&items.stem(k)));
-        let from = if generic(1) { Some(k - 1) } else if generic(2) && matches!(items.text(k - 1), "count" | "number") { Some(k - 2) } else { None };
+        let from = if generic(1) {
+            Some(k - 1)
+        } else if generic(2) && matches!(items.text(k - 1), "count" | "number") {
+            Some(k - 2)
+        } else {
+            None
+        };
         if counts && let Some(from) = from {
             for item in items.0.iter_mut().take(k + 1).skip(from) {
                 (item.word.label, item.word.used) = (true, true);
@@ -133,7 +152,10 @@ fn role(items: &Items, from: usize) -> Option<(String, usize)> {
         let alone = run.len() == 1 && run.first().is_some_and(|word| word.text.len() >= 4 && !lex.has(word));
         alone.then_some(0)
     })?;
-    let named = (0..=2).filter_map(|back| end.checked_sub(back)).filter_map(|k| run.get(k)).find(|word| lex.roles.contains_key(&word.stem));
+    let named = (0..=2)
+        .filter_map(|back| end.checked_sub(back))
+        .filter_map(|k| run.get(k))
+        .find(|word| lex.roles.contains_key(&word.stem));
     let role = match named {
         Some(word) if lex.roles.get(&word.stem).is_some_and(|role| role.generic) => String::new(),
         Some(word) => word.stem.clone(),
@@ -154,7 +176,8 @@ impl Labels {
                 let joined = labels.items.0.get(k).is_some_and(|item| matches!(item.gap.trim(), "/" | "+" | "&"));
                 let and = labels.items.text(k.wrapping_sub(1)) == "and" && !labels.items.marked(k);
                 let before = k.checked_sub(1 + usize::from(and)).filter(|_| joined || and);
-                let second = before.and_then(|back| labels.letter(back)).is_some_and(|letter| labels.letters.contains(&letter));
+                let second =
+                    before.and_then(|back| labels.letter(back)).is_some_and(|letter| labels.letters.contains(&letter));
                 if second || labels.generic(k) || labels.role_before(k) || labels.bracketed(k) {
                     labels.letters.insert(letter);
                 } else if matches!(letter, 'A'..='H' | 'X'..='Z') && labels.free(k) && labels.declares(k) {
@@ -173,7 +196,8 @@ impl Labels {
                 let told = labels.items.has(k + 1, Mark::Colon) || labels.items.0.get(k + 1).is_some_and(Item::equals);
                 let bracketed = labels.items.0.get(k).is_some_and(Item::opens)
                     && k > 0
-                    && (labels.role_at(k - 1) || labels.items.word(k - 1).is_some_and(|word| word.is_digits() || word.stem == "group"));
+                    && (labels.role_at(k - 1)
+                        || labels.items.word(k - 1).is_some_and(|word| word.is_digits() || word.stem == "group"));
                 let named = labels.named(k);
                 if number > 0 && (labels.free(k) && (person || of_role || told || bracketed) || named) {
                     labels.families.insert(family);
@@ -202,7 +226,8 @@ impl Labels {
     fn bracketed(&self, at: usize) -> bool {
         let closes = self.items.0.get(at + 1).is_some_and(Item::closes);
         let opens = self.items.0.get(at).is_some_and(|item| item.opens() && !item.closes());
-        let role = at > 0 && self.items.word(at - 1).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !plural(word));
+        let role = at > 0
+            && self.items.word(at - 1).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !plural(word));
         closes && opens && role
     }
 
@@ -232,7 +257,8 @@ impl Labels {
     }
 
     fn noun_follows(&self, at: usize) -> bool {
-        self.items.0.get(at + 1).is_some_and(|item| item.marks.is_empty() && !item.equals()) && role(&self.items, at + 1).is_some()
+        self.items.0.get(at + 1).is_some_and(|item| item.marks.is_empty() && !item.equals())
+            && role(&self.items, at + 1).is_some()
     }
 
     /// `E1`, `w2`.
@@ -265,7 +291,8 @@ impl Labels {
         self.items.has(at + 1, Mark::Colon)
             || next.is_some_and(Item::equals)
             || next.is_some_and(|next| {
-                matches!(next.gap.trim(), "+" | "-" | ",") && other(at + 1) || next.opens() && role(&self.items, at + 1).is_some()
+                matches!(next.gap.trim(), "+" | "-" | ",") && other(at + 1)
+                    || next.opens() && role(&self.items, at + 1).is_some()
             })
             || at > 0
                 && self.items.0.get(at).is_some_and(|item| matches!(item.gap.trim(), "+" | "-" | ","))
@@ -275,7 +302,12 @@ impl Labels {
     /// The label at a place, with the place after it.
     fn key(&self, at: usize) -> Option<(Key, usize)> {
         let item = self.items.0.get(at)?;
-        let tight = |k: usize| self.items.0.get(k).is_some_and(|item| item.marks.is_empty() && matches!(item.gap.trim(), "" | "_" | "-" | "#"));
+        let tight = |k: usize| {
+            self.items
+                .0
+                .get(k)
+                .is_some_and(|item| item.marks.is_empty() && matches!(item.gap.trim(), "" | "_" | "-" | "#"))
+        };
         // A name of something else: `H1N1`, `B2 building`.
         let digit = |k: usize| {
             let word = self.items.word(k).filter(|word| word.text.len() == 1 && word.is_digits())?;
@@ -302,19 +334,41 @@ impl Labels {
         {
             return Some((Key::Code(family, number), at + 1));
         }
-        if (self.tags && item.gap.ends_with('#') || self.listed && item.gap.ends_with('(') && self.items.0.get(at + 1).is_none_or(Item::closes))
+        if (self.tags && item.gap.ends_with('#')
+            || self.listed && item.gap.ends_with('(') && self.items.0.get(at + 1).is_none_or(Item::closes))
             && let Some(number) = item.word.text.parse::<u32>().ok().filter(|n| (1..=9).contains(n))
         {
             return Some((Key::Number(number), at + 1));
         }
         let letter = self.letter(at).filter(|letter| self.letters.contains(letter) && self.free(at))?;
         // `A nurse` is a nurse, unless others are told by letters in the same way.
-        let joined = self.items.0.get(at + 1).is_some_and(|next| matches!(next.gap.trim(), "-" | "–" | "+" | "=" | "/"));
+        let joined =
+            self.items.0.get(at + 1).is_some_and(|next| matches!(next.gap.trim(), "-" | "–" | "+" | "=" | "/"));
         let article = letter == 'A' && !self.items.marked(at + 1) && !joined && {
             let next = self.items.word(at + 1);
             let acts = next.is_some_and(|next| {
                 lexicon().verbs.contains(&next.stem) && next.text != next.stem && next.text.ends_with('s')
-                    || matches!(next.text.as_str(), "and" | "when" | "is" | "does" | "then" | "only" | "in" | "on" | "at" | "must" | "should" | "will" | "never" | "just" | "after" | "if" | "to" | "from")
+                    || matches!(
+                        next.text.as_str(),
+                        "and"
+                            | "when"
+                            | "is"
+                            | "does"
+                            | "then"
+                            | "only"
+                            | "in"
+                            | "on"
+                            | "at"
+                            | "must"
+                            | "should"
+                            | "will"
+                            | "never"
+                            | "just"
+                            | "after"
+                            | "if"
+                            | "to"
+                            | "from"
+                    )
             });
             !acts && !self.juxtaposed(at)
         };
@@ -323,7 +377,8 @@ impl Labels {
 
     /// `A nurse, B+C visitors`.
     fn juxtaposed(&self, at: usize) -> bool {
-        let of = |k: usize| self.noun_follows(k) && role(&self.items, k + 1).is_some_and(|(_, end)| self.items.marked(end));
+        let of =
+            |k: usize| self.noun_follows(k) && role(&self.items, k + 1).is_some_and(|(_, end)| self.items.marked(end));
         let other = |k: usize| self.letter(k).is_some_and(|letter| letter != 'A' && self.letters.contains(&letter));
         of(at) && (0..self.items.0.len()).any(|k| k != at && other(k) && of(k))
     }
@@ -343,12 +398,22 @@ impl Labels {
             // `ped 1+2`, `actors 1 and 2`
             let bare = || {
                 let number = self.items.text(at).parse().ok().filter(|n| (1..=9).contains(n))?;
-                let ends = self.items.word(at + 1).is_none_or(|next| !next.is_digits() && !matches!(next.stem.as_str(), "meter" | "second" | "m" | "s"));
-                (generic && ends && matches!(keys.last(), Some(Key::Number(_)))).then_some((Key::Number(number), at + 1))
+                let ends = self.items.word(at + 1).is_none_or(|next| {
+                    !next.is_digits() && !matches!(next.stem.as_str(), "meter" | "second" | "m" | "s")
+                });
+                (generic && ends && matches!(keys.last(), Some(Key::Number(_))))
+                    .then_some((Key::Number(number), at + 1))
             };
-            let next = self.key(at).or_else(bare).filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
+            let next = self
+                .key(at)
+                .or_else(bare)
+                .filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
             let Some((key, to)) = next else { break };
-            let range = keys.last().copied().filter(|_| matches!(gap.as_str(), "-" | "–")).map_or_else(Vec::new, |last| between(last, key));
+            let range = keys
+                .last()
+                .copied()
+                .filter(|_| matches!(gap.as_str(), "-" | "–"))
+                .map_or_else(Vec::new, |last| between(last, key));
             keys.extend(range);
             keys.push(key);
             end = to;
@@ -364,17 +429,21 @@ impl Labels {
                 found.extend(keys);
             }
             let gap = self.items.0.get(k).map_or("", |item| item.gap.as_str());
-            if self.listed && let Some(number) = listed(gap).filter(|_| role(&self.items, k).is_some()) {
+            if self.listed
+                && let Some(number) = listed(gap).filter(|_| role(&self.items, k).is_some())
+            {
                 found.insert(Key::Number(number));
             }
         }
-        let codes: BTreeSet<char> = found.iter().filter_map(|key| if let Key::Code(family, _) = key { Some(*family) } else { None }).collect();
+        let codes: BTreeSet<char> =
+            found.iter().filter_map(|key| if let Key::Code(family, _) = key { Some(*family) } else { None }).collect();
         let numbers = found.iter().any(|key| matches!(key, Key::Number(_)));
         let letters = found.iter().any(|key| matches!(key, Key::Letter(_)));
         let row = found.iter().zip('A'..='Z').all(|(key, letter)| *key == Key::Letter(letter));
         // `nurse (N)` and `patient (P)`, `doctor D1` and `patient P1`: in the order in which they are told.
         if !row && (letters || codes.len() > 1 && !numbers) {
-            let first = |key: &Key| (0..self.items.0.len()).find(|k| self.list(*k).is_some_and(|(keys, _)| keys.contains(key)));
+            let first =
+                |key: &Key| (0..self.items.0.len()).find(|k| self.list(*k).is_some_and(|(keys, _)| keys.contains(key)));
             let mut keys: Vec<Key> = found.into_iter().collect();
             keys.sort_by_key(first);
             return keys.into_iter().zip(1..).collect();
@@ -473,7 +542,9 @@ impl Labels {
         let mut k = 0;
         while let Some(item) = self.items.0.get(k) {
             // `(1) doctor - same direction`
-            if self.listed && let (Some(number), Some((name, end))) = (listed(&item.gap), role(&self.items, k)) {
+            if self.listed
+                && let (Some(number), Some((name, end))) = (listed(&item.gap), role(&self.items, k))
+            {
                 let numbers = written.numbers(&[Key::Number(number)]);
                 written.first.get_or_insert(written.out.len());
                 written.define(&numbers, &name);
@@ -527,7 +598,8 @@ impl Labels {
             let gap = next.map_or("", |next| next.gap.as_str());
             let article = matches!(items.text(end), "a" | "an" | "both" | "all") || gap.contains(['-', '–', '—']);
             let apposed = items.has(end, Mark::Comma) && closes && article;
-            let paren = next.is_some_and(Item::opens) && items.0.get(to).is_none_or(|item| item.closes() || item.gap.contains(','));
+            let paren = next.is_some_and(Item::opens)
+                && items.0.get(to).is_none_or(|item| item.closes() || item.gap.contains(','));
             let beside = gap == " " && closes && self.letter(end - 1).is_some() && self.noun_follows(end - 1);
             if equal || colon || paren || apposed || beside {
                 written.define(numbers, &role);
@@ -559,7 +631,8 @@ impl Labels {
             }
         }
         let next = items.0.get(end);
-        let another = self.list(end + usize::from(items.text(end) == "and")).is_some() || self.listed && next.is_some_and(|next| listed(&next.gap).is_some());
+        let another = self.list(end + usize::from(items.text(end) == "and")).is_some()
+            || self.listed && next.is_some_and(|next| listed(&next.gap).is_some());
         if !paren && items.marked(end) && (items.begins(end) || another) {
             for item in &tail {
                 written.push(item);
@@ -593,11 +666,15 @@ impl Written {
         let mut banded = false;
         let people = if grouped {
             // `standing grp`
-            let adjective = |word: &Word| lexicon().adjectives.contains(&word.text) || matches!(word.text.as_str(), "a" | "the");
+            let adjective =
+                |word: &Word| lexicon().adjectives.contains(&word.text) || matches!(word.text.as_str(), "a" | "the");
             let first = run.iter().rev().skip(1).take_while(|word| adjective(word)).count();
             Some((run.len() - 1 - first, run.len() - 1))
         } else {
-            let found = mentions(&run).into_iter().rev().find(|mention| !matches!(mention.who, Who::Same | Who::All | Who::Number(_)));
+            let found = mentions(&run)
+                .into_iter()
+                .rev()
+                .find(|mention| !matches!(mention.who, Who::Same | Who::All | Who::Number(_)));
             if let Some(role) = found.as_ref().and_then(|mention| mention.role.clone()) {
                 self.define(numbers, &role);
             }
@@ -641,7 +718,9 @@ impl Written {
         }
         let first = self.first.unwrap_or(0).min(self.out.len().saturating_sub(1));
         if let Some((from, to, _)) = total {
-            let does = self.out.get(to + 1).is_some_and(|next| next.marks.is_empty() && !next.equals() && lexicon().verbs.contains(&next.word.stem));
+            let does = self.out.get(to + 1).is_some_and(|next| {
+                next.marks.is_empty() && !next.equals() && lexicon().verbs.contains(&next.word.stem)
+            });
             if does && let Some(at) = self.out.get(from).cloned() {
                 let mut words = spoken(&(1..=count).collect::<Vec<u32>>(), &at);
                 if let Some(word) = words.first_mut() {
@@ -681,8 +760,10 @@ impl Written {
                 return None;
             }
             // `n=2`
-            let sample = from > 0 && number.equals() && self.out.get(from - 1).is_some_and(|item| item.word.text == "n");
-            let near = |(k, item): &(usize, &Item)| *k == 0 || item.marks.is_empty() && !item.equals() && !item.word.used;
+            let sample =
+                from > 0 && number.equals() && self.out.get(from - 1).is_some_and(|item| item.word.text == "n");
+            let near =
+                |(k, item): &(usize, &Item)| *k == 0 || item.marks.is_empty() && !item.equals() && !item.word.used;
             let words = self.out.iter().skip(from + 1).take(4).enumerate().take_while(near);
             let run: Vec<Word> = words.map(|(_, item)| item.word.clone()).collect();
             let end = noun(&run, 0, lexicon());
@@ -692,7 +773,8 @@ impl Written {
                 given && plural(&noun.word) && lexicon().roles.contains_key(&noun.word.stem)
             });
             if let Some(noun) = before.filter(|_| self.out.get(from + 1).is_none_or(|next| !next.marks.is_empty())) {
-                let role = lexicon().roles.get(&noun.word.stem).filter(|role| !role.generic).map(|_| noun.word.stem.clone());
+                let role =
+                    lexicon().roles.get(&noun.word.stem).filter(|role| !role.generic).map(|_| noun.word.stem.clone());
                 return Some((from - 1, from, role.unwrap_or_default()));
             }
             let of = self.out.get(from + 1).is_some_and(|item| !item.marks.is_empty());

@@ -23,7 +23,8 @@ pub(crate) fn arrows(items: Items) -> Items {
 }
 
 /// Nouns for what a test ends in: nobody does it.
-const RESULTS: &[&str] = &["collision", "contact", "deadlock", "crash", "timeout", "fail", "failure", "ok", "error", "success", "abort"];
+const RESULTS: &[&str] =
+    &["collision", "contact", "deadlock", "crash", "timeout", "fail", "failure", "ok", "error", "success", "abort"];
 
 /// Rewrites the row of arrows of which this is the first; says where to read on.
 fn row(items: &mut Items, at: usize) -> usize {
@@ -82,7 +83,10 @@ fn row(items: &mut Items, at: usize) -> usize {
 /// Opens a clause with `when`, and mends what has no verb.
 fn opened(items: &mut Items, from: usize, condition: Condition) -> usize {
     let Some(item) = items.0.get(from).cloned() else { return from };
-    let opens = matches!(items.text(from), "when" | "if" | "once" | "as" | "after" | "until" | "upon" | "whenever" | "at" | "while");
+    let opens = matches!(
+        items.text(from),
+        "when" | "if" | "once" | "as" | "after" | "until" | "upon" | "whenever" | "at" | "while"
+    );
     let words: &[&str] = match condition {
         Condition::Contact => &["when", "robot", "is", "visible"],
         Condition::Distance => &["when", "robot"],
@@ -163,7 +167,11 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     }
     let sees = (start..to).any(|k| matches!(items.stem(k), "see" | "notice" | "spot" | "detect" | "hear"));
     let at_robot = (start..to).any(|k| items.stem(k) == "robot");
-    if sees && (at_robot || to - start == 1) && person.is_some() && items.0.get(start).is_some_and(|item| item.marks.is_empty()) {
+    if sees
+        && (at_robot || to - start == 1)
+        && person.is_some()
+        && items.0.get(start).is_some_and(|item| item.marks.is_empty())
+    {
         return Some(Condition::Meets);
     }
     // `A waves -> B goes`

@@ -101,7 +101,12 @@ impl Items {
 
     /// The words from here to the next mark.
     pub(crate) fn run(&self, at: usize) -> Vec<Word> {
-        self.0.get(at..self.mark(at).min(self.0.len())).unwrap_or_default().iter().map(|item| item.word.clone()).collect()
+        self.0
+            .get(at..self.mark(at).min(self.0.len()))
+            .unwrap_or_default()
+            .iter()
+            .map(|item| item.word.clone())
+            .collect()
     }
 
     /// Makes words nobody's; they are reported as not understood.
@@ -132,7 +137,9 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
         out.push(Piece::Word(item.word));
     }
     out.extend(tail.into_iter().map(piece));
-    if std::env::var("NOTES").is_ok() { eprintln!("NOTES {}", written(&out)); } // DEBUG
+    if std::env::var("NOTES").is_ok() {
+        eprintln!("NOTES {}", written(&out));
+    } // DEBUG
     out
 }
 
@@ -190,7 +197,11 @@ fn itemized(text: &str, pieces: Vec<Piece>) -> (Items, Vec<Mark>) {
         // `\nped 2: crossing`
         let line = items.0.get(k).is_some_and(|item| item.gap.contains('\n') && !item.arrow);
         let colon = (k + 1..k + 4).find(|next| items.marked(*next)).is_some_and(|next| items.has(next, Mark::Colon));
-        if line && colon && !items.has(k, Mark::Stop) && let Some(item) = items.0.get_mut(k) {
+        if line
+            && colon
+            && !items.has(k, Mark::Stop)
+            && let Some(item) = items.0.get_mut(k)
+        {
             item.marks = vec![Mark::Stop];
         }
     }
@@ -382,9 +393,14 @@ fn ends(mut items: Items) -> Items {
 fn triggers(mut items: Items) -> Items {
     let mut at = 0;
     while at < items.0.len() {
-        let cue = matches!(items.text(at), "trigger" | "cue" | "event" | "stimulus") && items.begins(at) && items.has(at + 1, Mark::Colon);
+        let cue = matches!(items.text(at), "trigger" | "cue" | "event" | "stimulus")
+            && items.begins(at)
+            && items.has(at + 1, Mark::Colon);
         let next = items.end(at);
-        let answer = matches!(items.text(next), "reaction" | "response" | "action" | "effect" | "behavior" | "behaviour" | "then");
+        let answer = matches!(
+            items.text(next),
+            "reaction" | "response" | "action" | "effect" | "behavior" | "behaviour" | "then"
+        );
         if cue && answer && items.has(next + 1, Mark::Colon) {
             if let Some(item) = items.0.get_mut(next + 1) {
                 (item.arrow, item.marks) = (true, Vec::new());
@@ -412,8 +428,31 @@ pub(crate) fn names_place(items: &Items, at: usize) -> bool {
 }
 
 /// What opens a sentence that tells how a test is judged, with what must follow.
-const AIMS: &[&str] =
-    &["expected", "expectation", "expect", "exp", "pass", "post", "result", "outcome", "verify", "assert", "metric", "metrics", "kpi", "t", "fail", "criterion", "criteria", "crit", "log", "note", "timeout", "success", "ok"];
+const AIMS: &[&str] = &[
+    "expected",
+    "expectation",
+    "expect",
+    "exp",
+    "pass",
+    "post",
+    "result",
+    "outcome",
+    "verify",
+    "assert",
+    "metric",
+    "metrics",
+    "kpi",
+    "t",
+    "fail",
+    "criterion",
+    "criteria",
+    "crit",
+    "log",
+    "note",
+    "timeout",
+    "success",
+    "ok",
+];
 
 /// `expected: bot reaches goal`, `pass crit: bot thru in <20s`, `fail if bot speed > 0.3m/s`: nobody does it.
 fn aims(items: &mut Items) {
@@ -423,8 +462,10 @@ fn aims(items: &mut Items) {
         let opens = AIMS.contains(&items.text(at));
         let colon = (at + 1..(at + 4).min(end)).find(|k| items.has(*k, Mark::Colon));
         let body = colon.or_else(|| (matches!(items.text(at + 1), "if" | "when")).then_some(at + 2));
-        let measured = matches!(items.text(at), "log" | "timeout") || items.text(at) == "t" && items.text(at + 1) == "max";
-        let person = |k: usize| lexicon().roles.contains_key(items.stem(k)) || lexicon().numbers.contains_key(items.text(k));
+        let measured =
+            matches!(items.text(at), "log" | "timeout") || items.text(at) == "t" && items.text(at + 1) == "max";
+        let person =
+            |k: usize| lexicon().roles.contains_key(items.stem(k)) || lexicon().numbers.contains_key(items.text(k));
         let from = body.unwrap_or(at);
         let of_robot = robot(items, from) || items.text(from) == "no" || !(from..end).any(person);
         if opens && (body.is_some() || measured) && of_robot && !(from..end).any(person) {

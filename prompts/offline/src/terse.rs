@@ -22,16 +22,22 @@ pub(crate) fn terse(mut items: Items) -> Items {
 }
 
 /// Words behind people that make a heading of them: `ped list`, `actor overview`.
-const OVERVIEWS: &[&str] = &["list", "roster", "overview", "count", "types", "type", "table", "definition", "definitions", "setup", "model"];
+const OVERVIEWS: &[&str] =
+    &["list", "roster", "overview", "count", "types", "type", "table", "definition", "definitions", "setup", "model"];
 
 /// `Ped list: …` and `multi-actor` name nobody.
 fn overview(items: &mut Items, at: usize) {
     let generic = |k: usize| {
-        lexicon().roles.get(items.stem(k)).is_some_and(|role| role.generic) || matches!(items.stem(k), "actor" | "agent")
+        lexicon().roles.get(items.stem(k)).is_some_and(|role| role.generic)
+            || matches!(items.stem(k), "actor" | "agent")
     };
-    let heading = generic(at) && OVERVIEWS.contains(&items.text(at + 1)) && !items.marked(at + 1) && items.marked(at + 2);
+    let heading =
+        generic(at) && OVERVIEWS.contains(&items.text(at + 1)) && !items.marked(at + 1) && items.marked(at + 2);
     let hyphen = |k: usize| items.0.get(k).is_some_and(|item| item.gap == "-");
-    let many = matches!(items.text(at), "multi" | "single" | "two" | "dual") && hyphen(at + 1) && generic(at + 1) && items.marked(at + 2);
+    let many = matches!(items.text(at), "multi" | "single" | "two" | "dual")
+        && hyphen(at + 1)
+        && generic(at + 1)
+        && items.marked(at + 2);
     if (heading && items.marked(at)) || many {
         items.label(at, at + 2);
     }
@@ -42,7 +48,9 @@ fn step(items: &Items, at: usize) -> bool {
     let digits = items.word(at).is_some_and(|word| word.is_digits() && word.text.len() <= 2);
     let after = items.0.get(at + 1).is_some_and(|next| next.gap.starts_with(['.', ')']) && next.gap.len() > 1);
     let before = items.begins(at) || items.has(at, Mark::Colon) || items.has(at, Mark::Comma);
-    let total = at > 0 && lexicon().roles.contains_key(items.stem(at - 1));
+    let total = at > 0
+        && lexicon().roles.contains_key(items.stem(at - 1))
+        && items.word(at - 1).is_some_and(|word| !word.label && crate::noun::plural(word));
     digits && after && before && !total
 }
 
@@ -79,11 +87,18 @@ fn answered(items: &mut Items, at: usize) {
 
 /// `corridor ward B` is a corridor.
 fn ward(items: &mut Items, at: usize) {
-    let place = matches!(items.text(at), "corridor" | "hallway" | "aisle" | "doorway" | "intersection" | "elevator" | "lobby");
+    let place =
+        matches!(items.text(at), "corridor" | "hallway" | "aisle" | "doorway" | "intersection" | "elevator" | "lobby");
     let of = matches!(items.text(at + 1), "ward" | "room" | "floor" | "level" | "wing" | "unit" | "block" | "building");
     let named = items.word(at + 2).is_some_and(|word| word.is_digits() || word.capital && word.text.len() == 1);
-    if place && of && named && !items.marked(at + 1) && !items.marked(at + 2) {
-        items.label(at + 1, at + 3);
+    if place
+        && of
+        && named
+        && !items.marked(at + 1)
+        && !items.marked(at + 2)
+        && let Some(item) = items.0.get_mut(at + 1)
+    {
+        item.marks = vec![Mark::Comma];
     }
 }
 
@@ -91,7 +106,8 @@ fn ward(items: &mut Items, at: usize) {
 pub(crate) fn located(mut items: Items) -> Items {
     let names = |k: &usize| {
         let word = matches!(items.text(*k), "location" | "place" | "where" | "site" | "environment" | "env" | "venue");
-        let given = items.has(k + 1, Mark::Colon) || items.0.get(k + 1).is_some_and(Item::equals) || items.end(*k) == k + 2;
+        let given =
+            items.has(k + 1, Mark::Colon) || items.0.get(k + 1).is_some_and(Item::equals) || items.end(*k) == k + 2;
         *k > 0 && word && given && items.begins(*k) && items.end(*k) <= k + 6
     };
     let Some(from) = (0..items.0.len()).find(names) else { return items };
@@ -119,7 +135,8 @@ fn from_behind(items: &mut Items, at: usize) {
     let (from, end) = (items.start(at), items.end(at).min(items.0.len()));
     let rear = (from..end).any(|k| {
         items.text(k) == "rear" && items.text(k.wrapping_sub(1)) != "to"
-            || items.text(k) == "behind" && (items.text(k.wrapping_sub(1)) == "from" || robot(items, k + 1) || robot(items, k + 2))
+            || items.text(k) == "behind"
+                && (items.text(k.wrapping_sub(1)) == "from" || robot(items, k + 1) || robot(items, k + 2))
             || items.stem(k) == "overtake"
     });
     if rear {
@@ -204,7 +221,8 @@ fn verbless(items: &mut Items, at: usize) {
     }
     let alone = items.marked(at) && items.marked(at + 1) && !items.begins(at);
     // `steps left`
-    let moves = at.checked_sub(1).is_some_and(|k| matches!(items.stem(k), "step" | "move" | "shift" | "swerve" | "dodge"));
+    let moves =
+        at.checked_sub(1).is_some_and(|k| matches!(items.stem(k), "step" | "move" | "shift" | "swerve" | "dodge"));
     if matches!(items.text(at), "left" | "right") && moves && !items.marked(at) && items.marked(at + 1) {
         let side = ["to", "the", "side"].map(|text| Item::said(text, &item));
         if let Some(word) = items.0.get_mut(at) {
@@ -226,7 +244,10 @@ fn verbless(items: &mut Items, at: usize) {
         }
         return;
     }
-    if items.text(at) == "static" && (after || alone) && let Some(word) = items.0.get_mut(at) {
+    if items.text(at) == "static"
+        && (after || alone)
+        && let Some(word) = items.0.get_mut(at)
+    {
         ("stands".clone_into(&mut word.word.text), "stand".clone_into(&mut word.word.stem));
     }
 }
@@ -275,7 +296,8 @@ fn denied(items: &mut Items, at: usize) {
     if items.text(at) != "no" || items.word(at).is_none_or(|word| word.label) {
         return;
     }
-    let opens = items.marked(at) || matches!(items.text(at.wrapping_sub(1)), "and" | "or" | "but") || subject(items, at);
+    let opens =
+        items.marked(at) || matches!(items.text(at.wrapping_sub(1)), "and" | "or" | "but") || subject(items, at);
     // `no ped reaction`
     let people = lexicon().roles.contains_key(items.stem(at + 1)) && !items.marked(at + 1) && !items.marked(at + 2);
     let eye = matches!(items.text(at + 1), "eye" | "visual") && items.text(at + 2) == "contact";
@@ -287,8 +309,15 @@ fn denied(items: &mut Items, at: usize) {
     let Some(item) = items.0.get(at).cloned() else { return };
     let from = items.start(at);
     let end = items.end(at).min(items.0.len());
-    let everybody = (from..end).any(|k| matches!(items.text(k), "either" | "both" | "anyone" | "anybody" | "all") && !items.begins(k));
-    let initial = |k: usize| (from..k).all(|k| items.text(k) == "no" || DEEDS.iter().any(|(_, verb)| *verb == items.text(k)) || items.word(k).is_some_and(|word| word.used));
+    let everybody = (from..end)
+        .any(|k| matches!(items.text(k), "either" | "both" | "anyone" | "anybody" | "all") && !items.begins(k));
+    let initial = |k: usize| {
+        (from..k).all(|k| {
+            items.text(k) == "no"
+                || DEEDS.iter().any(|(_, verb)| *verb == items.text(k))
+                || items.word(k).is_some_and(|word| word.used)
+        })
+    };
     let nobody = people || everybody && initial(at);
     let text: &[&str] = if nobody { &["nobody"] } else { &["does", "not"] };
     let mut words: Vec<Item> = text.iter().map(|text| Item::said(text, &item)).collect();

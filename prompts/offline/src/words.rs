@@ -157,7 +157,8 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
 
 /// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.
 fn abbreviated(before: Option<&Piece>) -> bool {
-    let short = ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min", "exp", "cond"];
+    let short =
+        ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min", "exp", "cond"];
     matches!(before, Some(Piece::Word(word)) if short.contains(&word.text.as_str()))
 }
 
