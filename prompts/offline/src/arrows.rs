@@ -2,6 +2,7 @@
 
 use crate::lexicon::lexicon;
 use crate::notes::{Item, Items, Mark, robot};
+use crate::words::Word;
 
 /// Writes `when X, Y` and `X, then Y` for arrows.
 pub(crate) fn arrows(items: Items) -> Items {
@@ -89,7 +90,8 @@ fn opened(items: &mut Items, from: usize, condition: Condition) -> usize {
     );
     let words: &[&str] = match condition {
         Condition::Contact => &["when", "robot", "is", "visible"],
-        Condition::Distance => &["when", "robot"],
+        Condition::Distance if items.word(from).is_some_and(Word::is_digits) => &["when", "robot", "within"],
+        Condition::Distance | Condition::Robot => &["when", "robot"],
         Condition::Said | Condition::Meets if opens => &[],
         Condition::Said | Condition::Meets => &["when"],
         Condition::Time if opens => &[],
@@ -134,6 +136,8 @@ enum Condition {
     Meets,
     /// `visual contact`.
     Contact,
+    /// `robot behind them, says EXCUSE_ME`: the robot does what stands after a comma.
+    Robot,
     /// `dist <1.5m`.
     Distance,
     /// `+6s`.
@@ -158,6 +162,15 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     }
     if matches!(items.stem(start), "door" | "elevator" | "lift") && (start..to).any(|k| items.stem(k) == "open") {
         return Some(Condition::Said);
+    }
+    let alone = items.word(start).is_some_and(Word::is_digits) && to - start <= 2;
+    if length && alone {
+        return Some(Condition::Distance);
+    }
+    let head = items.start(from);
+    let says = matches!(items.stem(start), "say" | "ask" | "signal" | "stop" | "move" | "beep" | "wait" | "gesture" | "announce");
+    if says && from > head && robot(items, head) && person.is_none() && items.has(from, Mark::Comma) {
+        return Some(Condition::Robot);
     }
     if length && (matches!(items.text(start), "distance" | "within" | "at" | "d" | "range" | "gap")) {
         return Some(Condition::Distance);

@@ -282,7 +282,8 @@ fn shorthand(items: Items) -> Items {
         }
         let digits = item.word.is_digits();
         // `2x employee`
-        if item.word.text == "x" && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {
+        let of = next.is_some_and(|next| lexicon().roles.contains_key(&next.word.stem));
+        if item.word.text == "x" && of && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {
             continue;
         }
         let many = k > 1 && items.0.get(k - 1).is_some_and(|x| x.word.text == "x" && x.gap.is_empty());
