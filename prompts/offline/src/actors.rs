@@ -3,47 +3,18 @@
 //! Who is told by a label is spoken of as `human 1` from there on; a sentence before the first label says how many there are
 //! and what each is.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
+use crate::labels::{GENERIC, Key, Labels, listed, role};
 use crate::lexicon::lexicon;
 use crate::mention::{Who, mentions};
-use crate::noun::{noun, plural, stranger};
 use crate::notes::{Item, Items, Mark};
+use crate::noun::{noun, plural};
 use crate::words::Word;
-
-/// What a label is made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Key {
-    Number(u32),
-    Letter(char),
-}
-
-/// Words before a number or a letter that make it somebody's label.
-const GENERIC: &[&str] = &[
-    "actor", "pedestrian", "person", "human", "participant", "subject", "agent", "individual", "bystander", "confederate",
-];
-
-/// Words behind which a letter is a label.
-const BEFORE: &[&str] = &[
-    "and", "with", "to", "from", "behind", "follow", "past", "when", "while", "but", "then", "if", "after", "before", "only",
-    "both", "beside", "towards", "toward", "at", "until", "once", "both", "as", "signal", "tell", "ask", "wave", "than",
-    "next", "near", "help", "lead", "meet", "pass", "overtake", "group", "or", "not", "for", "does", "do",
-];
-
-/// Labels of a text: the families of letters and digits that stand for people, and the number of each.
-struct Labels {
-    items: Items,
-    letters: BTreeSet<char>,
-    /// First letters of `E1`, `w2`.
-    families: BTreeSet<char>,
-    /// `#1`, `(2)`.
-    tags: bool,
-    listed: bool,
-}
 
 /// Rewrites labels; a text without any stays as it is.
 pub(crate) fn actors(items: Items) -> Items {
-    let items = generic_roles(items);
+    let items = listed_roles(generic_roles(items));
     let labels = Labels::of(items);
     let keys = labels.keys();
     if keys.is_empty() {
@@ -62,7 +33,10 @@ fn generic_roles(items: Items) -> Items {
         let generic = lexicon().roles.get(items.stem(at)).is_some_and(|role| role.generic)
             && items.word(at).is_some_and(|word| !word.label);
         let opens = items.0.get(at + 1).is_some_and(|item| item.opens() && !item.closes());
-        if generic && opens && let Some((role, end)) = role(&items, at + 1) {
+        if generic
+            && opens
+            && let Some((role, end)) = role(&items, at + 1)
+        {
             let closes = items.0.get(end).is_none_or(Item::closes);
             if closes && !role.is_empty() && !items.has(end, Mark::Colon) || closes && end >= items.0.len() {
                 let marks = items.0.get(at).map(|item| item.marks.clone()).unwrap_or_default();
@@ -78,253 +52,44 @@ fn generic_roles(items: Items) -> Items {
     items
 }
 
-/// The role that a run of words names, and the place after it: `a forklift driver`, `both workers`.
-fn role(items: &Items, from: usize) -> Option<(String, usize)> {
-    let skip = usize::from(matches!(items.text(from), "a" | "an" | "the" | "all" | "both" | "one" | "is" | "are"));
-    let skip = skip + usize::from(skip == 1 && matches!(items.text(from + 1), "a" | "an"));
-    let start = from + skip;
-    if start >= items.0.len() || (start > from && items.marked(start)) {
-        return None;
+/// `roles: doctor + visitor` are two people.
+fn listed_roles(mut items: Items) -> Items {
+    let heads = |k: &usize| matches!(items.text(*k), "role" | "roles" | "cast") && items.begins(*k);
+    let Some(at) = (0..items.0.len()).find(heads) else { return items };
+    let end = items.end(at).min(items.0.len());
+    let (mut roles, mut k) = (Vec::new(), at + 1);
+    while k < end {
+        let Some((name, to)) = role(&items, k) else { break };
+        roles.push(name);
+        k = to + usize::from(items.text(to) == "and");
     }
-    let run = items.run(start);
-    let lex = lexicon();
-    let end = noun(&run, 0, lex).or_else(|| stranger(&run, 0, true, lex)).or_else(|| {
-        // A word that nobody knows, alone: `actor 1 (docker)`.
-        let alone = run.len() == 1 && run.first().is_some_and(|word| word.text.len() >= 4 && !lex.has(word));
-        alone.then_some(0)
-    })?;
-    let named = (0..=2).filter_map(|back| end.checked_sub(back)).filter_map(|k| run.get(k)).find(|word| lex.roles.contains_key(&word.stem));
-    let role = match named {
-        Some(word) if lex.roles.get(&word.stem).is_some_and(|role| role.generic) => String::new(),
-        Some(word) => word.stem.clone(),
-        None => run.get(end)?.stem.clone(),
-    };
-    Some((role, start + end + 1))
-}
-
-impl Labels {
-    fn of(items: Items) -> Self {
-        let mut labels =
-            Self { items, letters: BTreeSet::new(), families: BTreeSet::new(), tags: false, listed: false };
-        let count = labels.items.0.len();
-        let mut bare = BTreeSet::new();
-        for k in 0..count {
-            if let Some(letter) = labels.letter(k) {
-                if labels.generic(k) || labels.role_before(k) || labels.bracketed(k) {
-                    labels.letters.insert(letter);
-                } else if matches!(letter, 'A'..='H' | 'X'..='Z') && labels.free(k) && labels.declares(k) {
-                    bare.insert(letter);
-                }
-            }
-            if let Some((family, number)) = labels.coded(k) {
-                let person = matches!(family, 'P' | 'H') && labels.items.word(k).is_some_and(|word| word.capital);
-                let of_role = (0..k).any(|back| {
-                    labels.items.word(back).is_some_and(|word| {
-                        lexicon().roles.contains_key(&word.stem)
-                            && word.text.starts_with(family.to_ascii_lowercase())
-                            && plural(word)
-                    })
-                });
-                let told = labels.items.has(k + 1, Mark::Colon) || labels.items.0.get(k + 1).is_some_and(Item::equals);
-                if number > 0 && labels.free(k) && (person || of_role || told) {
-                    labels.families.insert(family);
-                }
-            }
-            let gap = labels.items.0.get(k).map_or("", |item| item.gap.as_str());
-            labels.tags |= gap.ends_with("#") && labels.items.text(k) == "1" && labels.items.marked(k);
-            labels.listed |= gap.contains("(1)") && role(&labels.items, k).is_some();
-        }
-        if bare.len() > 1 || !labels.letters.is_empty() {
-            labels.letters.extend(bare);
-        }
-        labels
+    if roles.len() < 2 || k < end {
+        return items;
     }
-
-    /// A capital letter alone.
-    fn letter(&self, at: usize) -> Option<char> {
-        let word = self.items.word(at).filter(|word| word.capital && !word.label && word.text.len() == 1)?;
-        word.text.chars().next().map(|c| c.to_ascii_uppercase()).filter(char::is_ascii_uppercase)
-    }
-
-    /// `nurse (N)`.
-    fn bracketed(&self, at: usize) -> bool {
-        let closes = self.items.0.get(at + 1).is_some_and(Item::closes);
-        let opens = self.items.0.get(at).is_some_and(|item| item.opens() && !item.closes());
-        let role = at > 0 && self.items.word(at - 1).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !plural(word));
-        closes && opens && role
-    }
-
-    fn generic(&self, at: usize) -> bool {
-        at > 0 && !self.items.marked(at) && (GENERIC.contains(&self.items.stem(at - 1)))
-    }
-
-    /// `worker A`.
-    fn role_before(&self, at: usize) -> bool {
-        at > 0
-            && !self.items.marked(at)
-            && self.items.0.get(at).is_some_and(|item| item.gap == " ")
-            && self.items.word(at - 1).is_some_and(|word| {
-                lexicon().roles.contains_key(&word.stem) && !plural(word) && !lexicon().labels.contains(&word.stem)
-            })
-            && (self.letter(at) != Some('A') || !self.noun_follows(at))
-    }
-
-    fn noun_follows(&self, at: usize) -> bool {
-        self.items.0.get(at + 1).is_some_and(|item| item.marks.is_empty() && !item.equals()) && role(&self.items, at + 1).is_some()
-    }
-
-    /// `E1`, `w2`.
-    fn coded(&self, at: usize) -> Option<(char, u32)> {
-        let word = self.items.word(at).filter(|word| !word.label && word.text.len() == 2)?;
-        let family = word.text.chars().next().filter(char::is_ascii_alphabetic)?;
-        let number = word.text.get(1..)?.parse().ok()?;
-        Some((if word.capital { family.to_ascii_uppercase() } else { family }, number))
-    }
-
-    /// Whether a letter or code stands where people are named: `rooms A, B and C` are none.
-    fn free(&self, at: usize) -> bool {
-        let Some(item) = self.items.0.get(at) else { return false };
-        let chained = matches!(item.gap.trim(), "," | "+" | "-") && at > 0 && self.letter(at - 1).is_some();
-        if chained && self.letter(at).is_some() {
-            return self.free(at - 1);
-        }
-        let joined = item.gap.contains(['+', '(']) || item.arrow;
-        at == 0
-            || self.items.marked(at)
-            || joined
-            || BEFORE.contains(&self.items.stem(at - 1))
-            || BEFORE.contains(&self.items.text(at - 1))
-    }
-
-    /// `A:`, `A =`, `A+B`, `(A, B, C)`, `A-C`, `B nurse`.
-    fn declares(&self, at: usize) -> bool {
-        let next = self.items.0.get(at + 1);
-        let other = |k: usize| self.letter(k).is_some();
-        self.items.has(at + 1, Mark::Colon)
-            || next.is_some_and(Item::equals)
-            || next.is_some_and(|next| {
-                matches!(next.gap.trim(), "+" | "-" | ",") && other(at + 1) || next.opens() && role(&self.items, at + 1).is_some()
-            })
-            || at > 0
-                && self.items.0.get(at).is_some_and(|item| matches!(item.gap.trim(), "+" | "-" | ","))
-                && other(at - 1)
-    }
-
-    /// The label at a place, with the place after it.
-    fn key(&self, at: usize) -> Option<(Key, usize)> {
-        let item = self.items.0.get(at)?;
-        let tight = |k: usize| self.items.0.get(k).is_some_and(|item| item.marks.is_empty() && matches!(item.gap.trim(), "" | "_" | "-" | "#"));
-        // A name of something else: `H1N1`, `B2 building`.
-        let digit = |k: usize| {
-            let word = self.items.word(k).filter(|word| word.text.len() == 1 && word.is_digits())?;
-            word.text.parse::<u32>().ok().filter(|n| *n > 0)
+    let count = u32::try_from(roles.len()).unwrap_or(u32::MAX);
+    // `human_count 2`
+    for k in 0..at {
+        let counts = items.word(k).and_then(Word::count) == Some(count);
+        let generic = |back: usize| k.checked_sub(back).is_some_and(|k| GENERIC.contains(&items.stem(k)));
+        let from = if generic(1) {
+            Some(k - 1)
+        } else if generic(2) && matches!(items.text(k - 1), "count" | "number") {
+            Some(k - 2)
+        } else {
+            None
         };
-        if GENERIC.contains(&self.items.stem(at)) && !plural(&item.word) && tight(at + 1) {
-            if let Some(number) = digit(at + 1).filter(|_| !self.noun_follows(at + 1)) {
-                return Some((Key::Number(number), at + 2));
-            }
-            if let Some(letter) = self.letter(at + 1).filter(|letter| self.letters.contains(letter)) {
-                return Some((Key::Letter(letter), at + 2));
+        if counts && let Some(from) = from {
+            for item in items.0.iter_mut().take(k + 1).skip(from) {
+                (item.word.label, item.word.used) = (true, true);
             }
         }
-        if self.letter(at + 1).is_some() && self.role_before(at + 1) {
-            let letter = self.letter(at + 1).filter(|letter| self.letters.contains(letter))?;
-            return Some((Key::Letter(letter), at + 2));
-        }
-        if let Some((family, number)) = self.coded(at)
-            && self.families.contains(&family)
-            && !(at > 0 && !self.items.marked(at) && lexicon().labels.contains(self.items.stem(at - 1)))
-        {
-            return Some((Key::Number(number), at + 1));
-        }
-        if (self.tags && item.gap.ends_with('#') || self.listed && item.gap.ends_with('(') && self.items.0.get(at + 1).is_none_or(Item::closes))
-            && let Some(number) = item.word.text.parse::<u32>().ok().filter(|n| (1..=9).contains(n))
-        {
-            return Some((Key::Number(number), at + 1));
-        }
-        let letter = self.letter(at).filter(|letter| self.letters.contains(letter) && self.free(at))?;
-        // `A nurse` is a nurse, unless others are told by letters in the same way.
-        let joined = self.items.0.get(at + 1).is_some_and(|next| matches!(next.gap.trim(), "-" | "–" | "+" | "=" | "/"));
-        let article = letter == 'A' && !self.items.marked(at + 1) && !joined && {
-            let next = self.items.word(at + 1);
-            let acts = next.is_some_and(|next| {
-                lexicon().verbs.contains(&next.stem) && next.text != next.stem && next.text.ends_with('s')
-                    || matches!(next.text.as_str(), "and" | "when" | "is" | "does" | "then" | "only" | "in" | "on" | "at" | "must" | "should" | "will" | "never" | "just" | "after" | "if" | "to" | "from")
-            });
-            !acts && !self.juxtaposed(at)
-        };
-        (!article).then_some((Key::Letter(letter), at + 1))
     }
-
-    /// `A nurse, B+C visitors`.
-    fn juxtaposed(&self, at: usize) -> bool {
-        let of = |k: usize| self.noun_follows(k) && role(&self.items, k + 1).is_some_and(|(_, end)| self.items.marked(end));
-        let other = |k: usize| self.letter(k).is_some_and(|letter| letter != 'A' && self.letters.contains(&letter));
-        of(at) && (0..self.items.0.len()).any(|k| k != at && other(k) && of(k))
-    }
-
-    /// Labels in a row: `A, B and C`, `P1+P2`, `A-C`.
-    fn list(&self, at: usize) -> Option<(Vec<Key>, usize)> {
-        let (first, mut end) = self.key(at)?;
-        let mut keys = vec![first];
-        // `follows agent 1, agent 3 stops` is no list.
-        let heads = self.items.marked(at) || self.items.0.get(at).is_some_and(Item::opens);
-        let generic = GENERIC.contains(&self.items.stem(at));
-        loop {
-            let gap = self.items.0.get(end).map_or("", |item| item.gap.trim()).to_owned();
-            let and = matches!(self.items.text(end), "and" | "or") && !self.items.marked(end);
-            let comma = heads && (self.items.has(end, Mark::Comma) && gap == "," || gap == ", and");
-            let at = end + usize::from(and || self.items.text(end) == "and");
-            // `ped 1+2`, `actors 1 and 2`
-            let bare = || {
-                let number = self.items.text(at).parse().ok().filter(|n| (1..=9).contains(n))?;
-                let ends = self.items.word(at + 1).is_none_or(|next| !next.is_digits() && !matches!(next.stem.as_str(), "meter" | "second" | "m" | "s"));
-                (generic && ends && matches!(keys.last(), Some(Key::Number(_)))).then_some((Key::Number(number), at + 1))
-            };
-            let next = self.key(at).or_else(bare).filter(|_| and || comma || matches!(gap.as_str(), "+" | "-" | "–" | "/" | "&"));
-            let Some((key, to)) = next else { break };
-            if let (true, Some(Key::Letter(from)), Key::Letter(to)) = (matches!(gap.as_str(), "-" | "–"), keys.last().copied(), key) {
-                keys.extend((from..=to).skip(1).map(Key::Letter));
-            } else {
-                keys.push(key);
-            }
-            end = to;
-        }
-        Some((keys, end))
-    }
-
-    /// Every label that stands for somebody, in order, each with its number.
-    fn keys(&self) -> BTreeMap<Key, u32> {
-        let mut found = BTreeSet::new();
-        for k in 0..self.items.0.len() {
-            if let Some((keys, _)) = self.list(k) {
-                found.extend(keys);
-            }
-            let gap = self.items.0.get(k).map_or("", |item| item.gap.as_str());
-            if self.listed && let Some(number) = listed(gap).filter(|_| role(&self.items, k).is_some()) {
-                found.insert(Key::Number(number));
-            }
-        }
-        // `nurse (N)`, `patient (P)`: in the order in which they are told.
-        let row = found.iter().zip('A'..='Z').all(|(key, letter)| *key == Key::Letter(letter));
-        if !row && found.iter().all(|key| matches!(key, Key::Letter(_))) {
-            let first = |key: &Key| (0..self.items.0.len()).find(|k| self.list(*k).is_some_and(|(keys, _)| keys.contains(key)));
-            let mut keys: Vec<Key> = found.into_iter().collect();
-            keys.sort_by_key(first);
-            return keys.into_iter().zip(1..).collect();
-        }
-        let most = found.iter().map(|key| if let Key::Number(n) = key { *n } else { 0 }).max().unwrap_or(0);
-        if most > 0 {
-            found.extend((1..=most).map(Key::Number));
-        }
-        found.into_iter().zip(1..).collect()
-    }
-}
-
-/// The number of `(2)` at the end of a gap.
-fn listed(gap: &str) -> Option<u32> {
-    let inner = gap.trim_end().strip_suffix(')')?;
-    inner.rsplit_once('(')?.1.parse().ok().filter(|n| (1..=9).contains(n))
+    let Some(first) = items.0.get(at).cloned() else { return items };
+    let mut people = Item::said("people", &first);
+    people.word.made_of = roles;
+    let number = Item::said(&count.to_string(), &first).with(&first.marks);
+    let _old: Vec<Item> = items.0.splice(at..end, [number, people]).collect();
+    items
 }
 
 /// The text as it is written anew.
@@ -391,7 +156,9 @@ impl Labels {
         let mut k = 0;
         while let Some(item) = self.items.0.get(k) {
             // `(1) doctor - same direction`
-            if self.listed && let (Some(number), Some((name, end))) = (listed(&item.gap), role(&self.items, k)) {
+            if self.listed
+                && let (Some(number), Some((name, end))) = (listed(&item.gap), role(&self.items, k))
+            {
                 let numbers = written.numbers(&[Key::Number(number)]);
                 written.first.get_or_insert(written.out.len());
                 written.define(&numbers, &name);
@@ -415,7 +182,7 @@ impl Labels {
         let Some(item) = items.0.get(at) else { return end };
         let next = items.0.get(end);
         // `worker A`
-        if end >= at + 2 && self.letter(end - 1).is_some() && self.role_before(end - 1) {
+        if end >= at + 2 && (self.letter(end - 1).is_some() && self.role_before(end - 1) || self.named(end - 1)) {
             let named = items.stem(end - 2);
             if lexicon().roles.get(named).is_some_and(|role| !role.generic) {
                 written.define(numbers, named);
@@ -424,7 +191,8 @@ impl Labels {
         // `guard (actor 1)`, `two dockers (actor 1, actor 2)`, `grp (A, B, C)`
         let inside = item.opens() && !item.closes() && next.is_none_or(Item::closes);
         if inside && written.inside(numbers, item) {
-            written.marks = (!items.begins(end)).then(Vec::new);
+            let comma = next.is_some_and(|next| next.gap.contains(','));
+            written.marks = (!items.begins(end)).then(|| if comma { vec![Mark::Comma] } else { Vec::new() });
             // `+ D`
             let more = (items.text(end) == "and").then(|| self.list(end + 1)).flatten();
             return match more.filter(|(_, to)| items.marked(*to)) {
@@ -445,7 +213,8 @@ impl Labels {
             let gap = next.map_or("", |next| next.gap.as_str());
             let article = matches!(items.text(end), "a" | "an" | "both" | "all") || gap.contains(['-', '–', '—']);
             let apposed = items.has(end, Mark::Comma) && closes && article;
-            let paren = next.is_some_and(Item::opens) && items.0.get(to).is_none_or(|item| item.closes() || item.gap.contains(','));
+            let paren = next.is_some_and(Item::opens)
+                && items.0.get(to).is_none_or(|item| item.closes() || item.gap.contains(','));
             let beside = gap == " " && closes && self.letter(end - 1).is_some() && self.noun_follows(end - 1);
             if equal || colon || paren || apposed || beside {
                 written.define(numbers, &role);
@@ -477,7 +246,8 @@ impl Labels {
             }
         }
         let next = items.0.get(end);
-        let another = self.list(end + usize::from(items.text(end) == "and")).is_some() || self.listed && next.is_some_and(|next| listed(&next.gap).is_some());
+        let another = self.list(end + usize::from(items.text(end) == "and")).is_some()
+            || self.listed && next.is_some_and(|next| listed(&next.gap).is_some());
         if !paren && items.marked(end) && (items.begins(end) || another) {
             for item in &tail {
                 written.push(item);
@@ -508,16 +278,22 @@ impl Written {
         let from = self.out.iter().rposition(|item| !item.marks.is_empty() || item.arrow).unwrap_or(0);
         let run: Vec<Word> = self.out.get(from..).unwrap_or_default().iter().map(|item| item.word.clone()).collect();
         let grouped = run.last().is_some_and(|word| word.stem == "group");
+        let mut banded = false;
         let people = if grouped {
             // `standing grp`
-            let adjective = |word: &Word| lexicon().adjectives.contains(&word.text) || matches!(word.text.as_str(), "a" | "the");
+            let adjective =
+                |word: &Word| lexicon().adjectives.contains(&word.text) || matches!(word.text.as_str(), "a" | "the");
             let first = run.iter().rev().skip(1).take_while(|word| adjective(word)).count();
             Some((run.len() - 1 - first, run.len() - 1))
         } else {
-            let found = mentions(&run).into_iter().rev().find(|mention| !matches!(mention.who, Who::Same | Who::All | Who::Number(_)));
+            let found = mentions(&run)
+                .into_iter()
+                .rev()
+                .find(|mention| !matches!(mention.who, Who::Same | Who::All | Who::Number(_)));
             if let Some(role) = found.as_ref().and_then(|mention| mention.role.clone()) {
                 self.define(numbers, &role);
             }
+            banded = found.as_ref().is_some_and(|mention| mention.group);
             found.map(|mention| (mention.from, mention.to))
         };
         let Some((first, last)) = people else { return false };
@@ -525,6 +301,9 @@ impl Written {
         let mut words = spoken(numbers, self.out.get(first).unwrap_or(at));
         if grouped {
             words.extend(["stand", "in", "a", "group"].map(|text| Item::said(text, at)));
+        }
+        if banded {
+            words.extend(["in", "a", "group"].map(|text| Item::said(text, at)));
         }
         if let (Some(new), Some(old)) = (words.first_mut(), self.out.get(first)) {
             (new.marks, new.arrow, new.gap) = (old.marks.clone(), old.arrow, old.gap.clone());
@@ -539,7 +318,7 @@ impl Written {
 
     /// The text, with a sentence that says who is there.
     fn finish(mut self) -> Items {
-        let count = u32::try_from(self.keys.len()).unwrap_or(u32::MAX);
+        let count = self.keys.values().copied().max().unwrap_or(0);
         let total = self.total(count);
         if let Some((_, _, role)) = &total
             && !self.roles.values().all(String::is_empty)
@@ -554,7 +333,9 @@ impl Written {
         }
         let first = self.first.unwrap_or(0).min(self.out.len().saturating_sub(1));
         if let Some((from, to, _)) = total {
-            let does = self.out.get(to + 1).is_some_and(|next| next.marks.is_empty() && !next.equals() && lexicon().verbs.contains(&next.word.stem));
+            let does = self.out.get(to + 1).is_some_and(|next| {
+                next.marks.is_empty() && !next.equals() && lexicon().verbs.contains(&next.word.stem)
+            });
             if does && let Some(at) = self.out.get(from).cloned() {
                 let mut words = spoken(&(1..=count).collect::<Vec<u32>>(), &at);
                 if let Some(word) = words.first_mut() {
@@ -594,8 +375,10 @@ impl Written {
                 return None;
             }
             // `n=2`
-            let sample = from > 0 && number.equals() && self.out.get(from - 1).is_some_and(|item| item.word.text == "n");
-            let near = |(k, item): &(usize, &Item)| *k == 0 || item.marks.is_empty() && !item.equals() && !item.word.used;
+            let sample =
+                from > 0 && number.equals() && self.out.get(from - 1).is_some_and(|item| item.word.text == "n");
+            let near =
+                |(k, item): &(usize, &Item)| *k == 0 || item.marks.is_empty() && !item.equals() && !item.word.used;
             let words = self.out.iter().skip(from + 1).take(4).enumerate().take_while(near);
             let run: Vec<Word> = words.map(|(_, item)| item.word.clone()).collect();
             let end = noun(&run, 0, lexicon());
@@ -605,7 +388,8 @@ impl Written {
                 given && plural(&noun.word) && lexicon().roles.contains_key(&noun.word.stem)
             });
             if let Some(noun) = before.filter(|_| self.out.get(from + 1).is_none_or(|next| !next.marks.is_empty())) {
-                let role = lexicon().roles.get(&noun.word.stem).filter(|role| !role.generic).map(|_| noun.word.stem.clone());
+                let role =
+                    lexicon().roles.get(&noun.word.stem).filter(|role| !role.generic).map(|_| noun.word.stem.clone());
                 return Some((from - 1, from, role.unwrap_or_default()));
             }
             let of = self.out.get(from + 1).is_some_and(|item| !item.marks.is_empty());

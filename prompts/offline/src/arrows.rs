@@ -2,13 +2,19 @@
 
 use crate::lexicon::lexicon;
 use crate::notes::{Item, Items, Mark, robot};
+use crate::words::Word;
 
 /// Writes `when X, Y` and `X, then Y` for arrows.
 pub(crate) fn arrows(items: Items) -> Items {
     let mut items = items;
     let mut at = 0;
     while at < items.0.len() {
-        if items.0.get(at).is_some_and(|item| item.arrow) {
+        // `dist < 1.5 m: runs`
+        let colon = items.has(at, Mark::Colon) && at > 0 && {
+            let from = (0..at).rev().find(|k| items.marked(*k)).unwrap_or(0);
+            matches!(condition(&items, from, at), Some(Condition::Distance | Condition::Contact | Condition::Time))
+        };
+        if colon || items.0.get(at).is_some_and(|item| item.arrow) {
             at = row(&mut items, at);
         } else {
             at += 1;
@@ -18,7 +24,8 @@ pub(crate) fn arrows(items: Items) -> Items {
 }
 
 /// Nouns for what a test ends in: nobody does it.
-const RESULTS: &[&str] = &["collision", "contact", "deadlock", "crash", "timeout", "fail", "failure", "ok", "error", "success", "abort"];
+const RESULTS: &[&str] =
+    &["collision", "contact", "deadlock", "crash", "timeout", "fail", "failure", "ok", "error", "success", "abort"];
 
 /// Rewrites the row of arrows of which this is the first; says where to read on.
 fn row(items: &mut Items, at: usize) -> usize {
@@ -77,16 +84,26 @@ fn row(items: &mut Items, at: usize) -> usize {
 /// Opens a clause with `when`, and mends what has no verb.
 fn opened(items: &mut Items, from: usize, condition: Condition) -> usize {
     let Some(item) = items.0.get(from).cloned() else { return from };
-    let opens = matches!(items.text(from), "when" | "if" | "once" | "as" | "after" | "until" | "upon" | "whenever" | "at" | "while");
+    let opens = matches!(
+        items.text(from),
+        "when" | "if" | "once" | "as" | "after" | "until" | "upon" | "whenever" | "at" | "while"
+    );
     let words: &[&str] = match condition {
         Condition::Contact => &["when", "robot", "is", "visible"],
-        Condition::Distance => &["when", "robot"],
+        Condition::Distance if items.word(from).is_some_and(Word::is_digits) => &["when", "robot", "within"],
+        Condition::Distance | Condition::Robot => &["when", "robot"],
         Condition::Said | Condition::Meets if opens => &[],
         Condition::Said | Condition::Meets => &["when"],
         Condition::Time if opens => &[],
         Condition::Time => &["after"],
     };
     insert(items, from, words, &item);
+    if condition == Condition::Distance && items.text(from + words.len()) == "d" {
+        let at = from + words.len();
+        if let Some(item) = items.0.get_mut(at) {
+            (item.word.label, item.word.used) = (true, true);
+        }
+    }
     if condition == Condition::Contact {
         let first = from + words.len();
         let end = items.mark(first);
@@ -119,6 +136,8 @@ enum Condition {
     Meets,
     /// `visual contact`.
     Contact,
+    /// `robot behind them, says EXCUSE_ME`: the robot does what stands after a comma.
+    Robot,
     /// `dist <1.5m`.
     Distance,
     /// `+6s`.
@@ -144,6 +163,15 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     if matches!(items.stem(start), "door" | "elevator" | "lift") && (start..to).any(|k| items.stem(k) == "open") {
         return Some(Condition::Said);
     }
+    let alone = items.word(start).is_some_and(Word::is_digits) && to - start <= 2;
+    if length && alone {
+        return Some(Condition::Distance);
+    }
+    let head = items.start(from);
+    let says = matches!(items.stem(start), "say" | "ask" | "signal" | "stop" | "move" | "beep" | "wait" | "gesture" | "announce");
+    if says && from > head && robot(items, head) && person.is_none() && items.has(from, Mark::Comma) {
+        return Some(Condition::Robot);
+    }
     if length && (matches!(items.text(start), "distance" | "within" | "at" | "d" | "range" | "gap")) {
         return Some(Condition::Distance);
     }
@@ -152,7 +180,11 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     }
     let sees = (start..to).any(|k| matches!(items.stem(k), "see" | "notice" | "spot" | "detect" | "hear"));
     let at_robot = (start..to).any(|k| items.stem(k) == "robot");
-    if sees && (at_robot || to - start == 1) && person.is_some() && items.0.get(start).is_some_and(|item| item.marks.is_empty()) {
+    if sees
+        && (at_robot || to - start == 1)
+        && person.is_some()
+        && items.0.get(start).is_some_and(|item| item.marks.is_empty())
+    {
         return Some(Condition::Meets);
     }
     // `A waves -> B goes`
@@ -160,7 +192,7 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
     let (Some((first, last)), Some((next, end))) = (person, other) else { return None };
     let words = |from: usize, to: usize| (from..to).map(|k| items.text(k).to_owned()).collect::<Vec<String>>();
     let does = (start..to).any(|k| lexicon().verbs.contains(items.stem(k)));
-    (does && words(first, last) != words(next, end)).then_some(Condition::Said)
+    (does && words(first, last) != words(next, end)).then_some(Condition::Meets)
 }
 
 /// The people named right here, up to where the rest begins: `human 1 and human 2`, `nurse`.

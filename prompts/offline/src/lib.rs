@@ -30,6 +30,7 @@ mod topic;
 
 mod actors;
 mod arrows;
+mod labels;
 mod notes;
 mod terse;
 

@@ -334,7 +334,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         && let Some(number) = words.get(at + 1).filter(|word| word.is_digits()).and_then(Word::count)
     {
         // `human 2`, `person_1`; a number with a noun of its own belongs to that one.
-        if noun(words, at + 2, lex).is_none() {
+        // `human 1 signals human 2 …`: a verb, no noun that describes whom it is done to.
+        let does = words.get(at + 2).is_some_and(|word| lex.verbs.contains(&word.stem) && word.text.ends_with('s'));
+        if does || noun(words, at + 2, lex).is_none() {
             return made(Who::Number(number), role(at), at + 1);
         }
     }

@@ -101,7 +101,12 @@ impl Items {
 
     /// The words from here to the next mark.
     pub(crate) fn run(&self, at: usize) -> Vec<Word> {
-        self.0.get(at..self.mark(at).min(self.0.len())).unwrap_or_default().iter().map(|item| item.word.clone()).collect()
+        self.0
+            .get(at..self.mark(at).min(self.0.len()))
+            .unwrap_or_default()
+            .iter()
+            .map(|item| item.word.clone())
+            .collect()
     }
 
     /// Makes words nobody's; they are reported as not understood.
@@ -115,9 +120,11 @@ impl Items {
 /// Writes notes out; other texts stay as they are.
 pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
     let (items, tail) = itemized(text, pieces);
-    let items = shorthand(steps(items));
+    let mut items = shorthand(steps(items));
+    crate::terse::numbered(&mut items);
+    let items = crate::terse::located(items);
     let items = crate::actors::actors(items);
-    let items = ends(items);
+    let items = triggers(ends(items));
     let mut items = crate::arrows::arrows(items);
     aims(&mut items);
     let items = crate::terse::terse(items);
@@ -130,7 +137,9 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
         out.push(Piece::Word(item.word));
     }
     out.extend(tail.into_iter().map(piece));
-    if std::env::var("NOTES").is_ok() { eprintln!("NOTES {}", written(&out)); } // DEBUG
+    if std::env::var("NOTES").is_ok() {
+        eprintln!("NOTES {}", written(&out));
+    } // DEBUG
     out
 }
 
@@ -170,6 +179,11 @@ fn itemized(text: &str, pieces: Vec<Piece>) -> (Items, Vec<Mark>) {
                 if arrow {
                     marks.retain(|mark| *mark != Mark::Comma);
                 }
+                // `\n- ped 2: crossing`
+                let line = gap.rsplit_once('\n').map(|(_, line)| line.trim_start());
+                if line.is_some_and(|line| line.starts_with(['-', '*', '•', '·'])) && !marks.contains(&Mark::Stop) {
+                    marks = vec![Mark::Stop];
+                }
                 last = word.to;
                 items.push(Item { marks: std::mem::take(&mut marks), gap, arrow, word });
             }
@@ -178,7 +192,20 @@ fn itemized(text: &str, pieces: Vec<Piece>) -> (Items, Vec<Mark>) {
             Piece::Stop => marks.push(Mark::Stop),
         }
     }
-    (Items(items), marks)
+    let mut items = Items(items);
+    for k in 1..items.0.len() {
+        // `\nped 2: crossing`
+        let line = items.0.get(k).is_some_and(|item| item.gap.contains('\n') && !item.arrow);
+        let colon = (k + 1..k + 4).find(|next| items.marked(*next)).is_some_and(|next| items.has(next, Mark::Colon));
+        if line
+            && colon
+            && !items.has(k, Mark::Stop)
+            && let Some(item) = items.0.get_mut(k)
+        {
+            item.marks = vec![Mark::Stop];
+        }
+    }
+    (items, marks)
 }
 
 /// Short forms of words.
@@ -195,6 +222,9 @@ const SHORT: &[(&str, &[&str])] = &[
     ("elev", &["elevator"]),
     ("loc", &["location"]),
     ("cond", &["condition"]),
+    ("actor", &["human"]),
+    ("actors", &["humans"]),
+    ("ack", &["acknowledges"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -252,7 +282,8 @@ fn shorthand(items: Items) -> Items {
         }
         let digits = item.word.is_digits();
         // `2x employee`
-        if item.word.text == "x" && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {
+        let of = next.is_some_and(|next| lexicon().roles.contains_key(&next.word.stem));
+        if item.word.text == "x" && of && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {
             continue;
         }
         let many = k > 1 && items.0.get(k - 1).is_some_and(|x| x.word.text == "x" && x.gap.is_empty());
@@ -359,18 +390,70 @@ fn ends(mut items: Items) -> Items {
     items
 }
 
+/// `trigger: robot within 1 m; reaction: the employee stops`: an arrow.
+fn triggers(mut items: Items) -> Items {
+    let mut at = 0;
+    while at < items.0.len() {
+        let cue = matches!(items.text(at), "trigger" | "cue" | "event" | "stimulus")
+            && items.begins(at)
+            && items.has(at + 1, Mark::Colon);
+        let next = items.end(at);
+        let answer = matches!(
+            items.text(next),
+            "reaction" | "response" | "action" | "effect" | "behavior" | "behaviour" | "then"
+        );
+        if cue && answer && items.has(next + 1, Mark::Colon) {
+            if let Some(item) = items.0.get_mut(next + 1) {
+                (item.arrow, item.marks) = (true, Vec::new());
+            }
+            items.0.remove(next);
+            if let Some(item) = items.0.get_mut(at + 1) {
+                item.marks = vec![Mark::Stop];
+            }
+            items.0.remove(at);
+        }
+        at += 1;
+    }
+    items
+}
+
 /// Whether the words up to this one name a place.
 fn place(items: &Items, last: usize, first: usize) -> bool {
-    (first..=last).any(|k| {
-        lexicon().places.iter().any(|place| {
-            matches!(place.items.last(), Some(crate::lexicon::Item::Word(word)) if word == items.text(k))
-        })
-    })
+    (first..=last).any(|k| names_place(items, k))
+}
+
+/// Whether a word ends the name of a place.
+pub(crate) fn names_place(items: &Items, at: usize) -> bool {
+    let ends = |items_: &[crate::lexicon::Item]| matches!(items_.last(), Some(crate::lexicon::Item::Word(word)) if word == items.text(at));
+    lexicon().places.iter().any(|place| ends(&place.items))
 }
 
 /// What opens a sentence that tells how a test is judged, with what must follow.
-const AIMS: &[&str] =
-    &["expected", "expectation", "expect", "exp", "pass", "post", "result", "outcome", "verify", "assert", "metric", "metrics", "kpi", "t", "fail", "criterion", "criteria", "crit", "log", "note", "timeout", "success", "ok"];
+const AIMS: &[&str] = &[
+    "expected",
+    "expectation",
+    "expect",
+    "exp",
+    "pass",
+    "post",
+    "result",
+    "outcome",
+    "verify",
+    "assert",
+    "metric",
+    "metrics",
+    "kpi",
+    "t",
+    "fail",
+    "criterion",
+    "criteria",
+    "crit",
+    "log",
+    "note",
+    "timeout",
+    "success",
+    "ok",
+];
 
 /// `expected: bot reaches goal`, `pass crit: bot thru in <20s`, `fail if bot speed > 0.3m/s`: nobody does it.
 fn aims(items: &mut Items) {
@@ -380,8 +463,10 @@ fn aims(items: &mut Items) {
         let opens = AIMS.contains(&items.text(at));
         let colon = (at + 1..(at + 4).min(end)).find(|k| items.has(*k, Mark::Colon));
         let body = colon.or_else(|| (matches!(items.text(at + 1), "if" | "when")).then_some(at + 2));
-        let measured = matches!(items.text(at), "log" | "timeout") || items.text(at) == "t" && items.text(at + 1) == "max";
-        let person = |k: usize| lexicon().roles.contains_key(items.stem(k)) || lexicon().numbers.contains_key(items.text(k));
+        let measured =
+            matches!(items.text(at), "log" | "timeout") || items.text(at) == "t" && items.text(at + 1) == "max";
+        let person =
+            |k: usize| lexicon().roles.contains_key(items.stem(k)) || lexicon().numbers.contains_key(items.text(k));
         let from = body.unwrap_or(at);
         let of_robot = robot(items, from) || items.text(from) == "no" || !(from..end).any(person);
         if opens && (body.is_some() || measured) && of_robot && !(from..end).any(person) {

@@ -13,7 +13,7 @@ pub(crate) fn terse(mut items: Items) -> Items {
         wants_in(&mut items, at);
         verbless(&mut items, at);
         denied(&mut items, at);
-        numbered(&mut items, at);
+        ward(&mut items, at);
         answered(&mut items, at);
         from_behind(&mut items, at);
         at += 1;
@@ -22,16 +22,22 @@ pub(crate) fn terse(mut items: Items) -> Items {
 }
 
 /// Words behind people that make a heading of them: `ped list`, `actor overview`.
-const OVERVIEWS: &[&str] = &["list", "roster", "overview", "count", "types", "type", "table", "definition", "definitions", "setup", "model"];
+const OVERVIEWS: &[&str] =
+    &["list", "roster", "overview", "count", "types", "type", "table", "definition", "definitions", "setup", "model"];
 
 /// `Ped list: …` and `multi-actor` name nobody.
 fn overview(items: &mut Items, at: usize) {
     let generic = |k: usize| {
-        lexicon().roles.get(items.stem(k)).is_some_and(|role| role.generic) || matches!(items.stem(k), "actor" | "agent")
+        lexicon().roles.get(items.stem(k)).is_some_and(|role| role.generic)
+            || matches!(items.stem(k), "actor" | "agent")
     };
-    let heading = generic(at) && OVERVIEWS.contains(&items.text(at + 1)) && !items.marked(at + 1) && items.marked(at + 2);
+    let heading =
+        generic(at) && OVERVIEWS.contains(&items.text(at + 1)) && !items.marked(at + 1) && items.marked(at + 2);
     let hyphen = |k: usize| items.0.get(k).is_some_and(|item| item.gap == "-");
-    let many = matches!(items.text(at), "multi" | "single" | "two" | "dual") && hyphen(at + 1) && generic(at + 1) && items.marked(at + 2);
+    let many = matches!(items.text(at), "multi" | "single" | "two" | "dual")
+        && hyphen(at + 1)
+        && generic(at + 1)
+        && items.marked(at + 2);
     if (heading && items.marked(at)) || many {
         items.label(at, at + 2);
     }
@@ -42,18 +48,18 @@ fn step(items: &Items, at: usize) -> bool {
     let digits = items.word(at).is_some_and(|word| word.is_digits() && word.text.len() <= 2);
     let after = items.0.get(at + 1).is_some_and(|next| next.gap.starts_with(['.', ')']) && next.gap.len() > 1);
     let before = items.begins(at) || items.has(at, Mark::Colon) || items.has(at, Mark::Comma);
-    let total = at > 0 && lexicon().roles.contains_key(items.stem(at - 1));
+    let total = at > 0
+        && lexicon().roles.contains_key(items.stem(at - 1))
+        && items.word(at - 1).is_some_and(|word| !word.label && crate::noun::plural(word));
     digits && after && before && !total
 }
 
 /// Numbers of steps count nobody.
-fn numbered(items: &mut Items, at: usize) {
-    let first = items.text(at) == "1" && step(items, at);
-    let second = first.then(|| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k))).flatten();
-    if second.is_none() {
-        return;
-    }
-    for k in at..items.0.len() {
+pub(crate) fn numbered(items: &mut Items) {
+    let first = (0..items.0.len()).find(|k| items.text(*k) == "1" && step(items, *k));
+    let second = first.and_then(|at| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k)));
+    let Some(from) = first.filter(|_| second.is_some()) else { return };
+    for k in from..items.0.len() {
         if step(items, k)
             && let Some(item) = items.0.get_mut(k)
         {
@@ -79,6 +85,47 @@ fn answered(items: &mut Items, at: usize) {
     }
 }
 
+/// `corridor ward B` is a corridor.
+fn ward(items: &mut Items, at: usize) {
+    let place =
+        matches!(items.text(at), "corridor" | "hallway" | "aisle" | "doorway" | "intersection" | "elevator" | "lobby");
+    let of = matches!(items.text(at + 1), "ward" | "room" | "floor" | "level" | "wing" | "unit" | "block" | "building");
+    let named = items.word(at + 2).is_some_and(|word| word.is_digits() || word.capital && word.text.len() == 1);
+    if place
+        && of
+        && named
+        && !items.marked(at + 1)
+        && !items.marked(at + 2)
+        && let Some(item) = items.0.get_mut(at + 1)
+    {
+        item.marks = vec![Mark::Comma];
+    }
+}
+
+/// `location: corridor` is said first: what is named in passing is no place of the encounter.
+pub(crate) fn located(mut items: Items) -> Items {
+    let names = |k: &usize| {
+        let word = matches!(items.text(*k), "location" | "place" | "where" | "site" | "environment" | "env" | "venue");
+        let given =
+            items.has(k + 1, Mark::Colon) || items.0.get(k + 1).is_some_and(Item::equals) || items.end(*k) == k + 2;
+        *k > 0 && word && given && items.begins(*k) && items.end(*k) <= k + 6
+    };
+    let Some(from) = (0..items.0.len()).find(names) else { return items };
+    let to = items.end(from).min(items.0.len());
+    if !(from + 1..to).any(|k| crate::notes::names_place(&items, k)) {
+        return items;
+    }
+    let mut moved: Vec<Item> = items.0.drain(from..to).collect();
+    if let Some(first) = moved.first_mut() {
+        first.marks.clear();
+    }
+    if let Some(first) = items.0.first_mut() {
+        first.marks = vec![Mark::Stop];
+    }
+    let _none: Vec<Item> = items.0.splice(0..0, moved).collect();
+    items
+}
+
 /// `same direction, from rear`: who comes from behind is not ahead.
 fn from_behind(items: &mut Items, at: usize) {
     let same = items.text(at) == "same" && matches!(items.text(at + 1), "direction" | "heading" | "way");
@@ -88,7 +135,8 @@ fn from_behind(items: &mut Items, at: usize) {
     let (from, end) = (items.start(at), items.end(at).min(items.0.len()));
     let rear = (from..end).any(|k| {
         items.text(k) == "rear" && items.text(k.wrapping_sub(1)) != "to"
-            || items.text(k) == "behind" && items.text(k.wrapping_sub(1)) == "from"
+            || items.text(k) == "behind"
+                && (items.text(k.wrapping_sub(1)) == "from" || robot(items, k + 1) || robot(items, k + 2))
             || items.stem(k) == "overtake"
     });
     if rear {
@@ -172,7 +220,34 @@ fn verbless(items: &mut Items, at: usize) {
         return;
     }
     let alone = items.marked(at) && items.marked(at + 1) && !items.begins(at);
-    if items.text(at) == "static" && (after || alone) && let Some(word) = items.0.get_mut(at) {
+    // `steps left`
+    let moves =
+        at.checked_sub(1).is_some_and(|k| matches!(items.stem(k), "step" | "move" | "shift" | "swerve" | "dodge"));
+    if matches!(items.text(at), "left" | "right") && moves && !items.marked(at) && items.marked(at + 1) {
+        let side = ["to", "the", "side"].map(|text| Item::said(text, &item));
+        if let Some(word) = items.0.get_mut(at) {
+            (word.word.label, word.word.used) = (true, true);
+        }
+        let _none: Vec<Item> = items.0.splice(at..at, side).collect();
+        return;
+    }
+    // `oncoming, group`
+    if items.text(at) == "group" && alone {
+        let group = ["in", "a"].map(|text| Item::said(text, &item));
+        let marks = item.marks;
+        let _none: Vec<Item> = items.0.splice(at..at, group).collect();
+        if let Some(word) = items.0.get_mut(at + 2) {
+            word.marks.clear();
+        }
+        if let Some(word) = items.0.get_mut(at) {
+            word.marks = marks;
+        }
+        return;
+    }
+    if items.text(at) == "static"
+        && (after || alone)
+        && let Some(word) = items.0.get_mut(at)
+    {
         ("stands".clone_into(&mut word.word.text), "stand".clone_into(&mut word.word.stem));
     }
 }
@@ -202,6 +277,8 @@ const DEEDS: &[(&str, &str)] = &[
     ("evasion", "yield"),
     ("avoidance", "yield"),
     ("dodge", "yield"),
+    ("deviation", "yield"),
+    ("contact", "look"),
 ];
 
 /// The verb of a denied deed.
@@ -219,16 +296,28 @@ fn denied(items: &mut Items, at: usize) {
     if items.text(at) != "no" || items.word(at).is_none_or(|word| word.label) {
         return;
     }
-    let opens = items.marked(at) || matches!(items.text(at.wrapping_sub(1)), "and" | "or" | "but") || subject(items, at);
+    let opens =
+        items.marked(at) || matches!(items.text(at.wrapping_sub(1)), "and" | "or" | "but") || subject(items, at);
     // `no ped reaction`
     let people = lexicon().roles.contains_key(items.stem(at + 1)) && !items.marked(at + 1) && !items.marked(at + 2);
-    let of = at + 1 + usize::from(people);
+    let eye = matches!(items.text(at + 1), "eye" | "visual") && items.text(at + 2) == "contact";
+    let of = at + 1 + usize::from(people || eye);
+    if items.text(of) == "contact" && !eye {
+        return;
+    }
     let Some(verb) = verb(items, of).filter(|_| opens && !items.marked(of)) else { return };
     let Some(item) = items.0.get(at).cloned() else { return };
     let from = items.start(at);
     let end = items.end(at).min(items.0.len());
-    let everybody = (from..end).any(|k| matches!(items.text(k), "either" | "both" | "anyone" | "anybody" | "all") && !items.begins(k));
-    let initial = |k: usize| (from..k).all(|k| items.text(k) == "no" || DEEDS.iter().any(|(_, verb)| *verb == items.text(k)) || items.word(k).is_some_and(|word| word.used));
+    let everybody = (from..end)
+        .any(|k| matches!(items.text(k), "either" | "both" | "anyone" | "anybody" | "all") && !items.begins(k));
+    let initial = |k: usize| {
+        (from..k).all(|k| {
+            items.text(k) == "no"
+                || DEEDS.iter().any(|(_, verb)| *verb == items.text(k))
+                || items.word(k).is_some_and(|word| word.used)
+        })
+    };
     let nobody = people || everybody && initial(at);
     let text: &[&str] = if nobody { &["nobody"] } else { &["does", "not"] };
     let mut words: Vec<Item> = text.iter().map(|text| Item::said(text, &item)).collect();

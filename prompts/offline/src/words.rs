@@ -182,7 +182,8 @@ fn short(at: &dyn Fn(usize) -> Option<char>, i: usize) -> Option<usize> {
 
 /// Whether the dot belongs to the word before it: `Mr. Hartmann`, `approx. 2 m`.
 fn abbreviated(before: Option<&Piece>) -> bool {
-    let short = ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min", "exp", "cond"];
+    let short =
+        ["mr", "mrs", "ms", "dr", "prof", "st", "approx", "ca", "vs", "resp", "incl", "max", "min", "exp", "cond"];
     matches!(before, Some(Piece::Word(word)) if short.contains(&word.text.as_str()))
 }
 
