@@ -40,7 +40,8 @@ fn of_them(found: &mut [Stretch]) {
     let Some(whole) = whole else { return };
     for stretch in found.iter_mut().skip(whole + 1) {
         let at = usize::from(matches!(text(stretch, 0).as_str(), "only" | "just" | "exactly"));
-        let Some(one) = stretch.words.get(at).filter(|word| word.count().is_some() && !word.is_digits()).cloned() else {
+        let Some(one) = stretch.words.get(at).filter(|word| word.count().is_some() && !word.is_digits()).cloned()
+        else {
             continue;
         };
         // `one of them`, `one nurse` say it themselves.
@@ -203,9 +204,10 @@ fn bracketed(found: &mut [Stretch]) {
         let robot = word(0).is_some_and(|word| word.stem == "robot")
             || word(1).is_some_and(|word| word.stem == "robot") && word(0).is_some_and(|word| word.text == "the");
         let unit = measure.words.iter().any(|word| matches!(word.stem.as_str(), "meter" | "centimeter"));
-        let verb = measure.words.iter().any(|word| {
-            lexicon().verbs.contains(&word.stem) && !matches!(word.stem.as_str(), "be" | "close" | "near")
-        });
+        let verb = measure
+            .words
+            .iter()
+            .any(|word| lexicon().verbs.contains(&word.stem) && !matches!(word.stem.as_str(), "be" | "close" | "near"));
         if robot && unit && !verb && measure.words.len() <= 8 {
             measure.joint = Joint::When;
         }
@@ -261,7 +263,10 @@ fn asked_of(found: &mut [Stretch]) {
             who.words.get(*k).is_some_and(|word| word.text == "to")
                 && who.words.get(k + 1).is_some_and(|word| verb(word) && word.text == word.stem)
                 && !who.words.get(k - 1).is_some_and(|word| {
-                    matches!(word.stem.as_str(), "want" | "try" | "wish" | "need" | "like" | "refuse" | "close" | "next")
+                    matches!(
+                        word.stem.as_str(),
+                        "want" | "try" | "wish" | "need" | "like" | "refuse" | "close" | "next"
+                    )
                 })
         });
         let Some(to) = to else { continue };

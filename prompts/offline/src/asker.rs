@@ -1,7 +1,7 @@
 //! Whoever asks: what he says of himself, which nobody in the scenario does, and he himself where he is in it.
 
 use crate::lexicon::{Item, lexicon};
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, text_at, word_at};
 
 /// What whoever asks is called in the cast, where he is somebody in the scenario.
 pub(crate) const NAME: &str = "asker";
@@ -69,10 +69,10 @@ pub(crate) fn takes_part(pieces: &mut [Piece]) {
         return;
     }
     // `… because I am a polite person`
-    let is = |k: usize| matches!(text(pieces, k), "am" | "was") && matches!(text(pieces, k + 1), "a" | "an");
+    let is = |k: usize| matches!(text_at(pieces, k), "am" | "was") && matches!(text_at(pieces, k + 1), "a" | "an");
     let told =
-        |k: usize| matches!(text(pieces, k), "show" | "shows" | "give" | "gives" | "tell" | "let" | "help" | "make");
-    let himself = |k: &usize| match text(pieces, *k) {
+        |k: usize| matches!(text_at(pieces, k), "show" | "shows" | "give" | "gives" | "tell" | "let" | "help" | "make");
+    let himself = |k: &usize| match text_at(pieces, *k) {
         "i" => begins(pieces, *k) && (verb(pieces, *k).is_some() || is(k + 1)),
         "me" => !k.checked_sub(1).is_some_and(told),
         _ => false,
@@ -87,19 +87,11 @@ pub(crate) fn takes_part(pieces: &mut [Piece]) {
     }
 }
 
-fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
-    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
-}
-
-fn text(pieces: &[Piece], at: usize) -> &str {
-    word(pieces, at).map_or("", |word| word.text.as_str())
-}
-
 /// Whether a clause may begin here: `can I …` asks for something else.
 fn begins(pieces: &[Piece], at: usize) -> bool {
     at.checked_sub(1).is_none_or(|before| {
         matches!(
-            text(pieces, before),
+            text_at(pieces, before),
             "" | "and" | "but" | "then" | "when" | "while" | "as" | "if" | "once" | "until" | "because" | "so"
         )
     })
@@ -107,9 +99,9 @@ fn begins(pieces: &[Piece], at: usize) -> bool {
 
 /// The verb of a deed behind `I`: `I walk`, `I am just walking`.
 fn verb(pieces: &[Piece], at: usize) -> Option<usize> {
-    let fill = |k: &usize| matches!(text(pieces, *k), "am" | "was" | "just" | "simply" | "only" | "then" | "also");
+    let fill = |k: &usize| matches!(text_at(pieces, *k), "am" | "was" | "just" | "simply" | "only" | "then" | "also");
     let at = (at + 1..at + 4).find(|k| !fill(k))?;
-    let verb = word(pieces, at)?;
+    let verb = word_at(pieces, at)?;
     let opens = |items: &[Item]| items.first().is_some_and(|item| item.takes(&verb.stem));
     let known = lexicon().actions.iter().any(|phrase| opens(&phrase.items))
         || matches!(verb.stem.as_str(), "wave" | "approach");
@@ -118,14 +110,14 @@ fn verb(pieces: &[Piece], at: usize) -> Option<usize> {
 
 /// Whether `I` at this place do something to the robot: `I wave it through`, `I come down the corridor towards the robot`.
 fn meets(pieces: &[Piece], at: usize) -> bool {
-    if text(pieces, at) != "i" || !begins(pieces, at) {
+    if text_at(pieces, at) != "i" || !begins(pieces, at) {
         return false;
     }
     let Some(verb) = verb(pieces, at) else { return false };
-    let robot = |k: &usize| word(pieces, *k).is_some_and(|word| word.stem == "robot");
+    let robot = |k: &usize| word_at(pieces, *k).is_some_and(|word| word.stem == "robot");
     let Some(robot) = (verb + 1..verb + 9).find(robot) else { return false };
-    let between: Vec<&str> = (verb + 1..robot).map(|k| text(pieces, k)).filter(|text| *text != "the").collect();
-    let direct = word(pieces, verb).is_some_and(|word| {
+    let between: Vec<&str> = (verb + 1..robot).map(|k| text_at(pieces, k)).filter(|text| *text != "the").collect();
+    let direct = word_at(pieces, verb).is_some_and(|word| {
         matches!(word.stem.as_str(), "follow" | "block" | "approach" | "overtake" | "wave" | "chase" | "obstruct")
     });
     let leads = matches!(between.last(), Some(&("towards" | "toward" | "behind" | "past" | "beside" | "after")))

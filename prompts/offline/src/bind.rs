@@ -214,9 +214,13 @@ pub(crate) fn people_deed(
         thread.led = Some((people.to_vec(), followers));
     }
     // `follows the facilitator rather than the robot`
-    let rather = |robot: usize| (1..=3).filter_map(|back| robot.checked_sub(back)).any(|k| matches!(text(k), "than" | "not"));
-    let object =
-        if act == Act::Follow && found.robots.iter().all(|robot| *robot < at || rather(*robot)) { object } else { None };
+    let rather =
+        |robot: usize| (1..=3).filter_map(|back| robot.checked_sub(back)).any(|k| matches!(text(k), "than" | "not"));
+    let object = if act == Act::Follow && found.robots.iter().all(|robot| *robot < at || rather(*robot)) {
+        object
+    } else {
+        None
+    };
     let startled = (at..=to).any(|i| {
         stretch
             .words

@@ -3,7 +3,7 @@
 
 use crate::lexicon::lexicon;
 use crate::noun::plural;
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, comma_at, text_at, word_at};
 
 /// Words before a name that belong to it.
 const TITLES: &[&str] = &["mr", "mrs", "ms", "miss", "prof", "sister", "dr"];
@@ -55,15 +55,14 @@ pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
 fn second(pieces: &mut Vec<Piece>) {
     let mut at = 0;
     while at + 5 < pieces.len() {
-        let one = matches!(text(pieces, at), "a" | "the")
-            && (lexicon().ordinals.contains_key(text(pieces, at + 1)) || text(pieces, at + 1) == "other")
-            || text(pieces, at + 1) == "another";
-        let generic = word(pieces, at + 2)
-            .and_then(|word| lexicon().roles.get(&word.stem))
-            .is_some_and(|role| role.generic);
-        let other = comma(pieces, at + 3) && matches!(text(pieces, at + 4), "a" | "an");
-        let noun = (at + 5..at + 8).take_while(|k| word(pieces, *k).is_some()).find(|k| role(pieces, *k));
-        if one && generic && other && noun.is_some() && !comma(pieces, noun.unwrap_or(at) + 1) {
+        let one = matches!(text_at(pieces, at), "a" | "the")
+            && (lexicon().ordinals.contains_key(text_at(pieces, at + 1)) || text_at(pieces, at + 1) == "other")
+            || text_at(pieces, at + 1) == "another";
+        let generic =
+            word_at(pieces, at + 2).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic);
+        let other = comma_at(pieces, at + 3) && matches!(text_at(pieces, at + 4), "a" | "an");
+        let noun = (at + 5..at + 8).take_while(|k| word_at(pieces, *k).is_some()).find(|k| role(pieces, *k));
+        if one && generic && other && noun.is_some() && !comma_at(pieces, noun.unwrap_or(at) + 1) {
             pieces.drain(at + 2..at + 5);
         }
         at += 1;
@@ -73,14 +72,14 @@ fn second(pieces: &mut Vec<Piece>) {
 /// `Mrs. Aydin from ward 3`, `we've got Petra in accounting`: names that nothing else tells.
 fn alone(pieces: &[Piece], known: &mut Vec<String>) {
     for at in 0..pieces.len() {
-        let titled = matches!(text(pieces, at), "mr" | "mrs" | "ms" | "miss");
-        let got = matches!(text(pieces, at), "got" | "picture" | "imagine" | "meet");
-        let from = |k: usize| matches!(text(pieces, k), "in" | "from" | "at" | "of");
+        let titled = matches!(text_at(pieces, at), "mr" | "mrs" | "ms" | "miss");
+        let got = matches!(text_at(pieces, at), "got" | "picture" | "imagine" | "meet");
+        let from = |k: usize| matches!(text_at(pieces, k), "in" | "from" | "at" | "of");
         // `Petra in accounting is …`; `Avoidance in its mildest form: …` is nobody
-        let goes_on = |k: usize| word(pieces, k).is_some_and(|word| lexicon().verbs.contains(&word.stem));
+        let goes_on = |k: usize| word_at(pieces, k).is_some_and(|word| lexicon().verbs.contains(&word.stem));
         let placed = ends(pieces, at.wrapping_sub(1))
             && from(at + 1)
-            && (at + 3..at + 6).any(|k| goes_on(k) || comma(pieces, k) && text(pieces, k + 1) == "who");
+            && (at + 3..at + 6).any(|k| goes_on(k) || comma_at(pieces, k) && text_at(pieces, k + 1) == "who");
         let start = if titled || got { at + 1 } else { at };
         if !(titled || got || placed) || !capital(pieces, start) {
             continue;
@@ -107,30 +106,18 @@ struct Found {
     drop: Vec<(usize, usize)>,
 }
 
-fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
-    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
-}
-
-fn text(pieces: &[Piece], at: usize) -> &str {
-    word(pieces, at).map_or("", |word| word.text.as_str())
-}
-
-fn comma(pieces: &[Piece], at: usize) -> bool {
-    matches!(pieces.get(at), Some(Piece::Comma))
-}
-
 /// Whether a clause part ends here.
 fn ends(pieces: &[Piece], at: usize) -> bool {
     !matches!(pieces.get(at), Some(Piece::Word(_)))
 }
 
 fn role(pieces: &[Piece], at: usize) -> bool {
-    word(pieces, at).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
+    word_at(pieces, at).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
 }
 
 /// A word with a capital that no table has.
 fn capital(pieces: &[Piece], at: usize) -> bool {
-    word(pieces, at).is_some_and(|word| {
+    word_at(pieces, at).is_some_and(|word| {
         word.capital
             && word.text.len() > 1
             && word.text.chars().all(char::is_alphabetic)
@@ -143,36 +130,37 @@ fn capital(pieces: &[Piece], at: usize) -> bool {
 /// A name with what belongs to it, `old Mrs. Whitcombe`: its last word, by which somebody is called, and where it ends.
 fn name(pieces: &[Piece], at: usize) -> Option<(String, usize)> {
     let belongs = |k: &usize| {
-        TITLES.contains(&text(pieces, *k))
-            || lexicon().adjectives.contains(text(pieces, *k))
-            || matches!(text(pieces, *k), "poor" | "little" | "dear" | "good")
+        TITLES.contains(&text_at(pieces, *k))
+            || lexicon().adjectives.contains(text_at(pieces, *k))
+            || matches!(text_at(pieces, *k), "poor" | "little" | "dear" | "good")
     };
     let first = (at..at + 3).take_while(belongs).last().map_or(at, |last| last + 1);
     let last = (first..first + 2).take_while(|k| capital(pieces, *k)).last()?;
-    Some((word(pieces, last)?.stem.clone(), last + 1))
+    Some((word_at(pieces, last)?.stem.clone(), last + 1))
 }
 
 /// `our oldest picker from shift 2`: the noun, and where that ends.
 fn described(pieces: &[Piece], at: usize) -> Option<(usize, usize)> {
     // `one of our pickers`
-    let start = if text(pieces, at) == "one" && text(pieces, at + 1) == "of" { at + 2 } else { at };
-    if !WHOSE.contains(&text(pieces, start)) {
+    let start = if text_at(pieces, at) == "one" && text_at(pieces, at + 1) == "of" { at + 2 } else { at };
+    if !WHOSE.contains(&text_at(pieces, start)) {
         return None;
     }
-    let run = (start + 1..start + 1 + SPAN).take_while(|k| word(pieces, *k).is_some() && !FROM.contains(&text(pieces, *k)));
+    let run = (start + 1..start + 1 + SPAN)
+        .take_while(|k| word_at(pieces, *k).is_some() && !FROM.contains(&text_at(pieces, *k)));
     let run: Vec<usize> = run.collect();
     let last = *run.last()?;
     let known = run.iter().rev().copied().find(|k| role(pieces, *k));
     // `the dietician`
     let noun = known.unwrap_or(last);
-    let strange = word(pieces, noun).is_some_and(|word| {
+    let strange = word_at(pieces, noun).is_some_and(|word| {
         !lexicon().has(word) && word.text.len() > 4 && !word.capital && word.text.chars().all(char::is_alphabetic)
     });
     if noun != last || known.is_none() && !strange {
         return None;
     }
     // `from ward 6`, `on shift 2`
-    let end = if FROM.contains(&text(pieces, last + 1)) {
+    let end = if FROM.contains(&text_at(pieces, last + 1)) {
         (last + 1..last + 2 + SPAN).find(|k| ends(pieces, *k))?
     } else {
         last + 1
@@ -183,23 +171,23 @@ fn described(pieces: &[Piece], at: usize) -> Option<(usize, usize)> {
 /// `Dele, the porter, …`
 fn before(pieces: &[Piece], at: usize) -> Option<Found> {
     // Inside a name no name begins.
-    if at > 0 && (capital(pieces, at - 1) || TITLES.contains(&text(pieces, at - 1))) {
+    if at > 0 && (capital(pieces, at - 1) || TITLES.contains(&text_at(pieces, at - 1))) {
         return None;
     }
     let (name, mark) = name(pieces, at)?;
-    if !comma(pieces, mark) {
+    if !comma_at(pieces, mark) {
         return None;
     }
     let (noun, end) = described(pieces, mark + 1)?;
     if !ends(pieces, end) {
         return None;
     }
-    let one_of = text(pieces, mark + 1) == "one";
+    let one_of = text_at(pieces, mark + 1) == "one";
     let whose = mark + if one_of { 3 } else { 1 };
     // The first mark goes with the name; the second one parts nothing any more, if the sentence goes on.
     let mut drop = vec![(at, whose)];
-    let listed = text(pieces, end + 1) == "and" || lexicon().roles.contains_key(text(pieces, end + 2));
-    if comma(pieces, end) && !listed {
+    let listed = text_at(pieces, end + 1) == "and" || lexicon().roles.contains_key(text_at(pieces, end + 2));
+    if comma_at(pieces, end) && !listed {
         drop.push((end, end + 1));
     }
     Some(Found { noun, end, whose: Some(whose), names: vec![name], drop })
@@ -207,48 +195,52 @@ fn before(pieces: &[Piece], at: usize) -> Option<Found> {
 
 /// `our foreman, Marek, …`, `her colleague Jonas`
 fn after(pieces: &[Piece], at: usize) -> Option<Found> {
-    if !role(pieces, at) || word(pieces, at).is_some_and(|word| plural(word) || !word.called.is_empty() || word.stem == "doctor" && word.text == "dr") {
+    if !role(pieces, at)
+        || word_at(pieces, at)
+            .is_some_and(|word| plural(word) || !word.called.is_empty() || word.stem == "doctor" && word.text == "dr")
+    {
         return None;
     }
     if let Some((name, end)) = name(pieces, at + 1) {
         // `employee Tom waves`, and not `nurse Station`
-        let goes_on = ends(pieces, end) || word(pieces, end).is_some_and(|word| !word.capital);
+        let goes_on = ends(pieces, end) || word_at(pieces, end).is_some_and(|word| !word.capital);
         return goes_on.then(|| Found { noun: at, end: at, whose: None, names: vec![name], drop: vec![(at + 1, end)] });
     }
     // `our foreman on shift 2, Marek, …`
-    let from = FROM.contains(&text(pieces, at + 1));
+    let from = FROM.contains(&text_at(pieces, at + 1));
     let mark = if from { (at + 1..at + 2 + SPAN).find(|k| ends(pieces, *k))? } else { at + 1 };
-    if !comma(pieces, mark) {
+    if !comma_at(pieces, mark) {
         return None;
     }
     let (name, end) = name(pieces, mark + 1)?;
-    let other = |k: usize| text(pieces, k) == "and" || capital(pieces, k);
-    if !ends(pieces, end) || comma(pieces, end) && other(end + 1) {
+    let other = |k: usize| text_at(pieces, k) == "and" || capital(pieces, k);
+    if !ends(pieces, end) || comma_at(pieces, end) && other(end + 1) {
         return None;
     }
-    let close = usize::from(comma(pieces, end));
+    let close = usize::from(comma_at(pieces, end));
     Some(Found { noun: at, end: mark, whose: None, names: vec![name], drop: vec![(mark, end + close)] })
 }
 
 /// `two loaders, Chuy and Big Tom, …`
 fn several(pieces: &[Piece], at: usize) -> Option<Found> {
-    if !role(pieces, at) || !word(pieces, at).is_some_and(plural) || !comma(pieces, at + 1) {
+    if !role(pieces, at) || !word_at(pieces, at).is_some_and(plural) || !comma_at(pieces, at + 1) {
         return None;
     }
-    let count = (1..=4).filter_map(|back| at.checked_sub(back)).find_map(|k| word(pieces, k).and_then(Word::count))?;
+    let count =
+        (1..=4).filter_map(|back| at.checked_sub(back)).find_map(|k| word_at(pieces, k).and_then(Word::count))?;
     let mut names = Vec::new();
     let mut next = at + 2;
     while let Some((name, end)) = name(pieces, next) {
         names.push(name);
         next = end;
-        let mark = usize::from(comma(pieces, next));
-        let and = usize::from(text(pieces, next + mark) == "and");
+        let mark = usize::from(comma_at(pieces, next));
+        let and = usize::from(text_at(pieces, next + mark) == "and");
         if mark + and == 0 || name_ends(pieces, next + mark + and) {
             break;
         }
         next += mark + and;
     }
-    let close = usize::from(comma(pieces, next));
+    let close = usize::from(comma_at(pieces, next));
     let all = usize::try_from(count) == Ok(names.len()) && names.len() > 1;
     all.then(|| Found { noun: at, end: at, whose: None, names, drop: vec![(at + 1, next + close)] })
 }

@@ -241,7 +241,9 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         let Some(at) = find(&stretch.words, phrase, 0, false, &free) else { continue };
         let first = at.first().copied().unwrap_or(0);
         // `I'd like to see it ask them`
-        let word = |back: usize| first.checked_sub(back).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str());
+        let word = |back: usize| {
+            first.checked_sub(back).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str())
+        };
         let wished = word(1) == "to" && matches!(word(2), "like" | "want" | "love" | "need" | "wanted");
         if negated(stretch, first) || wished && !temporal {
             continue;
@@ -570,7 +572,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         if lex.impossible.contains(&word.stem) && !word.used && !itself {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
-            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie") 
+            if matches!(word.stem.as_str(), "sit" | "kneel" | "lie")
                 && found.deeds.iter().all(|deed| matches!(deed.act, Act::Ignore | Act::Look | Act::Talk))
             {
                 seated.push(Deed { act: Act::Stand, at: i, to: i, negated: false });

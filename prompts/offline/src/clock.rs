@@ -1,7 +1,7 @@
 //! Times of day, which count nobody: `at a quarter to eight`, `around half six`, `ten past two`, `at ten in the morning`.
 
 use crate::lexicon::lexicon;
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, text_at, word_at};
 
 /// Words right before an hour.
 const BEFORE: &[&str] = &["at", "around", "about", "by", "since", "until", "till", "before", "after", "past", "from"];
@@ -25,34 +25,26 @@ pub(crate) fn clock(pieces: &mut [Piece]) {
     }
 }
 
-fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
-    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
-}
-
-fn text(pieces: &[Piece], at: usize) -> &str {
-    word(pieces, at).map_or("", |word| word.text.as_str())
-}
-
 fn number(pieces: &[Piece], at: usize) -> Option<u32> {
-    word(pieces, at).and_then(Word::count)
+    word_at(pieces, at).and_then(Word::count)
 }
 
 /// `a quarter to eight`, `ten past two`, `half past nine`, `half six`: where that ends.
 fn minutes(pieces: &[Piece], at: usize) -> Option<usize> {
     let hour = |k: usize| number(pieces, k).is_some_and(|n| (1..=12).contains(&n));
-    let part = matches!(text(pieces, at), "quarter" | "half");
+    let part = matches!(text_at(pieces, at), "quarter" | "half");
     let some = number(pieces, at).is_some_and(|n| n < 30);
-    let turned = |k: usize| matches!(text(pieces, k), "past" | "to");
+    let turned = |k: usize| matches!(text_at(pieces, k), "past" | "to");
     if (part || some) && turned(at + 1) && hour(at + 2) && ends(pieces, at + 3) {
         return Some(at + 3);
     }
-    let half = text(pieces, at) == "half" && hour(at + 1) && ends(pieces, at + 2);
+    let half = text_at(pieces, at) == "half" && hour(at + 1) && ends(pieces, at + 2);
     half.then_some(at + 2)
 }
 
 /// Whether nobody can be counted by the number before this place.
 fn ends(pieces: &[Piece], at: usize) -> bool {
-    word(pieces, at).is_none_or(|next| {
+    word_at(pieces, at).is_none_or(|next| {
         !lexicon().roles.contains_key(&next.stem)
             && !matches!(next.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "of" | "more")
             && (next.text != next.stem || !lexicon().verbs.contains(&next.stem))
@@ -61,17 +53,32 @@ fn ends(pieces: &[Piece], at: usize) -> bool {
 
 /// `at ten, …`, `four in the morning`, `around nine she comes`: where that ends.
 fn hour(pieces: &[Piece], at: usize) -> Option<usize> {
-    let n = number(pieces, at).filter(|n| (1..=12).contains(n) && text(pieces, at) != "one")?;
-    let before = at.checked_sub(1).map_or("", |k| text(pieces, k));
-    let day = matches!(text(pieces, at + 1), "in" | "at" | "this" | "every")
-        && (at + 2..at + 4).any(|k| DAY.contains(&text(pieces, k)));
-    if AFTER.contains(&text(pieces, at + 1)) || day {
+    let n = number(pieces, at).filter(|n| (1..=12).contains(n) && text_at(pieces, at) != "one")?;
+    let before = at.checked_sub(1).map_or("", |k| text_at(pieces, k));
+    let day = matches!(text_at(pieces, at + 1), "in" | "at" | "this" | "every")
+        && (at + 2..at + 4).any(|k| DAY.contains(&text_at(pieces, k)));
+    if AFTER.contains(&text_at(pieces, at + 1)) || day {
         return Some(at + 1);
     }
-    let closes = word(pieces, at + 1).is_none()
-        || matches!(text(pieces, at + 1), "when" | "as" | "because" | "so" | "and" | "he" | "she" | "they" | "i" | "we" | "our" | "my" | "the" | "this");
+    let closes = word_at(pieces, at + 1).is_none()
+        || matches!(
+            text_at(pieces, at + 1),
+            "when"
+                | "as"
+                | "because"
+                | "so"
+                | "and"
+                | "he"
+                | "she"
+                | "they"
+                | "i"
+                | "we"
+                | "our"
+                | "my"
+                | "the"
+                | "this"
+        );
     // `after two, …` may be two of those who are there; `at ten` may not.
-    let told = matches!(before, "at" | "around" | "past")
-        || n > 6 && BEFORE.contains(&before);
+    let told = matches!(before, "at" | "around" | "past") || n > 6 && BEFORE.contains(&before);
     (told && closes).then_some(at + 1)
 }

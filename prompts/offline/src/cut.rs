@@ -152,7 +152,8 @@ fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             continue;
         }
         // `towards the robot, which asks him to wait`
-        let robot = out.len().checked_sub(2).and_then(|k| out.get(k)).cloned().flatten().filter(|word| word.stem == "robot");
+        let robot =
+            out.len().checked_sub(2).and_then(|k| out.get(k)).cloned().flatten().filter(|word| word.stem == "robot");
         if let (Some(robot), "which", true) = (robot, word(i), out.last().is_some_and(Option::is_none)) {
             out.push(Some(robot));
             i += 1;
@@ -257,7 +258,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
     let opens = i == 0 || words.get(i - 1).is_some_and(Option::is_none) || before == "and" || before == "then";
     let seeing = |k: usize| (sees(k) || stem(k) == "hear") && text(k).ends_with("ing");
     let counted = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
-    let message = |verb: &str| matches!(verb, "signal" | "tell" | "indicate" | "show" | "gesture" | "announce" | "inform");
+    let message =
+        |verb: &str| matches!(verb, "signal" | "tell" | "indicate" | "show" | "gesture" | "announce" | "inform");
     match text(i) {
         "and" if text(i + 1) == "a" && text(i + 2) == "half" => (None, 1),
         "at" if text(i + 1) == "that" && matches!(text(i + 2), "he" | "she" | "they" | "it") => (Some(Joint::Said), 2),

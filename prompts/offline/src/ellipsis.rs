@@ -80,12 +80,18 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     }
     let relation = deed::relation(only.act)?;
     let is = |i: &usize| {
-        story.cast.people.get(*i).is_some_and(|person| person.relation.as_ref().is_some_and(|(own, _)| *own == relation))
+        story
+            .cast
+            .people
+            .get(*i)
+            .is_some_and(|person| person.relation.as_ref().is_some_and(|(own, _)| *own == relation))
     };
     let set = story.cast.latest();
     let mut fitting = set.iter().copied().filter(is);
     let who = fitting.next().filter(|_| fitting.next().is_none())?;
-    if who != guessed && let Some(person) = story.cast.people.get_mut(guessed) {
+    if who != guessed
+        && let Some(person) = story.cast.people.get_mut(guessed)
+    {
         person.bound = person.relation.is_some() || !person.rules.is_empty();
     }
     Some(who)

@@ -1,7 +1,7 @@
 //! Headings and labels: words and numbers that name something and count nobody.
 
 use crate::lexicon::lexicon;
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, word_at};
 
 /// What a heading speaks of.
 const HEADS: &[&str] = &[
@@ -285,11 +285,6 @@ pub(crate) fn described(words: &mut [Option<Word>]) {
             }
         }
     }
-}
-
-/// The word at this place, if no mark stands there.
-fn word_at(pieces: &[Piece], at: usize) -> Option<&Word> {
-    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
 }
 
 /// Words before a total that say no more than that it is one: `number of pedestrians: 2`.

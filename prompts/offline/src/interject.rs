@@ -1,7 +1,7 @@
 //! Words between marks that say nothing of the scene: `never, under any circumstances, steps aside`, `the girl, bless her, stares`.
 
 use crate::lexicon::lexicon;
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, comma_at, text_at, word_at};
 
 /// Such words, without the marks around them.
 const SAID: &[&[&str]] = &[
@@ -105,12 +105,14 @@ const SAID: &[&[&str]] = &[
 pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
     let mut at = 0;
     while at < pieces.len() {
-        let found = SAID.iter().map(|said| said.len()).filter(|_| opens(pieces, at)).zip(SAID).find(|(length, said)| {
-            said.iter().enumerate().all(|(k, wanted)| text(pieces, at + k) == *wanted) && comma(pieces, at + length)
-        });
+        let found =
+            SAID.iter().map(|said| said.len()).filter(|_| opens(pieces, at)).zip(SAID).find(|(length, said)| {
+                said.iter().enumerate().all(|(k, wanted)| text_at(pieces, at + k) == *wanted)
+                    && comma_at(pieces, at + length)
+            });
         if let Some((length, _)) = found {
             // Behind a stop the comma goes with them; between commas both go.
-            let from = if at > 0 && comma(pieces, at - 1) { at - 1 } else { at };
+            let from = if at > 0 && comma_at(pieces, at - 1) { at - 1 } else { at };
             pieces.drain(from..=at + length);
             at = from;
         } else {
@@ -124,22 +126,22 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
     let mut told = Vec::new();
     for at in 0..pieces.len() {
         let first = at == 0 || matches!(pieces.get(at - 1), Some(Piece::Stop | Piece::Colon));
-        if first && matches!(text(pieces, at), "following" | "given" | "considering" | "regarding") {
-            let end = (at + 1..at + 12).find(|k| comma(pieces, *k));
+        if first && matches!(text_at(pieces, at), "following" | "given" | "considering" | "regarding") {
+            let end = (at + 1..at + 12).find(|k| comma_at(pieces, *k));
             let body = |k: usize| {
-                word(pieces, k).is_some_and(|word| word.stem == "robot" || lexicon().roles.contains_key(&word.stem))
+                word_at(pieces, k).is_some_and(|word| word.stem == "robot" || lexicon().roles.contains_key(&word.stem))
             };
             told.extend(end.filter(|end| !(at..*end).any(body)).map(|end| at..end).into_iter().flatten());
         }
         // Joined by a hyphen, two who deal with each other name a kind of thing.
-        let joined = word(pieces, at).zip(word(pieces, at + 1)).is_some_and(|(one, other)| {
+        let joined = word_at(pieces, at).zip(word_at(pieces, at + 1)).is_some_and(|(one, other)| {
             let role = |word: &Word| {
                 lexicon().roles.contains_key(&word.stem) || matches!(word.stem.as_str(), "robot" | "follower")
             };
             one.to + 1 == other.from && role(one) && role(other)
         });
-        let hyphen = joined && word(pieces, at + 2).is_some_and(|next| !lexicon().verbs.contains(&next.stem));
-        if hyphen && !matches!(text(pieces, at + 2), "and" | "who" | "in" | "on" | "at") {
+        let hyphen = joined && word_at(pieces, at + 2).is_some_and(|next| !lexicon().verbs.contains(&next.stem));
+        if hyphen && !matches!(text_at(pieces, at + 2), "and" | "who" | "in" | "on" | "at") {
             told.extend([at, at + 1]);
         }
     }
@@ -153,16 +155,4 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
 /// Whether such words may begin here.
 fn opens(pieces: &[Piece], at: usize) -> bool {
     at == 0 || !matches!(pieces.get(at - 1), Some(Piece::Word(_)))
-}
-
-fn comma(pieces: &[Piece], at: usize) -> bool {
-    matches!(pieces.get(at), Some(Piece::Comma))
-}
-
-fn word(pieces: &[Piece], at: usize) -> Option<&Word> {
-    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
-}
-
-fn text(pieces: &[Piece], at: usize) -> &str {
-    word(pieces, at).map_or("", |word| word.text.as_str())
 }

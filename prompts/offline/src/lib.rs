@@ -22,7 +22,9 @@ mod words;
 
 mod named;
 mod noun;
+mod numbered;
 
+mod meant;
 mod mention;
 mod negation;
 mod refer;
@@ -40,9 +42,9 @@ mod arrange;
 mod asker;
 mod called;
 mod clock;
+mod cut;
 mod interject;
 mod preamble;
-mod cut;
 
 mod again;
 mod clause;

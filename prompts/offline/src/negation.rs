@@ -22,7 +22,9 @@ pub(crate) fn negated(stretch: &Stretch, at: usize) -> bool {
         return true;
     }
     // `no looking`, `no yield`, `any gaze`
-    if before(1) == "no" || before(1) == "any" && (2..=4).any(|back| matches!(before(back), "not" | "without" | "never")) {
+    if before(1) == "no"
+        || before(1) == "any" && (2..=4).any(|back| matches!(before(back), "not" | "without" | "never"))
+    {
         return true;
     }
     // `without stopping or looking`, `do not step aside or stop`
@@ -38,7 +40,21 @@ pub(crate) fn negated(stretch: &Stretch, at: usize) -> bool {
         .find(|back| {
             !matches!(
                 before(*back),
-                "so" | "much" | "as" | "a" | "even" | "once" | "really" | "ever" | "at" | "all" | "to" | "actually" | "simply" | "any" | "exhibit" | "show"
+                "so" | "much"
+                    | "as"
+                    | "a"
+                    | "even"
+                    | "once"
+                    | "really"
+                    | "ever"
+                    | "at"
+                    | "all"
+                    | "to"
+                    | "actually"
+                    | "simply"
+                    | "any"
+                    | "exhibit"
+                    | "show"
             )
         })
         .unwrap_or(1);
@@ -80,7 +96,8 @@ pub(crate) fn denied(found: &mut [Stretch]) {
             let deny = before.words.iter().position(denies)?;
             // Nothing else is said behind the word that denies: a list goes on.
             let verbs = before.words.iter().skip(deny + 1);
-            let list = verbs.filter(|word| lexicon().verbs.contains(&word.stem) && !word.text.ends_with("ing")).count() == 0;
+            let list =
+                verbs.filter(|word| lexicon().verbs.contains(&word.stem) && !word.text.ends_with("ing")).count() == 0;
             before.words.get(deny).cloned().filter(|_| list)
         });
         let Some(deny) = before else { continue };

@@ -104,8 +104,26 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
             };
             matches!(
                 next.text.as_str(),
-                "station" | "badge" | "desk" | "bed" | "uniform" | "trolley" | "cart" | "area" | "office" | "lounge" | "effect" | "behaviour" | "behavior" | "traffic"
-                    | "transport" | "flow" | "safety" | "experience" | "entrance" | "satisfaction"
+                "station"
+                    | "badge"
+                    | "desk"
+                    | "bed"
+                    | "uniform"
+                    | "trolley"
+                    | "cart"
+                    | "area"
+                    | "office"
+                    | "lounge"
+                    | "effect"
+                    | "behaviour"
+                    | "behavior"
+                    | "traffic"
+                    | "transport"
+                    | "flow"
+                    | "safety"
+                    | "experience"
+                    | "entrance"
+                    | "satisfaction"
             ) || !generic && lex.places.iter().any(place)
         })
     });

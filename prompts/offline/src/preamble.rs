@@ -2,15 +2,57 @@
 
 use crate::lexicon::lexicon;
 use crate::mention::{Mention, Who, mentions};
-use crate::words::{Piece, Word};
+use crate::words::{Piece, Word, word_at};
 
 /// Words of whoever asks, of studies, and of what people are like in general.
 const SIGNS: &[&str] = &[
-    "i", "we", "us", "my", "our", "you", "your", "study", "literature", "experiment", "research", "about",
-    "interested", "wonder", "question", "questionnaire", "hypothesis", "claim", "claims", "complained", "complain",
-    "report", "reported", "afraid", "scared", "like", "love", "hate", "tend", "cause", "worry", "worries", "cope",
-    "copes", "rate", "proof", "afraid", "affraid", "usually", "often", "always", "normally", "sometimes", "whether",
-    "how", "isn", "people",
+    "i",
+    "we",
+    "us",
+    "my",
+    "our",
+    "you",
+    "your",
+    "study",
+    "literature",
+    "experiment",
+    "research",
+    "about",
+    "interested",
+    "wonder",
+    "question",
+    "questionnaire",
+    "hypothesis",
+    "claim",
+    "claims",
+    "complained",
+    "complain",
+    "report",
+    "reported",
+    "afraid",
+    "scared",
+    "like",
+    "love",
+    "hate",
+    "tend",
+    "cause",
+    "worry",
+    "worries",
+    "cope",
+    "copes",
+    "rate",
+    "proof",
+    "afraid",
+    "affraid",
+    "usually",
+    "often",
+    "always",
+    "normally",
+    "sometimes",
+    "whether",
+    "how",
+    "isn",
+    "people",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
@@ -45,13 +87,21 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
             (words, found)
         })
         .collect();
-    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| introduces(words, mention))) else { return };
-    let silent: Vec<(usize, usize)> =
-        parts.iter().zip(&spoken).take(first).filter(|((_, to), (words, found))| {
+    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| introduces(words, mention)))
+    else {
+        return;
+    };
+    let silent: Vec<(usize, usize)> = parts
+        .iter()
+        .zip(&spoken)
+        .take(first)
+        .filter(|((_, to), (words, found))| {
             // `Role reversal, the human guides: an intern …`
             let heads = matches!(pieces.get(*to), Some(Piece::Colon)) && words.len() <= 9;
             general(words, found, heads)
-        }).map(|(part, _)| *part).collect();
+        })
+        .map(|(part, _)| *part)
+        .collect();
     for (from, to) in silent {
         for piece in pieces.iter_mut().take(to).skip(from) {
             if let Piece::Word(word) = piece {
@@ -63,10 +113,8 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
 
 /// `(n = 24 participants)`: so many take part in a study, and not in the scene, if that is told of others.
 fn trials(pieces: &mut [Piece]) {
-    let word = |k: usize| if let Some(Piece::Word(word)) = pieces.get(k) { Some(word) } else { None };
-    let role = |k: usize| {
-        word(k).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| !role.generic)
-    };
+    let word = |k: usize| word_at(pieces, k);
+    let role = |k: usize| word(k).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| !role.generic);
     let scene = (0..pieces.len()).any(role);
     let told: Vec<usize> = (0..pieces.len())
         .filter(|k| {
@@ -90,9 +138,7 @@ fn introduces(words: &[Word], mention: &Mention) -> bool {
         Who::New { .. } if mention.group && mention.role.is_none() => false,
         Who::New { count, .. } => count.is_some_and(|n| n > 1) || count.is_some() && mention.role.is_some(),
         Who::Definite { .. } => mention.role.is_some() && !owned,
-        Who::More(_) | Who::PartOfNew(..) | Who::AllOf(_) | Who::OrdinalOf { .. } | Who::Number(_) => {
-            true
-        }
+        Who::More(_) | Who::PartOfNew(..) | Who::AllOf(_) | Who::OrdinalOf { .. } | Who::Number(_) => true,
         Who::Bare(n) => *n > 1,
         Who::PartOf(_)
         | Who::ToldApart
@@ -159,9 +205,37 @@ fn opines(words: &[Word], mention: &Mention) -> bool {
     let verb = words.get(mention.to + 1).map_or("", |word| word.text.as_str());
     own && matches!(
         verb,
-        "want" | "wants" | "wanted" | "insist" | "insists" | "complain" | "complains" | "complained" | "say" | "says"
-            | "said" | "claim" | "claims" | "think" | "thinks" | "worry" | "worries" | "hate" | "hates" | "love"
-            | "loves" | "like" | "likes" | "tend" | "need" | "needs" | "keep" | "keeps" | "get" | "have"
-            | "drives" | "works"
+        "want"
+            | "wants"
+            | "wanted"
+            | "insist"
+            | "insists"
+            | "complain"
+            | "complains"
+            | "complained"
+            | "say"
+            | "says"
+            | "said"
+            | "claim"
+            | "claims"
+            | "think"
+            | "thinks"
+            | "worry"
+            | "worries"
+            | "hate"
+            | "hates"
+            | "love"
+            | "loves"
+            | "like"
+            | "likes"
+            | "tend"
+            | "need"
+            | "needs"
+            | "keep"
+            | "keeps"
+            | "get"
+            | "have"
+            | "drives"
+            | "works"
     )
 }

@@ -37,7 +37,8 @@ pub(crate) fn others(
         // `one after another` is a manner, nobody new.
         "another" if at > 0 && matches!(text(at - 1), "after" | "to" | "from") => None,
         "another" => {
-            let unit = words.get(at + 2).is_some_and(|word| matches!(word.stem.as_str(), "second" | "meter" | "minute"));
+            let unit =
+                words.get(at + 2).is_some_and(|word| matches!(word.stem.as_str(), "second" | "meter" | "minute"));
             if unit && count(at + 1).is_some() {
                 return None;
             }

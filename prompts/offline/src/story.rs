@@ -6,11 +6,12 @@ use crate::again;
 use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
-use crate::clause::{self, Found, mark_each};
+use crate::clause::{self, mark_each};
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
 use crate::lexicon::{Act, Cue, lexicon};
+use crate::meant::meant;
 use crate::mention::Who;
 use crate::robot_deed::robot_deed;
 use crate::timing::{quiet, robot_first, timing, trigger};
@@ -312,9 +313,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     let both = stretch.joint == Joint::Who
         && !listed.is_empty()
         && found.mentions.is_empty()
-        && stretch.words.first().is_some_and(|word| {
-            word.text == word.stem && lexicon().verbs.contains(&word.stem) || word.text == "are"
-        });
+        && stretch
+            .words
+            .first()
+            .is_some_and(|word| word.text == word.stem && lexicon().verbs.contains(&word.stem) || word.text == "are");
     let previous = match previous {
         Subject::People(people) if both && people.iter().all(|i| !listed.contains(i)) => {
             let all: Vec<usize> = listed.iter().chain(&people).copied().collect();
@@ -519,88 +521,4 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     {
         thread.subject = Subject::People(people.clone());
     }
-}
-
-/// Whom the mentions of a clause mean, in order, with their first and last words.
-fn meant(
-    story: &mut Story,
-    thread: &Thread,
-    stretch: &mut Stretch,
-    found: &Found,
-    text: &str,
-    next: Option<Joint>,
-) -> Vec<(usize, usize, Vec<usize>)> {
-    let mut meant: Vec<(usize, usize, Vec<usize>)> = Vec::new();
-    let spoken_of = story.cast.last.clone();
-    for mention in &found.mentions {
-        // `my staff get grumpy` tells of whoever asks.
-        let owned = |word: &crate::words::Word| matches!(word.text.as_str(), "my" | "our");
-        let people = matches!(mention.who, Who::New { count: None, .. });
-        let owner = |k: usize| {
-            stretch.words.get(k).is_some_and(owned) || people && k > 0 && stretch.words.get(k - 1).is_some_and(owned)
-        };
-        let told = stretch
-            .words
-            .get(mention.to + 1)
-            .is_some_and(|word| lexicon().verbs.contains(&word.stem) && word.stem != "be");
-        if !found.acts() && told && owner(mention.from) && next != Some(Joint::Who) {
-            for word in stretch.words.iter_mut().take(mention.to + 1).skip(mention.from) {
-                word.used = false;
-            }
-            continue;
-        }
-        let words = stretch.words.get(mention.from..=mention.to).unwrap_or_default();
-        let from = words.first().map_or(0, |word| word.from);
-        let to = words.last().map_or(0, |word| word.to);
-        let said = text.get(from..to).unwrap_or_default();
-        let declares = found.declares
-            || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
-        let known = story.cast.people.len();
-        let made_of: Vec<String> = words.iter().flat_map(|word| word.made_of.clone()).collect();
-        let mut people = if made_of.is_empty() {
-            story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)
-        } else {
-            story.cast.made_of(mention, declares, said, &made_of)
-        };
-        story.cast.call(mention, words, &people);
-        let names: Vec<&String> = words.iter().flat_map(|word| &word.called).collect();
-        story.cast.name(&people, &names);
-        // `a few people`, `several nurses`
-        let vague =
-            words.iter().any(|word| matches!(word.text.as_str(), "few" | "several" | "some" | "handful" | "many"));
-        if vague && mention.word.is_empty() && people.len() > 1 && people.iter().all(|i| *i >= known) {
-            story.cast.notes.push(format!("`{said}` names no number; it was read as {} humans", people.len()));
-        }
-        if mention.who == Who::Object {
-            // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
-            let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);
-            let own =
-                meant.iter().rev().find(|(from, _, some)| robot.is_some_and(|robot| from < robot) && !some.is_empty());
-            people = own.map_or_else(|| spoken_of.clone(), |(_, _, some)| some.clone());
-            // `a nurse asks a patient to follow her`: whoever asks, and so `she` from here on.
-            if let (true, [(_, _, asker), _, ..]) = (found.gesture.is_some() && own.is_none(), meant.as_slice()) {
-                people.clone_from(asker);
-                let word = if said == "him" { "he" } else { "she" };
-                if let ([only], "him" | "her") = (people.as_slice(), said)
-                    && let Some(person) = story.cast.people.get_mut(*only)
-                {
-                    person.pronoun.get_or_insert_with(|| word.to_owned());
-                }
-            }
-            // `another girl who follows her`: somebody else than who follows.
-            let himself = found.acts()
-                && (thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who
-                    || meant.last().is_some_and(|(_, _, own)| *own == people));
-            if himself && !story.cast.before.is_empty() {
-                people.clone_from(&story.cast.before);
-            }
-            meant.push((mention.from, mention.to, people));
-            continue;
-        }
-        if !people.is_empty() && story.cast.last != people {
-            story.cast.before = std::mem::replace(&mut story.cast.last, people.clone());
-        }
-        meant.push((mention.from, mention.to, people));
-    }
-    meant
 }

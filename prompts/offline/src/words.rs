@@ -62,6 +62,21 @@ pub(crate) enum Piece {
     Stop,
 }
 
+/// The word at this place, if no mark stands there.
+pub(crate) fn word_at(pieces: &[Piece], at: usize) -> Option<&Word> {
+    if let Some(Piece::Word(word)) = pieces.get(at) { Some(word) } else { None }
+}
+
+/// The text of the word at this place; empty for a mark.
+pub(crate) fn text_at(pieces: &[Piece], at: usize) -> &str {
+    word_at(pieces, at).map_or("", |word| word.text.as_str())
+}
+
+/// Whether a comma, or another mark inside a sentence, stands at this place.
+pub(crate) fn comma_at(pieces: &[Piece], at: usize) -> bool {
+    matches!(pieces.get(at), Some(Piece::Comma))
+}
+
 /// The words and marks of a text, in order.
 pub(crate) fn pieces(text: &str) -> Vec<Piece> {
     let chars: Vec<(usize, char)> = text.char_indices().collect();
