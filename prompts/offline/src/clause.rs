@@ -346,6 +346,12 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 });
             // `staring at his phone` sees no robot.
             let aside = phrase.means == Act::Look && aside(stretch, last);
+            // `starts walking after 12 s`
+            let counted = stretch.words.get(last).is_some_and(|word| word.text == "after")
+                && stretch.words.get(last + 1).is_some_and(|word| word.number().is_some());
+            if counted && phrase.means == Act::Follow {
+                continue;
+            }
             // `come out of a room in front of the robot`: where they come out.
             let out = phrase.means == Act::Ahead && (first..last).any(|k| text(k) == "out");
             let of_place = noun

@@ -339,9 +339,10 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     let strange = |word: &Word| {
         word.capital && word.text.len() > 1 && word.text.chars().all(char::is_alphabetic) && !lex.has(word)
     };
+    let verb = |k: usize| word(k).is_some_and(|word| lex.verbs.contains(&word.stem) && !word.capital);
     let does = |k: usize| {
         word(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !word.capital
+            lex.verbs.contains(&word.stem) && !word.capital && word.text != word.stem
                 || matches!(word.text.as_str(), "who" | "both" | "then" | "just" | "only" | "never" | "also" | "always")
         })
     };
@@ -363,7 +364,7 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
         let Some(name) = word(k).filter(|word| strange(word)) else { continue };
         // `Anna and Ben both cross`
         let pair =
-            word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && does(k + 3);
+            word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && (does(k + 3) || verb(k + 3));
         if begins(k) && (does(k + 1) || pair) {
             found.push(name.text.clone());
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));

@@ -305,7 +305,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let number = lex.ordinals.get(text(at + 1)).copied()?;
             let start = at + 2 + usize::from(text(at + 2) == "one");
             let end = noun(words, start, lex).unwrap_or(start - 1);
-            let time = matches!(text(at + 2), "time" | "later" | "after");
+            let time = matches!(text(at + 2), "time" | "later" | "after") || stem(at + 2) == "robot";
             let one = if end < start { "one" } else { "" };
             let mention = made(Who::Further(number), role(end), end).filter(|_| !time);
             return mention.map(|mention| Mention { word: one.to_owned(), ..mention });
@@ -493,7 +493,8 @@ fn counted(
     {
         let called = words.get(end).is_some_and(|word| word.capital && !lex.roles.contains_key(&word.stem));
         let many = words.get(if called { end - 1 } else { end }).is_some_and(plural);
-        return made(Who::Definite { plural: many, count: None }, role(end), false, end);
+        let mention = made(Who::Definite { plural: many, count: None }, role(end), false, end);
+        return mention.map(|mention| Mention { word: "own".to_owned(), ..mention });
     }
     if next == at && count.is_none() && words.get(at).is_some_and(|word| word.name && !word.label) {
         let mention = made(Who::Definite { plural: false, count: None }, role(at), false, at);
@@ -507,7 +508,10 @@ fn counted(
         && stranger(words, at, true, lex).is_some_and(|end| {
             // `Blood samples are urgent` names nobody.
             words.get(at..=end).is_some_and(|name| name.iter().all(|word| word.capital))
-                && words.get(end + 1).is_some_and(|word| lex.verbs.contains(&word.stem) || word.text == "who")
+                // `Earlier work suggests …` names nobody.
+                && words.get(end + 1).is_some_and(|word| {
+                    lex.verbs.contains(&word.stem) && word.text != word.stem || word.text == "who"
+                })
         })
     {
         return made(Who::Definite { plural: false, count: None }, role(at), false, at);

@@ -42,7 +42,6 @@ const SIGNS: &[&str] = &[
     "copes",
     "rate",
     "proof",
-    "afraid",
     "affraid",
     "usually",
     "often",
@@ -51,7 +50,6 @@ const SIGNS: &[&str] = &[
     "sometimes",
     "whether",
     "how",
-    "isn",
     "people",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
@@ -87,7 +85,7 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
             (words, found)
         })
         .collect();
-    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| introduces(words, mention)))
+    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| !weak(words, mention)))
     else {
         return;
     };
@@ -130,50 +128,40 @@ fn trials(pieces: &mut [Piece]) {
     }
 }
 
-/// Whether a mention says that somebody is there.
-fn introduces(words: &[Word], mention: &Mention) -> bool {
-    let owned = opines(words, mention);
-    match &mention.who {
-        // `how a dyad affects the robot`
-        Who::New { .. } if mention.group && mention.role.is_none() => false,
-        Who::New { count, .. } => count.is_some_and(|n| n > 1) || count.is_some() && mention.role.is_some(),
-        Who::Definite { .. } => mention.role.is_some() && !owned,
-        Who::More(_) | Who::PartOfNew(..) | Who::AllOf(_) | Who::OrdinalOf { .. } | Who::Number(_) => true,
-        Who::Bare(n) => *n > 1,
-        Who::PartOf(_)
-        | Who::ToldApart
-        | Who::Other(_)
-        | Who::Ordinal(_)
-        | Who::Some { .. }
-        | Who::All
-        | Who::AllBut(_)
-        | Who::Same
-        | Who::Object
-        | Who::Further(_)
-        | Who::Nobody => false,
-    }
-}
-
 /// Whether a part speaks of people in general.
 fn general(words: &[Word], found: &[Mention], heads: bool) -> bool {
+    let signs = signs(words);
+    let asks = words.first().is_some_and(|word| ASKS.contains(&word.text.as_str()));
+    (signs || heads || asks) && !found.is_empty() && found.iter().all(|mention| weak(words, mention))
+}
+
+/// Whether words tell of whoever asks, or in general.
+fn signs(words: &[Word]) -> bool {
+    words.iter().any(|word| SIGNS.contains(&word.text.as_str()))
+        // `so this one is for their induction`
+        || words.windows(2).any(|two| matches!(two, [this, one] if this.text == "this" && one.text == "one"))
+}
+
+/// Whether a mention may be of somebody who is not in the scene.
+fn weak(words: &[Word], mention: &Mention) -> bool {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let signs = words.iter().any(|word| SIGNS.contains(&word.text.as_str()));
-    let kind = |mention: &Mention| match mention.who {
+    let signs = || signs(words) || ASKS.contains(&text(0));
+    match mention.who {
         // `people in our ward`; but `I want people who …`
         Who::New { count: None, .. } => {
             !(0..mention.from).any(|k| THERE.contains(&text(k)) && mention.from - k <= 3)
                 || mention.from > 1 && text(mention.from - 1) == "with"
         }
+        // `some people love to tease it`
+        Who::New { .. } if mention.role.is_none() && text(mention.from) == "some" => signs(),
+        // `how a dyad affects the robot`
         Who::New { .. } if mention.group && mention.role.is_none() => true,
         // `somebody`, where nothing is asked for
-        Who::New { count: Some(1), .. } if mention.role.is_none() => {
-            (signs || ASKS.contains(&text(0))) && !words.iter().any(wishes)
-        }
+        Who::New { count: Some(1), .. } if mention.role.is_none() => signs() && !words.iter().any(wishes),
         // `this one is about …`, `the human guides`
         Who::Definite { .. } if mention.role.is_none() => !mention.group,
-        // `our safety officer wants proof`
-        Who::Definite { .. } => opines(words, mention),
-        Who::All | Who::Ordinal(_) | Who::ToldApart | Who::Bare(1) => true,
+        Who::Definite { .. } => opines(words, mention) || owned(words, mention),
+        Who::All | Who::Ordinal(_) | Who::ToldApart | Who::Bare(1) | Who::Same | Who::Object => true,
         Who::New { .. }
         | Who::More(_)
         | Who::PartOf(_)
@@ -184,13 +172,10 @@ fn general(words: &[Word], found: &[Mention], heads: bool) -> bool {
         | Who::Some { .. }
         | Who::AllBut(_)
         | Who::OrdinalOf { .. }
-        | Who::Same
-        | Who::Object
         | Who::Further(_)
         | Who::Number(_)
         | Who::Nobody => false,
-    };
-    (signs || heads || ASKS.contains(&text(0))) && !found.is_empty() && found.iter().all(kind)
+    }
 }
 
 /// Whether a word asks for a scene.
@@ -199,43 +184,37 @@ fn wishes(word: &Word) -> bool {
         || matches!(word.text.as_str(), "scene" | "scenario" | "case" | "please" | "if")
 }
 
-/// Whether somebody of whoever asks only has an opinion: `our safety officer wants proof that …`, `our porters like to …`.
+/// Whether somebody only has an opinion: `our safety officer wants proof that …`, `the sister won't let me …`.
 fn opines(words: &[Word], mention: &Mention) -> bool {
-    let own = words.get(mention.from).is_some_and(|word| matches!(word.text.as_str(), "our" | "my"));
-    let verb = words.get(mention.to + 1).map_or("", |word| word.text.as_str());
-    own && matches!(
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let own = matches!(text(mention.from), "our" | "my");
+    let verb = text(mention.to + 1);
+    let to_me = (mention.to + 2..mention.to + 6)
+        .any(|k| matches!(text(k), "me" | "us" | "whether" | "if" | "proof" | "how" | "why" | "know"));
+    let says = matches!(
         verb,
-        "want"
-            | "wants"
-            | "wanted"
-            | "insist"
-            | "insists"
-            | "complain"
-            | "complains"
-            | "complained"
-            | "say"
-            | "says"
-            | "said"
-            | "claim"
-            | "claims"
-            | "think"
-            | "thinks"
-            | "worry"
-            | "worries"
-            | "hate"
-            | "hates"
-            | "love"
-            | "loves"
-            | "like"
-            | "likes"
-            | "tend"
-            | "need"
-            | "needs"
-            | "keep"
-            | "keeps"
-            | "get"
-            | "have"
-            | "drives"
-            | "works"
-    )
+        "claim" | "claims" | "claimed" | "complain" | "complains" | "complained" | "insist" | "insists" | "think"
+            | "thinks" | "suggest" | "suggests" | "believe" | "believes" | "worry" | "worries"
+    );
+    let asks = matches!(
+        verb,
+        "want" | "wants" | "wanted" | "keep" | "keeps" | "kept" | "ask" | "asks" | "asked" | "will" | "would" | "say"
+            | "says" | "said" | "tell" | "tells" | "told" | "need" | "needs" | "has"
+    );
+    let general = matches!(
+        verb,
+        "hate" | "hates" | "love" | "loves" | "like" | "likes" | "tend" | "drives" | "works" | "get" | "have" | "want"
+            | "wants" | "need" | "needs" | "keep" | "keeps"
+    );
+    says || asks && to_me || own && general
+}
+
+/// `… that it copes with our drivers`: people of whoever asks, in words about them.
+fn owned(words: &[Word], mention: &Mention) -> bool {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    matches!(text(mention.from), "our" | "my")
+        && mention.from > 0
+        && words.iter().take(mention.from).any(|word| {
+            matches!(word.text.as_str(), "proof" | "copes" | "cope" | "claims" | "whether" | "complaints" | "handles")
+        })
 }

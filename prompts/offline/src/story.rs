@@ -383,8 +383,15 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         } else {
             meant.iter().find(|(from, _, _)| *from > at).map(|(_, _, some)| some.clone()).unwrap_or_default()
         };
+        // `who finds the machine fascinating keeps following it`
+        let relative = stretch.joint == Joint::Who
+            && found.mentions.is_empty()
+            && found.robots.first().is_some_and(|robot| *robot > 1 && *robot < at)
+            && found.deeds.first().is_some_and(|deed| deed.at == at);
         let subject = if by_robot {
             Subject::Robot
+        } else if relative && matches!(previous, Subject::People(_)) {
+            previous.clone()
         } else {
             subject_of((act, at, to), passive, &found, &meant, &previous, &joined, &story.cast)
         };

@@ -80,6 +80,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         for who in people {
             deed::walk_on(&mut story.cast, who, when.clone(), quote);
         }
+        thread.said = Some(when.clone());
         thread.ended = Some(when);
         return;
     }
@@ -319,6 +320,7 @@ pub(crate) fn quiet(
     // `a nurse and …`: only bare mentions wait for the deed of the next clause.
     let bare = stretch.words.iter().enumerate().all(|(i, word)| {
         meant.iter().any(|(from, to, _)| (*from..=*to).contains(&i))
+            || word.label
             || matches!(
                 word.text.as_str(),
                 "both" | "either" | "only" | "just" | "exactly" | "simply" | "perhaps" | "maybe"

@@ -251,6 +251,9 @@ impl Cast {
             };
             let found = match role.as_str() {
                 "parent" if plural => kin(&["mother", "father", "mom", "dad"]),
+                // `a mother and their daughter …; the girl …`
+                "girl" if !plural => kin(&["daughter"]),
+                "boy" if !plural => kin(&["son"]),
                 "kid" | "child" if !plural => kin(&["girl", "boy", "son", "daughter", "toddler", "baby"]),
                 _ => Vec::new(),
             };
@@ -307,7 +310,7 @@ impl Cast {
                 }
             }
             // `the man` may be the visitor of whom was spoken; he is not the woman.
-            if !plural && plain(role) {
+            if !plural && plain(role) && mention.word != "own" {
                 let men = MEN.contains(&role.as_str());
                 let women = WOMEN.contains(&role.as_str());
                 let other: &[&str] = if men {
