@@ -94,6 +94,8 @@ mod again_tests;
 #[cfg(test)]
 mod mention_tests;
 #[cfg(test)]
+mod preface_tests;
+#[cfg(test)]
 mod said_tests;
 #[cfg(test)]
 mod tests;
