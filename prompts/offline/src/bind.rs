@@ -247,6 +247,22 @@ pub(crate) fn people_deed(
     if matches!(act, Act::Stay | Act::ComeOut) {
         told_apart(&mut story.cast, people, act);
     }
+    // `he asks the picker to wait; she then freezes`
+    let asked = match (&thread.said, act) {
+        (Some(said @ Trigger::HumanSays(_, socrates_model::Gesture::Wait)), Act::Stop)
+        | (Some(said @ Trigger::HumanSays(_, socrates_model::Gesture::ExcuseMe)), Act::GiveWay)
+            if thread.waiting.is_none()
+                && near.is_none()
+                && !thread.addressed.is_empty()
+                && people.iter().all(|who| thread.addressed.contains(who)) =>
+        {
+            Some(said.clone())
+        }
+        _ => None,
+    };
+    if asked.is_some() {
+        thread.waiting = asked;
+    }
     let around = Around {
         vague: thread.vague && near.is_none(),
         trigger: thread.waiting.clone().or(near),

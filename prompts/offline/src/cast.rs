@@ -142,6 +142,8 @@ impl Cast {
                     Some(found)
                 } else if self.listing {
                     self.pick_nameless(*n).or_else(|| self.pick_open(*n, mention))
+                } else if *article && self.counted_for_all() {
+                    self.pick_nameless(*n)
                 } else if !*article || mention.role.as_deref().is_none_or(plain) && self.declared_open() {
                     self.pick(*n, mention, quote)
                 } else {
@@ -433,6 +435,14 @@ impl Cast {
             } else {
                 None
             }
+        })
+    }
+
+    /// Whether the text said how many there are in all, and not yet who: `there are four people. A doctor …`
+    fn counted_for_all(&self) -> bool {
+        let nameless = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty());
+        self.sets.first().is_some_and(|set| {
+            set.total && set.members.len() == self.people.len() && set.members.iter().any(nameless)
         })
     }
 

@@ -80,6 +80,12 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
             Piece::Comma => words.push(None),
             Piece::Colon => {
                 labels(&mut words);
+                if states(&words) {
+                    // `Robot stops: driver stops too.`
+                    words.splice(0..0, crate::words::pieces("when").into_iter().filter_map(said));
+                    words.push(None);
+                    continue;
+                }
                 words.push(None);
                 colon = true;
             }
@@ -93,6 +99,24 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     found.push(arranged(stretches(apposed(settled(words)))));
     found.retain(|sentence| !sentence.is_empty());
     found
+}
+
+/// Whether a sentence so far says nothing but what the robot does: `robot stops`, `robot moving`.
+fn states(words: &[Option<Word>]) -> bool {
+    let said: Option<Vec<&Word>> = words.iter().map(Option::as_ref).collect();
+    let said = said.map(|said| said.into_iter().skip_while(|word| word.text == "the").collect::<Vec<&Word>>());
+    said.is_some_and(|said| match said.as_slice() {
+        [robot, verb] | [robot, verb, _] => {
+            robot.stem == "robot"
+                && matches!(verb.stem.as_str(), "stop" | "move" | "drive" | "halt" | "wait" | "stand" | "start")
+        }
+        _ => false,
+    })
+}
+
+/// The word of a piece.
+fn said(piece: Piece) -> Option<Option<Word>> {
+    if let Piece::Word(word) = piece { Some(Some(word)) } else { None }
 }
 
 /// Words with which people take back a number that they have just given.
@@ -309,7 +333,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "as" if text(i + 1) == "soon" => (Some(Joint::When), 3),
         "as" if matches!(text(i + 1), "they" | "he" | "she" | "it")
             || stem(i + 1) == "robot"
-            || stem(i + 2) == "robot" && !matches!(before, "way" | "direction" | "time" | "pace" | "speed") =>
+            || stem(i + 2) == "robot" && !matches!(before, "way" | "direction" | "time" | "pace" | "speed" | "moment" | "instant") =>
         {
             (Some(Joint::When), 1)
         }
@@ -347,7 +371,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
                 && words.get(i + 2).is_none_or(|next| {
                     next.as_ref().is_none_or(|next| {
                         next.text != next.stem && next.text.ends_with('s') && lexicon().verbs.contains(&next.stem)
-                            || matches!(next.text.as_str(), "he" | "she" | "they" | "it")
+                            || matches!(next.text.as_str(), "he" | "she" | "they" | "it" | "all" | "both" | "one" | "everyone")
                     })
                 }) =>
         {
@@ -431,7 +455,9 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 | "point"
         ),
         "does" | "do" | "did" => {
-            matches!(text(i + 1), "he" | "she" | "they")
+            (matches!(text(i + 1), "he" | "she" | "they")
+                || temporal && matches!(text(i + 1), "one" | "both" | "all" | "each" | "the"))
+                && !matches!(before, "nor" | "neither")
                 && !matches!(before, "point" | "time" | "moment" | "circumstances")
         }
         "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three" if temporal => {
@@ -464,6 +490,8 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                     | "this"
                     | "that"
                     | "so"
+                    | "way"
+                    | "path"
                     | "asked"
                     | "signalled"
                     | "stops"

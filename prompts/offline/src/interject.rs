@@ -133,6 +133,11 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
             };
             told.extend(end.filter(|end| !(at..*end).any(body)).map(|end| at..end).into_iter().flatten());
         }
+        // `The leader, unlike the picker, steps aside`
+        if text_at(pieces, at) == "unlike" {
+            let end = (at + 1..at + 8).find(|k| comma_at(pieces, *k));
+            told.extend(end.map(|end| at..end).into_iter().flatten());
+        }
         // Joined by a hyphen, two who deal with each other name a kind of thing.
         let joined = word_at(pieces, at).zip(word_at(pieces, at + 1)).is_some_and(|(one, other)| {
             let role = |word: &Word| {

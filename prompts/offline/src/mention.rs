@@ -536,6 +536,10 @@ fn counted(
     let n = count?;
     let label = lex.labels.contains(before) && (words.get(next - 1).is_some_and(Word::is_digits))
         || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot")
+        // `a boy from wing 3`
+        || words.get(next - 1).is_some_and(Word::is_digits)
+            && at > 1
+            && matches!(text(at - 2), "from" | "in" | "on" | "at" | "to" | "near")
         // `truck 7 is late`
         || lex.things.contains(before) && !lex.verbs.contains(before) && words.get(next - 1).is_some_and(Word::is_digits);
     let unit = words.get(next).is_some_and(|word| {
@@ -554,7 +558,9 @@ fn counted(
     let who = if more {
         Who::More(n)
     } else if the {
-        Who::Definite { plural: n > 1, count: Some(n) }
+        let mention = made(Who::Definite { plural: n > 1, count: Some(n) }, None, false, next - 1);
+        let these = if matches!(text(at), "these" | "those") { "these" } else { "" };
+        return mention.map(|mention| Mention { word: these.to_owned(), ..mention });
     } else {
         Who::Bare(n)
     };

@@ -21,6 +21,10 @@ pub(crate) fn negated(stretch: &Stretch, at: usize) -> bool {
     if to {
         return true;
     }
+    // `…, nor does he give way`
+    if at > 0 && stretch.words.first().is_some_and(|word| word.text == "nor") {
+        return true;
+    }
     // `no looking`, `no yield`, `any gaze`
     if before(1) == "no"
         || before(1) == "any" && (2..=4).any(|back| matches!(before(back), "not" | "without" | "never"))

@@ -186,9 +186,13 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
                 && !lex.places.iter().any(|place| place.items.contains(&Item::Word(word.text.clone())))
         })
     };
+    // `an explicit gesture resolves it` is nobody who gestures.
+    let one = back(1).is_some_and(|word| matches!(word.text.as_str(), "a" | "an"));
     let does = |k: usize| {
         words.get(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !lex.things.contains(&word.text)
+            lex.verbs.contains(&word.stem)
+                && !lex.things.contains(&word.text)
+                && !(one && word.text == word.stem && matches!(word.text.as_str(), "gesture" | "signal" | "wave" | "stop" | "start"))
                 || matches!(word.text.as_str(), "who" | "whose")
         })
     };

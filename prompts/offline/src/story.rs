@@ -179,7 +179,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
     if stretch.joint == Joint::Said {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
-    } else if answers(&found, thread.fresh.as_ref()) && thread.waiting.is_none() && stretch.joint != Joint::Then {
+    } else if answers(&found, thread.fresh.as_ref())
+        && thread.waiting.is_none()
+        && (stretch.joint != Joint::Then || thread.fresh.is_some())
+    {
         // `The robot says PROCEED. He walks on.`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if found.gesture == Some(Gesture::Acknowledged)

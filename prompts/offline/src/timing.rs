@@ -52,6 +52,16 @@ fn told(story: &mut Story, thread: &mut Thread, found: &Found, quote: &str) {
     }
     let id = HumanId::new(u32::try_from(first + 1).unwrap_or(u32::MAX));
     thread.said = Some(Trigger::HumanSays(id, gesture));
+    // `When the boss tells him to make room, he steps aside`: whoever was told.
+    let told = found.mentions.iter().any(|mention| mention.from > found.gesture_at && mention.who == Who::Object);
+    if told {
+        let before: Vec<usize> =
+            story.cast.last.iter().chain(&story.cast.before).copied().filter(|i| *i != first).collect();
+        let other = if story.cast.people.len() == 2 { vec![1 - first.min(1)] } else { before };
+        if let Some(who) = other.first() {
+            story.cast.last = vec![*who];
+        }
+    }
 }
 
 /// A clause that only says when: it times the deeds before it, or those still to come.

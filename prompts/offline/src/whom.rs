@@ -133,6 +133,14 @@ impl Cast {
             return found;
         }
         let mut set = self.latest();
+        // `one of the visitors`, where others are there too
+        if let Some(role) = &mention.role {
+            let is = |i: &usize| self.people.get(*i).is_some_and(|person| person.role == *role);
+            let alike: Vec<usize> = (0..self.people.len()).filter(is).collect();
+            if alike.len() > wanted {
+                set = alike;
+            }
+        }
         // `Those people who wait there: give me three of them.`
         if let Some(first) =
             set.first().copied().filter(|_| self.supposed_people.len() == set.len() && wanted > set.len())
@@ -333,7 +341,24 @@ impl Cast {
         } else if !self.people.is_empty() {
             if plural {
                 let set = self.latest();
-                return count.and_then(|n| self.pick_open(n, mention)).unwrap_or(set);
+                let wanted = count.and_then(|n| usize::try_from(n).ok());
+                // `the other two come towards it, and only these two make way`
+                if wanted.is_some_and(|n| n > 1 && n == self.last.len() && n < set.len()) && mention.word == "these" {
+                    return self.last.clone();
+                }
+                if let Some(found) = count.and_then(|n| self.pick_open(n, mention)) {
+                    return found;
+                }
+                // `five come …: the three in front step aside, the two at the back do not`
+                let others: Vec<usize> = set.iter().copied().filter(|i| !self.last.contains(i)).collect();
+                let parted = self.last.len() < set.len() && self.last.iter().all(|i| set.contains(i));
+                return match wanted {
+                    Some(n) if n > 1 && n < set.len() && parted && others.len() >= n => {
+                        others.into_iter().take(n).collect()
+                    }
+                    Some(n) if n > 1 && n < set.len() => set.into_iter().take(n).collect(),
+                    Some(_) | None => set,
+                };
             }
             return self
                 .last

@@ -165,6 +165,15 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             let owns = matches!(c, '\'' | '’') && at(i + 1) == Some('s') && !at(i + 2).is_some_and(char::is_alphabetic);
             i += usize::from(owns);
             match c {
+                // `No. 1 stops`
+                '.' if text_at(&out, out.len().wrapping_sub(1)) == "no"
+                    && (i + 1..i + 3).any(|k| at(k).is_some_and(|c| c.is_ascii_digit())) =>
+                {
+                    if let Some(Piece::Word(word)) = out.last_mut() {
+                        "number".clone_into(&mut word.text);
+                        "number".clone_into(&mut word.stem);
+                    }
+                }
                 '.' if abbreviated(out.last()) => {}
                 '.' | '!' | '?' | ';' => out.push(Piece::Stop),
                 ':' => out.push(Piece::Colon),
