@@ -168,7 +168,10 @@ fn condition(items: &Items, from: usize, to: usize) -> Option<Condition> {
         return Some(Condition::Distance);
     }
     let head = items.start(from);
-    let says = matches!(items.stem(start), "say" | "ask" | "signal" | "stop" | "move" | "beep" | "wait" | "gesture" | "announce");
+    let says = matches!(
+        items.stem(start),
+        "say" | "ask" | "signal" | "stop" | "move" | "beep" | "wait" | "gesture" | "announce"
+    );
     if says && from > head && robot(items, head) && person.is_none() && items.has(from, Mark::Comma) {
         return Some(Condition::Robot);
     }

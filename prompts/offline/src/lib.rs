@@ -85,6 +85,8 @@ mod twice;
 #[cfg(test)]
 mod again_tests;
 #[cfg(test)]
+mod notes_tests;
+#[cfg(test)]
 mod said_tests;
 #[cfg(test)]
 mod tests;

@@ -144,7 +144,7 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
 }
 
 /// Pieces as a line of text: words in lower case, those of nobody in brackets.
-fn written(pieces: &[Piece]) -> String {
+pub(crate) fn written(pieces: &[Piece]) -> String {
     let mut line = String::new();
     for piece in pieces {
         match piece {
