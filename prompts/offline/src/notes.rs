@@ -137,13 +137,11 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
         out.push(Piece::Word(item.word));
     }
     out.extend(tail.into_iter().map(piece));
-    if std::env::var("NOTES").is_ok() {
-        eprintln!("NOTES {}", written(&out));
-    } // DEBUG
     out
 }
 
 /// Pieces as a line of text: words in lower case, those of nobody in brackets.
+#[cfg(test)]
 pub(crate) fn written(pieces: &[Piece]) -> String {
     let mut line = String::new();
     for piece in pieces {

@@ -259,7 +259,8 @@ fn verbless(items: &mut Items, at: usize) {
         && (after || alone || told)
         && let Some(word) = items.0.get_mut(at)
     {
-        ("stands".clone_into(&mut word.word.text), "stand".clone_into(&mut word.word.stem));
+        "stands".clone_into(&mut word.word.text);
+        "stand".clone_into(&mut word.word.stem);
     }
 }
 
