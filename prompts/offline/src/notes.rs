@@ -223,6 +223,7 @@ const SHORT: &[(&str, &[&str])] = &[
     ("actor", &["human"]),
     ("actors", &["humans"]),
     ("ack", &["acknowledges"]),
+    ("emp", &["employee"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -279,6 +280,14 @@ fn shorthand(items: Items) -> Items {
             continue;
         }
         let digits = item.word.is_digits();
+        // `4-way crossing`
+        let word_at = |back: usize| items.0.get(k + back).map_or("", |item| item.word.text.as_str());
+        if digits && word_at(1) == "way" && word_at(2) == "crossing" && next.is_some_and(|next| next.gap == "-") {
+            item.word = Word { to: item.word.to, ..word("intersection".to_owned(), item.word.from, item.word.to) };
+            out.push(item);
+            skip = 2;
+            continue;
+        }
         // `2x employee`
         let of = next.is_some_and(|next| lexicon().roles.contains_key(&next.word.stem));
         if item.word.text == "x" && of && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {

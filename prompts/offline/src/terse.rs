@@ -219,7 +219,7 @@ fn verbless(items: &mut Items, at: usize) {
     let beside = matches!(items.text(at), "behind" | "ahead" | "beside") && after && {
         let end = items.mark(at).min(items.0.len());
         let verbs = (at..end).any(|k| lexicon().verbs.contains(items.stem(k)));
-        (at + 1..end).any(|k| robot(items, k)) && !verbs
+        (at + 1..end).any(|k| robot(items, k) || items.stem(k) == "human") && !verbs
     };
     if beside {
         items.0.insert(at, Item::said("walks", &item));
