@@ -32,6 +32,26 @@ fn generic_roles(items: Items) -> Items {
     while at + 1 < items.0.len() {
         let generic = lexicon().roles.get(items.stem(at)).is_some_and(|role| role.generic)
             && items.word(at).is_some_and(|word| !word.label);
+        // `peds: 2 (employees)`
+        let counted = generic
+            && items.word(at + 1).is_some_and(|word| word.is_digits() && word.count().is_some())
+            && items.0.get(at + 1).is_some_and(|item| item.equals() || item.marks == [Mark::Colon])
+            && items.0.get(at + 2).is_some_and(|item| item.opens() && !item.closes());
+        if counted
+            && let Some((name, end)) = role(&items, at + 2)
+            && !name.is_empty()
+            && items.0.get(end).is_none_or(Item::closes)
+        {
+            let marks = items.0.get(at).map(|item| item.marks.clone()).unwrap_or_default();
+            if let Some(item) = items.0.get_mut(at + 1) {
+                (item.marks, item.gap) = (marks, String::new());
+            }
+            if let Some(item) = items.0.get_mut(at + 2) {
+                (item.marks, item.gap) = (Vec::new(), " ".to_owned());
+            }
+            let _generic = items.0.remove(at);
+            continue;
+        }
         let opens = items.0.get(at + 1).is_some_and(|item| item.opens() && !item.closes());
         if generic
             && opens
@@ -43,6 +63,12 @@ fn generic_roles(items: Items) -> Items {
                 let gap = items.0.get(at).map(|item| item.gap.clone()).unwrap_or_default();
                 if let Some(item) = items.0.get_mut(at + 1) {
                     (item.marks, item.gap) = (marks, gap);
+                }
+                // The closing bracket is no pause.
+                if let Some(item) =
+                    items.0.get_mut(end).filter(|item| item.marks == [Mark::Comma] && !item.gap.contains(','))
+                {
+                    item.marks.clear();
                 }
                 let _generic = items.0.remove(at);
             }

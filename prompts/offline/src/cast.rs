@@ -441,9 +441,9 @@ impl Cast {
     /// Whether the text said how many there are in all, and not yet who: `there are four people. A doctor …`
     fn counted_for_all(&self) -> bool {
         let nameless = |i: &usize| self.people.get(*i).is_some_and(|person| person.role.is_empty());
-        self.sets.first().is_some_and(|set| {
-            set.total && set.members.len() == self.people.len() && set.members.iter().any(nameless)
-        })
+        self.sets
+            .first()
+            .is_some_and(|set| set.total && set.members.len() == self.people.len() && set.members.iter().any(nameless))
     }
 
     /// Some of the newest set of whom nothing says who they are: `two people who …: a nurse and a visitor`.

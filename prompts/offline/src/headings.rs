@@ -363,8 +363,9 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     for k in 0..pieces.len() {
         let Some(name) = word(k).filter(|word| strange(word)) else { continue };
         // `Anna and Ben both cross`
-        let pair =
-            word(k + 1).is_some_and(|word| word.text == "and") && word(k + 2).is_some_and(strange) && (does(k + 3) || verb(k + 3));
+        let pair = word(k + 1).is_some_and(|word| word.text == "and")
+            && word(k + 2).is_some_and(strange)
+            && (does(k + 3) || verb(k + 3));
         if begins(k) && (does(k + 1) || pair) {
             found.push(name.text.clone());
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));

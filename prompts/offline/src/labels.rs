@@ -63,11 +63,14 @@ pub(crate) fn role(items: &Items, from: usize) -> Option<(String, usize)> {
     if run.len() == 1 && band(&run, 0).is_some() {
         return Some((String::new(), start + 1));
     }
-    let end = noun(&run, 0, lex).or_else(|| stranger(&run, 0, true, lex)).or_else(|| {
-        // A word that nobody knows, alone: `actor 1 (docker)`.
-        let alone = run.len() == 1 && run.first().is_some_and(|word| word.text.len() >= 4 && !lex.has(word));
-        alone.then_some(0)
-    })?;
+    // A word that nobody knows, alone, where only a role can stand: `actor 1 (docker)`.
+    let bracketed = items.0.get(from).is_some_and(|item| item.opens() || item.equals());
+    let alone = || {
+        let word = run.first().filter(|_| run.len() == 1 && bracketed)?;
+        let quality = ["ic", "al", "ous", "ive", "ary", "ing", "ed", "ly"].iter().any(|end| word.text.ends_with(end));
+        (word.text.len() >= 4 && !quality && !lex.has(word)).then_some(0)
+    };
+    let end = noun(&run, 0, lex).or_else(|| stranger(&run, 0, true, lex)).or_else(alone)?;
     let named = (0..=2)
         .filter_map(|back| end.checked_sub(back))
         .filter_map(|k| run.get(k))
@@ -125,6 +128,11 @@ impl Labels {
         }
         if bare.len() > 1 || !labels.letters.is_empty() {
             labels.letters.extend(bare);
+        }
+        // `A nurse, B+C visitors. A gets out`
+        let first = |k: &usize| labels.letter(*k) == Some('A') && labels.free(*k) && labels.acts(*k);
+        if labels.letters.contains(&'B') && (0..count).any(|k| first(&k)) {
+            labels.letters.insert('A');
         }
         labels
     }
@@ -260,35 +268,21 @@ impl Labels {
         // `A nurse` is a nurse, unless others are told by letters in the same way.
         let joined =
             self.items.0.get(at + 1).is_some_and(|next| matches!(next.gap.trim(), "-" | "–" | "+" | "=" | "/"));
-        let article = letter == 'A' && !self.items.marked(at + 1) && !joined && {
-            let next = self.items.word(at + 1);
-            let acts = next.is_some_and(|next| {
-                lexicon().verbs.contains(&next.stem) && next.text != next.stem && next.text.ends_with('s')
-                    || matches!(
-                        next.text.as_str(),
-                        "and"
-                            | "when"
-                            | "is"
-                            | "does"
-                            | "then"
-                            | "only"
-                            | "in"
-                            | "on"
-                            | "at"
-                            | "must"
-                            | "should"
-                            | "will"
-                            | "never"
-                            | "just"
-                            | "after"
-                            | "if"
-                            | "to"
-                            | "from"
-                    )
-            });
-            !acts && !self.juxtaposed(at)
-        };
+        let article = letter == 'A' && !self.items.marked(at + 1) && !joined && !self.acts(at) && !self.juxtaposed(at);
         (!article).then_some((Key::Letter(letter), at + 1))
+    }
+
+    /// Whether somebody does something behind a letter: `A stops`, `A when out`.
+    fn acts(&self, at: usize) -> bool {
+        const SMALL: &[&str] = &[
+            "and", "when", "is", "does", "then", "only", "in", "on", "at", "must", "should", "will", "never", "just",
+            "after", "if", "to", "from",
+        ];
+        let next = self.items.word(at + 1).filter(|_| !self.items.marked(at + 1));
+        next.is_some_and(|next| {
+            let finite = next.text != next.stem && next.text.ends_with('s');
+            lexicon().verbs.contains(&next.stem) && finite || SMALL.contains(&next.text.as_str())
+        })
     }
 
     /// `A nurse, B+C visitors`.

@@ -92,7 +92,11 @@ mod twice;
 #[cfg(test)]
 mod again_tests;
 #[cfg(test)]
+mod cut_tests;
+#[cfg(test)]
 mod mention_tests;
+#[cfg(test)]
+mod notes_tests;
 #[cfg(test)]
 mod preface_tests;
 #[cfg(test)]

@@ -137,14 +137,12 @@ pub(crate) fn notes(text: &str, pieces: Vec<Piece>) -> Vec<Piece> {
         out.push(Piece::Word(item.word));
     }
     out.extend(tail.into_iter().map(piece));
-    if std::env::var("NOTES").is_ok() {
-        eprintln!("NOTES {}", written(&out));
-    } // DEBUG
     out
 }
 
 /// Pieces as a line of text: words in lower case, those of nobody in brackets.
-fn written(pieces: &[Piece]) -> String {
+#[cfg(test)]
+pub(crate) fn written(pieces: &[Piece]) -> String {
     let mut line = String::new();
     for piece in pieces {
         match piece {
@@ -225,6 +223,7 @@ const SHORT: &[(&str, &[&str])] = &[
     ("actor", &["human"]),
     ("actors", &["humans"]),
     ("ack", &["acknowledges"]),
+    ("emp", &["employee"]),
     ("frontal", &["head", "on"]),
     ("frontally", &["head", "on"]),
 ];
@@ -281,6 +280,14 @@ fn shorthand(items: Items) -> Items {
             continue;
         }
         let digits = item.word.is_digits();
+        // `4-way crossing`
+        let word_at = |back: usize| items.0.get(k + back).map_or("", |item| item.word.text.as_str());
+        if digits && word_at(1) == "way" && word_at(2) == "crossing" && next.is_some_and(|next| next.gap == "-") {
+            item.word = Word { to: item.word.to, ..word("intersection".to_owned(), item.word.from, item.word.to) };
+            out.push(item);
+            skip = 2;
+            continue;
+        }
         // `2x employee`
         let of = next.is_some_and(|next| lexicon().roles.contains_key(&next.word.stem));
         if item.word.text == "x" && of && item.gap.is_empty() && out.last().is_some_and(|last| last.word.is_digits()) {

@@ -192,7 +192,9 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
         words.get(k).is_some_and(|word| {
             lex.verbs.contains(&word.stem)
                 && !lex.things.contains(&word.text)
-                && !(one && word.text == word.stem && matches!(word.text.as_str(), "gesture" | "signal" | "wave" | "stop" | "start"))
+                && !(one
+                    && word.text == word.stem
+                    && matches!(word.text.as_str(), "gesture" | "signal" | "wave" | "stop" | "start"))
                 || matches!(word.text.as_str(), "who" | "whose")
         })
     };

@@ -85,8 +85,7 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
             (words, found)
         })
         .collect();
-    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| !weak(words, mention)))
-    else {
+    let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| !weak(words, mention))) else {
         return;
     };
     let silent: Vec<(usize, usize)> = parts
@@ -193,18 +192,65 @@ fn opines(words: &[Word], mention: &Mention) -> bool {
         .any(|k| matches!(text(k), "me" | "us" | "whether" | "if" | "proof" | "how" | "why" | "know"));
     let says = matches!(
         verb,
-        "claim" | "claims" | "claimed" | "complain" | "complains" | "complained" | "insist" | "insists" | "think"
-            | "thinks" | "suggest" | "suggests" | "believe" | "believes" | "worry" | "worries"
+        "claim"
+            | "claims"
+            | "claimed"
+            | "complain"
+            | "complains"
+            | "complained"
+            | "insist"
+            | "insists"
+            | "think"
+            | "thinks"
+            | "suggest"
+            | "suggests"
+            | "believe"
+            | "believes"
+            | "worry"
+            | "worries"
     );
     let asks = matches!(
         verb,
-        "want" | "wants" | "wanted" | "keep" | "keeps" | "kept" | "ask" | "asks" | "asked" | "will" | "would" | "say"
-            | "says" | "said" | "tell" | "tells" | "told" | "need" | "needs" | "has"
+        "want"
+            | "wants"
+            | "wanted"
+            | "keep"
+            | "keeps"
+            | "kept"
+            | "ask"
+            | "asks"
+            | "asked"
+            | "will"
+            | "would"
+            | "say"
+            | "says"
+            | "said"
+            | "tell"
+            | "tells"
+            | "told"
+            | "need"
+            | "needs"
+            | "has"
     );
     let general = matches!(
         verb,
-        "hate" | "hates" | "love" | "loves" | "like" | "likes" | "tend" | "drives" | "works" | "get" | "have" | "want"
-            | "wants" | "need" | "needs" | "keep" | "keeps"
+        "hate"
+            | "hates"
+            | "love"
+            | "loves"
+            | "like"
+            | "likes"
+            | "tend"
+            | "drives"
+            | "works"
+            | "get"
+            | "have"
+            | "want"
+            | "wants"
+            | "need"
+            | "needs"
+            | "keep"
+            | "keeps"
     );
     says || asks && to_me || own && general
 }

@@ -38,7 +38,8 @@ fn names_beside_who_somebody_is_are_no_others() {
 
 #[test]
 fn times_of_day_count_nobody() {
-    for when in ["Around half six", "At a quarter to eight", "Ten past two", "At ten", "Around 9 our robot is busy and"] {
+    for when in ["Around half six", "At a quarter to eight", "Ten past two", "At ten", "Around 9 our robot is busy and"]
+    {
         assert_eq!(read(&format!("{when}, a nurse follows the robot.")), "1 human · 1 follows the robot", "{when}");
     }
     assert_eq!(read("At four metres, a nurse stops."), "1 human · 1 stops");
@@ -51,7 +52,8 @@ fn what_stands_between_marks_and_says_nothing_breaks_no_sentence() {
         ("Folks, a nurse follows the robot.", "1 human · 1 follows the robot"),
         ("Following her notion of space, two nurses cross the corridor.", "2 humans · 2 cross · place: corridor"),
     ]);
-    let faults = told("A nurse never, under any circumstances, steps aside. When it is 2 m away, she steps aside.", "hospital");
+    let faults =
+        told("A nurse never, under any circumstances, steps aside. When it is 2 m away, she steps aside.", "hospital");
     assert_eq!(faults.problems.len(), 1, "{faults:#?}");
 }
 

@@ -215,6 +215,16 @@ fn verbless(items: &mut Items, at: usize) {
         _ => false,
     };
     let after = subject(items, at);
+    // `ped 2 behind bot`, `nurse ahead of bot`
+    let beside = matches!(items.text(at), "behind" | "ahead" | "beside") && after && {
+        let end = items.mark(at).min(items.0.len());
+        let verbs = (at..end).any(|k| lexicon().verbs.contains(items.stem(k)));
+        (at + 1..end).any(|k| robot(items, k) || items.stem(k) == "human") && !verbs
+    };
+    if beside {
+        items.0.insert(at, Item::said("walks", &item));
+        return;
+    }
     if aside && after {
         items.0.insert(at, Item::said("steps", &item));
         return;
@@ -244,11 +254,13 @@ fn verbless(items: &mut Items, at: usize) {
         }
         return;
     }
+    let told = items.has(at, Mark::Colon) && at > 0 && lexicon().roles.contains_key(items.stem(at - 1));
     if items.text(at) == "static"
-        && (after || alone)
+        && (after || alone || told)
         && let Some(word) = items.0.get_mut(at)
     {
-        ("stands".clone_into(&mut word.word.text), "stand".clone_into(&mut word.word.stem));
+        "stands".clone_into(&mut word.word.text);
+        "stand".clone_into(&mut word.word.stem);
     }
 }
 
