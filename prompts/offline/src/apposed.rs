@@ -82,10 +82,12 @@ fn item(run: &[Word]) -> Option<(u32, String, usize)> {
     let bare = !run.first().is_some_and(|word| {
         matches!(word.text.as_str(), "the" | "this" | "that" | "her" | "his" | "their" | "our" | "my" | "its")
     });
-    let count = match mention.who {
-        Who::New { count: Some(count), .. } => count,
-        Who::Definite { plural: false, count: None } if bare => 1,
-        _ => return None,
+    let count = if let Who::New { count: Some(count), .. } = mention.who {
+        count
+    } else if bare && mention.who == (Who::Definite { plural: false, count: None }) {
+        1
+    } else {
+        return None;
     };
     let length = mention.to + 1;
     let plain = run.get(..length)?.iter().all(|word| !lexicon().pace.contains_key(&word.text));

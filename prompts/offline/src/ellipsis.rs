@@ -121,10 +121,7 @@ pub(crate) fn obeys(
         (true, Subject::Robot | Subject::Nobody) => return false,
     };
     // Whoever asked to be followed is followed.
-    let object = match said {
-        Trigger::HumanSays(id, Gesture::FollowMe) => Some(id),
-        _ => None,
-    };
+    let object = if let Trigger::HumanSays(id, Gesture::FollowMe) = said { Some(id) } else { None };
     let around =
         Around { trigger: Some(said), object, lasts_s: found.lasts_s, quote: quote.to_owned(), ..Around::default() };
     for who in &people {

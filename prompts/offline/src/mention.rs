@@ -519,7 +519,7 @@ fn counted(
     if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
         let many = words.get(end).is_some_and(plural);
         // `the new guy` is somebody else than who was spoken of.
-        let the = the && !(text(next) == "new" && !many);
+        let the = the && (many || text(next) != "new");
         let article = article || text(next) == "new" && !many;
         let who = match (the, count, more) {
             (_, Some(n), true) => Who::More(n),

@@ -320,13 +320,15 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             .words
             .first()
             .is_some_and(|word| word.text == word.stem && lexicon().verbs.contains(&word.stem) || word.text == "are");
-    let previous = match previous {
-        Subject::People(people) if both && people.iter().all(|i| !listed.contains(i)) => {
-            let all: Vec<usize> = listed.iter().chain(&people).copied().collect();
-            story.cast.together(&all, &quote);
-            Subject::People(all)
-        }
-        previous => previous,
+    let previous = if let Subject::People(people) = &previous
+        && both
+        && people.iter().all(|i| !listed.contains(i))
+    {
+        let all: Vec<usize> = listed.iter().chain(people).copied().collect();
+        story.cast.together(&all, &quote);
+        Subject::People(all)
+    } else {
+        previous
     };
     // `… standing together`, `have an operator and a trainee stroll`
     let shared = |to: usize| {
