@@ -50,7 +50,6 @@ const SIGNS: &[&str] = &[
     "sometimes",
     "whether",
     "how",
-    "people",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
