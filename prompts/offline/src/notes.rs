@@ -273,7 +273,15 @@ fn shorthand(items: Items) -> Items {
         });
         if let Some((side, more)) = way {
             let marks = std::mem::take(&mut item.marks);
-            out.push(Item::said("from", &item).with(&marks));
+            // `1 courier, L->R, 1.2 m/s`
+            if marks.is_empty() {
+                out.push(Item::said("from", &item));
+            } else {
+                let across = next.is_some_and(|next| next.word.text == "to");
+                let crosses = Item::said(if across { "from" } else { "crosses" }, &item);
+                out.push(crosses.with(&marks));
+                out.extend((!across).then(|| Item::said("from", &item)));
+            }
             out.push(Item::said("the", &item));
             out.push(Item::said(side, &item));
             skip = 1 + more;

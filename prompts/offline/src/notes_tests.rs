@@ -84,6 +84,12 @@ fn arrows_are_conditions_or_rows_of_deeds() {
         ("he walks on -> collision w/ left bumper", "he walks on. [collision] [with] [left] [bumper]"),
         ("trigger: robot < 3 m; reaction: the nurse stops", "when robot within 3 m, the nurse stops"),
         ("crosses L->R", "crosses from the left"),
+        ("4-way crossing, 1 ped, L->R, 1 m/s", "intersection, 1 ped, crosses from the left, 1 m s"),
+        ("P2: behind P1", "human 2 walks behind human 1"),
+        (
+            "3m -> looks; robot behind, asks -> stops",
+            "when robot within 3 m, looks. robot behind, when robot asks, stops",
+        ),
     ] {
         assert_eq!(out(text), line, "{text}");
     }
