@@ -43,7 +43,8 @@ fn silent(words: &[Option<Word>]) -> usize {
         return 0;
     }
     // `I am looking for two visitors who …`
-    if text(2).ends_with("ing") && text(3) == "for" {
+    // `I'm thinking of a teenager who …`
+    if text(2).ends_with("ing") && matches!(text(3), "for" | "of" | "about") {
         return 4;
     }
     // `I run a ward where …`, `I run a ward, and two visitors follow the robot`: what comes then is of the scenario.

@@ -7,6 +7,28 @@ use crate::words::{Piece, Word, comma_at, text_at, word_at};
 
 /// Words before a name that belong to it.
 const TITLES: &[&str] = &["mr", "mrs", "ms", "miss", "prof", "sister", "dr"];
+/// Words with a capital that are no names of people.
+const DAYS: &[&str] = &[
+    "monday",
+    "tuesday",
+    "wednesday",
+    "thursday",
+    "friday",
+    "saturday",
+    "sunday",
+    "january",
+    "february",
+    "april",
+    "june",
+    "july",
+    "august",
+    "september",
+    "october",
+    "november",
+    "december",
+    "christmas",
+    "easter",
+];
 /// Words before who somebody is.
 const WHOSE: &[&str] = &["our", "the", "a", "an", "my", "her", "his", "their", "your", "this", "that", "another"];
 /// Words that begin where somebody is from.
@@ -65,6 +87,14 @@ fn second(pieces: &mut Vec<Piece>) {
         if one && generic && other && noun.is_some() && !comma_at(pieces, noun.unwrap_or(at) + 1) {
             pieces.drain(at + 2..at + 5);
         }
+        // `1 ped, clerk, oncoming`
+        let single = word_at(pieces, at).is_some_and(|word| word.count() == Some(1) || word.text == "a");
+        let alone =
+            word_at(pieces, at + 1).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic);
+        let listed = comma_at(pieces, at + 2) && role(pieces, at + 3) && ends(pieces, at + 4);
+        if single && alone && listed && !word_at(pieces, at + 3).is_some_and(plural) {
+            pieces.drain(at + 1..at + 3);
+        }
         at += 1;
     }
 }
@@ -122,6 +152,9 @@ fn capital(pieces: &[Piece], at: usize) -> bool {
             && word.text.len() > 1
             && word.text.chars().all(char::is_alphabetic)
             && !lexicon().has(word)
+            && !DAYS.contains(&word.text.as_str())
+            // `Thereupon the picker hurries`
+            && !["ly", "upon", "wards", "fter", "while"].iter().any(|end| word.text.ends_with(end))
             && !lexicon().roles.contains_key(&word.stem)
             && !lexicon().places.iter().any(|place| place.items == [crate::lexicon::Item::Word(word.text.clone())])
     })
@@ -175,6 +208,20 @@ fn before(pieces: &[Piece], at: usize) -> Option<Found> {
         return None;
     }
     let (name, mark) = name(pieces, at)?;
+    // `Dieter the planner and Sofia the buyer come out`
+    if text_at(pieces, mark) == "the"
+        && word_at(pieces, mark + 1).is_some_and(|word| {
+            lexicon().roles.contains_key(&word.stem) || crate::noun::agentive(word) && !lexicon().has(word)
+        })
+    {
+        return Some(Found {
+            noun: mark + 1,
+            end: mark + 1,
+            whose: Some(mark),
+            names: vec![name],
+            drop: vec![(at, mark)],
+        });
+    }
     if !comma_at(pieces, mark) {
         return None;
     }
@@ -229,7 +276,8 @@ fn several(pieces: &[Piece], at: usize) -> Option<Found> {
     let count =
         (1..=4).filter_map(|back| at.checked_sub(back)).find_map(|k| word_at(pieces, k).and_then(Word::count))?;
     let mut names = Vec::new();
-    let mut next = at + 2;
+    // `three packers, that's Olu, Petra and Sven`
+    let mut next = at + 2 + usize::from(matches!(text_at(pieces, at + 2), "that" | "namely" | "called" | "named"));
     while let Some((name, end)) = name(pieces, next) {
         names.push(name);
         next = end;

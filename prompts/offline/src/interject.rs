@@ -133,6 +133,12 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
             };
             told.extend(end.filter(|end| !(at..*end).any(body)).map(|end| at..end).into_iter().flatten());
         }
+        // `like most of our people he steps aside`
+        if text_at(pieces, at) == "like" && matches!(text_at(pieces, at + 1), "most" | "many" | "all" | "other") {
+            let end = (at + 2..at + 8)
+                .find(|k| comma_at(pieces, *k) || matches!(text_at(pieces, *k), "he" | "she" | "they" | "the" | "a"));
+            told.extend(end.map(|end| at..end).into_iter().flatten());
+        }
         // `The leader, unlike the picker, steps aside`
         if text_at(pieces, at) == "unlike" {
             let end = (at + 1..at + 8).find(|k| comma_at(pieces, *k));

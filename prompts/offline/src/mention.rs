@@ -107,7 +107,15 @@ pub(crate) fn mentions(words: &[Word]) -> Vec<Mention> {
             {
                 at = of.to + 1;
             }
-            found.push(predicate(words, mention, &found));
+            // `a colleague of mine as a bystander`
+            let as_one = mention.from > 0
+                && text(mention.from - 1) == "as"
+                && text(mention.from) != "the"
+                && matches!(mention.who, Who::New { count: Some(1), article: true })
+                && !found.is_empty();
+            if !as_one {
+                found.push(predicate(words, mention, &found));
+            }
         } else {
             at += 1;
         }
@@ -418,6 +426,15 @@ fn counted(
         matches!(stem(words, k), "do" | "make" | "create" | "simulate" | "run" | "try" | "generate" | "build" | "write")
     };
     if text(at) == "one" && at + 1 == words.len() && at > 0 && makes(at - 1) {
+        return None;
+    }
+    // `but that one I already have`, `has never seen one before`: a scenario, a robot.
+    if text(at) == "one"
+        && at > 0
+        && (matches!(text(at - 1), "this" | "that") && matches!(text(at + 1), "i" | "we" | "is" | "was")
+            || matches!(words.get(at - 1).map_or("", |word| word.stem.as_str()), "see" | "meet" | "have" | "want")
+                && matches!(text(at + 1), "" | "before" | "already" | "yet"))
+    {
         return None;
     }
     // `In this one an intern …`: a scenario.

@@ -112,6 +112,14 @@ fn trials(pieces: &mut [Piece]) {
     let word = |k: usize| word_at(pieces, k);
     let role = |k: usize| word(k).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| !role.generic);
     let scene = (0..pieces.len()).any(role);
+    // `from my pilot (n=24)`
+    let sample = |k: &usize| {
+        scene
+            && word(*k).is_some_and(|word| word.count().is_some())
+            && k.checked_sub(1).and_then(word).is_some_and(|word| word.text == "n")
+            && word(k + 1).is_none()
+    };
+    let samples: Vec<usize> = (0..pieces.len()).filter(sample).collect();
     let told: Vec<usize> = (0..pieces.len())
         .filter(|k| {
             let many = word(*k).and_then(Word::count).is_some_and(|n| n > 6);
@@ -119,7 +127,7 @@ fn trials(pieces: &mut [Piece]) {
         })
         .flat_map(|k| [k, k + 1])
         .collect();
-    for at in told {
+    for at in told.into_iter().chain(samples) {
         if let Some(Piece::Word(word)) = pieces.get_mut(at) {
             word.label = true;
         }

@@ -423,8 +423,22 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             matches!((&thread.waiting, people), (Some(Trigger::HumanSays(id, _)), [only])
                 if usize::try_from(id.number()) == Ok(only + 1) && act != Act::Gesture && stretch.joint == Joint::Said)
         };
+        // `tells him to make room, and then he gets out of its way`: whoever was told to.
+        let told_to = |people: &[usize]| {
+            let responds = matches!(
+                (&thread.said, act),
+                (Some(Trigger::HumanSays(_, Gesture::ExcuseMe)), Act::GiveWay)
+                    | (Some(Trigger::HumanSays(_, Gesture::Wait)), Act::Stop)
+            );
+            let sayer = matches!((&thread.said, people), (Some(Trigger::HumanSays(id, _)), [only])
+                if usize::try_from(id.number()) == Ok(only + 1));
+            responds
+                && sayer
+                && matches!(stretch.joint, Joint::Then | Joint::And | Joint::Comma | Joint::Opens)
+                && found.mentions.first().is_some_and(|mention| mention.who == Who::Same)
+        };
         let subject = match subject {
-            Subject::People(people) if own(&people) && !thread.addressed.is_empty() => {
+            Subject::People(people) if (own(&people) || told_to(&people)) && !thread.addressed.is_empty() => {
                 Subject::People(thread.addressed.clone())
             }
             Subject::People(_) | Subject::Robot | Subject::Nobody => subject,

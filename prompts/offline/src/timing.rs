@@ -100,6 +100,10 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
                 read.rule.for_s = Some(10.0);
             }
         }
+        // `stands still until it is 3 m away, then he walks off`
+        if !thread.made.is_empty() && found.distance_m.is_some() {
+            thread.ended = trigger(cue, found, thread);
+        }
         // `notices nothing until it is 1 m away; he then freezes`
         if thread.made.is_empty() {
             thread.ended = trigger(cue, found, thread);

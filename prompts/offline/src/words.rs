@@ -317,7 +317,11 @@ fn mended(text: &str) -> Option<&'static str> {
         return None;
     }
     // `manage` and `smoke` are what a manager and a smoker do.
-    let doer = |word: &str| text.ends_with('e') && word.strip_suffix('r') == Some(text);
+    let doer = |word: &str| {
+        text.ends_with('e') && word.strip_suffix('r') == Some(text)
+            // `reported` is what a reporter did.
+            || text.strip_suffix('d').is_some_and(|cut| word.strip_suffix('r') == Some(cut))
+    };
     let near = |word: &&String| {
         (word.chars().count() >= 6 || letters == 5 && lex.roles.contains_key(word.as_str()) && word.len() == 5)
             && word.chars().next() == text.chars().next()
