@@ -5,6 +5,7 @@ use socrates_model::{AgentId, HumanId, NodeId, PlaceClass};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::gaps::ARRIVED_M;
 use crate::fidelity::meeting::{LATE_FACTOR, absent};
+use crate::fidelity::robot::held_on_request_s;
 use crate::fidelity::signals::Signals;
 use crate::tracks::Track;
 
@@ -100,7 +101,8 @@ pub(super) fn starts_at(signals: &Signals<'_>, agent: AgentId, node: &NodeId, wi
     Finding::by_margin(within_m - distance, vec![start.t], text)
 }
 
-/// Human and robot get to the encounter at about the same time.
+/// Human and robot get to the encounter at about the same time; how long the robot waits in between because it is asked to does
+/// not count.
 pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
@@ -117,9 +119,13 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };
-    let gap = (second - first).abs();
+    // A robot that stands because somebody asked it to is kept waiting by the scenario, not late.
+    let apart_s = (second - first).abs();
+    let waits_s = held_on_request_s(signals, first.min(second), first.max(second)).min(apart_s);
+    let gap = apart_s - waits_s;
+    let waits = if waits_s > 0.0 { format!(" and {waits_s:.1} s on request") } else { String::new() };
     let text = format!(
-        "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s (at most {gap_s:.1} s asked)"
+        "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s{waits} (at most {gap_s:.1} s asked)"
     );
     let times = vec![first.max(second), first, second];
     let finding = match gap {
