@@ -37,7 +37,7 @@ pub(crate) fn of(
             (own, robot_way.project(&at).0)
         });
         let lead_s = if made.is_empty() {
-            rendezvous::lead_s(proposal.relation, several_toward(setup, visit.node))
+            rendezvous::lead_s(proposal.relation, several_toward(setup, proposal, visit.node))
         } else {
             let course = |way: &Polyline, s: f64| way.direction((s - AROUND_M).max(0.0));
             rendezvous::lead_by_ways_s(&course(way, human_s), &course(robot_way, robot_s))
@@ -47,8 +47,9 @@ pub(crate) fn of(
     made
 }
 
-/// Whether more than one comes towards the robot at this node, but no crowd: that has to be there when the robot comes.
-fn several_toward(setup: &Setup, node: &NodeId) -> bool {
+/// Whether more than one comes towards the robot at this node and just passes it, or does so in a group; but no crowd: that has
+/// to be there when the robot comes.
+fn several_toward(setup: &Setup, proposal: &HumanProposal, node: &NodeId) -> bool {
     let crowd = |clause: &Clause| {
         matches!(clause.predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })
     };
@@ -56,7 +57,9 @@ fn several_toward(setup: &Setup, node: &NodeId) -> bool {
         return false;
     }
     let toward = |human: &&HumanProposal| {
+        let along = human.group.is_some() && human.group == proposal.group;
         human.relation == Relation::Frontal
+            && (along || proposal.rules.is_empty() && human.rules.is_empty())
             && setup.paths.encounters_of(human.id).next() == Some(node)
     };
     setup.proposal.humans.iter().filter(toward).count() > 1
