@@ -1,5 +1,6 @@
 //! Monitors of what the robot does: arrives, keeps away, obeys.
 
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{AgentId, EventKind, Gesture, Point};
 
 use crate::fidelity::acts::timely;
@@ -59,11 +60,8 @@ pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
     }
 }
 
-/// The robot does what the gesture asks in time: it goes for PROCEED and `FOLLOW_ME`, else it stops.
-pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> Finding {
-    let Some(robot) = &signals.tracks.robot else {
-        return Finding::not_applicable("there is no robot in the recording");
-    };
+/// When and by whom a gesture is made.
+fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
     let by_event = signals.evidence.recording.events.iter().filter_map(|event| match &event.kind {
         EventKind::Gesture { agent: AgentId::Human(id), gesture: made } if *made == gesture => {
             Some((event.time.secs(), AgentId::Human(*id)))
@@ -85,7 +83,34 @@ pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> F
         .humans
         .iter()
         .filter_map(|track| Some((track.samples.iter().find(|s| s.gesture == gesture)?.t, track.agent)));
-    let all: Vec<(f64, AgentId)> = by_event.chain(by_state).collect();
+    by_event.chain(by_state).collect()
+}
+
+/// For how much of a time the robot stands because its script has it wait for whoever asks it to, s.
+pub(super) fn held_on_request_s(signals: &Signals<'_>, from_s: f64, to_s: f64) -> f64 {
+    let (Some(robot), Some(proposal)) = (&signals.tracks.robot, signals.evidence.proposal) else { return 0.0 };
+    let hold = |line: &RobotRule| match (&line.when, &line.act) {
+        (RobotWhen::HumanSays(gesture), RobotDo::Hold(secs)) => {
+            // A line of the script is played once.
+            let asked = said(signals, *gesture).into_iter().map(|(t, _)| t).min_by(f64::total_cmp)?;
+            Some((asked.max(from_s), (asked + secs).min(to_s)))
+        }
+        _ => None,
+    };
+    let spans: Vec<(f64, f64)> = proposal.robot.script.iter().filter_map(hold).collect();
+    let steps = robot.samples.iter().zip(robot.samples.iter().skip(1));
+    let stands = steps.filter(|(now, next)| {
+        now.speed() <= MOVING_MPS && spans.iter().any(|(from, to)| now.t >= *from && next.t <= *to)
+    });
+    stands.map(|(now, next)| next.t - now.t).sum()
+}
+
+/// The robot does what the gesture asks in time: it goes for PROCEED and `FOLLOW_ME`, else it stops.
+pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> Finding {
+    let Some(robot) = &signals.tracks.robot else {
+        return Finding::not_applicable("there is no robot in the recording");
+    };
+    let all = said(signals, gesture);
     let Some((made, who)) = all.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) else {
         return Finding::never(-within_s, vec![], format!("nobody says {gesture} to the robot"));
     };

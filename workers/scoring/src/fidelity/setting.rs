@@ -4,9 +4,10 @@ use socrates_model::{AgentId, HumanId, NodeId, PlaceClass};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::gaps::ARRIVED_M;
-use crate::fidelity::meeting::{LATE_FACTOR, absent};
+use crate::fidelity::meeting::{LATE_FACTOR, MEET_NODE_M, absent};
+use crate::fidelity::robot::held_on_request_s;
 use crate::fidelity::signals::Signals;
-use crate::tracks::Track;
+use crate::tracks::{Sample, Track};
 
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
@@ -100,7 +101,8 @@ pub(super) fn starts_at(signals: &Signals<'_>, agent: AgentId, node: &NodeId, wi
     Finding::by_margin(within_m - distance, vec![start.t], text)
 }
 
-/// Human and robot get to the encounter at about the same time.
+/// Human and robot get to the encounter at about the same time; how long the robot waits in between because it is asked to does
+/// not count.
 pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
@@ -112,14 +114,22 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     };
     // The first of several encounters is over when the next one begins.
     let until_s = signals.meeting(human, 1).map_or(f64::INFINITY, |meeting| meeting.to_s);
-    let arrival =
-        |track: &Track| track.present().find(|s| s.t < until_s && (s.at - at).norm() <= ARRIVED_M).map(|s| s.t);
+    // Whoever goes aside for the other passes the place beside it, and is there when it is nearest.
+    let arrival = |track: &Track| {
+        let off = |s: &Sample| (s.at - at).norm();
+        let near = || track.present().filter(|s| s.t < until_s && off(s) <= MEET_NODE_M);
+        near().find(|s| off(s) <= ARRIVED_M).or_else(|| near().min_by(|a, b| off(a).total_cmp(&off(b)))).map(|s| s.t)
+    };
     let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };
-    let gap = (second - first).abs();
+    // A robot that stands because somebody asked it to is kept waiting by the scenario, not late.
+    let apart_s = (second - first).abs();
+    let waits_s = held_on_request_s(signals, first.min(second), first.max(second)).min(apart_s);
+    let gap = apart_s - waits_s;
+    let waits = if waits_s > 0.0 { format!(" and {waits_s:.1} s on request") } else { String::new() };
     let text = format!(
-        "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s (at most {gap_s:.1} s asked)"
+        "at `{id}` the robot is at {first:.1} s, {human} at {second:.1} s: gap {gap:.1} s{waits} (at most {gap_s:.1} s asked)"
     );
     let times = vec![first.max(second), first, second];
     let finding = match gap {

@@ -1,6 +1,6 @@
 //! Where and in which order a human meets the robot: from the paths to lengths along the ways, and which meeting is on.
 
-use socrates_model::{HumanProposal, NodeId, Point, Polyline, Visit};
+use socrates_model::{Clause, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Visit};
 
 use crate::human::{Human, Meeting};
 use crate::recorder::Recorder;
@@ -37,7 +37,7 @@ pub(crate) fn of(
             (own, robot_way.project(&at).0)
         });
         let lead_s = if made.is_empty() {
-            rendezvous::lead_s(proposal.relation)
+            rendezvous::lead_s(proposal.relation, several_toward(setup, proposal, visit.node))
         } else {
             let course = |way: &Polyline, s: f64| way.direction((s - AROUND_M).max(0.0));
             rendezvous::lead_by_ways_s(&course(way, human_s), &course(robot_way, robot_s))
@@ -45,6 +45,24 @@ pub(crate) fn of(
         made.push(Meeting { node: visit.node.clone(), at, human_s, robot_s, lead_s });
     }
     made
+}
+
+/// Whether more than one comes towards the robot at this node and just passes it, or does so in a group; but no crowd: that has
+/// to be there when the robot comes.
+fn several_toward(setup: &Setup, proposal: &HumanProposal, node: &NodeId) -> bool {
+    let crowd = |clause: &Clause| {
+        matches!(clause.predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })
+    };
+    if setup.proposal.expected_events.iter().any(crowd) {
+        return false;
+    }
+    let toward = |human: &&HumanProposal| {
+        let along = human.group.is_some() && human.group == proposal.group;
+        human.relation == Relation::Frontal
+            && (along || proposal.rules.is_empty() && human.rules.is_empty())
+            && setup.paths.encounters_of(human.id).next() == Some(node)
+    };
+    setup.proposal.humans.iter().filter(toward).count() > 1
 }
 
 fn steps(visit: &Visit<'_>, own: &Marks, robot: &Marks) -> Option<(f64, f64)> {

@@ -197,10 +197,13 @@ fn look_ahead_m(human: &Human) -> f64 {
 
 /// Stands at its place; lets a robot through that cannot get past it, and comes back.
 fn stay(human: &mut Human, scene: &Scene<'_>) -> Want {
-    // Members of a standing group look at its middle, and the robot goes round them.
-    let Some(robot) = scene.robot.filter(|_| !human.standing) else { return Want::STAND };
+    let Some(robot) = scene.robot else { return Want::STAND };
     if jammed(human, robot, scene.now_s, STAYING_PATIENCE_S) {
         return give_way(human, scene);
+    }
+    // Members of a standing group look at its middle, and the robot goes round them, if there is room for that.
+    if human.standing && human.yields_until_s <= 0.0 {
+        return Want::STAND;
     }
     let back = (human.home - human.at).norm();
     if back > if human.anchor.is_some() { 0.3 } else { 0.1 } {

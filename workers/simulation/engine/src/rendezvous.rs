@@ -36,6 +36,9 @@ const CROSS_S: f64 = 1.1;
 /// Somebody who comes towards the robot aims at being there so long before it, s: who stops on seeing the robot
 /// stops near the place of the meeting, not far before it.
 const TOWARD_S: f64 = 0.7;
+/// Several who come towards it aim at being there so long after it, s: it slows down before all of them, and would still be on
+/// its way to the place when they have passed.
+const SEVERAL_TOWARD_S: f64 = -0.7;
 /// A robot slower than this stands, m/s; after its first moments that takes it so much longer, s.
 const STANDS_MPS: f64 = 0.15;
 const STANDS_FROM_S: f64 = 3.0;
@@ -145,12 +148,13 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     Pace { speed_mps: speed }
 }
 
-/// How long before the robot somebody aims at being at its first meeting, s.
-pub(crate) const fn lead_s(relation: Relation) -> f64 {
+/// How long before the robot somebody aims at being at its first meeting, s; `several` come towards the robot there.
+pub(crate) const fn lead_s(relation: Relation, several: bool) -> f64 {
     match relation {
         Relation::Ahead => AHEAD_S,
         // A little before the robot: who crosses is seen crossing, not waiting.
         Relation::Crossing | Relation::Leaving => CROSS_S,
+        Relation::Frontal if several => SEVERAL_TOWARD_S,
         Relation::Frontal => TOWARD_S,
         Relation::Behind | Relation::Static | Relation::Staying | Relation::Abreast => 0.0,
     }

@@ -212,9 +212,9 @@ fn human(
         route = clear_end(route, robot_way, floor);
     }
     let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
-    let (route, marks, meetings) = in_time(setup, proposal.relation, route, marks, meetings);
-    let doors = doors_on(setup, &route);
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));
+    let (route, marks, meetings) = in_time(setup, (proposal.relation, speed_mps), route, marks, meetings);
+    let doors = doors_on(setup, &route);
     let sway = drawn_sway(setup.seed, proposal.id);
     let mut facing = 0.0;
     if let Some(meeting) = meetings.first()
@@ -297,7 +297,7 @@ type Way = (Polyline, Vec<(NodeId, f64)>, Vec<Meeting>);
 /// later on its path, but never nearer than [`STILL_LEFT_M`] to the (first) encounter.
 fn in_time(
     setup: &Setup,
-    relation: Relation,
+    (relation, speed_mps): (Relation, f64),
     route: Polyline,
     marks: Vec<(NodeId, f64)>,
     meetings: Vec<Meeting>,
@@ -306,11 +306,13 @@ fn in_time(
         return (route, marks, meetings);
     };
     let robot_s = meet.robot_s / (0.93 * setup.robot.v_max_mps).max(0.1);
-    let late_s = meet.human_s / HURRY_MPS - robot_s;
+    // Who is fast anyway has the longer way.
+    let hurry_mps = HURRY_MPS.max(speed_mps);
+    let late_s = meet.human_s / hurry_mps - robot_s;
     if late_s < LATE_S {
         return (route, marks, meetings);
     }
-    let cut = (meet.human_s - HURRY_MPS * robot_s).min(meet.human_s - STILL_LEFT_M).max(0.0);
+    let cut = (meet.human_s - hurry_mps * robot_s).min(meet.human_s - STILL_LEFT_M).max(0.0);
     // Inside a door it stays inside: the door is part of the story.
     if cut <= 0.0 || !doors_on(setup, &route).is_empty() {
         return (route, marks, meetings);

@@ -165,7 +165,10 @@ fn stop_before_touching(human: &Human, want: &Want, near: &Near, velocity: &mut 
         let toward = way / distance;
         // Nobody brushes past a robot the way people brush past each other.
         let least = if other.id.is_none() && !want.drawn { ROBOT_GAP_M } else { 0.06 };
-        let excess = velocity.dot(&toward) - (2.5 * (gap - least)).max(0.0);
+        // Whoever walks ahead in one's own group goes on: kept off it as from a post, a family would never get up to pace.
+        let mate = human.group.is_some() && other.group == human.group;
+        let goes_on = if mate { other.velocity.dot(&toward).max(0.0) } else { 0.0 };
+        let excess = velocity.dot(&toward) - goes_on - (2.5 * (gap - least)).max(0.0);
         if excess > 0.0 {
             *velocity -= toward * excess;
         }

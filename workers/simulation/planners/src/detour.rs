@@ -15,6 +15,10 @@ const HALF: i32 = 32;
 const SIDE: usize = 65;
 /// Never nearer to a body's surface than the first of these where there is such a way, else than the second, m.
 const HARD_GAPS_M: [f64; 2] = [0.32, 0.1];
+/// A way with a wide berth that is longer than so many times the straight line, and so much more, m, is taken only where the
+/// narrower berth leads nowhere: it would lead round a whole rack instead of past who stands beside it.
+const FAR: f64 = 1.6;
+const FAR_M: f64 = 1.0;
 /// Nearer than this to a body's surface is dear, m.
 const SOFT_GAP_M: f64 = 0.65;
 /// How much dearer a metre is on the left of the way, 1 m off it.
@@ -131,10 +135,16 @@ pub(crate) fn round(
     let near = obstacles.iter().filter(|obstacle| obstacle.hard).fold(f64::INFINITY, |least, obstacle| {
         least.min(obstacle.gap_m(from).min(obstacle.gap_m(to)) - ground.radius_m)
     });
-    HARD_GAPS_M
-        .iter()
-        .filter(|gap| near > **gap || **gap < 0.2)
-        .find_map(|gap| search(ground, obstacles, route, (from, to), *gap))
+    let most_m = (to - from).norm() * FAR + FAR_M;
+    let mut far = None;
+    for gap in HARD_GAPS_M.iter().filter(|gap| near > **gap || **gap < 0.2) {
+        match search(ground, obstacles, route, (from, to), *gap) {
+            Some(way) if way.length_m() <= most_m => return Some(way),
+            Some(way) => far = far.or(Some(way)),
+            None => {}
+        }
+    }
+    far
 }
 
 fn search(
