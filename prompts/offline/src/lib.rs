@@ -1,8 +1,8 @@
 //! The offline author: same questions as a language model, answers by rules, no network, no weights.
 //!
 //! ```text
-//! request text ─► words ─► cut ─► clause ─► story ─► reading ──► proposal ──► paths, rules
-//!                 lexicon.toml     mention    cast     + problems   catalog/*.toml   scene graph
+//! request text ─► words ─► notes, names, preamble ─► cut ─► clause ─► story ─► reading ──► proposal ──► paths, rules
+//!                 lexicon.toml                               mention    cast     + problems   catalog/*.toml   scene graph
 //! ```
 //!
 //! What stands can be edited in words ([`edit`]): the same grammar, with the people of the proposal as those of whom was spoken.

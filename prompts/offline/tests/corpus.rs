@@ -47,7 +47,7 @@ const OPEN: [(&str, &str, usize); 27] = [
 ];
 
 /// Facts of the sets kept aside that were right when the test saw them first.
-const FIRST_LOOKS: [usize; 3] = [107, 120, 127];
+const FIRST_LOOKS: [usize; 4] = [107, 120, 127, 220];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -244,7 +244,7 @@ fn what_was_kept_aside_last_is_read() {
 }
 
 /// Written by people who did not know the grammar, and unread by whoever works on it: only the figures are told. 95 in 100
-/// are aimed at: 360 of 378 facts of the three, the sixth at the only time it was run.
+/// are aimed at: 585 of 609 facts of the four, the sixth (127 of 129) and the eighth (220 of 231) at the only time they were run.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
@@ -252,6 +252,7 @@ fn what_is_kept_aside_is_read_no_worse_than_at_first() {
         ("third", include_str!("../corpus/sealed-3.toml"), FIRST_LOOKS[0]),
         ("fifth", include_str!("../corpus/sealed-5.toml"), FIRST_LOOKS[1]),
         ("sixth", include_str!("../corpus/sealed-6.toml"), FIRST_LOOKS[2]),
+        ("eighth", include_str!("../corpus/sealed-8.toml"), FIRST_LOOKS[3]),
     ] {
         let (right, all, _unread) = judge(corpus);
         println!("kept aside, {name}: {right} of {all} facts");
