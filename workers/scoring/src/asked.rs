@@ -2,6 +2,7 @@
 
 use socrates_model::reading::{Fact, FactKind};
 use socrates_model::report::Standing;
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
     Action, Clause, ClauseRole, EventKind, FORMAT, Gesture, HumanId, PlaceClass, Predicate, Reading, Relation, Report,
     Rule, Trigger, Verdict,
@@ -227,4 +228,40 @@ fn the_story_tells_when_somebody_goes_whom_it_follows_and_who_is_come_to() {
         assert!(report.story.iter().any(|told| told == line), "{line}: {:?}", report.story);
     }
     assert!(!report.story.iter().any(|told| told.contains("human_3 walks on")), "it never walks: {:?}", report.story);
+}
+
+/// Somebody is to be at the encounter with the robot within 3 s.
+fn timed(ends: &[f64]) -> Case {
+    let mut plan = proposal(1, vec![must("c1", Predicate::OnTime { human: H1, gap_s: 3.0 })]);
+    plan.robot.script.extend(
+        ends.iter().map(|secs| RobotRule { when: RobotWhen::HumanSays(Gesture::Wait), act: RobotDo::Hold(*secs) }),
+    );
+    Case { place: corridor(), plan, ways: paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m")]), reading: None }
+}
+
+#[test]
+fn how_long_the_robot_stands_because_it_is_asked_to_is_not_late() {
+    // It stands at 2.5 m from the encounter from 6 s to 10.5 s; whoever asks it to is there at about 7 s.
+    let way = [(0., -8., -0.5), (6., -2.5, -0.5), (10.5, -2.5, -0.5), (24., 8., -0.5)];
+    let robot = || Walk::through(socrates_model::AgentId::Robot, &way);
+    let asks = || Walk::human_through(1, &[(0., 8., 0.5), (20., -8., 0.5)]).says(6.0, 9.0, Gesture::Wait);
+    let report = timed(&[4.0]).judge(&recording(&[robot(), asks()], 24.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
+    assert!(found(&report, "c1").evidence.contains(" on request"), "{}", found(&report, "c1").evidence);
+    // Nobody has it wait in its script, or nobody asks: then it is late.
+    let report = timed(&[]).judge(&recording(&[robot(), asks()], 24.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Late, "{}", found(&report, "c1").evidence);
+    let silent = Walk::human_through(1, &[(0., 8., 0.5), (20., -8., 0.5)]);
+    let report = timed(&[4.0]).judge(&recording(&[robot(), silent], 24.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Late, "{}", found(&report, "c1").evidence);
+}
+
+#[test]
+fn who_passes_beside_the_encounter_is_there_when_it_is_nearest() {
+    let robot = || Walk::robot(-8., -1.0, 0.8, 0.);
+    let beside = |from: f64| Walk::human_through(1, &[(0., 8., 2.0), (from, 8., 2.0), (from + 20., -8., 2.0)]);
+    let report = timed(&[]).judge(&recording(&[robot(), beside(0.0)], 24.0, 0.01));
+    assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
+    let report = timed(&[]).judge(&recording(&[robot(), beside(10.0)], 30.0, 0.01));
+    assert_ne!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
 }

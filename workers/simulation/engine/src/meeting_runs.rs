@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use socrates_model::{EventKind, Recording, Relation};
 
 use crate::fixture::{Cast, carve, grouped, location, run, setup};
-use crate::run::Engine;
 use crate::setup::Setup;
 
 /// Two halls' worth of corridors: a ring around a block, with a tail at each side.
