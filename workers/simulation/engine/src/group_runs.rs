@@ -52,6 +52,26 @@ fn a_group_goes_aside_together_and_leaves_the_robot_the_other_side() {
 }
 
 #[test]
+fn a_group_of_four_walks_as_fast_as_its_members_want_to() {
+    let cast: Vec<Cast<'_>> = (0..4).map(|_| Cast(Relation::Frontal, BACK, vec![])).collect();
+    let mut made = grouped(setup(corridor(4.0, false), &["a", "b"], &cast, &[]));
+    for human in &mut made.proposal.humans {
+        human.speed_mps = Some(1.7);
+    }
+    let still = Setup { planner: "none".into(), duration_s: Some(30.0), ..made };
+    let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
+    for number in 1..=4 {
+        let track = human(&recording, number);
+        // Between x = 22 and 8 m nobody is kept back by whoever walks before him.
+        let on_way: Vec<f64> =
+            track.iter().filter(|at| (8.0..22.0).contains(&at.x)).map(|at| at.vx.hypot(at.vy)).collect();
+        #[expect(clippy::cast_precision_loss, reason = "a few thousand samples")]
+        let mean = on_way.iter().sum::<f64>() / on_way.len() as f64;
+        assert!(mean > 1.4, "human_{number}: {mean:.2} m/s");
+    }
+}
+
+#[test]
 fn a_group_falls_into_line_before_a_doorway_and_gets_through() {
     for seed in 1..=6 {
         let cast: Vec<Cast<'_>> = (0..3).map(|_| Cast(Relation::Frontal, BACK, vec![])).collect();
