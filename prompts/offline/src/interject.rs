@@ -42,8 +42,6 @@ const SAID: &[&[&str]] = &[
     &["so", "to", "speak"],
     &["that", "is"],
     &["that", "is", "to", "say"],
-    &["at", "least"],
-    &["at", "most"],
     &["after", "all"],
     &["once", "again"],
     &["by", "the", "way"],
@@ -78,13 +76,14 @@ const SAID: &[&[&str]] = &[
     &["moreover"],
     &["furthermore"],
     &["additionally"],
-    &["respectively"],
-    &["likewise"],
     &["accordingly"],
     &["consequently"],
     &["therefore"],
     &["unsurprisingly"],
     &["sic"],
+];
+/// Words with which a text, or a sentence of it, speaks to whoever reads it: `Folks, …`.
+const OPENS: &[&[&str]] = &[
     &["folks"],
     &["guys"],
     &["team"],
@@ -105,19 +104,21 @@ const SAID: &[&[&str]] = &[
 pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
     let mut at = 0;
     while at < pieces.len() {
-        let found =
-            SAID.iter().map(|said| said.len()).filter(|_| opens(pieces, at)).zip(SAID).find(|(length, said)| {
-                said.iter().enumerate().all(|(k, wanted)| text_at(pieces, at + k) == *wanted)
-                    && comma_at(pieces, at + length)
-            });
-        if let Some((length, _)) = found {
-            // Behind a stop the comma goes with them; between commas both go.
-            let from = if at > 0 && comma_at(pieces, at - 1) { at - 1 } else { at };
-            pieces.drain(from..=at + length);
-            at = from;
-        } else {
+        let first = at == 0 || matches!(pieces.get(at - 1), Some(Piece::Stop));
+        let tables = [(SAID, opens(pieces, at)), (OPENS, first)];
+        let found = tables.iter().filter(|(_, may)| *may).flat_map(|(table, _)| table.iter()).find(|said| {
+            said.iter().enumerate().all(|(k, wanted)| text_at(pieces, at + k) == *wanted)
+                && comma_at(pieces, at + said.len())
+        });
+        let Some(length) = found.map(|said| said.len()) else {
             at += 1;
-        }
+            continue;
+        };
+        // Behind a stop the comma goes with them; between commas both go, if the sentence goes on with its verb.
+        let between = at > 0 && comma_at(pieces, at - 1);
+        let from = if between && goes_on(pieces, at + length + 1) { at - 1 } else { at };
+        pieces.drain(from..=at + length);
+        at = from;
     }
 }
 
@@ -161,6 +162,17 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
             word.label = true;
         }
     }
+}
+
+/// Whether a clause that was begun goes on here with its verb.
+fn goes_on(pieces: &[Piece], at: usize) -> bool {
+    word_at(pieces, at).is_some_and(|word| {
+        lexicon().verbs.contains(&word.stem) && !lexicon().roles.contains_key(&word.stem)
+            || matches!(
+                word.text.as_str(),
+                "never" | "not" | "just" | "only" | "always" | "simply" | "then" | "who" | "with"
+            )
+    })
 }
 
 /// Whether such words may begin here.

@@ -50,6 +50,12 @@ fn what_stands_between_marks_and_says_nothing_breaks_no_sentence() {
     all(&[
         ("A nurse, bless her, follows the robot.", "1 human · 1 follows the robot"),
         ("Folks, a nurse follows the robot.", "1 human · 1 follows the robot"),
+        (
+            "A nurse follows the robot, by contrast, a visitor comes towards it.",
+            "2 humans · 1 nurse follows the robot · 1 visitor comes towards the robot",
+        ),
+        // Wishes are no interjections.
+        ("When they see it, two nurses stop, look, and walk on.", "2 humans · 2 stop, look at the robot, walk on"),
         ("Following her notion of space, two nurses cross the corridor.", "2 humans · 2 cross · place: corridor"),
     ]);
     let faults =
