@@ -10,7 +10,7 @@ use socrates_model::{EventKind, Location, Paths, Point, Recording};
 use crate::actor::{self, Look};
 use crate::label::{text_width, wrapped};
 use crate::map_layer::{Frame, draw_floor};
-use crate::page_data::marks;
+use crate::page_data::{STANDS, WALKS, marks};
 use crate::palette;
 use crate::play::spread;
 use crate::png::{Ground, PngError};
@@ -22,8 +22,12 @@ const STILL_SECS: f64 = 1.0;
 pub const LONGEST_SECS: f64 = 20.0;
 /// Most runs side by side.
 pub const PANELS: usize = 4;
-/// Seconds for which a caption stands.
+/// Seconds of the film for which a caption stands, and of the run where the film is slower.
 const CAPTION_SECS: f64 = 2.0;
+/// So many are told at once.
+const CAPTIONS: usize = 3;
+/// What begins within so long is how somebody starts, s.
+const FIRST_SECS: f64 = 0.5;
 
 /// How a film is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -312,10 +316,16 @@ impl<'a> Film<'a> {
             format!(" ({}×)", (self.times.speed * 100.0).round() / 100.0)
         };
         plate(svg, (x + margin, y + margin), &format!("{} · {now_s:.1} s{speed}", panel.title));
-        let newest = panel.captions.iter().rfind(|(t, _)| *t <= now_s + 1e-9 && now_s - t < CAPTION_SECS);
-        if let Some((_, words)) = newest {
+        // The newest ones, each on a plate of its own, so that what comes fast is told as well.
+        let fresh = panel
+            .captions
+            .iter()
+            .filter(|(t, _)| *t <= now_s + 1e-9 && now_s - t < CAPTION_SECS * self.times.speed.max(1.0));
+        for (row, (_, words)) in fresh.rev().take(CAPTIONS).enumerate() {
             let words = wrapped(words, panel.size.0 - size * 3.0, size, 1).concat();
-            plate(svg, (x + margin, y + panel.size.1 - size * 1.7 - margin), &words);
+            #[expect(clippy::cast_precision_loss, reason = "a few rows")]
+            let up = size * 1.7 * (row as f64 + 1.0);
+            plate(svg, (x + margin, y + panel.size.1 - up - margin), &words);
         }
     }
 }
@@ -331,8 +341,8 @@ fn captions(recording: &Recording) -> Vec<(f64, String)> {
         ) else {
             continue;
         };
-        // What somebody's tree does is seen, not told: at the start it would be a line of names.
-        if kind == "leaf" {
+        // Who walks, or stands there from the start, is seen, not told: it would be a line of names. Reactions are told.
+        if kind == "leaf" && (words.ends_with(WALKS) || t < FIRST_SECS && words.ends_with(STANDS)) {
             continue;
         }
         match out.last_mut() {

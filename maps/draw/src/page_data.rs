@@ -106,7 +106,7 @@ fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>, stood: &dyn Fn(H
         EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
             mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
         }
-        EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human}: {}", spoken(leaf))),
+        EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),
         EventKind::Sees { human, distance_m } => {
             mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
         }
@@ -128,11 +128,27 @@ fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>, stood: &dyn Fn(H
     }
 }
 
-/// A leaf's tag as words: `StandStill` becomes `stand still`.
+/// What somebody does who walks its path.
+pub(crate) const WALKS: &str = "walks on";
+/// What somebody does who keeps its place.
+pub(crate) const STANDS: &str = "stands still";
+
+/// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `stand up` for `StandUp`.
 fn spoken(tag: &str) -> String {
-    // The tag of walking is that of the original library; nobody but its users knows it.
-    if tag == "RegularNav" {
-        return "walks on".to_owned();
+    // Tags of the published trees; the last words are those of the story.
+    let known = [
+        ("RegularNav", WALKS),
+        ("FollowRobot", "follows the robot"),
+        ("FollowHuman", "follows another human"),
+        ("RunAwayFromRobot", "runs away from the robot"),
+        ("GiveWaytoRobot", "gives way to the robot"),
+        ("BlockRobot", "blocks the robot"),
+        ("LookAtRobot", "stops and looks at the robot"),
+        ("ApproachRobot", "comes up to the robot"),
+        ("StandStill", STANDS),
+    ];
+    if let Some((_, words)) = known.iter().find(|(known, _)| *known == tag) {
+        return (*words).to_owned();
     }
     let mut out = String::new();
     for c in tag.chars() {
@@ -141,7 +157,7 @@ fn spoken(tag: &str) -> String {
         }
         out.extend(c.to_lowercase());
     }
-    out
+    format!("runs {out}")
 }
 
 #[cfg(test)]
@@ -174,8 +190,9 @@ mod tests {
 
     #[test]
     fn a_leaf_is_told_in_words() {
-        assert_eq!(spoken("StandStill"), "stand still");
-        assert_eq!(spoken("wait"), "wait");
+        assert_eq!(spoken("StandStill"), "stands still");
+        assert_eq!(spoken("BlockRobot"), "blocks the robot");
+        assert_eq!(spoken("wait"), "runs wait");
         assert_eq!(spoken("RegularNav"), "walks on");
     }
 }

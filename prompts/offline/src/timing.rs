@@ -183,8 +183,9 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         }
     } else {
         thread.waiting = Some(when);
-        // Who comes out waits for the door anyway.
-        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open"));
+        // Who comes out waits for the door anyway; whoever is met is there as the robot passes by.
+        let met = cue == Cue::Near && quote.contains("pass");
+        thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open") && !met);
         thread.vague = found.distance_m.is_none();
     }
 }

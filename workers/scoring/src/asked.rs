@@ -265,3 +265,20 @@ fn who_passes_beside_the_encounter_is_there_when_it_is_nearest() {
     let report = timed(&[]).judge(&recording(&[robot(), beside(10.0)], 30.0, 0.01));
     assert_ne!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
 }
+
+#[test]
+fn a_wish_that_nothing_was_played_for_stands_beside_the_verdict() {
+    let wish = |words: &str| {
+        let message = format!("`{words}`: what somebody does is played once");
+        socrates_model::Fault::new(socrates_model::FaultCode::PRead, "rough_scenario", message)
+    };
+    let mut case = asked_to_give_way();
+    let stays = Walk::human_through(1, &[(0., 0., -0.3), (18., 0., -0.3), (19., 0., 0.6), (40., 0., 0.6)]);
+    let run = recording(&[asks(9.0), stays.leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
+    assert!(!case.judge(&run).verdict_text.contains("not played"));
+    if let Some(reading) = &mut case.reading {
+        reading.problems = vec![wish("again and again"), wish("dances")];
+    }
+    let text = case.judge(&run).verdict_text;
+    assert!(text.ends_with(" · not played: `again and again` and 1 more"), "{text}");
+}

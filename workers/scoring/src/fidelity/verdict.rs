@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{Predicate, Verdict};
+use socrates_model::{FaultCode, Predicate, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -89,7 +89,19 @@ pub fn rule(
     } else if let (Some(from), Some(to)) = times(judged) {
         text.push_str(&format!(" · seen from {from:.1} s to {to:.1} s"));
     }
+    text.push_str(&unplayed(evidence));
     Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
+}
+
+/// Wishes of the text that nothing was played for: said beside every verdict, so that none is read as more than it is.
+fn unplayed(evidence: &Evidence<'_>) -> String {
+    let problems = evidence.reading.map_or(&[][..], |reading| reading.problems.as_slice());
+    let mut wishes = problems.iter().filter(|fault| fault.at == "rough_scenario" && fault.code == FaultCode::PRead);
+    let Some(first) = wishes.next() else { return String::new() };
+    let quote = first.message.split('`').nth(1).unwrap_or_default();
+    let more = wishes.count();
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!(" · not played: `{quote}`{more}")
 }
 
 /// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.
