@@ -170,6 +170,14 @@ fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&Sc
         let verdict = if bundle.runs.len() > 1 { format!(" · {}", report.verdict) } else { String::new() };
         talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
     }
+    // The first line is that of the first run; of several, this one says how often it happened.
+    let played = || bundle.runs.iter().filter(|(_, report)| report.planner != "none");
+    if played().count() > 1 {
+        let count = |wanted: Verdict| played().filter(|(_, report)| report.verdict == wanted).count();
+        let (realised, late) = (count(Verdict::Realised), count(Verdict::RealisedLate));
+        let of_them = if late > 0 { format!(", {late} of them late") } else { String::new() };
+        talk.line(&format!("runs       realised in {} of {}{of_them}", realised + late, played().count()));
+    }
     if bundle.proposal.author.starts_with("offline") {
         talk.line("author     offline: written by rules, not by a language model");
     }

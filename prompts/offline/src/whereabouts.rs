@@ -96,6 +96,12 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && found.mentions.iter().all(|mention| mention.to < *at)
             && found.robots.is_empty()
             && found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at);
+        if headed && story.robot_part != Some("leading") {
+            story.cast.notes.push(format!(
+                "`{quote}`: people are met on their way and walk on; that they end at {} is not demanded",
+                crate::place::an(class)
+            ));
+        }
         if !headed && !source && (weak || in_lobby) {
             story.place = Some((class, quote.to_owned()));
         }
