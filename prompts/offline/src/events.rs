@@ -235,6 +235,10 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
     }
     // What it does only a while after what it waits for.
     let late_s = last.filter(|last| walks(last)).and_then(|last| last.for_s).unwrap_or(0.0);
+    // What is done again comes when all before it is over.
+    let earlier = human.rules.iter().take_while(|own| *own != rule);
+    let again = earlier.clone().any(|own| own.act == rule.act);
+    let late_s = late_s + if again { earlier.filter_map(|own| own.for_s).sum::<f64>() } else { 0.0 };
     let plain = seen.is_none();
     if let Some(predicate) = seen {
         list.setup(true, source, text, predicate);

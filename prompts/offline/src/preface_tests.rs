@@ -122,3 +122,15 @@ fn parts_of_several_are_those_of_whom_it_is_said() {
         ),
     ]);
 }
+
+#[test]
+fn what_is_done_again_and_again_is_done_three_times() {
+    let reading = told("A nurse obstructs the robot again and again.", "hospital");
+    let acts: Vec<_> = reading.humans[0].rules.iter().map(|rule| rule.act.clone()).collect();
+    assert_eq!(acts.iter().filter(|act| **act == socrates_model::Action::Block).count(), 3, "{acts:?}");
+    assert_eq!(acts.len(), 5);
+    assert!(reading.problems.is_empty(), "{:?}", reading.problems);
+    // Of other deeds it is said that they are played once.
+    let reading = told("A nurse looks at the robot again and again.", "hospital");
+    assert_eq!(reading.problems.len(), 1, "{:?}", reading.problems);
+}

@@ -218,6 +218,19 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if cue_only && (temporal || found.gesture.is_none()) {
         return timing(story, thread, stretch, &found, &quote);
     }
+    // `while it is cleaning` is the robot's errand.
+    found.impossible.retain(|at| {
+        let errand = stretch.words.get(*at).is_some_and(|word| lexicon().task.contains(&word.stem));
+        let robot =
+            found.robots.iter().any(|robot| robot < at) && found.mentions.iter().all(|mention| mention.from > *at);
+        if errand
+            && robot
+            && let Some(word) = stretch.words.get_mut(*at)
+        {
+            word.used = true;
+        }
+        !(errand && robot)
+    });
     if !found.impossible.is_empty() {
         let verbs: Vec<&str> =
             found.impossible.iter().filter_map(|i| stretch.words.get(*i)).map(|word| word.text.as_str()).collect();

@@ -2,10 +2,12 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    Action, FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request,
+    Action, FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request, Rule,
+    Trigger,
 };
 
 use crate::card::Ends;
+use crate::cast::{Person, ReadRule};
 use crate::lexicon::lexicon;
 use crate::pattern;
 use crate::story::{self, Story};
@@ -50,6 +52,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     language(request, &mut reading);
     expectations(request, &mut story, &mut reading);
     story.finish();
+    again_and_again(rough.unwrap_or_default(), &mut story);
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);
     reading.pattern = rough.and_then(|_| pattern::of(&story, wanted)).or_else(|| wanted.map(str::to_owned));
@@ -385,8 +388,40 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
 const OFTEN: &[&str] =
     &["again and again", "over and over", "time and again", "repeatedly", "several times", "many times"];
 
+/// How long somebody who blocks the robot again and again does so, and leaves it its way in between, s.
+const BLOCKS_S: f64 = 5.0;
+const YIELDS_S: f64 = 2.0;
+/// How near the robot is when it is left its way, and blocked again, m: each time a little farther, so that no two rules are one.
+const TURNS_M: [(f64, f64); 2] = [(3.0, 4.0), (3.5, 4.5)];
+
+/// `obstructs it again and again`: three times, with its way free in between.
+fn again_and_again(rough: &str, story: &mut Story) {
+    let lower = rough.to_lowercase();
+    let Some(words) = OFTEN.iter().find(|words| lower.contains(**words)) else { return };
+    let blocks = |person: &&mut Person| matches!(person.rules.as_slice(), [only] if only.rule.act == Action::Block && !only.lasts);
+    // Of several it is not known who is meant.
+    let [person] = &mut *story.cast.people.iter_mut().filter(blocks).collect::<Vec<_>>() else { return };
+    let Some(first) = person.rules.first_mut().map(|only| {
+        only.rule.for_s = Some(BLOCKS_S);
+        only.clone()
+    }) else {
+        return;
+    };
+    for (yields_m, blocks_m) in TURNS_M {
+        for (act, m, secs) in [(Action::GiveWay, yields_m, YIELDS_S), (Action::Block, blocks_m, BLOCKS_S)] {
+            let rule = Rule { when: vec![Trigger::RobotNear(m)], act, gesture: None, for_s: Some(secs), latched: true };
+            person.rules.push(ReadRule { rule, stated: true, then: true, ..first.clone() });
+        }
+    }
+    story.cast.notes.push(format!("`{words}` was read as three times, with the way free in between"));
+}
+
 /// Says that what shall happen often is played once.
 fn often(request: &Request, reading: &mut Reading) {
+    let thrice = |human: &ReadHuman| human.rules.iter().filter(|rule| rule.act == Action::Block).count() > 2;
+    if reading.humans.iter().any(thrice) {
+        return;
+    }
     let rough = request.rough_scenario.as_deref().unwrap_or_default().to_lowercase();
     for words in OFTEN.iter().filter(|words| rough.contains(**words)) {
         reading.problems.push(Fault::new(
