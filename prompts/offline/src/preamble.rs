@@ -93,7 +93,10 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
         .take(first)
         .filter(|((_, to), (words, found))| {
             // `Role reversal, the human guides: an intern …`
-            let heads = matches!(pieces.get(*to), Some(Piece::Colon)) && words.len() <= 9;
+            // A heading does not tell what anybody does to the robot: `A family comes towards the robot: a father …`
+            let heads = matches!(pieces.get(*to), Some(Piece::Colon))
+                && words.len() <= 9
+                && words.iter().all(|word| word.stem != "robot");
             general(words, found, heads)
         })
         .map(|(part, _)| *part)
@@ -161,7 +164,7 @@ fn weak(words: &[Word], mention: &Mention) -> bool {
         // `some people love to tease it`
         Who::New { .. } if mention.role.is_none() && text(mention.from) == "some" => signs(),
         // `how a dyad affects the robot`
-        Who::New { .. } if mention.group && mention.role.is_none() => true,
+        Who::New { .. } if mention.group && mention.role.is_none() => signs(),
         // `somebody`, where nothing is asked for
         Who::New { count: Some(1), .. } if mention.role.is_none() => signs() && !words.iter().any(wishes),
         // `this one is about …`, `the human guides`

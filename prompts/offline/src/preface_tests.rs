@@ -95,6 +95,10 @@ fn people_in_general_before_the_story_are_nobody_in_it() {
             "{before}"
         );
     }
+    all(&[(
+        "A family comes towards the robot: a father, a mother and a child.",
+        "3 humans · 1 father comes towards the robot · 1 mother comes towards the robot · 1 child comes towards the robot · group of 3",
+    )]);
     // Whom the story takes up again is in it.
     for (rough, humans) in [
         ("Our porter comes towards the robot. A nurse follows it.", 2),
