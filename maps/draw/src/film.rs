@@ -5,12 +5,12 @@
 //!                       └─► animated SVG
 //! ```
 
-use socrates_model::{EventKind, Location, Paths, Point, Recording};
+use socrates_model::{Action, EventKind, Location, Paths, Point, Recording};
 
 use crate::actor::{self, Look};
 use crate::label::{text_width, wrapped};
 use crate::map_layer::{Frame, draw_floor};
-use crate::page_data::{STANDS, WALKS, marks};
+use crate::page_data::marks;
 use crate::palette;
 use crate::play::spread;
 use crate::png::{Ground, PngError};
@@ -333,6 +333,7 @@ impl<'a> Film<'a> {
 /// What is told at the lower edge, with times: everything that happens at one moment in one line.
 fn captions(recording: &Recording) -> Vec<(f64, String)> {
     let mut out: Vec<(f64, String)> = Vec::new();
+    let (walks, stands) = (Action::Navigate.phrase(), Action::StandStill.phrase());
     for mark in marks(recording) {
         let (Some(t), Some(kind), Some(words)) = (
             mark.get(0).and_then(serde_json::Value::as_f64),
@@ -342,7 +343,7 @@ fn captions(recording: &Recording) -> Vec<(f64, String)> {
             continue;
         };
         // Who walks, or stands there from the start, is seen, not told: it would be a line of names. Reactions are told.
-        if kind == "leaf" && (words.ends_with(WALKS) || t < FIRST_SECS && words.ends_with(STANDS)) {
+        if kind == "leaf" && (words.ends_with(&walks) || t < FIRST_SECS && words.ends_with(&stands)) {
             continue;
         }
         match out.last_mut() {

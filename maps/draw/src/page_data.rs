@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 use socrates_model::{
-    AgentId, ClauseRole, Event, EventKind, HumanId, Location, Point, Reading, Recording, Report, ordinal,
+    Action, AgentId, ClauseRole, Event, EventKind, HumanId, Location, Point, Reading, Recording, Report, ordinal,
 };
 
 use crate::facts::fact_words;
@@ -128,28 +128,27 @@ fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>, stood: &dyn Fn(H
     }
 }
 
-/// What somebody does who walks its path.
-pub(crate) const WALKS: &str = "walks on";
-/// What somebody does who keeps its place.
-pub(crate) const STANDS: &str = "stands still";
-
-/// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `stand up` for `StandUp`.
+/// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `runs stand up` for `StandUp`.
 fn spoken(tag: &str) -> String {
-    // Tags of the published trees; the last words are those of the story.
-    let known = [
-        ("RegularNav", WALKS),
-        ("FollowRobot", "follows the robot"),
-        ("FollowHuman", "follows another human"),
-        ("RunAwayFromRobot", "runs away from the robot"),
-        ("GiveWaytoRobot", "gives way to the robot"),
-        ("BlockRobot", "blocks the robot"),
-        ("LookAtRobot", "stops and looks at the robot"),
-        ("ApproachRobot", "comes up to the robot"),
-        ("StandStill", STANDS),
-    ];
-    if let Some((_, words)) = known.iter().find(|(known, _)| *known == tag) {
-        return (*words).to_owned();
-    }
+    // Tags of the published trees, whose words are those of the story.
+    let known = match tag {
+        "RegularNav" => Action::Navigate,
+        "FollowRobot" => Action::FollowRobot,
+        "RunAwayFromRobot" => Action::RunAway,
+        "GiveWaytoRobot" => Action::GiveWay,
+        "BlockRobot" => Action::Block,
+        "LookAtRobot" => Action::LookAtRobot,
+        "ApproachRobot" => Action::Approach,
+        "StandStill" => Action::StandStill,
+        // The tag does not say whom.
+        "FollowHuman" => return "follows another human".to_owned(),
+        _ => return format!("runs {}", parted(tag)),
+    };
+    known.phrase()
+}
+
+/// `stand up` for `StandUp`.
+fn parted(tag: &str) -> String {
     let mut out = String::new();
     for c in tag.chars() {
         if c.is_uppercase() && !out.is_empty() {
@@ -157,7 +156,7 @@ fn spoken(tag: &str) -> String {
         }
         out.extend(c.to_lowercase());
     }
-    format!("runs {out}")
+    out
 }
 
 #[cfg(test)]

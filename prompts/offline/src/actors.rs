@@ -105,9 +105,7 @@ fn listed_roles(mut items: Items) -> Items {
             None
         };
         if counts && let Some(from) = from {
-            for item in items.0.iter_mut().take(k + 1).skip(from) {
-                (item.word.label, item.word.used) = (true, true);
-            }
+            items.spend(from, k + 1);
         }
     }
     let Some(first) = items.0.get(at).cloned() else { return items };

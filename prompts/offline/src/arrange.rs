@@ -25,7 +25,6 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     pair(&mut found);
     resumed(&mut found);
     parted(&mut found);
-    named(&mut found);
     fronted(apposed(found))
 }
 
@@ -273,37 +272,6 @@ fn asked_of(found: &mut [Stretch]) {
         let rest = found.get_mut(at).map(|who| who.words.split_off(to)).unwrap_or_default();
         if let Some(asks) = found.get_mut(at - 1) {
             asks.words.extend(rest);
-        }
-    }
-}
-
-/// `two doctors, Dr. Meyer and Dr. Santos, stroll out`: names of those who were counted already.
-fn named(found: &mut Vec<Stretch>) {
-    let name = |stretch: &Stretch| {
-        stretch.words.len() <= 2
-            && stretch.words.last().is_some_and(|word| {
-                word.capital && !lexicon().known.contains(&word.stem) && !lexicon().stop.contains(&word.text)
-            })
-            && stretch.words.iter().all(|word| word.capital || word.label)
-            && matches!(stretch.joint, Joint::Comma | Joint::And)
-    };
-    for at in 1..found.len() {
-        let count = found.get(at - 1).and_then(|before| {
-            mentions(&before.words).last().filter(|last| last.to + 1 == before.words.len()).and_then(|last| {
-                let (Who::New { count, .. } | Who::Definite { count, .. }) = last.who else { return None };
-                usize::try_from(count?).ok()
-            })
-        });
-        let Some(count) = count.filter(|count| (2..=4).contains(count)) else { continue };
-        let all = found.get(at..at + count).is_some_and(|names| names.iter().all(name));
-        if all && found.len() > at + count {
-            let _names: Vec<Stretch> = found.drain(at..at + count).collect();
-            // The verb after the names is theirs.
-            let rest = found.remove(at);
-            if let Some(before) = found.get_mut(at - 1) {
-                before.words.extend(rest.words);
-            }
-            return;
         }
     }
 }

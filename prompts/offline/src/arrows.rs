@@ -99,24 +99,17 @@ fn opened(items: &mut Items, from: usize, condition: Condition) -> usize {
     };
     insert(items, from, words, &item);
     if condition == Condition::Distance && items.text(from + words.len()) == "d" {
-        let at = from + words.len();
-        if let Some(item) = items.0.get_mut(at) {
-            (item.word.label, item.word.used) = (true, true);
-        }
+        items.spend(from + words.len(), from + words.len() + 1);
     }
     if condition == Condition::Contact {
         let first = from + words.len();
-        let end = items.mark(first);
-        items.label(first, end);
-        for item in items.0.iter_mut().take(end).skip(first) {
-            item.word.used = true;
-        }
+        items.spend(first, items.mark(first));
     }
     from
 }
 
 /// Puts words before a place; the first takes the marks of what stands there.
-fn insert(items: &mut Items, at: usize, words: &[&str], model: &Item) {
+pub(crate) fn insert(items: &mut Items, at: usize, words: &[&str], model: &Item) {
     if words.is_empty() {
         return;
     }

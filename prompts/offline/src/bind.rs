@@ -6,6 +6,7 @@ use crate::cast::Cast;
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
 use crate::deed::{self, Around};
+use crate::ellipsis;
 use crate::lexicon::Act;
 use crate::mention::Who;
 use crate::story::{Story, Subject, Thread};
@@ -248,20 +249,13 @@ pub(crate) fn people_deed(
         told_apart(&mut story.cast, people, act);
     }
     // `he asks the picker to wait; she then freezes`
-    let asked = match (&thread.said, act) {
-        (Some(said @ Trigger::HumanSays(_, socrates_model::Gesture::Wait)), Act::Stop)
-        | (Some(said @ Trigger::HumanSays(_, socrates_model::Gesture::ExcuseMe)), Act::GiveWay)
-            if thread.waiting.is_none()
-                && near.is_none()
-                && !thread.addressed.is_empty()
-                && people.iter().all(|who| thread.addressed.contains(who)) =>
-        {
-            Some(said.clone())
-        }
-        _ => None,
-    };
-    if asked.is_some() {
-        thread.waiting = asked;
+    if ellipsis::responds(thread.said.as_ref(), act)
+        && thread.waiting.is_none()
+        && near.is_none()
+        && !thread.addressed.is_empty()
+        && people.iter().all(|who| thread.addressed.contains(who))
+    {
+        thread.waiting.clone_from(&thread.said);
     }
     let around = Around {
         vague: thread.vague && near.is_none(),

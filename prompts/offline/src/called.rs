@@ -80,19 +80,15 @@ fn second(pieces: &mut Vec<Piece>) {
         let one = matches!(text_at(pieces, at), "a" | "the")
             && (lexicon().ordinals.contains_key(text_at(pieces, at + 1)) || text_at(pieces, at + 1) == "other")
             || text_at(pieces, at + 1) == "another";
-        let generic =
-            word_at(pieces, at + 2).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic);
         let other = comma_at(pieces, at + 3) && matches!(text_at(pieces, at + 4), "a" | "an");
         let noun = (at + 5..at + 8).take_while(|k| word_at(pieces, *k).is_some()).find(|k| role(pieces, *k));
-        if one && generic && other && noun.is_some() && !comma_at(pieces, noun.unwrap_or(at) + 1) {
+        if one && generic(pieces, at + 2) && other && noun.is_some() && !comma_at(pieces, noun.unwrap_or(at) + 1) {
             pieces.drain(at + 2..at + 5);
         }
         // `1 ped, clerk, oncoming`
         let single = word_at(pieces, at).is_some_and(|word| word.count() == Some(1) || word.text == "a");
-        let alone =
-            word_at(pieces, at + 1).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic);
         let listed = comma_at(pieces, at + 2) && role(pieces, at + 3) && ends(pieces, at + 4);
-        if single && alone && listed && !word_at(pieces, at + 3).is_some_and(plural) {
+        if single && generic(pieces, at + 1) && listed && !word_at(pieces, at + 3).is_some_and(plural) {
             pieces.drain(at + 1..at + 3);
         }
         at += 1;
@@ -143,6 +139,11 @@ fn ends(pieces: &[Piece], at: usize) -> bool {
 
 fn role(pieces: &[Piece], at: usize) -> bool {
     word_at(pieces, at).is_some_and(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
+}
+
+/// Whether a word for people says nothing about who it is: `person`.
+fn generic(pieces: &[Piece], at: usize) -> bool {
+    word_at(pieces, at).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic)
 }
 
 /// A word with a capital that no table has.
@@ -278,12 +279,12 @@ fn several(pieces: &[Piece], at: usize) -> Option<Found> {
     let mut names = Vec::new();
     // `three packers, that's Olu, Petra and Sven`
     let mut next = at + 2 + usize::from(matches!(text_at(pieces, at + 2), "that" | "namely" | "called" | "named"));
-    while let Some((name, end)) = name(pieces, next) {
-        names.push(name);
+    while let Some((who, end)) = name(pieces, next) {
+        names.push(who);
         next = end;
         let mark = usize::from(comma_at(pieces, next));
         let and = usize::from(text_at(pieces, next + mark) == "and");
-        if mark + and == 0 || name_ends(pieces, next + mark + and) {
+        if mark + and == 0 || name(pieces, next + mark + and).is_none() {
             break;
         }
         next += mark + and;
@@ -291,9 +292,4 @@ fn several(pieces: &[Piece], at: usize) -> Option<Found> {
     let close = usize::from(comma_at(pieces, next));
     let all = usize::try_from(count) == Ok(names.len()) && names.len() > 1;
     all.then(|| Found { noun: at, end: at, whose: None, names, drop: vec![(at + 1, next + close)] })
-}
-
-/// Whether no name begins here.
-fn name_ends(pieces: &[Piece], at: usize) -> bool {
-    name(pieces, at).is_none()
 }

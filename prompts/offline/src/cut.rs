@@ -11,7 +11,7 @@ use crate::lexicon::lexicon;
 use crate::mention::mentions;
 use crate::notes::notes;
 use crate::preamble::preamble;
-use crate::words::{Piece, Word, pieces};
+use crate::words::{Piece, Word, pieces, word};
 
 /// How a clause is joined to the one before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
                 labels(&mut words);
                 if states(&words) {
                     // `Robot stops: driver stops too.`
-                    words.splice(0..0, crate::words::pieces("when").into_iter().filter_map(said));
+                    words.insert(0, Some(word("when".to_owned(), 0, 0)));
                     words.push(None);
                     continue;
                 }
@@ -112,11 +112,6 @@ fn states(words: &[Option<Word>]) -> bool {
         }
         _ => false,
     })
-}
-
-/// The word of a piece.
-fn said(piece: Piece) -> Option<Option<Word>> {
-    if let Piece::Word(word) = piece { Some(Some(word)) } else { None }
 }
 
 /// Words with which people take back a number that they have just given.

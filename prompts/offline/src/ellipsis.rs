@@ -97,6 +97,23 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     Some(who)
 }
 
+/// What a gesture asks somebody to do.
+const fn asked_for(gesture: Gesture) -> Option<Act> {
+    match gesture {
+        Gesture::Wait => Some(Act::Stop),
+        Gesture::Proceed => Some(Act::GoOn),
+        Gesture::ExcuseMe => Some(Act::GiveWay),
+        Gesture::FollowMe => Some(Act::Follow),
+        Gesture::None | Gesture::Acknowledged => None,
+    }
+}
+
+/// Whether somebody who stops or gives way does what another human asked for: `he asks her to wait; she then freezes`.
+pub(crate) fn responds(said: Option<&Trigger>, act: Act) -> bool {
+    matches!(said, Some(Trigger::HumanSays(_, gesture)) if asked_for(*gesture) == Some(act))
+        && matches!(act, Act::Stop | Act::GiveWay)
+}
+
 /// `obeys`, `does so`: what the robot, or somebody else, asked for just before.
 pub(crate) fn obeys(
     story: &mut Story,
@@ -107,13 +124,7 @@ pub(crate) fn obeys(
 ) -> bool {
     let Some(said) = thread.said.clone() else { return false };
     let (Trigger::RobotSays(gesture) | Trigger::HumanSays(_, gesture)) = said else { return false };
-    let act = match gesture {
-        Gesture::Wait => Act::Stop,
-        Gesture::Proceed => Act::GoOn,
-        Gesture::ExcuseMe => Act::GiveWay,
-        Gesture::FollowMe => Act::Follow,
-        Gesture::None | Gesture::Acknowledged => return false,
-    };
+    let Some(act) = asked_for(gesture) else { return false };
     let named: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
     let people = match (named.is_empty(), &thread.subject) {
         (false, _) => named,

@@ -1,7 +1,7 @@
 //! Words between marks that say nothing of the scene: `never, under any circumstances, steps aside`, `the girl, bless her, stares`.
 
 use crate::lexicon::lexicon;
-use crate::words::{Piece, Word, comma_at, text_at, word_at};
+use crate::words::{Piece, Word, comma_at, silence, text_at, word_at};
 
 /// Such words, without the marks around them.
 const SAID: &[&[&str]] = &[
@@ -157,11 +157,7 @@ pub(crate) fn notions(pieces: &mut [Piece]) {
             told.extend([at, at + 1]);
         }
     }
-    for at in told {
-        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
-            word.label = true;
-        }
-    }
+    silence(pieces, told);
 }
 
 /// Whether a clause that was begun goes on here with its verb.

@@ -79,22 +79,8 @@ pub(crate) fn negated(stretch: &Stretch, at: usize) -> bool {
 pub(crate) fn denied(found: &mut [Stretch]) {
     for at in 1..found.len() {
         let denies = |word: &Word| matches!(word.text.as_str(), "without" | "no");
-        // `must not stop and stare`
-        let not = found.get(at - 1).and_then(|before| {
-            let not = before.words.iter().position(|word| word.text == "not")?;
-            let verb = before.words.get(not + 1..).is_some_and(|words| {
-                words.iter().any(|word| word.text == word.stem && lexicon().verbs.contains(&word.stem))
-            });
-            before.words.get(not).cloned().filter(|_| verb)
-        });
-        if let (Some(not), Some(stretch)) = (not, found.get_mut(at).filter(|stretch| stretch.joint == Joint::And)) {
-            let base = stretch.words.first().is_some_and(|word| {
-                matches!(word.text.as_str(), "stare" | "look" | "watch" | "block" | "follow" | "stop" | "wait" | "wave")
-            });
-            if base {
-                stretch.words.insert(0, not);
-                continue;
-            }
+        if denied_on(found, at) {
+            continue;
         }
         let before = found.get(at - 1).and_then(|before| {
             let deny = before.words.iter().position(denies)?;
@@ -115,5 +101,27 @@ pub(crate) fn denied(found: &mut [Stretch]) {
             let without = Word { text: "without".to_owned(), stem: "without".to_owned(), used: true, ..deny };
             stretch.words.insert(at, without);
         }
+    }
+}
+
+/// `must not stop and stare`: the second verb is denied as the first is.
+fn denied_on(found: &mut [Stretch], at: usize) -> bool {
+    let not = found.get(at - 1).and_then(|before| {
+        let not = before.words.iter().position(|word| word.text == "not")?;
+        let is_verb = |word: &Word| word.text == word.stem && lexicon().verbs.contains(&word.stem);
+        before.words.get(not).cloned().filter(|_| before.words.iter().skip(not + 1).any(is_verb))
+    });
+    let base = |stretch: &&mut Stretch| {
+        stretch.joint == Joint::And
+            && stretch.words.first().is_some_and(|word| {
+                matches!(word.text.as_str(), "stare" | "look" | "watch" | "block" | "follow" | "stop" | "wait" | "wave")
+            })
+    };
+    match (not, found.get_mut(at).filter(base)) {
+        (Some(not), Some(stretch)) => {
+            stretch.words.insert(0, not);
+            true
+        }
+        _ => false,
     }
 }

@@ -109,6 +109,13 @@ impl Items {
             .collect()
     }
 
+    /// Makes words nobody's whose meaning is told otherwise.
+    pub(crate) fn spend(&mut self, from: usize, to: usize) {
+        for item in self.0.iter_mut().take(to).skip(from) {
+            (item.word.label, item.word.used) = (true, true);
+        }
+    }
+
     /// Makes words nobody's; they are reported as not understood.
     pub(crate) fn label(&mut self, from: usize, to: usize) {
         for item in self.0.iter_mut().take(to).skip(from) {
@@ -245,9 +252,7 @@ fn steps(mut items: Items) -> Items {
             for item in items.0.iter_mut().take(k + 2).skip(k) {
                 item.marks = vec![Mark::Stop];
             }
-            if let Some(item) = items.0.get_mut(k) {
-                (item.word.label, item.word.used) = (true, true);
-            }
+            items.spend(k, k + 1);
         }
     }
     items

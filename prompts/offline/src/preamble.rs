@@ -2,7 +2,7 @@
 
 use crate::lexicon::lexicon;
 use crate::mention::{Mention, Who, mentions};
-use crate::words::{Piece, Word, word_at};
+use crate::words::{Piece, Word, silence, word_at};
 
 /// Words of whoever asks, of studies, and of what people are like in general.
 const SIGNS: &[&str] = &[
@@ -101,13 +101,7 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
         })
         .map(|(part, _)| *part)
         .collect();
-    for (from, to) in silent {
-        for piece in pieces.iter_mut().take(to).skip(from) {
-            if let Piece::Word(word) = piece {
-                word.label = true;
-            }
-        }
-    }
+    silence(pieces, silent.into_iter().flat_map(|(from, to)| from..to));
 }
 
 /// `(n = 24 participants)`: so many take part in a study, and not in the scene, if that is told of others.
@@ -130,11 +124,7 @@ fn trials(pieces: &mut [Piece]) {
         })
         .flat_map(|k| [k, k + 1])
         .collect();
-    for at in told.into_iter().chain(samples) {
-        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
-            word.label = true;
-        }
-    }
+    silence(pieces, told.into_iter().chain(samples));
 }
 
 /// Whether a part speaks of people in general.

@@ -431,22 +431,18 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             }
             (subject, _) => subject,
         };
+        let sayer = |said: Option<&Trigger>, people: &[usize]| {
+            matches!((said, people), (Some(Trigger::HumanSays(id, _)), [only])
+                if usize::try_from(id.number()) == Ok(only + 1))
+        };
         // `waves his colleague through, and at that he walks on`: whoever was waved at.
         let own = |people: &[usize]| {
-            matches!((&thread.waiting, people), (Some(Trigger::HumanSays(id, _)), [only])
-                if usize::try_from(id.number()) == Ok(only + 1) && act != Act::Gesture && stretch.joint == Joint::Said)
+            sayer(thread.waiting.as_ref(), people) && act != Act::Gesture && stretch.joint == Joint::Said
         };
         // `tells him to make room, and then he gets out of its way`: whoever was told to.
         let told_to = |people: &[usize]| {
-            let responds = matches!(
-                (&thread.said, act),
-                (Some(Trigger::HumanSays(_, Gesture::ExcuseMe)), Act::GiveWay)
-                    | (Some(Trigger::HumanSays(_, Gesture::Wait)), Act::Stop)
-            );
-            let sayer = matches!((&thread.said, people), (Some(Trigger::HumanSays(id, _)), [only])
-                if usize::try_from(id.number()) == Ok(only + 1));
-            responds
-                && sayer
+            sayer(thread.said.as_ref(), people)
+                && ellipsis::responds(thread.said.as_ref(), act)
                 && matches!(stretch.joint, Joint::Then | Joint::And | Joint::Comma | Joint::Opens)
                 && found.mentions.first().is_some_and(|mention| mention.who == Who::Same)
         };

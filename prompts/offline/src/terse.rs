@@ -1,5 +1,6 @@
 //! What notes leave out: verbs (`ped to the side`), subjects of denials (`no stop, no look`), and what nobody does in them.
 
+use crate::arrows::insert;
 use crate::lexicon::lexicon;
 use crate::notes::{Item, Items, Mark, robot};
 
@@ -60,10 +61,8 @@ pub(crate) fn numbered(items: &mut Items) {
     let second = first.and_then(|at| (at + 1..items.0.len()).find(|k| items.text(*k) == "2" && step(items, *k)));
     let Some(from) = first.filter(|_| second.is_some()) else { return };
     for k in from..items.0.len() {
-        if step(items, k)
-            && let Some(item) = items.0.get_mut(k)
-        {
-            (item.word.label, item.word.used) = (true, true);
+        if step(items, k) {
+            items.spend(k, k + 1);
         }
     }
 }
@@ -140,9 +139,7 @@ fn from_behind(items: &mut Items, at: usize) {
             || items.stem(k) == "overtake"
     });
     if rear {
-        for item in items.0.iter_mut().take(at + 2).skip(at) {
-            (item.word.label, item.word.used) = (true, true);
-        }
+        items.spend(at, at + 2);
     }
 }
 
@@ -168,8 +165,7 @@ fn wants_in(items: &mut Items, at: usize) {
         && items.marked(at + 2)
         && let Some(item) = items.0.get(at + 1).cloned()
     {
-        let get = ["to", "get"].map(|text| Item::said(text, &item));
-        let _none: Vec<Item> = items.0.splice(at + 1..at + 1, get).collect();
+        insert(items, at + 1, &["to", "get"], &item);
     }
 }
 
@@ -180,7 +176,7 @@ fn visible(items: &mut Items, at: usize) {
         && !items.marked(at + 1)
         && let Some(item) = items.0.get(at + 1).cloned()
     {
-        items.0.insert(at + 1, Item::said("is", &item));
+        insert(items, at + 1, &["is"], &item);
     }
 }
 
@@ -234,24 +230,13 @@ fn verbless(items: &mut Items, at: usize) {
     let moves =
         at.checked_sub(1).is_some_and(|k| matches!(items.stem(k), "step" | "move" | "shift" | "swerve" | "dodge"));
     if matches!(items.text(at), "left" | "right") && moves && !items.marked(at) && items.marked(at + 1) {
-        let side = ["to", "the", "side"].map(|text| Item::said(text, &item));
-        if let Some(word) = items.0.get_mut(at) {
-            (word.word.label, word.word.used) = (true, true);
-        }
-        let _none: Vec<Item> = items.0.splice(at..at, side).collect();
+        items.spend(at, at + 1);
+        insert(items, at, &["to", "the", "side"], &item);
         return;
     }
     // `oncoming, group`
     if items.text(at) == "group" && alone {
-        let group = ["in", "a"].map(|text| Item::said(text, &item));
-        let marks = item.marks;
-        let _none: Vec<Item> = items.0.splice(at..at, group).collect();
-        if let Some(word) = items.0.get_mut(at + 2) {
-            word.marks.clear();
-        }
-        if let Some(word) = items.0.get_mut(at) {
-            word.marks = marks;
-        }
+        insert(items, at, &["in", "a"], &item);
         return;
     }
     let told = items.has(at, Mark::Colon) && at > 0 && lexicon().roles.contains_key(items.stem(at - 1));

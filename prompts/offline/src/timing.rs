@@ -100,14 +100,12 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
                 read.rule.for_s = Some(10.0);
             }
         }
-        // `stands still until it is 3 m away, then he walks off`
-        if !thread.made.is_empty() && found.distance_m.is_some() {
+        // `notices nothing until it is 1 m away; he then freezes`, `stands still until it is 3 m away, then he walks off`
+        if thread.made.is_empty() || found.distance_m.is_some() {
             thread.ended = trigger(cue, found, thread);
         }
-        // `notices nothing until it is 1 m away; he then freezes`
+        // `and only then gets out of its way`
         if thread.made.is_empty() {
-            thread.ended = trigger(cue, found, thread);
-            // `and only then gets out of its way`
             thread.said.clone_from(&thread.ended);
         }
         story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
@@ -154,7 +152,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         }
         return;
     }
-    // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
+    // `does not step aside, only after it has asked`: then what was denied is done.
     if std::mem::take(&mut thread.only_then)
         && let Some(act) = thread.denied.filter(|act| deed::manner(*act).is_some())
     {
@@ -167,6 +165,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         }
         return;
     }
+    // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
     if back {
         for (who, rule) in std::mem::take(&mut thread.made) {
             if let Some(read) = story.cast.people.get_mut(who).and_then(|p| p.rules.get_mut(rule)) {

@@ -52,7 +52,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     language(request, &mut reading);
     expectations(request, &mut story, &mut reading);
     story.finish();
-    again_and_again(rough.unwrap_or_default(), &mut story);
+    again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);
     reading.pattern = rough.and_then(|_| pattern::of(&story, wanted)).or_else(|| wanted.map(str::to_owned));
@@ -394,13 +394,24 @@ const YIELDS_S: f64 = 2.0;
 /// How near the robot is when it is left its way, and blocked again, m: each time a little farther, so that no two rules are one.
 const TURNS_M: [(f64, f64); 2] = [(3.0, 4.0), (3.5, 4.5)];
 
-/// `obstructs it again and again`: three times, with its way free in between.
+/// `obstructs it again and again` is played three times, with its way free in between; of other deeds it is said that they
+/// are played once.
 fn again_and_again(rough: &str, story: &mut Story) {
     let lower = rough.to_lowercase();
-    let Some(words) = OFTEN.iter().find(|words| lower.contains(**words)) else { return };
+    let said: Vec<&str> = OFTEN.iter().copied().filter(|words| lower.contains(words)).collect();
+    let Some(words) = said.first() else { return };
     let blocks = |person: &&mut Person| matches!(person.rules.as_slice(), [only] if only.rule.act == Action::Block && !only.lasts);
     // Of several it is not known who is meant.
-    let [person] = &mut *story.cast.people.iter_mut().filter(blocks).collect::<Vec<_>>() else { return };
+    let [person] = &mut *story.cast.people.iter_mut().filter(blocks).collect::<Vec<_>>() else {
+        let once = |words: &&str| {
+            let message = format!(
+                "`{words}`: what somebody does is played once; ask for somebody more who does it, or for how long it lasts"
+            );
+            Fault::new(FaultCode::PRead, "rough_scenario", message)
+        };
+        story.problems.splice(0..0, said.iter().map(once));
+        return;
+    };
     let Some(first) = person.rules.first_mut().map(|only| {
         only.rule.for_s = Some(BLOCKS_S);
         only.clone()
@@ -416,26 +427,9 @@ fn again_and_again(rough: &str, story: &mut Story) {
     story.cast.notes.push(format!("`{words}` was read as three times, with the way free in between"));
 }
 
-/// Says that what shall happen often is played once.
-fn often(request: &Request, reading: &mut Reading) {
-    let thrice = |human: &ReadHuman| human.rules.iter().filter(|rule| rule.act == Action::Block).count() > 2;
-    if reading.humans.iter().any(thrice) {
-        return;
-    }
-    let rough = request.rough_scenario.as_deref().unwrap_or_default().to_lowercase();
-    for words in OFTEN.iter().filter(|words| rough.contains(**words)) {
-        reading.problems.push(Fault::new(
-            FaultCode::PRead,
-            "rough_scenario",
-            format!("`{words}`: what somebody does is played once; ask for somebody more who does it, or for how long it lasts"),
-        ));
-    }
-}
-
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     errand(task, reading);
     ends(story, task, location, reading);
-    often(request, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.

@@ -72,6 +72,15 @@ pub(crate) fn text_at(pieces: &[Piece], at: usize) -> &str {
     word_at(pieces, at).map_or("", |word| word.text.as_str())
 }
 
+/// Makes words nobody's: no mention and no deed is read there, and what they wish for is reported as not understood.
+pub(crate) fn silence(pieces: &mut [Piece], places: impl IntoIterator<Item = usize>) {
+    for at in places {
+        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+            word.label = true;
+        }
+    }
+}
+
 /// Whether a comma, or another mark inside a sentence, stands at this place.
 pub(crate) fn comma_at(pieces: &[Piece], at: usize) -> bool {
     matches!(pieces.get(at), Some(Piece::Comma))

@@ -50,6 +50,9 @@ pub(crate) fn of(
 /// Whether more than one comes towards the robot at this node and just passes it, or does so in a group; but no crowd: that has
 /// to be there when the robot comes.
 fn several_toward(setup: &Setup, proposal: &HumanProposal, node: &NodeId) -> bool {
+    if proposal.relation != Relation::Frontal {
+        return false;
+    }
     let crowd = |clause: &Clause| {
         matches!(clause.predicate, Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. })
     };
