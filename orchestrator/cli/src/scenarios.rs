@@ -185,6 +185,9 @@ fn plain(value: &Value) -> String {
 pub(crate) struct Rate {
     pub(crate) runs: usize,
     pub(crate) realised: usize,
+    /// Of those that were realised: how many with something late, and in how many the robot got to its goal without touching anybody.
+    pub(crate) late: usize,
+    pub(crate) success: usize,
     /// What went wrong, with the seeds.
     pub(crate) failures: BTreeMap<String, Vec<u64>>,
     /// What the judge says of each seed that was not realised.
@@ -256,6 +259,12 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
         {
             rate.verdicts.insert(seed, format!("{} · {}", played.report.verdict, played.report.verdict_text));
         }
+        if let Ok(played) = &played
+            && is_realised(&played.report)
+        {
+            rate.late += usize::from(played.report.verdict == Verdict::RealisedLate);
+            rate.success += usize::from(played.report.success);
+        }
         let wrong = match &played {
             Ok(played) => failing(played),
             Err(faults) => {
@@ -302,7 +311,8 @@ async fn rate(
         ids.iter().map(|id| find(id)).collect::<Result<_, _>>()?
     };
     let mut table = String::from(
-        "| | scenario | locations | realised | Wilson ≥ | what failed (seeds) |\n|---|---|---|---|---|---|\n",
+        "| | scenario | locations | realised | late | Wilson ≥ | robot succeeds | what failed (seeds) |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     let (mut runs, mut realised, mut rows) = (0, 0, Vec::new());
     for card in cards {
@@ -318,26 +328,30 @@ async fn rate(
             })
             .collect();
         talk.line(&format!(
-            "{:>3}  {:<26} {:>3}/{:<3}  {:.3}  {}",
+            "{:>3}  {:<26} {:>3}/{:<3}  {:.3}  {:>3} late  robot {:>3}  {}",
             mark(card),
             card.id,
             rate.realised,
             rate.runs,
             rate.low(),
+            rate.late,
+            rate.success,
             failures.join(" · ")
         ));
         table.push_str(&format!(
-            "| {} | {} | {} | {}/{} | {:.3} | {} |\n",
+            "| {} | {} | {} | {}/{} | {} | {:.3} | {} | {} |\n",
             mark(card),
             card.id,
             rate.locations.join(", "),
             rate.realised,
             rate.runs,
+            rate.late,
             rate.low(),
+            rate.success,
             failures.join("; ")
         ));
         rows.push(json!({ "id": card.id, "letter": card.letter, "runs": rate.runs, "realised": rate.realised,
-            "wilson_low": rate.low(), "failures": rate.failures,
+            "late": rate.late, "success": rate.success, "wilson_low": rate.low(), "failures": rate.failures,
             "verdicts": rate.verdicts, "locations": rate.locations }));
     }
     #[expect(clippy::cast_precision_loss, reason = "a few thousand runs")]

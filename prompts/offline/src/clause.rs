@@ -7,7 +7,7 @@ use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, Who, mentions};
 use crate::negation::negated;
 use crate::topic::drop_topics;
-use crate::words::find;
+use crate::words::{find, takes_along};
 use crate::{measure, message};
 
 /// A deed and where it stands.
@@ -575,7 +575,8 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         found.declares |= exists || text == "scenario" || exactly;
         // `the lift opens`: of itself, and nobody does it.
         let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors");
-        if lex.impossible.contains(&word.stem) && !word.used && !itself {
+        let taken = takes_along(&stretch.words, i);
+        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
             if matches!(word.stem.as_str(), "sit" | "kneel" | "lie")

@@ -184,6 +184,13 @@ fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
     }
 }
 
+/// Whoever the robot follows goes on past the robot's goal, so that both get to where they go.
+pub(crate) fn led_past(mut way: Way, taken: &Taken<'_>) -> Way {
+    onward(&mut way.nodes, taken);
+    way.cost += taken.end_cost(&way.nodes);
+    way
+}
+
 fn onward_m(net: &Net<'_>, from: usize, nodes: &[usize]) -> f64 {
     let mut all = vec![from];
     all.extend(nodes);

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_maps::{DistanceField, Sight};
+use socrates_model::rule::RobotDo;
 use socrates_model::{
     Encounter, FORMAT, FactKind, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Proposal,
     Relation,
@@ -13,7 +14,7 @@ use crate::NAME;
 use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
 use crate::edit_paths;
-use crate::humans::{Taken, Way, follows, way};
+use crate::humans::{Taken, Way, follows, led_past, way};
 use crate::named;
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
@@ -504,6 +505,8 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
             },
             None => own,
         };
+        let followed = proposal.robot.script.iter().any(|line| line.act == RobotDo::Follow(human.id));
+        let own = if followed { led_past(own, &taken) } else { own };
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());

@@ -365,6 +365,18 @@ pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
     }
 }
 
+/// `takes it away`, `took the child aside`.
+pub(crate) fn takes_along(words: &[Word], at: usize) -> bool {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let object = match text(at + 1) {
+        "it" | "him" | "her" | "them" if matches!(text(at + 2), "away" | "along" | "aside" | "home" | "with") => 1,
+        "the" | "his" | "her" | "their" | "its" => 2,
+        _ => return false,
+    };
+    words.get(at).is_some_and(|word| word.stem == "take")
+        && matches!(text(at + object + 1), "away" | "along" | "aside" | "home" | "with")
+}
+
 /// Where a phrase stands in the words at or after `start`: its first and last index, and the indices of its own words.
 pub(crate) fn find<T>(
     words: &[Word],

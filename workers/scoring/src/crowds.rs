@@ -172,6 +172,25 @@ fn a_queue_is_a_line_with_even_gaps() {
     assert_eq!(standing(&case(), &walks, 18.0).0, Standing::Fails, "one walks off before the robot is there");
 }
 
+#[test]
+fn the_robot_meets_a_queue_in_the_one_it_comes_nearest_and_other_groups_in_everybody() {
+    let line = || (1..=4).map(|n| Walk::human(n, 1.2 * f64::from(n), 1.0 + 1.0 * f64::from(n), 0., 0.));
+    let verdict = |predicate: Predicate, robot: Walk| {
+        let mut case = crowd(4, predicate);
+        case.plan = group_of(case.plan, &[1, 2, 3, 4]);
+        case.ways = paths(&["a", "m", "b"], &[(&["m"], "m"), (&["m"], "m"), (&["m"], "m"), (&["m"], "m")]);
+        let walks: Vec<Walk> = [robot].into_iter().chain(line()).collect();
+        let report = case.judge(&recording(&walks, 18.0, 0.01));
+        let failed = |id: &str| report.clauses.iter().any(|found| found.id == id && found.standing != Standing::Holds);
+        (1..=4).map(|n| failed(&format!("auto-meet-human_{n}"))).collect::<Vec<bool>>()
+    };
+    let queues = || Predicate::Queues { group: GroupId(1), gap_m: [0.6, 2.0] };
+    assert_eq!(verdict(queues(), robot()), [false; 4]);
+    assert_eq!(verdict(Predicate::Humans { count: 4 }, robot()), [false, true, true, true]);
+    let away = Walk::robot(-8., -6.0, 0.8, 0.);
+    assert_eq!(verdict(queues(), away), [true, false, false, false], "the robot never meets the queue");
+}
+
 /// Three people in a circle of 0.8 m about (0, 2), and the robot.
 fn with_circle(robot: Walk) -> Vec<Walk> {
     let mut walks = vec![robot];

@@ -112,6 +112,23 @@ fn asked(signals: &Signals<'_>, clause: &Clause) -> bool {
         })
 }
 
+/// Whether the robot has to meet this human: of people who have to queue it meets the one whom it comes nearest, as the
+/// others may stand farther down the line than anybody is met.
+fn stands_for_queue(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> bool {
+    let humans = signals.evidence.proposal.map_or(&[][..], |proposal| &proposal.humans);
+    let group = humans.iter().find(|one| one.id == human).and_then(|one| one.group);
+    let queues = |clause: &Clause| {
+        let of = if let Predicate::Queues { group, .. } = clause.predicate { Some(group) } else { None };
+        clause.role == ClauseRole::Setup && clause.must && of.is_some() && of == group
+    };
+    if !given.iter().any(queues) {
+        return true;
+    }
+    let nearest = |one: &HumanId| signals.of(*one).iter().map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min);
+    let members = humans.iter().filter(|one| one.group == group).map(|one| one.id);
+    members.min_by(|a, b| nearest(a).total_cmp(&nearest(b))).is_none_or(|first| first == human)
+}
+
 /// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and
 /// every encounter of the paths happens. A scenario cannot be realised by promising nothing.
 fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
@@ -137,6 +154,9 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
         for encounter in &paths.encounters {
             let human = encounter.human;
+            if !stands_for_queue(signals, given, human) {
+                continue;
+            }
             let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);
             if *nth > 1 {
                 let nth = *nth;

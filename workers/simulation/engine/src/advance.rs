@@ -3,6 +3,7 @@
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Action, AgentId, GroupId, HumanId, Point, Relation, SimTime};
 
+use crate::block::take_places;
 use crate::contacts::{self, Body};
 use crate::human::Human;
 use crate::make_room::is_held_up;
@@ -17,6 +18,12 @@ use crate::walk::{self, Pairs, Steps, Walker};
 /// People whose forces are reckoned at once: enough to fill the lanes, few enough for the nearest cache.
 const AT_ONCE: usize = 32;
 
+/// People line up at the end of their way over so much of it, m; whose ends are nearer to each other than this share it, m.
+const LINE_M: f64 = 4.0;
+const SAME_END_M: f64 = 1.0;
+/// Who stands in that line moves slower than this, m/s, and has somebody this near before it, m.
+const LINED_UP_MPS: f64 = 0.12;
+const NEXT_M: f64 = 1.15;
 /// Between people of a group who go one behind the other, m.
 const IN_LINE_M: f64 = 0.8;
 
@@ -37,6 +44,10 @@ impl Engine {
     /// Moves everybody by one tick.
     pub(crate) fn advance(&mut self, now: SimTime, doors_moved: bool, recorder: &mut Recorder) {
         let now_s = now.secs();
+        if let Some(robot) = &self.robot {
+            take_places(&mut self.humans, robot);
+        }
+        self.line_up();
         let Self { humans, robot, near, .. } = &mut *self;
         let people = humans.iter().filter(|human| human.present()).map(Other::from);
         let anew = near.fill(people.chain(robot.iter().map(Other::from))) | doors_moved;
@@ -132,6 +143,26 @@ impl Engine {
             robot.settle(body.at, body.velocity);
         }
         (self.desk.wants, self.desk.bodies) = (wants, bodies);
+    }
+
+    /// Whoever stands behind others who have come to the same end has come to it too: there is no room nearer to it.
+    fn line_up(&mut self) {
+        for place in 0..self.humans.len() {
+            let (before, rest) = self.humans.split_at_mut(place);
+            let Some((human, after)) = rest.split_first_mut() else { return };
+            let left_m = human.route.length_m() - human.s;
+            let waits = human.started && human.action == Action::Navigate && human.velocity.norm() < LINED_UP_MPS;
+            if !waits || left_m > LINE_M || human.at_goal() {
+                continue;
+            }
+            let ahead = human.route.direction(human.s);
+            let there = |other: &&Human| {
+                let way = other.at - human.at;
+                let same = other.route.end().zip(human.route.end()).is_some_and(|(a, b)| (a - b).norm() < SAME_END_M);
+                same && way.norm() < NEXT_M && way.dot(&ahead) > 0.0 && other.at_goal()
+            };
+            human.lined_up = before.iter().chain(&*after).any(|other| there(&other));
+        }
     }
 
     /// Speed of each human on its way: rendezvous, closed doors ahead, and the pace of walking groups.

@@ -1,6 +1,6 @@
 //! Runs of people who walk together, of whoever overtakes, and of what a seed changes.
 
-use socrates_model::{AgentId, AgentState, Recording, Relation};
+use socrates_model::{Action, AgentId, AgentState, EventKind, Recording, Relation, Rule, Trigger};
 
 use crate::fixture::{Cast, carve, grouped, location, run, setup};
 use crate::run::Engine;
@@ -23,6 +23,17 @@ fn corridor(width_m: f64, doorway: bool) -> socrates_model::Location {
 
 const THERE: &[&str] = &["a", "b", "c", "d", "e"];
 const BACK: &[&str] = &["e", "d", "c", "b", "a"];
+
+/// Blocks the robot for so long as soon as it sees it within 4 m.
+fn blocks(for_s: f64) -> Rule {
+    Rule {
+        when: vec![Trigger::RobotVisible(4.0)],
+        act: Action::Block,
+        gesture: None,
+        for_s: Some(for_s),
+        latched: true,
+    }
+}
 
 fn robot(recording: &Recording) -> Vec<AgentState> {
     recording.track(AgentId::Robot).cloned().collect()
@@ -119,5 +130,43 @@ fn seeds_differ_also_for_people_whose_speed_is_given() {
     for number in 1..=2 {
         let at = |recording: &Recording| human(recording, number)[0].y;
         assert!((at(&one) - at(&other)).abs() > 1e-6, "human_{number} stands where it stood");
+    }
+}
+
+#[test]
+fn those_who_block_together_stand_before_the_robot_two_by_two() {
+    for seed in 1..=6 {
+        let cast: Vec<Cast<'_>> = (0..4).map(|_| Cast(Relation::Frontal, BACK, vec![blocks(6.0)])).collect();
+        let meetings = [(1, "c"), (2, "c"), (3, "c"), (4, "c")];
+        let made = grouped(setup(corridor(4.0, false), THERE, &cast, &meetings));
+        let recording = run(Setup { seed, ..made });
+        let robot = robot(&recording);
+        let people: Vec<Vec<AgentState>> = (1..=4).map(|number| human(&recording, number)).collect();
+        // For two seconds and more all four stand in its line, two of them before the others.
+        let wall = |tick: usize| {
+            let from = |track: &Vec<AgentState>| (track[tick].x - robot[tick].x, track[tick].y - robot[tick].y);
+            let mut ahead: Vec<f64> = people.iter().map(|track| from(track).0).collect();
+            ahead.sort_by(f64::total_cmp);
+            let in_line = |(ahead, aside): (f64, f64)| (0.6..2.5).contains(&ahead) && aside.abs() < 0.6;
+            ahead[2] - ahead[1] > 0.3 && people.iter().map(from).all(in_line)
+        };
+        let longest = (0..robot.len()).fold((0_u32, 0_u32), |(most, now), tick| {
+            let now = if wall(tick) { now + 1 } else { 0 };
+            (most.max(now), now)
+        });
+        assert!(longest.0 >= 200, "seed {seed}: {} ticks", longest.0);
+    }
+}
+
+#[test]
+fn a_group_that_has_no_room_side_by_side_where_it_ends_gets_there_all_the_same() {
+    for seed in 1..=6 {
+        let cast: Vec<Cast<'_>> = (0..4).map(|_| Cast(Relation::Frontal, &BACK[..3], vec![])).collect();
+        let made = grouped(setup(corridor(1.6, false), &["a", "b"], &cast, &[]));
+        let still = Setup { seed, planner: "none".into(), duration_s: Some(60.0), ..made };
+        let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
+        let stuck = |event: &&socrates_model::Event| matches!(event.kind, EventKind::Stuck { agent } if agent != AgentId::Robot);
+        let stuck: Vec<_> = recording.events.iter().filter(stuck).collect();
+        assert!(stuck.is_empty(), "seed {seed}: {stuck:?}");
     }
 }

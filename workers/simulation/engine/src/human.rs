@@ -53,6 +53,12 @@ pub(crate) struct Human {
     pub(crate) lane_m: f64,
     /// From the middle of its walking group to the outermost member, m; 0 for who walks alone.
     pub(crate) flank_m: f64,
+    /// Whether it has come to its end behind others who stand there.
+    pub(crate) lined_up: bool,
+    /// How many block the robot where it does.
+    pub(crate) blockers: usize,
+    /// Its place among those while it blocks: m to the robot's left, and m farther ahead of it than the first.
+    pub(crate) place_m: Option<(f64, f64)>,
     /// How far it stands or walks from where it would by plan, m to the left and ahead: nobody keeps to a line exactly.
     pub(crate) sway: (f64, f64),
     pub(crate) tree: Tree,
@@ -114,7 +120,9 @@ impl Human {
             let left = (self.at - end).norm();
             // Where somebody else stands at the end already, next to it is the end.
             let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12;
-            left < reach && self.s > self.route.length_m() - 0.6 || beside && self.s > self.route.length_m() - 1.2
+            self.lined_up
+                || left < reach && self.s > self.route.length_m() - 0.6
+                || beside && self.s > self.route.length_m() - 1.2
         })
     }
 

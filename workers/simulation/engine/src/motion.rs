@@ -6,6 +6,7 @@ use std::f64::consts::TAU;
 use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, Relation, SceneGraph, Vector};
 
+use crate::block::block;
 use crate::floor::Floor;
 use crate::human::Human;
 use crate::make_room::make_room;
@@ -29,8 +30,6 @@ const RUN_MPS: f64 = 1.6;
 const KEEP_UP_MPS: f64 = 1.8;
 /// Gap that followers keep, along the way, m.
 const FOLLOW_GAP_M: f64 = 1.5;
-/// Where somebody stands who blocks: ahead of the robot's center, m.
-const BLOCK_AHEAD_M: f64 = 1.25;
 /// Where somebody curious stops, from the robot's center, m.
 const APPROACH_M: f64 = 1.2;
 /// Somebody ahead is stepped aside for from this far on, m.
@@ -73,7 +72,7 @@ pub(crate) struct Want {
 impl Want {
     pub(crate) const STAND: Self = Self { target: None, speed_mps: 0.0, face: None, drawn: false };
 
-    fn stand_facing(point: Point) -> Self {
+    pub(crate) fn stand_facing(point: Point) -> Self {
         Self { face: Some(point), ..Self::STAND }
     }
 
@@ -379,32 +378,6 @@ fn approach(human: &mut Human, scene: &Scene<'_>) -> Want {
     let speed = (1.5 * (distance - APPROACH_M) + 0.1).min(human.speed_mps);
     let target = round(human, scene, &robot.at()).unwrap_or_else(|| robot.at());
     Want { target: Some(target), speed_mps: speed, face: Some(robot.at()), drawn: true }
-}
-
-fn block(human: &mut Human, scene: &Scene<'_>) -> Want {
-    let Some(robot) = scene.robot else { return Want::STAND };
-    let intent = robot.intent();
-    let mut spot = robot.at() + intent * BLOCK_AHEAD_M;
-    if scene.floor.clearance_m(&spot) < human.radius_m {
-        // Round a corner the straight line ahead ends in a wall; the way itself does not.
-        spot = robot.route.point(robot.s + BLOCK_AHEAD_M);
-    }
-    let way = human.at - robot.at();
-    let left = Vector::new(-intent.y, intent.x);
-    let (ahead, aside) = (way.dot(&intent), way.dot(&left));
-    let in_place = ahead > 0.75 && ahead < 1.6 && aside.abs() < if human.anchor.is_some() { 0.3 } else { 0.12 };
-    if in_place || (spot - human.at).norm() < 0.1 {
-        return Want::stand_facing(robot.at());
-    }
-    // Far ahead it waits in the line instead of running against the robot.
-    let target = if ahead > 1.6 && aside.abs() > 0.12 && robot.v > 0.1 && ahead < 4.0 {
-        robot.at() + intent * ahead.min(2.0)
-    } else {
-        spot
-    };
-    let speed = (2.0 * (target - human.at).norm() + 0.1).min(human.speed_mps.max(1.0));
-    let next = round(human, scene, &target).unwrap_or(target);
-    Want { target: Some(next), speed_mps: speed, face: Some(robot.at()), drawn: true }
 }
 
 /// The robot's line: its way ahead while it keeps to it, else straight on.

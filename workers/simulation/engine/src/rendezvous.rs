@@ -50,7 +50,7 @@ const FACES_SHARE: f64 = 0.5;
 const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Who wants in through a door of which the robot comes out aims at being there so long after it, s: in the door both would
 /// stand.
-const LETS_OUT_S: f64 = 2.0;
+const LETS_OUT_S: f64 = 1.2;
 /// A robot that starts farther than this behind a door starts inside, m.
 const INSIDE_M: f64 = 0.5;
 /// Somebody ahead is at the encounter so long before the robot, s.

@@ -14,6 +14,7 @@ use socrates_model::{
     Predicate, RecordingHeader, Relation, Vector,
 };
 
+use crate::block::blockers;
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::make_room::Facing;
@@ -234,6 +235,7 @@ fn human(
         relation: proposal.relation,
         group: proposal.group,
         lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { SWAY_WALKING * sway.0 },
+        blockers: blockers(setup, proposal),
         sway,
         route,
         nodes: marks,
@@ -260,6 +262,9 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         standing: false,
         lane_m: 0.0,
         flank_m: 0.0,
+        lined_up: false,
+        blockers: 1,
+        place_m: None,
         sway: (0.0, 0.0),
         tree,
         state,
