@@ -150,7 +150,7 @@ impl Rule {
 pub enum RobotWhen {
     /// From the start.
     Start,
-    /// A human has been within 1.2 m ahead of it for so many seconds.
+    /// A human has been within 1.6 m ahead of it for so many seconds.
     Blocked(f64),
     /// A human is within this distance, m.
     HumanNear(f64),

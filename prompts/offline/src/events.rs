@@ -231,14 +231,20 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
     let last = before.and_then(|at| human.rules.get(at)).filter(|last| last.when == rule.when);
     let walks = |rule: &Rule| rule.act == Action::Navigate && rule.gesture.is_none();
     if walks(rule) && (last.is_some() || rule.for_s.is_some()) {
+        // Asked for in words of its own, it is seen in what comes before it.
+        if let Some(last) = last.filter(|_| stated) {
+            of_rule(list, source, human, last, stated);
+        }
         return;
     }
-    // What it does only a while after what it waits for.
-    let late_s = last.filter(|last| walks(last)).and_then(|last| last.for_s).unwrap_or(0.0);
+    // What it does only a while after what it waits for: whatever it does before that for the same reason.
+    let upto = human.rules.iter().position(|own| own == rule).unwrap_or(0);
+    let before = human.rules.iter().take(upto).rev().take_while(|own| own.when == rule.when);
+    let late_s = before.filter_map(|own| own.for_s).sum::<f64>();
     // What is done again comes when all before it is over.
     let earlier = human.rules.iter().take_while(|own| *own != rule);
     let again = earlier.clone().any(|own| own.act == rule.act);
-    let late_s = late_s + if again { earlier.filter_map(|own| own.for_s).sum::<f64>() } else { 0.0 };
+    let late_s = if again { earlier.filter_map(|own| own.for_s).sum::<f64>() } else { late_s };
     let plain = seen.is_none();
     if let Some(predicate) = seen {
         list.setup(true, source, text, predicate);

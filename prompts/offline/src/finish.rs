@@ -46,6 +46,9 @@ impl Story {
         for person in &mut self.cast.people {
             deed::settle_going_on(person);
             rules::settle(person);
+            if rules::stays_then(person) {
+                person.relation = None;
+            }
         }
         if self.robot_part == Some("leading") && self.robot_enters.is_none() {
             self.robot_enters = self.headed.take();

@@ -197,11 +197,20 @@ fn robot(
     script.extend(beside.first().map(|id| RobotRule { when: RobotWhen::Start, act: RobotDo::Abreast(*id) }));
     for fact in &reading.facts {
         if let FactKind::RobotSays(gesture) = fact.kind {
-            let blocked = fact.quote.contains("block") || fact.quote.contains("obstruct");
-            script.push(RobotRule {
-                when: if blocked { RobotWhen::Blocked(2.0) } else { RobotWhen::HumanNear(4.0) },
-                act: RobotDo::Say(gesture),
-            });
+            // It asks whoever stands in its way once it cannot go on; a card may have it ask already.
+            let answers = |human: &HumanProposal| {
+                let said = Trigger::RobotSays(gesture);
+                let hears = human.rules.iter().any(|rule| rule.when.contains(&said));
+                hears && human.rules.iter().any(|rule| rule.act == Action::Block && !rule.when.contains(&said))
+            };
+            let quoted = fact.quote.contains("block") || fact.quote.contains("obstruct");
+            let blocked = quoted || humans.iter().any(answers);
+            let when = if blocked { RobotWhen::Blocked(2.0) } else { RobotWhen::HumanNear(4.0) };
+            let asks =
+                |line: &RobotRule| line.act == RobotDo::Say(gesture) && matches!(line.when, RobotWhen::Blocked(_));
+            if !(blocked && script.iter().any(asks)) {
+                script.push(RobotRule { when, act: RobotDo::Say(gesture) });
+            }
         }
     }
     for asked in &request.robot.gestures {

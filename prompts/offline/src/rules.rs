@@ -1,11 +1,14 @@
 //! The order of somebody's rules: earlier ones win, so what never ends must not stand before what only comes later.
 
-use socrates_model::{Action, Rule, Trigger};
+use socrates_model::{Action, Relation, Rule, Trigger};
 
 use crate::cast::{Person, ReadRule};
 use crate::deed::{self, Around};
 use crate::lexicon::Act;
 use crate::words::{Piece, pieces};
+
+/// Who gives the way free when it is asked to blocks it for so long at most, s.
+const ASKED_S: f64 = 20.0;
 
 /// Puts the rules of a person in an order in which each of them can run.
 pub(crate) fn settle(person: &mut Person) {
@@ -49,13 +52,60 @@ pub(crate) fn settle(person: &mut Person) {
             rules.insert(at, read);
         }
     }
+    let answered = answer(&mut rules);
     // Who follows does so whenever nothing else is to be done; a follower walks on by following.
-    let (following, mut others): (Vec<ReadRule>, Vec<ReadRule>) =
-        rules.into_iter().partition(|read| follows(&read.rule) && read.rule.for_s.is_none());
+    let (following, mut others): (Vec<ReadRule>, Vec<ReadRule>) = rules
+        .into_iter()
+        .partition(|read| follows(&read.rule) && read.rule.for_s.is_none() && !(answered && word(read)));
     let idle = |read: &ReadRule| walks_on(&read.rule) && read.rule.when == [Trigger::RobotMoving];
     let (idle, rest): (Vec<ReadRule>, Vec<ReadRule>) =
         others.drain(..).partition(|read| !following.is_empty() && idle(read));
     person.rules = rest.into_iter().chain(following).chain(idle).collect();
+}
+
+/// `blocks the robot; when it says EXCUSE_ME she looks at it and steps aside`: a word is answered at once, and who has made room
+/// does not block again. Until then it stays in the way, however long it takes the robot to ask. Gives back whether there is
+/// anything that a word ends.
+fn answer(rules: &mut Vec<ReadRule>) -> bool {
+    let keeps = |read: &ReadRule| {
+        !word(read)
+            && matches!(read.rule.act, Action::Block | Action::StandStill | Action::LookAtRobot | Action::Approach)
+    };
+    let Some(from) = rules.iter().position(keeps) else { return false };
+    let answers: Vec<ReadRule> = rules.iter().skip(from).filter(|read| word(read)).cloned().collect();
+    rules.retain({
+        let mut at = 0;
+        move |read| {
+            at += 1;
+            at <= from || !word(read)
+        }
+    });
+    for (place, read) in (from..).zip(answers) {
+        rules.insert(place, read);
+    }
+    let ends = |read: &ReadRule| matches!(read.rule.act, Action::GiveWay | Action::RunAway);
+    let last = rules.iter().rposition(|read| word(read) && ends(read));
+    let Some((last, answer)) = last.and_then(|last| Some((last, rules.get(last)?.clone()))) else { return true };
+    if !rules.iter().any(|read| walks_on(&read.rule) && read.rule.when == answer.rule.when) {
+        let on = Rule { act: Action::Navigate, for_s: None, latched: true, ..answer.rule };
+        rules.insert(last + 1, ReadRule { rule: on, stated: false, then: false, lasts: false, ..answer });
+    }
+    for read in rules.iter_mut().filter(|read| read.rule.act == Action::Block && !read.lasts && !word(read)) {
+        read.rule.for_s = read.rule.for_s.map(|secs| secs.max(ASKED_S));
+    }
+    true
+}
+
+/// `two block the robot; when it asks, one makes room and the other stays`: who stays then came as the other did.
+pub(crate) fn stays_then(person: &Person) -> bool {
+    let quote = person.relation.as_ref().filter(|(relation, _)| *relation == Relation::Static).map(|(_, quote)| quote);
+    let blocks = person.rules.iter().any(|read| read.rule.act == Action::Block && !word(read));
+    blocks && person.rules.iter().any(|read| word(read) && Some(&read.quote) == quote)
+}
+
+/// Whether it waits for somebody's word.
+fn word(read: &ReadRule) -> bool {
+    read.rule.when.iter().any(|trigger| matches!(trigger, Trigger::RobotSays(_) | Trigger::HumanSays(..)))
 }
 
 /// `stands still while it moves and walks on when it stops`: each as long as its condition holds, again and again.

@@ -90,7 +90,8 @@ fn flat(nodes: &[Node], document: &Document) -> Flat {
     let is_asked = document.meaning == Meaning::World;
     let mut flat = Flat { steps: Vec::with_capacity(nodes.len()), kids: Vec::new(), inputs: Vec::new(), n_words: 0 };
     let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    for node in nodes {
+    for (place, node) in nodes.iter().enumerate() {
+        let word = twin(nodes, place).and_then(|twin| flat.steps.get(twin)).map(|step| step.word);
         flat.steps.push(Step {
             sheet: node.sheet,
             tick: node.sheet.tick,
@@ -99,7 +100,7 @@ fn flat(nodes: &[Node], document: &Document) -> Flat {
             n_kids: small(node.children.len()),
             first_input: small(flat.inputs.len()),
             n_inputs: small(node.inputs.len()),
-            word: small(flat.n_words),
+            word: word.unwrap_or(small(flat.n_words)),
             leaf: node.leaf,
             asks_world: is_asked
                 && node.leaf > 0
@@ -110,9 +111,29 @@ fn flat(nodes: &[Node], document: &Document) -> Flat {
         });
         flat.kids.extend(node.children.iter().map(|child| small(*child)));
         flat.inputs.extend(node.inputs.iter().cloned());
-        flat.n_words += words(node, document.format);
+        flat.n_words += if word.is_some() { 0 } else { words(node, document.format) };
     }
     flat
+}
+
+/// For a `Latch` an earlier one over the same conditions: they remember together. Of two rules that wait for one thing the
+/// second is not asked while the first runs, and what came and went meanwhile came for both.
+fn twin(nodes: &[Node], latch: usize) -> Option<usize> {
+    let is_latch = |node: &&Node| node.sheet.tag == "Latch";
+    let conditions = nodes.get(latch).filter(is_latch)?.children.first()?;
+    (0..latch).find(|other| {
+        let other = nodes.get(*other).filter(is_latch).and_then(|node| node.children.first());
+        other.is_some_and(|other| same(nodes, *other, *conditions))
+    })
+}
+
+/// Whether two nodes and all below them are the same, whatever they are called.
+fn same(nodes: &[Node], a: usize, b: usize) -> bool {
+    let (Some(one), Some(other)) = (nodes.get(a), nodes.get(b)) else { return false };
+    let plain = |node: &Node| node.guards.is_none() && node.script.is_none();
+    let below = || one.children.iter().zip(&other.children).all(|(a, b)| same(nodes, *a, *b));
+    let alike = one.tag == other.tag && one.inputs == other.inputs && one.children.len() == other.children.len();
+    alike && plain(one) && plain(other) && below()
 }
 
 /// Words of memory a node needs beside its cell. Version 3 never leaves a child out, so that its sequences count

@@ -1,4 +1,7 @@
 //! `Latch`: once true, true for ever. A rule that goes on when its trigger has passed needs it.
+//!
+//! Latches of one tree over the same conditions remember together: `when the robot says EXCUSE_ME it looks for 4 s and then
+//! gives way` is two rules that wait for one gesture, which is over when the first has run.
 
 use crate::nodes::{halt_children, memory, remembered};
 use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
@@ -13,7 +16,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     library: Library::Native,
     arity: Arity::ONE,
     ports: &[],
-    about: "fails until its child first succeeds; from then on succeeds without asking again",
+    about: "fails until its child first succeeds; from then on succeeds without asking again, as do others over the same child",
     role: Role::Flow,
     tick,
     halt: halt_children,

@@ -4,7 +4,7 @@ use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Gesture, HumanId};
 
 /// Within this distance ahead of the robot a human blocks it, m.
-const BLOCKED_M: f64 = 1.2;
+const BLOCKED_M: f64 = 1.6;
 
 /// The moment as the script sees it.
 #[derive(Debug, Clone)]

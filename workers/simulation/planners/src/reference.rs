@@ -1,11 +1,13 @@
 //! `reference`: an actor rather than a test subject. It keeps to the intended way, plays the script, steps
-//! round people who stand or come towards it, waits for those who cross, and asks after 3 s of waiting.
+//! round people who stand or come towards it, waits for those who cross, and asks after 3 s of waiting; before somebody who
+//! does not let it pass it stops dodging.
 
 use socrates_model::{Command, Door, Gesture, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
 use crate::ground::{Ground, closed_door_ahead, obstacles};
 use crate::mission::Mission;
+use crate::patience::{Patience, face};
 use crate::pursuit::{beside_people, safe_share, somebody_ahead, steer};
 use crate::script::{Script, Wish};
 use crate::waiting::{WaitingSpot, spot};
@@ -43,6 +45,7 @@ pub(crate) struct Reference {
     waiting: Option<WaitingSpot>,
     waiting_since_s: Option<f64>,
     out_since_s: Option<f64>,
+    patience: Patience,
     behind_s: f64,
     asked_s: f64,
     alone_s: f64,
@@ -62,6 +65,7 @@ impl Reference {
             waiting: None,
             waiting_since_s: None,
             out_since_s: None,
+            patience: Patience::default(),
             behind_s: 0.0,
             asked_s: f64::NEG_INFINITY,
             alone_s: 0.0,
@@ -75,6 +79,12 @@ impl Reference {
         if now - self.planned_s >= REPLAN_S {
             self.planned_s = now;
             self.plan = self.detour(seen).map(|way| (way, 0.0));
+        }
+        if limit > 0.1
+            && let Some(blocker) = self.patience.faces(seen, self.s, &self.route.direction(self.s + 0.3))
+        {
+            let command = face(seen, &blocker, &self.robot);
+            return self.asking(seen, command, 0.0);
         }
         let limit = limit.min(beside_people(seen, &self.robot) * self.robot.v_max_mps);
         let (command, share) = if let Some((plan, s)) = &mut self.plan {

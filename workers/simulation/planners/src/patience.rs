@@ -1,0 +1,63 @@
+//! When the robot stops dodging somebody who does not let it pass: it stands, faces whoever that is, and waits for an answer.
+
+use socrates_model::geometry::wrap_angle;
+use socrates_model::{Command, Observation, Point, RobotModel, Vector};
+
+/// Somebody nearer than this, m, and ahead by more than this, m, can be in its way.
+const NEAR_M: f64 = 1.6;
+const AHEAD_M: f64 = 0.3;
+/// So far beside its line, m, somebody is in its way while it dodges, and while it stands.
+const DODGES_ASIDE_M: f64 = 1.3;
+const STANDS_ASIDE_M: f64 = 0.7;
+/// Less of its way than this, m, in so long a time, s, before somebody is no way past them.
+const PROGRESS_M: f64 = 0.5;
+const TRIES_S: f64 = 3.0;
+/// It stands so long before it tries again, s: time to ask, and to be let through.
+const STANDS_S: f64 = 8.0;
+
+/// How the robot gets on, and since when it does not.
+#[derive(Debug, Default)]
+pub(crate) struct Patience {
+    mark_m: f64,
+    since_s: f64,
+    until_s: f64,
+    asked_s: f64,
+}
+
+impl Patience {
+    /// Whom to face instead of going on, for a robot that has come so far along its way, which leads `ahead`.
+    pub(crate) fn faces(&mut self, seen: &Observation<'_>, s: f64, ahead: &Vector) -> Option<Point> {
+        let (at, now) = (seen.pose.point(), seen.time.secs());
+        let near = seen.people.iter().map(|person| (person.at - at, person.at));
+        // Whoever has gone aside while it stood is in its way no longer.
+        let aside_m = if now < self.until_s { STANDS_ASIDE_M } else { DODGES_ASIDE_M };
+        let near =
+            near.filter(|(to, _)| to.norm() < NEAR_M && to.dot(ahead) > AHEAD_M && to.perp(ahead).abs() < aside_m);
+        // What else it waited for meanwhile does not count.
+        if now - self.asked_s > 0.5 {
+            (self.mark_m, self.since_s) = (s, now);
+        }
+        self.asked_s = now;
+        let Some((_, blocker)) = near.min_by(|a, b| a.0.norm().total_cmp(&b.0.norm())) else {
+            (self.mark_m, self.since_s, self.until_s) = (s, now, 0.0);
+            return None;
+        };
+        if s > self.mark_m + PROGRESS_M {
+            (self.mark_m, self.since_s) = (s, now);
+        }
+        if now < self.until_s {
+            (self.mark_m, self.since_s) = (s, now);
+        } else if now - self.since_s > TRIES_S {
+            self.until_s = now + STANDS_S;
+        }
+        (now < self.until_s).then_some(blocker)
+    }
+}
+
+/// Stands and turns to a point.
+pub(crate) fn face(seen: &Observation<'_>, to: &Point, robot: &RobotModel) -> Command {
+    let way = to - seen.pose.point();
+    let turn = wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
+    let omega = if turn.abs() > 0.1 { (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps) } else { 0.0 };
+    Command { v: 0.0, omega, gesture: None, waiting: false }
+}
