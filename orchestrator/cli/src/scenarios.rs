@@ -400,6 +400,26 @@ mod tests {
         assert!(is_realised(&played.report), "{}", played.report.verdict_text);
     }
 
+    #[tokio::test]
+    async fn a_robot_that_asks_is_answered() {
+        for (location, rough) in [
+            ("hospital", "A nurse blocks the robot. When the robot says excuse me, she steps aside."),
+            ("office", "A visitor blocks the robot until it says excuse me, then he steps aside."),
+            (
+                "warehouse",
+                "A worker blocks the robot. When it says excuse me, he waits 5 seconds and then steps aside.",
+            ),
+            ("hospital", "A nurse stands still. When the robot says follow me, she follows it."),
+            ("office", "A nurse looks at the robot when it says excuse me, for 4 seconds, and then steps aside."),
+        ] {
+            let place = socrates_maps::shipped::load(location).unwrap();
+            let asked =
+                json!({ "location": location, "social_context": "", "task": "Deliver mail", "rough_scenario": rough });
+            let played = play(&serde_json::from_value(asked).unwrap(), &place, 1).await.unwrap();
+            assert_eq!(played.report.verdict, Verdict::Realised, "{rough}: {}", played.report.verdict_text);
+        }
+    }
+
     #[test]
     fn a_scenario_is_found_by_id_or_letter_and_others_are_named() {
         assert_eq!(find("a").unwrap().id, "frontal_approach");

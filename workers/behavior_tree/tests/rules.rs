@@ -155,6 +155,33 @@ fn a_latch_does_not_hold_before_its_trigger() {
 }
 
 #[test]
+fn two_rules_that_wait_for_one_word_follow_each_other() {
+    let said = [Trigger::RobotSays(Gesture::ExcuseMe)];
+    let rules = [
+        Rule { latched: true, for_s: Some(4.0), ..rule(&said, Action::LookAtRobot) },
+        Rule { latched: true, for_s: Some(6.0), ..rule(&said, Action::GiveWay) },
+        Rule { latched: true, for_s: Some(3.0), ..rule(&[Trigger::RobotSays(Gesture::FollowMe)], Action::FollowRobot) },
+    ];
+    let tree = tree(&rules);
+    let mut state = tree.start();
+    let mut room = seen(3.0);
+    assert_eq!(room.tick(&tree, &mut state), [Action::Navigate]);
+    let mut done = Vec::new();
+    for tick in 0..1200 {
+        // The gesture lasts two seconds; it is over when the first of the two has run.
+        room.robot_says = if tick < 200 { Gesture::ExcuseMe } else { Gesture::None };
+        let acts = room.tick(&tree, &mut state);
+        if done.last() != acts.first() {
+            done.extend(acts);
+        }
+    }
+    assert_eq!(done, [Action::LookAtRobot, Action::GiveWay, Action::Navigate]);
+    let mut other = tree.start();
+    room.robot_says = Gesture::None;
+    assert_eq!(room.tick(&tree, &mut other), [Action::Navigate], "another agent has heard nothing");
+}
+
+#[test]
 fn two_agents_share_a_tree_but_no_memory() {
     let tree = tree(&[Rule { latched: true, ..rule(&[Trigger::AtEncounter], Action::StandStill) }]);
     let (mut one, mut other) = (tree.start(), tree.start());

@@ -49,6 +49,15 @@ fn person(x: f64, y: f64, vx: f64, vy: f64) -> SeenPerson {
 
 /// Drives a point robot without inertia for `secs`; gives back its places and commands.
 fn drive(driver: &mut dyn RobotDriver, people: &dyn Fn(f64) -> Vec<SeenPerson>, secs: f64) -> Vec<(Pose, Command)> {
+    drive_among(driver, &mut |now, _| people(now), secs)
+}
+
+/// The same among people who go by where the robot is.
+fn drive_among(
+    driver: &mut dyn RobotDriver,
+    people: &mut dyn FnMut(f64, &Pose) -> Vec<SeenPerson>,
+    secs: f64,
+) -> Vec<(Pose, Command)> {
     let mut pose = Pose::new(2.0, 3.0, 0.0);
     let dt = 1.0 / driver.rate_hz();
     let mut v = 0.0;
@@ -56,7 +65,7 @@ fn drive(driver: &mut dyn RobotDriver, people: &dyn Fn(f64) -> Vec<SeenPerson>, 
     let mut tick = 0_u64;
     while (tick as f64) * dt < secs {
         let now = (tick as f64) * dt;
-        let seen = people(now);
+        let seen = people(now, &pose);
         let lidar = || vec![12.0; 360];
         let time = SimTime::from_nanos((now * 1e9).round() as u64);
         let observation =
@@ -138,4 +147,31 @@ fn a_blocked_reference_asks_after_three_seconds() {
     let way = drive(driver.as_mut(), &wall, 15.0);
     assert!(way.iter().any(|(_, command)| command.gesture == Some(Gesture::ExcuseMe)));
     assert!(way.iter().all(|(pose, _)| pose.x < 6.0 - 0.55));
+}
+
+#[test]
+fn before_somebody_who_does_not_let_it_pass_the_reference_stops_dodging_and_asks() {
+    let mut driver = make("reference", &mission(vec![])).unwrap().unwrap();
+    // From x = 8 m on somebody keeps 1.2 m ahead of it along its way, wherever it dodges to, for 26 s.
+    let mut blocker = Point::new(8.0, 3.0);
+    let way = drive_among(
+        driver.as_mut(),
+        &mut |now, pose: &Pose| {
+            if now > 26.0 {
+                return vec![person(pose.x + 1.0, 4.2, 0.0, 0.0)];
+            }
+            let spot = Point::new((pose.x + 1.2).max(8.0), pose.y);
+            let step = spot - blocker;
+            blocker += step * (0.06 / step.norm().max(0.06));
+            vec![person(blocker.x, blocker.y, 0.0, 0.0)]
+        },
+        60.0,
+    );
+    let first = way.iter().position(|(_, command)| command.gesture == Some(Gesture::ExcuseMe)).unwrap();
+    let asks_s = first as f64 / 20.0;
+    assert!(asks_s < 20.0, "asks at {asks_s} s");
+    // It stands and faces whom it asks.
+    let (pose, _) = way[first];
+    assert!(pose.yaw.abs() < 0.6, "turned by {}", pose.yaw);
+    assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "let through, it goes on to its goal");
 }
