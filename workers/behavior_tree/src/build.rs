@@ -100,7 +100,7 @@ fn flat(nodes: &[Node], document: &Document) -> Flat {
             n_kids: small(node.children.len()),
             first_input: small(flat.inputs.len()),
             n_inputs: small(node.inputs.len()),
-            word: word.unwrap_or(small(flat.n_words)),
+            word: word.unwrap_or_else(|| small(flat.n_words)),
             leaf: node.leaf,
             asks_world: is_asked
                 && node.leaf > 0

@@ -37,7 +37,7 @@ pub(crate) fn take_places(humans: &mut [Human], robot: &Robot) {
         let pairs = human.blockers / 2;
         let behind_m = |row: usize| (0..row).map(|_| SHOULDERS_M).sum::<f64>();
         let mut places = (0..pairs).flat_map(|row| [0.5, -0.5].map(|side| (side * SHOULDERS_M, behind_m(row))));
-        let place = places.find(|place| !taken.contains(place)).unwrap_or((0.0, behind_m(pairs)));
+        let place = places.find(|place| !taken.contains(place)).unwrap_or_else(|| (0.0, behind_m(pairs)));
         human.place_m = Some(place);
         let beside = aside(human);
         let mate = humans.iter_mut().find(|other| other.place_m == Some((-place.0, place.1)) && place.0 != 0.0);
