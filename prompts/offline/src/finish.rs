@@ -1,9 +1,10 @@
 //! What the text leaves open, once all of it is read.
 
-use socrates_model::{Action, Fault, FaultCode, Gesture, PlaceClass, Relation, Trigger};
+use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Relation, Trigger};
 
 use crate::cast::{Person, ReadRule};
 use crate::deed;
+use crate::robot_deed::up_to_planner;
 use crate::rules;
 use crate::story::Story;
 
@@ -43,7 +44,13 @@ impl Story {
                 }
             }
         }
-        for person in &mut self.cast.people {
+        for (id, person) in (1..).map(HumanId::new).zip(&mut self.cast.people) {
+            // `when the worker says proceed, the robot goes on`: nobody answers its own word.
+            let own = |read: &ReadRule| {
+                read.rule.when.iter().any(|trigger| matches!(trigger, Trigger::HumanSays(who, _) if *who == id))
+            };
+            self.cast.notes.extend(person.rules.iter().filter(|read| own(read)).map(|read| up_to_planner(&read.quote)));
+            person.rules.retain(|read| !own(read));
             deed::settle_going_on(person);
             rules::settle(person);
             if rules::stays_then(person) {

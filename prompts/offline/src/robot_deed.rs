@@ -76,6 +76,11 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
     let its_own =
         matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
     if its_own {
-        story.cast.notes.push(format!("`{quote}`: what the robot does is up to its planner; no clause demands it"));
+        story.cast.notes.push(up_to_planner(quote));
     }
+}
+
+/// What is said of a deed of the robot that nobody can promise.
+pub(crate) fn up_to_planner(quote: &str) -> String {
+    format!("`{quote}`: what the robot does is up to its planner; no clause demands it")
 }

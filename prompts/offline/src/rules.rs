@@ -72,17 +72,9 @@ fn answer(rules: &mut Vec<ReadRule>) -> bool {
             && matches!(read.rule.act, Action::Block | Action::StandStill | Action::LookAtRobot | Action::Approach)
     };
     let Some(from) = rules.iter().position(keeps) else { return false };
-    let answers: Vec<ReadRule> = rules.iter().skip(from).filter(|read| word(read)).cloned().collect();
-    rules.retain({
-        let mut at = 0;
-        move |read| {
-            at += 1;
-            at <= from || !word(read)
-        }
-    });
-    for (place, read) in (from..).zip(answers) {
-        rules.insert(place, read);
-    }
+    let (answers, others): (Vec<ReadRule>, Vec<ReadRule>) = rules.split_off(from).into_iter().partition(word);
+    rules.extend(answers);
+    rules.extend(others);
     let ends = |read: &ReadRule| matches!(read.rule.act, Action::GiveWay | Action::RunAway);
     let last = rules.iter().rposition(|read| word(read) && ends(read));
     let Some((last, answer)) = last.and_then(|last| Some((last, rules.get(last)?.clone()))) else { return true };

@@ -202,3 +202,31 @@ fn who_crosses_a_robot_that_turns_does_not_cut_the_same_corner() {
     let (robot, human) = (chord(&paths.robot), chord(&paths.humans[&proposal.humans[0].id]));
     assert!((robot.dot(&human) / robot.norm() / human.norm()).abs() < 0.75, "{paths:?}");
 }
+
+#[test]
+fn nobody_answers_its_own_word() {
+    let read = reading("office", "A worker crosses the robot's way. When the worker says proceed, the robot goes on.");
+    let rules = &read.humans[0].rules;
+    assert!(rules.iter().all(|rule| !rule.when.iter().any(|when| matches!(when, Trigger::HumanSays(..)))), "{rules:?}");
+    assert!(rules.iter().any(|rule| rule.gesture == Some(Gesture::Proceed)), "{rules:?}");
+    assert!(read.notes.iter().any(|note| note.contains("up to its planner")), "{:?}", read.notes);
+}
+
+#[test]
+fn a_word_interrupts_what_somebody_does_and_who_has_made_room_does_not_block_again() {
+    let said = Trigger::RobotSays(Gesture::ExcuseMe);
+    for rough in [
+        "A nurse blocks the robot. When the robot says excuse me, she steps aside.",
+        "A nurse blocks the robot until it says excuse me, then she steps aside.",
+    ] {
+        let rules = reading("hospital", rough).humans.remove(0).rules;
+        let acts: Vec<(bool, Action)> =
+            rules.iter().map(|rule| (rule.when == [said.clone()], rule.act.clone())).collect();
+        assert_eq!(acts, [(true, Action::GiveWay), (true, Action::Navigate), (false, Action::Block)], "{rough}");
+        assert_eq!(rules[2].for_s, Some(20.0), "{rough}");
+    }
+    // Whoever says how long keeps to it.
+    let rough = "A nurse blocks the robot for 7 seconds. When the robot says excuse me, she steps aside.";
+    let blocks = reading("hospital", rough).humans.remove(0).rules.pop().unwrap();
+    assert_eq!((blocks.act, blocks.for_s), (Action::Block, Some(7.0)));
+}
