@@ -162,6 +162,19 @@ pub enum RobotWhen {
     AfterSecs(f64),
 }
 
+impl RobotWhen {
+    /// Within this distance ahead of the robot a human blocks it, m: it stops more than a metre before whoever stands in its way.
+    pub const BLOCKED_M: f64 = 1.6;
+    /// Up to this angle from where it faces a human is ahead of it, rad.
+    pub const AHEAD_RAD: f64 = 0.8;
+
+    /// Whether a human at this distance, m, and bearing from the robot, rad, blocks it.
+    #[must_use]
+    pub const fn is_blocked_by(distance_m: f64, bearing_rad: f64) -> bool {
+        distance_m < Self::BLOCKED_M && bearing_rad.abs() < Self::AHEAD_RAD
+    }
+}
+
 /// What the robot's script does. Played by the `reference` planner; others take gestures only.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]

@@ -254,16 +254,13 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
     while let Some(done) = waiting.join_next().await {
         let (seed, played) = done.map_err(|why| Complaint::input(format!("a run ended: {why}"), ""))?;
         rate.runs += 1;
-        if let Ok(played) = &played
-            && !is_realised(&played.report)
-        {
-            rate.verdicts.insert(seed, format!("{} · {}", played.report.verdict, played.report.verdict_text));
-        }
-        if let Ok(played) = &played
-            && is_realised(&played.report)
-        {
-            rate.late += usize::from(played.report.verdict == Verdict::RealisedLate);
-            rate.success += usize::from(played.report.success);
+        if let Ok(Played { report, .. }) = &played {
+            if is_realised(report) {
+                rate.late += usize::from(report.verdict == Verdict::RealisedLate);
+                rate.success += usize::from(report.success);
+            } else {
+                rate.verdicts.insert(seed, format!("{} · {}", report.verdict, report.verdict_text));
+            }
         }
         let wrong = match &played {
             Ok(played) => failing(played),

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Modules in reading order: what goes in ([`setup`]), the still world ([`floor`], cells, [`doors`], [`lidar`]), the agents
-//! (human, view, robot, script), how they move (near, motion, block, make_room, walk, [`gait`], lanes, [`models`], advance, [`contacts`]), how they meet
+//! (human, view, robot, script), how they move (near, motion, block, make_room, walk, [`gait`], lanes, [`models`], advance,
+//! [`contacts`]), how they meet
 //! (rendezvous), where they start (placing, start), what is written down ([`recorder`], ending), and the loop
 //! ([`run`], drive).
 //!

@@ -3,9 +3,6 @@
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Gesture, HumanId};
 
-/// Within this distance ahead of the robot a human blocks it, m.
-const BLOCKED_M: f64 = 1.6;
-
 /// The moment as the script sees it.
 #[derive(Debug, Clone)]
 pub(crate) struct Cue<'a> {
@@ -48,8 +45,8 @@ impl Script {
             let holds = match when {
                 RobotWhen::Start => cue.now_s >= 0.5,
                 RobotWhen::Blocked(secs) => {
-                    let blocked =
-                        cue.humans.iter().any(|(_, distance, bearing, _)| *distance < BLOCKED_M && bearing.abs() < 0.8);
+                    let mut humans = cue.humans.iter();
+                    let blocked = humans.any(|(_, distance, bearing, _)| RobotWhen::is_blocked_by(*distance, *bearing));
                     *held_s = if blocked { *held_s + cue.dt } else { 0.0 };
                     *done &= blocked;
                     *held_s >= *secs

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! Modules in reading order: what a planner is given ([`mission`]), the list of planners ([`catalog`]), the
-//! floor as planners see it (ground), ways round people (detour), following a way (pursuit), waiting (waiting, patience), then one file
-//! per planner and the robot's script that `reference` plays.
+//! floor as planners see it (ground), ways round people (detour), following a way (pursuit), where and when it
+//! waits (waiting, patience), then one file per planner and the robot's script that `reference` plays.
 //!
 //! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
 

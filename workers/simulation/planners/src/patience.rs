@@ -1,7 +1,6 @@
 //! When the robot stops dodging somebody who does not let it pass: it stands, faces whoever that is, and waits for an answer.
 
-use socrates_model::geometry::wrap_angle;
-use socrates_model::{Command, Observation, Point, RobotModel, Vector};
+use socrates_model::{Observation, Point, Vector};
 
 /// Somebody nearer than this, m, and ahead by more than this, m, can be in its way.
 const NEAR_M: f64 = 1.6;
@@ -71,12 +70,4 @@ impl Patience {
         }
         (now < self.until_s).then_some(blocker)
     }
-}
-
-/// Stands and turns to a point.
-pub(crate) fn face(seen: &Observation<'_>, to: &Point, robot: &RobotModel) -> Command {
-    let way = to - seen.pose.point();
-    let turn = wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
-    let omega = if turn.abs() > 0.1 { (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps) } else { 0.0 };
-    Command { v: 0.0, omega, gesture: None, waiting: false }
 }

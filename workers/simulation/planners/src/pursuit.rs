@@ -28,6 +28,14 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
 }
 
+/// Stands and turns to a point: by so much a radian off it, rad/s, and at most this fast, rad/s.
+pub(crate) fn face(seen: &Observation<'_>, to: &Point, gain: f64, most_radps: f64) -> Command {
+    let way = to - seen.pose.point();
+    let turn = wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
+    let omega = if turn.abs() > 0.1 { (gain * turn).clamp(-most_radps, most_radps) } else { 0.0 };
+    Command { v: 0.0, omega, gesture: None, waiting: false }
+}
+
 /// The largest share of full speed (1, ¾, ½, ¼, 0) at which nobody is nearer than allowed along the way.
 pub(crate) fn safe_share(
     seen: &Observation<'_>,

@@ -7,8 +7,8 @@ use socrates_model::{Command, Door, Gesture, Observation, Point, Polyline, Robot
 use crate::detour;
 use crate::ground::{Ground, closed_door_ahead, obstacles};
 use crate::mission::Mission;
-use crate::patience::{Patience, face};
-use crate::pursuit::{beside_people, safe_share, somebody_ahead, steer};
+use crate::patience::Patience;
+use crate::pursuit::{beside_people, face, safe_share, somebody_ahead, steer};
 use crate::script::{Script, Wish};
 use crate::waiting::{WaitingSpot, spot};
 
@@ -83,7 +83,7 @@ impl Reference {
         if limit > 0.1
             && let Some(blocker) = self.patience.faces(seen, self.s, &self.route.direction(self.s + 0.3))
         {
-            let command = face(seen, &blocker, &self.robot);
+            let command = face(seen, &blocker, 2.4, self.robot.omega_max_radps);
             return self.asking(seen, command, 0.0);
         }
         let limit = limit.min(beside_people(seen, &self.robot) * self.robot.v_max_mps);
@@ -168,10 +168,7 @@ impl Reference {
 
     fn face_door(&self, seen: &Observation<'_>) -> Command {
         let end = self.route.end().unwrap_or_else(|| seen.pose.point());
-        let way = end - seen.pose.point();
-        let turn = socrates_model::geometry::wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
-        let omega = if turn.abs() > 0.1 { (1.5 * turn).clamp(-0.8, 0.8) } else { 0.0 };
-        Command { v: 0.0, omega, gesture: None, waiting: true }
+        Command { waiting: true, ..face(seen, &end, 1.5, 0.8) }
     }
 
     fn go_to(&mut self, seen: &Observation<'_>, to: &Point) -> Command {

@@ -9,9 +9,6 @@ use socrates_model::{HumanId, Observation, Point};
 /// Within this distance of an encounter the robot is at it, m.
 const AT_ENCOUNTER_M: f64 = 1.0;
 
-/// Somebody this near ahead blocks the robot, m: it stops more than a metre before whoever stands in its way.
-const BLOCKED_M: f64 = 1.6;
-
 /// What the script wants now.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Wish {
@@ -54,7 +51,8 @@ impl Script {
                 RobotWhen::Blocked(secs) => {
                     let blocked = seen.people.iter().any(|person| {
                         let to = person.at - at;
-                        to.norm() < BLOCKED_M && wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw).abs() < 0.8
+                        let bearing = wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw);
+                        RobotWhen::is_blocked_by(to.norm(), bearing)
                     });
                     *held_s = if blocked { *held_s + dt } else { 0.0 };
                     *held_s >= *secs
