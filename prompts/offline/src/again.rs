@@ -7,7 +7,7 @@ use crate::cut::Stretch;
 use crate::lexicon::Act;
 use crate::place;
 use crate::story::{Story, Subject, Thread};
-use crate::words::Piece;
+use crate::words::{Piece, Word};
 
 /// What was said of meeting the robot more than once.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -70,6 +70,13 @@ pub(crate) fn joined(pieces: Vec<Piece>) -> Vec<Piece> {
     out
 }
 
+/// The words of the text that say how often, where nothing was made of them: `three times`, `a second time`.
+pub(crate) fn how_often<'a>(word: &Word, text: &'a str) -> Option<&'a str> {
+    let said = text.get(word.from..word.to)?;
+    let joined = matches!(word.text.as_str(), TWICE | OFTENER | AGAIN) && said.contains(char::is_whitespace);
+    (joined && !word.used).then_some(said)
+}
+
 /// Notes who is to meet the robot twice. True where the clause tells of nothing but the second meeting, so that no more is
 /// read from it.
 pub(crate) fn note(
@@ -81,7 +88,10 @@ pub(crate) fn note(
     quote: &str,
 ) -> bool {
     let often = |word: &str| matches!(word, TWICE | OFTENER | AGAIN);
-    let Some(at) = stretch.words.iter().position(|word| often(&word.text)) else { return false };
+    // `two times as fast` tells of a pace.
+    let counts =
+        |at: &usize| stretch.words.get(at + 1).is_none_or(|next| !matches!(next.text.as_str(), "as" | "faster"));
+    let Some(at) = stretch.words.iter().position(|word| often(&word.text)).filter(counts) else { return false };
     let said = stretch.words.get(at).map_or_else(String::new, |word| word.text.clone());
     let meets = |act: Act| matches!(act, Act::Toward | Act::Pass | Act::Cross);
     if !found.deeds.iter().any(|deed| meets(deed.act) && !deed.negated) {

@@ -82,7 +82,9 @@ fn bidden(stretch: &mut Stretch) {
         stretch.words = vec![robot, asks];
         return;
     }
-    if asks && matches!(next, "" | "to" | "politely" | "nicely" | "kindly" | "so") {
+    let often = matches!(next, "again" | "once" | "twice" | "a")
+        || stretch.words.get(1).is_some_and(|word| word.count().is_some());
+    if asks && (often || matches!(next, "" | "to" | "politely" | "nicely" | "kindly" | "so")) {
         let robot = Word { text: "robot".to_owned(), stem: "robot".to_owned(), used: true, ..first };
         stretch.words.insert(0, Word { to: robot.from, ..robot });
     }

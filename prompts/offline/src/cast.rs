@@ -273,6 +273,7 @@ impl Cast {
                 let open = if there { self.pick_open(1, mention) } else { None };
                 open.unwrap_or_else(|| self.join(1, &self.alike(mention), declares, quote))
             }
+            Who::SoMany(n) => self.so_many(*n, mention, quote),
             Who::AllBut(n) => {
                 let set = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
                 let kept = set.len().saturating_sub(usize::try_from(*n).unwrap_or(usize::MAX));

@@ -278,6 +278,8 @@ fn echoes(stretch: &mut Stretch) -> Option<usize> {
                 && k + 1 == count
                 && *k > 0
                 && matches!(stem(k - 1), "do" | "say" | "ask" | "signal" | "request" | "tell")
+            // `only when the robot says it`
+            || text(*k) == "it" && k + 1 == count && *k > 0 && matches!(stem(k - 1), "say")
             || matches!(stem(*k), "ask" | "say" | "signal" | "request" | "tell" | "gesture")
                 && *k > 0
                 // `if it does ask`, `once it has asked`
@@ -289,7 +291,9 @@ fn echoes(stretch: &mut Stretch) -> Option<usize> {
                 && matches!(stem(k - 1), "see" | "hear" | "notice")
     });
     if let Some(at) = at {
-        mark(stretch, at, (at + 1).min(count.saturating_sub(1)));
+        // How often it was said is another wish.
+        let next = if matches!(text(at + 1), "twice" | "thrice" | "again") { at } else { at + 1 };
+        mark(stretch, at, next.min(count.saturating_sub(1)));
     }
     at
 }
@@ -557,7 +561,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             found.in_group = true;
             used.push(i);
         }
-        found.in_group |= text == "together" && i > 0;
+        found.in_group |= text == "together" && i > 0 && !negated(stretch, i);
         if matches!(text, "suddenly" | "together") {
             used.push(i);
         }

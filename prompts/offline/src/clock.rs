@@ -14,7 +14,7 @@ const DAY: &[&str] = &["morning", "afternoon", "evening", "night", "noon", "midn
 pub(crate) fn clock(pieces: &mut [Piece]) {
     let mut told = Vec::new();
     for at in 0..pieces.len() {
-        if let Some(to) = minutes(pieces, at).or_else(|| hour(pieces, at)) {
+        if let Some(to) = minutes(pieces, at).or_else(|| hour(pieces, at)).or_else(|| date(pieces, at)) {
             told.extend(at..to);
         }
     }
@@ -40,6 +40,47 @@ fn minutes(pieces: &[Piece], at: usize) -> Option<usize> {
     }
     let half = text_at(pieces, at) == "half" && hour(at + 1) && ends(pieces, at + 2);
     half.then_some(at + 2)
+}
+
+/// `on 14 march`, `3rd of June`, `from May 2`: where that ends.
+fn date(pieces: &[Piece], at: usize) -> Option<usize> {
+    const MONTHS: &[&str] = &[
+        "january",
+        "february",
+        "march",
+        "april",
+        "may",
+        "june",
+        "july",
+        "august",
+        "september",
+        "october",
+        "november",
+        "december",
+        "jan",
+        "feb",
+        "mar",
+        "apr",
+        "jun",
+        "jul",
+        "aug",
+        "sep",
+        "sept",
+        "oct",
+        "nov",
+        "dec",
+    ];
+    let month = |k: usize| MONTHS.contains(&text_at(pieces, k));
+    // `two may stop`, `two march past`
+    let doubtful = |k: usize| matches!(text_at(pieces, k), "may" | "march" | "mar");
+    let day = |k: usize| number(pieces, k).is_some_and(|n| (1..=31).contains(&n));
+    let before = at.checked_sub(1).map_or("", |k| text_at(pieces, k));
+    let dated = matches!(before, "on" | "of" | "by" | "since" | "until" | "till" | "from" | "before" | "the");
+    let after = at + 1 + usize::from(text_at(pieces, at + 1) == "of");
+    if day(at) && month(after) && (dated || !doubtful(after)) {
+        return Some(after + 1);
+    }
+    (month(at) && day(at + 1) && (dated || !doubtful(at)) && ends(pieces, at + 2)).then_some(at + 2)
 }
 
 /// Whether nobody can be counted by the number before this place.

@@ -459,7 +459,9 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 && !matches!(before, "nor" | "neither")
                 && !matches!(before, "point" | "time" | "moment" | "circumstances")
         }
-        "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three" if temporal => {
+        "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three"
+            if temporal && text(i + 1) != "times" =>
+        {
             let closes = matches!(
                 before,
                 "robot"

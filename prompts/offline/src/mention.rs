@@ -48,6 +48,8 @@ pub(crate) enum Who {
     },
     /// `they`, `both`, `everyone`.
     All,
+    /// `all three`, `all three of them`: those who are there, told to be so many.
+    SoMany(u32),
     /// `all but one`: so many are left out.
     AllBut(u32),
     /// `the second of two visitors`.
@@ -250,7 +252,8 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                 && text(at + 2) == "of"
                 && let Some(of) = of_them(at + 2)
             {
-                return made(Who::AllOf(count), of.role, of.end);
+                let who = if of.role.is_none() && of.count.is_none() { Who::SoMany(count) } else { Who::AllOf(count) };
+                return made(who, of.role, of.end);
             }
             // `all three nurses` are those three, or three new ones.
             if let Some(count) = words.get(at + 1).and_then(Word::count).filter(|n| *n > 1)
@@ -259,9 +262,11 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                 return made(Who::AllOf(count), role(end), end);
             }
             let start = at + 1 + usize::from(matches!(text(at + 1), "the"));
-            let start = start + usize::from(words.get(start).is_some_and(|word| word.count().is_some()));
+            let count = words.get(start).and_then(Word::count);
+            let start = start + usize::from(count.is_some());
             return match noun(words, start, lex) {
                 Some(end) => made(Who::All, None, end),
+                None if let Some(count) = count.filter(|n| *n > 1) => made(Who::SoMany(count), None, start - 1),
                 None if start > at + 1 => made(Who::All, None, start - 1),
                 // `each steps aside`
                 None if text(at) == "each"

@@ -99,6 +99,7 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
                     | "them"
                     | "to"
                     | "so"
+                    | "thrice"
             )
         })
         && first.checked_sub(1).is_some_and(|k| stem(k) == "robot");
@@ -109,8 +110,15 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
     }
     // `waves at the robot`: a greeting.
     let greets = stem(first) == "wave"
-        && stretch.words.get(last + 1).is_some_and(|word| matches!(word.text.as_str(), "at" | "to"))
-        && (last + 2..last + 4).any(|k| stem(k) == "robot");
+        && (last + 1..last + 3).any(|at| {
+            let between = at == last + 1
+                || stretch.words.get(last + 1).is_some_and(|word| {
+                    matches!(word.text.as_str(), "once" | "twice" | "thrice") || word.text.ends_with("ly")
+                });
+            between
+                && stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "at" | "to"))
+                && (at + 1..at + 3).any(|k| stem(k) == "robot")
+        });
     if greets {
         found.gesture = Some(Gesture::Acknowledged);
         mark_each(stretch, &verb);

@@ -173,7 +173,11 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
     let has = back(1).is_some_and(|word| matches!(word.text.as_str(), "a" | "an" | "his" | "her"))
         && back(2).is_some_and(|word| word.text == "with")
         && back(3).is_some_and(|word| lex.roles.contains_key(&word.stem));
-    if !introduced || has {
+    // `repeated with a different planner`
+    let variant = text(at) == "different"
+        && back(1).is_some_and(|word| word.text == "a")
+        && back(2).is_some_and(|word| word.text == "with");
+    if !introduced || has || variant {
         return None;
     }
     let unknown = |k: usize| {

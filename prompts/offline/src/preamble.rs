@@ -62,6 +62,7 @@ const THERE: &[&str] =
 /// The words stay unused, so that what they wish for is reported as not understood.
 pub(crate) fn preamble(pieces: &mut [Piece]) {
     trials(pieces);
+    wanted(pieces);
     let mut parts: Vec<(usize, usize)> = Vec::new();
     let mut from = 0;
     for at in 0..=pieces.len() {
@@ -87,6 +88,12 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
     let Some(first) = spoken.iter().position(|(words, found)| found.iter().any(|mention| !weak(words, mention))) else {
         return;
     };
+    // `Monday 8:45, people coming in. Need 4 people, …`
+    let counted = spoken.get(first).is_some_and(|(words, found)| {
+        let many =
+            |mention: &Mention| mention.role.is_none() && matches!(mention.who, Who::New { count: Some(2..), .. });
+        found.first().is_some_and(many) && words.iter().take(4).any(wishes)
+    });
     let silent: Vec<(usize, usize)> = parts
         .iter()
         .zip(&spoken)
@@ -97,7 +104,7 @@ pub(crate) fn preamble(pieces: &mut [Piece]) {
             let heads = matches!(pieces.get(*to), Some(Piece::Colon))
                 && words.len() <= 9
                 && words.iter().all(|word| word.stem != "robot");
-            general(words, found, heads)
+            general(words, found, heads) || counted && dated(words) && found.iter().all(|mention| weak(words, mention))
         })
         .map(|(part, _)| *part)
         .collect();
@@ -127,11 +134,48 @@ fn trials(pieces: &mut [Piece]) {
     silence(pieces, told.into_iter().chain(samples));
 }
 
+/// `need one for the new robot`, `I want one where …`: a scenario is wanted, and nobody counted.
+fn wanted(pieces: &mut [Piece]) {
+    let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
+    let places: Vec<usize> = (1..pieces.len())
+        .filter(|k| {
+            text(*k) == "one"
+                && matches!(
+                    text(k - 1),
+                    "need" | "want" | "like" | "have" | "get" | "make" | "build" | "create" | "another"
+                )
+                && matches!(text(k + 1), "for" | "where" | "in")
+                && (text(k + 1) != "in" || matches!(text(k + 2), "which"))
+        })
+        .collect();
+    silence(pieces, places);
+}
+
 /// Whether a part speaks of people in general.
 fn general(words: &[Word], found: &[Mention], heads: bool) -> bool {
     let signs = signs(words);
     let asks = words.first().is_some_and(|word| ASKS.contains(&word.text.as_str()));
     (signs || heads || asks) && !found.is_empty() && found.iter().all(|mention| weak(words, mention))
+}
+
+/// Whether words tell of a day.
+fn dated(words: &[Word]) -> bool {
+    words.iter().any(|word| {
+        matches!(
+            word.text.as_str(),
+            "monday"
+                | "tuesday"
+                | "wednesday"
+                | "thursday"
+                | "friday"
+                | "saturday"
+                | "sunday"
+                | "weekend"
+                | "morning"
+                | "afternoon"
+                | "evening"
+        )
+    })
 }
 
 /// Whether words tell of whoever asks, or in general.
@@ -169,6 +213,7 @@ fn weak(words: &[Word], mention: &Mention) -> bool {
         | Who::Bare(_)
         | Who::Other(_)
         | Who::Some { .. }
+        | Who::SoMany(_)
         | Who::AllBut(_)
         | Who::OrdinalOf { .. }
         | Who::Further(_)

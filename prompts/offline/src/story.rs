@@ -134,10 +134,12 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
             ));
         }
         for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
-            let known =
-                lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot";
-            if !word.used && !known && !story.ignored.contains(&word.text) {
-                story.ignored.push(word.text.clone());
+            let often = again::how_often(word, text);
+            let known = often.is_none()
+                && (lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot");
+            let said = often.unwrap_or(&word.text);
+            if !word.used && !known && !story.ignored.iter().any(|word| word == said) {
+                story.ignored.push(said.to_owned());
             }
         }
     }

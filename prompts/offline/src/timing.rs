@@ -1,6 +1,6 @@
 //! Clauses that only say when, and clauses that only name people.
 
-use socrates_model::{HumanId, PlaceClass, Trigger};
+use socrates_model::{Gesture, HumanId, PlaceClass, Trigger};
 
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
@@ -64,8 +64,18 @@ fn told(story: &mut Story, thread: &mut Thread, found: &Found, quote: &str) {
     }
 }
 
+/// `after the robot has asked`, of which nothing was said before: for its way.
+fn asked(thread: &Thread, stretch: &Stretch, found: &Found) -> Option<Found> {
+    let (Cue::Echo, at) = found.cue? else { return None };
+    let asks = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "ask" | "request"));
+    let says = Found { cue: Some((Cue::Says, at)), gesture: Some(Gesture::ExcuseMe), ..found.clone() };
+    (asks && thread.said.is_none() && robot_leads(found)).then_some(says)
+}
+
 /// A clause that only says when: it times the deeds before it, or those still to come.
 pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Found, quote: &str) {
+    let asked = asked(thread, stretch, found);
+    let found = asked.as_ref().unwrap_or(found);
     let Some((cue, _)) = found.cue else { return };
     thread.paused = false;
     place_of(story, found, stretch, &thread.subject, quote);

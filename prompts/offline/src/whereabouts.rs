@@ -4,9 +4,10 @@ use socrates_model::{PlaceClass, Relation};
 
 use crate::clause::Found;
 use crate::cut::Stretch;
-use crate::lexicon::Act;
+use crate::lexicon::{Act, lexicon};
 use crate::mention::Who;
 use crate::story::{Story, Subject};
+use crate::words::Word;
 
 /// Words before a place that make it the end of a way, its beginning, or what somebody stands beside.
 const TO: &[&str] = &["to", "towards", "toward", "for", "into", "reach", "reaches", "is", "be"];
@@ -121,8 +122,20 @@ fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
             "the" | "a" | "an" | "its" | "their" | "his" | "her" | "of" | "this" | "nearest" | "main" | "next" | "same"
         )
     };
+    // `the mail room`, `the linen store`
+    let describes = |k: usize| {
+        let lex = lexicon();
+        let article = k.checked_sub(1).is_some_and(|k| matches!(text(k), "the" | "a" | "an" | "its"));
+        let plain = |word: &Word| {
+            !word.used
+                && !lex.verbs.contains(&word.stem)
+                && !lex.stop.contains(&word.text)
+                && (lex.things.contains(&word.stem) || lex.task.contains(&word.stem) || !lex.known.contains(&word.stem))
+        };
+        k + 1 == at && article && stretch.words.get(k).is_some_and(plain)
+    };
     // The first word before the place that is no article.
-    let near = (1..=4).filter_map(|back| at.checked_sub(back)).find(|k| between(*k));
+    let near = (1..=4).filter_map(|back| at.checked_sub(back)).find(|k| between(*k) && !describes(*k));
     near.is_some_and(|k| words.contains(&text(k)))
         || at.checked_sub(1).is_some_and(|k| words.contains(&"of") && text(k) == "of" && k > 0 && text(k - 1) == "out")
 }

@@ -98,6 +98,33 @@ impl Cast {
         }
     }
 
+    /// `all three`: those of whom the text spoke, if they are so many; else it says so.
+    pub(crate) fn so_many(&mut self, n: u32, mention: &Mention, quote: &str) -> Vec<usize> {
+        let wanted = usize::try_from(n).unwrap_or(usize::MAX);
+        let everybody: Vec<usize> = (0..self.people.len()).collect();
+        let sets = self.sets.iter().rev().map(|set| &set.members);
+        if let Some(found) = std::iter::once(&self.last).chain(sets).chain([&everybody]).find(|set| set.len() == wanted)
+        {
+            return found.clone();
+        }
+        if everybody.is_empty() {
+            return self.join(n, mention, false, quote);
+        }
+        let them = if self.last.len() > 1 { self.last.clone() } else { self.latest() };
+        let exactly = self.sets.iter().any(|set| set.total);
+        if !exactly && everybody.len() > 1 && wanted == everybody.len() + 1 {
+            self.notes.push(format!("`{quote}` was read as the {} humans and the robot", everybody.len()));
+            return everybody;
+        }
+        let first = self.count_quote.as_ref().map_or_else(|| "the text".to_owned(), |quote| format!("`{quote}`"));
+        self.problems.push(Fault::new(
+            FaultCode::PContra,
+            "rough_scenario",
+            format!("{first} speaks of {} humans, but `{quote}` of {n}; correct one of the two", them.len()),
+        ));
+        them
+    }
+
     /// The third of exactly two, said of everybody who is there.
     pub(crate) fn beyond(&mut self, n: u32, quote: &str) {
         let last = self.sets.iter().rev().find(|set| set.members.len() > 1).filter(|set| set.total);

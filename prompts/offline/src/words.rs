@@ -307,6 +307,9 @@ const JOINED: &[(&str, &[&str])] = &[
     ("cant", &["can", "not"]),
 ];
 
+/// Words that join clauses, of which slips are common too: `untill`, `befor`.
+const JOINTS: &[&str] = &["until", "before", "while", "because", "unless", "except", "without", "whenever"];
+
 /// The word that was meant by a slip of the pen: the only one of the tables that is one letter away.
 ///
 /// Short words and words that start otherwise are left alone: a slip is guessed, never a meaning.
@@ -324,6 +327,15 @@ fn mended(text: &str) -> Option<&'static str> {
         || lex.adjectives.contains(text)
     {
         return None;
+    }
+    let joins = JOINTS.iter().find(|word| {
+        // `white` is no `while`: a letter is doubled or left out.
+        letters != word.chars().count()
+            && text.starts_with(word.chars().next().unwrap_or(' '))
+            && strsim::osa_distance(word, text) == 1
+    });
+    if let Some(word) = joins {
+        return Some(word);
     }
     // `manage` and `smoke` are what a manager and a smoker do.
     let doer = |word: &str| {
