@@ -12,7 +12,7 @@ const DEEPEST: usize = 24;
 const MOST: usize = 200;
 
 /// Nodes that authors are told of: those that rules are compiled to.
-pub(crate) const TAGS: [&str; 24] = [
+pub(crate) const TAGS: [&str; 25] = [
     "Sequence",
     "Fallback",
     "Inverter",
@@ -24,6 +24,7 @@ pub(crate) const TAGS: [&str; 24] = [
     "IsRobotBlocking",
     "RobotMoved",
     "IsRobotStopped",
+    "HasRobotPassed",
     "RobotSays",
     "HumanSays",
     "IsPathDone",
@@ -179,6 +180,7 @@ fn condition(trigger: &socrates_model::Trigger, leaf: &dyn Fn(&str, Vec<String>)
         Trigger::RobotBlocking(m) => near("IsRobotBlocking", *m),
         Trigger::RobotMoving => Some(leaf("RobotMoved", vec![])),
         Trigger::RobotStopped => Some(leaf("IsRobotStopped", vec![])),
+        Trigger::RobotPassed => Some(leaf("HasRobotPassed", vec![])),
         Trigger::RobotSays(gesture) => Some(leaf("RobotSays", vec![format!("message={}", gesture.code())])),
         Trigger::HumanSays(id, gesture) => {
             let ports = vec![format!("target_id={}", id.number()), format!("message={}", gesture.code())];

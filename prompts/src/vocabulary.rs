@@ -161,6 +161,7 @@ fn triggers() -> Vec<Trigger> {
         Trigger::RobotBlocking(1.5),
         Trigger::RobotMoving,
         Trigger::RobotStopped,
+        Trigger::RobotPassed,
         Trigger::RobotSays(Gesture::Proceed),
         Trigger::HumanSays(other(), Gesture::Wait),
         Trigger::GoalReached,

@@ -149,6 +149,7 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
             Trigger::Always
             | Trigger::RobotMoving
             | Trigger::RobotStopped
+            | Trigger::RobotPassed
             | Trigger::RobotSays(_)
             | Trigger::GoalReached
             | Trigger::AtEncounter => {}

@@ -22,6 +22,8 @@ pub enum Trigger {
     RobotMoving,
     /// The robot stands still.
     RobotStopped,
+    /// The robot has been within [`Trigger::PASSED_WITHIN_M`] and is [`Trigger::PASSED_BY_M`] farther away again.
+    RobotPassed,
     /// The robot makes this gesture.
     RobotSays(Gesture),
     /// Another human makes this gesture.
@@ -77,6 +79,17 @@ impl Action {
 }
 
 impl Trigger {
+    /// A robot that was never nearer than this has not passed anybody, m.
+    pub const PASSED_WITHIN_M: f64 = 4.0;
+    /// So much farther away than it was at its nearest, it has passed, m.
+    pub const PASSED_BY_M: f64 = 1.0;
+
+    /// Whether a robot that is `distance_m` away and was `nearest_m` away at its nearest has passed.
+    #[must_use]
+    pub const fn is_passed(distance_m: f64, nearest_m: f64) -> bool {
+        nearest_m <= Self::PASSED_WITHIN_M && distance_m - nearest_m >= Self::PASSED_BY_M
+    }
+
     /// Who has to make which gesture for it; `None` for triggers that wait for no gesture.
     #[must_use]
     pub const fn awaits(&self) -> Option<(AgentId, Gesture)> {
@@ -89,6 +102,7 @@ impl Trigger {
             | Self::RobotBlocking(_)
             | Self::RobotMoving
             | Self::RobotStopped
+            | Self::RobotPassed
             | Self::GoalReached
             | Self::AtEncounter
             | Self::AfterSecs(_) => None,
@@ -105,6 +119,7 @@ impl Trigger {
             Self::RobotBlocking(m) => format!("when the robot is in its way within {m} m"),
             Self::RobotMoving => "while the robot moves".to_owned(),
             Self::RobotStopped => "while the robot stands".to_owned(),
+            Self::RobotPassed => "once the robot has passed".to_owned(),
             Self::RobotSays(gesture) => format!("when the robot says {gesture}"),
             Self::HumanSays(id, gesture) => format!("when {id} says {gesture}"),
             Self::GoalReached => "at its goal".to_owned(),

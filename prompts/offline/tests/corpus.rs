@@ -146,6 +146,7 @@ fn amount(trigger: &Trigger) -> Option<f64> {
         Trigger::Always
         | Trigger::RobotMoving
         | Trigger::RobotStopped
+        | Trigger::RobotPassed
         | Trigger::RobotSays(_)
         | Trigger::HumanSays(..)
         | Trigger::GoalReached

@@ -176,6 +176,7 @@ fn condition(trigger: &Trigger) -> Vec<String> {
         Trigger::RobotBlocking(m) => near("IsRobotBlocking", *m),
         Trigger::RobotMoving => plain("RobotMoved"),
         Trigger::RobotStopped => plain("IsRobotStopped"),
+        Trigger::RobotPassed => plain("HasRobotPassed"),
         Trigger::RobotSays(gesture) => {
             vec![format!("<RobotSays agent_id=\"{{id}}\" message=\"{}\"/>", gesture.code())]
         }

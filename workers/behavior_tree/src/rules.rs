@@ -64,6 +64,7 @@ fn values(human: HumanId, trigger: &Trigger, at: &str, faults: &mut Vec<Fault>) 
         Trigger::Always
         | Trigger::RobotMoving
         | Trigger::RobotStopped
+        | Trigger::RobotPassed
         | Trigger::RobotSays(_)
         | Trigger::GoalReached
         | Trigger::AtEncounter => {}

@@ -17,6 +17,11 @@ pub trait World {
     fn robot_moving(&self) -> bool;
     /// The gesture the robot makes.
     fn robot_gesture(&self) -> Gesture;
+    /// Whether the robot has passed this human ([`Trigger::RobotPassed`](socrates_model::Trigger::RobotPassed)); a world
+    /// without such a memory says no.
+    fn robot_passed(&self) -> bool {
+        false
+    }
     /// The gesture another human makes.
     fn human_gesture(&self, id: HumanId) -> Gesture;
     /// Whether this human is at the present goal of its path.

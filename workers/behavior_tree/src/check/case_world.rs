@@ -59,6 +59,9 @@ impl World for CaseWorld<'_> {
     fn robot_moving(&self) -> bool {
         self.holds(&Trigger::RobotMoving)
     }
+    fn robot_passed(&self) -> bool {
+        self.holds(&Trigger::RobotPassed)
+    }
     fn robot_gesture(&self) -> Gesture {
         self.gesture_of(Trigger::RobotSays)
     }

@@ -26,6 +26,7 @@ mod reactive;
 mod robot_blocking;
 mod robot_moved;
 mod robot_nearby;
+mod robot_passed;
 mod robot_says;
 mod robot_stopped;
 mod robot_visible;
@@ -82,6 +83,7 @@ pub const CATALOG: &[&NodeSheet] = &[
     &robot_blocking::SHEET,
     &robot_moved::SHEET,
     &robot_stopped::SHEET,
+    &robot_passed::SHEET,
     &robot_says::SHEET,
     &human_says::SHEET,
     &time_expired::SHEET,

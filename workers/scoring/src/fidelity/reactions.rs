@@ -24,8 +24,14 @@ const EARLY_M: f64 = 0.3;
 /// How much sooner than its trigger an action may start, s: a tree reads the tick before.
 const EARLY_SECS: f64 = 0.3;
 
-/// How far all triggers hold at a moment; distances are widened by `slack_m`.
-fn trigger_mark(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment: &Moment, slack_m: f64) -> Mark {
+/// How far all triggers hold at a moment, at which the robot has been so near at its nearest; distances are widened by `slack_m`.
+fn trigger_mark(
+    signals: &Signals<'_>,
+    human: HumanId,
+    when: &[Trigger],
+    (moment, nearest_m): (&Moment, f64),
+    slack_m: f64,
+) -> Mark {
     let flag = |yes: bool| if yes { 1.0 } else { -1.0 };
     let one = |trigger: &Trigger| -> f64 {
         match trigger {
@@ -44,6 +50,8 @@ fn trigger_mark(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment:
             }
             Trigger::RobotMoving => moment.robot.speed() - MOVING_MPS,
             Trigger::RobotStopped => MOVING_MPS - moment.robot.speed(),
+            Trigger::RobotPassed => (Trigger::PASSED_WITHIN_M + slack_m - nearest_m)
+                .min(moment.distance_m + slack_m - nearest_m - Trigger::PASSED_BY_M),
             Trigger::RobotSays(gesture) => flag(moment.robot.gesture == *gesture),
             Trigger::HumanSays(other, gesture) => flag(
                 signals
@@ -69,7 +77,13 @@ fn trigger_mark(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment:
 }
 
 fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) -> Vec<Mark> {
-    signals.of(human).iter().map(|moment| trigger_mark(signals, human, when, moment, slack_m)).collect()
+    // The nearest that the robot has been by then.
+    let mut nearest_m = f64::INFINITY;
+    let mark = |moment: &Moment| {
+        nearest_m = nearest_m.min(moment.distance_m);
+        trigger_mark(signals, human, when, (moment, nearest_m), slack_m)
+    };
+    signals.of(human).iter().map(mark).collect()
 }
 
 /// Times at which the triggers begin to hold.

@@ -92,6 +92,8 @@ pub(crate) struct Human {
     pub(crate) yields_until_s: f64,
     /// Who is in its way, face to face.
     pub(crate) facing: Facing,
+    /// How near the robot has been to it, m.
+    pub(crate) nearest_robot_m: f64,
     /// Whether it ever walked.
     pub(crate) started: bool,
     /// Where it walked, a point every decimetre.

@@ -186,6 +186,9 @@ impl Engine {
         });
         let gestures: Vec<(HumanId, Gesture)> = self.humans.iter().map(|human| (human.id, human.gesture)).collect();
         for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
+            if let Some(robot) = robot.filter(|_| human.present()) {
+                human.nearest_robot_m = human.nearest_robot_m.min((robot.at - human.at).norm());
+            }
             // Out of the human while its tree looks at it.
             let mut state = std::mem::take(&mut human.state);
             let mut view = View::of(human, &self.floor, now, robot, &gestures);

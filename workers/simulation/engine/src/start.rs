@@ -289,6 +289,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         jammed_s: 0.0,
         yields_until_s: 0.0,
         facing: Facing::default(),
+        nearest_robot_m: f64::INFINITY,
         started: false,
         trail: Polyline::default(),
         notice: Notice::default(),

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use socrates_bt::World;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, Gesture, HumanId, Point, SimTime, Vector};
+use socrates_model::{Action, Gesture, HumanId, Point, SimTime, Trigger, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
@@ -108,6 +108,10 @@ impl World for View<'_> {
 
     fn robot_moving(&self) -> bool {
         self.robot.is_some_and(|robot| robot.speed_mps > MOVING_MPS)
+    }
+
+    fn robot_passed(&self) -> bool {
+        self.robot_distance_m().is_some_and(|distance_m| Trigger::is_passed(distance_m, self.human.nearest_robot_m))
     }
 
     fn robot_gesture(&self) -> Gesture {
