@@ -122,6 +122,7 @@ pub(crate) fn fact(kind: &FactKind) -> String {
             let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
             format!("{human}: meets the robot {times} times{place}")
         }
+        FactKind::Before { first, then } => format!("{first} before {then}"),
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),
@@ -285,6 +286,10 @@ fn predicates() -> Vec<(Value, String)> {
         row(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
             "one clause (c1, c2, … in order) before another (setup)",
+        ),
+        row(
+            &Predicate::Before { first: AgentId::Robot, then: human.into() },
+            "one is at the encounter before the other: two humans, or a human and the robot (setup)",
         ),
         row(&Predicate::EncounterAt { place: PlaceClass::Intersection }, "the encounter is at such a place (setup)"),
         row(&Predicate::OnTime { human, gap_s: 4.0 }, "at the encounter at most so far apart in time (setup)"),

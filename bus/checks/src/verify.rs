@@ -101,6 +101,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
+        | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_) => true,
         FactKind::Humans(_)
@@ -118,6 +119,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
             Some(*human)
         }
         FactKind::Humans(_)
+        | FactKind::Before { .. }
         | FactKind::Group { .. }
         | FactKind::Relates { .. }
         | FactKind::Place(_)
@@ -190,6 +192,7 @@ fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
         | Predicate::StaysInside { .. }
         | Predicate::Enters { .. }
         | Predicate::Order { .. }
+        | Predicate::Before { .. }
         | Predicate::EncounterAt { .. }
         | Predicate::Plausible
         | Predicate::RobotArrives

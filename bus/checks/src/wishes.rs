@@ -65,6 +65,14 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough(human.to_string(), what)
             }
         }
+        FactKind::Before { first, then } => {
+            let asks = |clause: &Clause| clause.predicate == Predicate::Before { first: *first, then: *then };
+            if proposal.expected_events.iter().any(asks) {
+                None
+            } else {
+                rough(then.to_string(), format!("has no `before` clause; asked for was {first} before {then}"))
+            }
+        }
         FactKind::Gestures { human, gesture } => {
             let found = proposal.human(*human)?;
             if found.rules.iter().any(|rule| rule.gesture == Some(*gesture)) {

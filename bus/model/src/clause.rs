@@ -274,6 +274,14 @@ pub enum Predicate {
         /// Clause id that must come after.
         then: String,
     },
+    /// One is there before the other: two humans, each at its encounter node (within 1.5 m, or nearest to it), or a human and the
+    /// robot at the human's.
+    Before {
+        /// Who is there first.
+        first: AgentId,
+        /// Who is there later.
+        then: AgentId,
+    },
     /// The encounter lies on a place of this class.
     EncounterAt {
         /// The class.
@@ -378,6 +386,7 @@ impl Predicate {
             | Self::WalksTogether { .. }
             | Self::Queues { .. }
             | Self::Order { .. }
+            | Self::Before { .. }
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }

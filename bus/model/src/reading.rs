@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::gesture::Gesture;
-use crate::ids::{GroupId, HumanId};
+use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
 use crate::proposal::Relation;
 use crate::rule::Rule;
@@ -58,6 +58,14 @@ pub enum FactKind {
         /// Class of the place of the last meeting, if said.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         place: Option<PlaceClass>,
+    },
+    /// One is there before the other: two humans where each of them meets the robot, or a human and the robot where they
+    /// meet.
+    Before {
+        /// Who is there first.
+        first: AgentId,
+        /// Who is there later.
+        then: AgentId,
     },
     /// A human makes a gesture.
     Gestures {

@@ -9,6 +9,7 @@ use crate::deed::{self, Around};
 use crate::ellipsis;
 use crate::lexicon::Act;
 use crate::mention::Who;
+use crate::order;
 use crate::story::{Story, Subject, Thread};
 
 /// Who does it.
@@ -284,6 +285,7 @@ pub(crate) fn people_deed(
         thread.said = Some(Trigger::HumanSays(id, gesture));
     }
     thread.acts.push((act, around.clone()));
+    order::note(story, thread, stretch, (act, people), around.trigger.as_ref(), quote);
     for who in people {
         if let Some(rule) = deed::apply(&mut story.cast, *who, act, &around) {
             let late = thread.delay_s.filter(|_| deed::manner(act).is_some());

@@ -323,6 +323,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::Comma), 1)
         }
+        "finally" | "lastly" if opens => (Some(Joint::Then), 1),
         "then" | "afterwards" | "afterward" | "subsequently" | "thereafter" => (Some(Joint::Then), 1),
         "while" | "whereas" if before != "a" && before != "short" && before != "long" => (Some(Joint::While), 1),
         "as" if text(i + 1) == "soon" => (Some(Joint::When), 3),

@@ -194,6 +194,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
                 trigger,
                 Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped | Trigger::AfterSecs(_)
             ) || act == Act::GoOn && *trigger == Trigger::RobotMoving
+                || matches!(act, Act::GoOn | Act::Walk) && *trigger == Trigger::RobotPassed
         };
         if let Some(trigger) = around.trigger.clone().filter(answers) {
             walk_on(cast, who, trigger, &around.quote);

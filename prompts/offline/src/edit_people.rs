@@ -5,8 +5,8 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use socrates_model::rule::RobotDo;
 use socrates_model::{
-    Action, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal, Relation, Rule,
-    Trigger,
+    Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal,
+    Relation, Rule, Trigger,
 };
 
 use crate::cast::{Cast, Person, ReadRule};
@@ -546,6 +546,8 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
         | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)
+        } else if let FactKind::Before { first, then } = kind {
+            gone.iter().any(|id| [first, then].contains(&&AgentId::Human(*id)))
         } else if let FactKind::Group { members, .. } = kind {
             members.iter().any(|id| gone.contains(id))
         } else {

@@ -88,6 +88,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             FactKind::Group { .. }
             | FactKind::Gestures { .. }
             | FactKind::MeetsTimes { .. }
+            | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
             | FactKind::RobotStart(_)
@@ -100,6 +101,10 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         FactKind::Reacts { human, rule } => rules(human).contains(rule),
         FactKind::Gestures { human, gesture } => rules(human).iter().any(|rule| rule.gesture == Some(*gesture)),
         FactKind::Group { members, .. } => proposal.groups.iter().any(|group| group.members == *members),
+        FactKind::Before { first, then } => {
+            let clause = Predicate::Before { first: *first, then: *then };
+            proposal.expected_events.iter().any(|other| other.predicate == clause)
+        }
         FactKind::RobotSays(gesture) => says(*gesture),
         FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),

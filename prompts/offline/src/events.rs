@@ -183,6 +183,10 @@ fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) 
                 Predicate::EncounterAt { place: *class },
             );
         }
+        FactKind::Before { first, then } => {
+            let text = format!("{first} is there before {then}");
+            list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then });
+        }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)

@@ -49,6 +49,8 @@ pub(crate) enum Cue {
     Blocking,
     Stopped,
     Moving,
+    /// It was there and is going away.
+    Passed,
     Says,
     /// Another human says something.
     Told,

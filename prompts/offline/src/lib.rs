@@ -64,6 +64,7 @@ mod whereabouts;
 mod whom;
 
 mod default_cast;
+mod order;
 mod pattern;
 mod summary;
 mod understand;

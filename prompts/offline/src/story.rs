@@ -13,6 +13,7 @@ use crate::ellipsis;
 use crate::lexicon::{Act, Cue, lexicon};
 use crate::meant::meant;
 use crate::mention::Who;
+use crate::order::{self, Joiner, Order};
 use crate::robot_deed::robot_deed;
 use crate::timing::{quiet, robot_first, timing, trigger};
 use crate::whereabouts::place_of;
@@ -32,6 +33,7 @@ pub(crate) struct Story {
     /// Where people go: the robot goes there too if it leads them.
     pub(crate) headed: Option<(PlaceClass, String)>,
     pub(crate) ignored: Vec<String>,
+    pub(crate) order: Order,
     pub(crate) problems: Vec<Fault>,
 }
 
@@ -89,6 +91,11 @@ pub(crate) struct Thread {
     pub(crate) paused: bool,
     /// Who was told apart by nothing but what the relative clause says: `the one who stays`.
     pub(crate) apart: Option<usize>,
+    /// The word before this clause, and whether the one before it told of what the robot does only later.
+    pub(crate) joiner: Option<Joiner>,
+    pub(crate) before_robot: bool,
+    /// Who met the robot in a clause after `after`.
+    pub(crate) after: Option<Vec<usize>>,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -166,6 +173,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         return;
     }
     let mut found = clause::read(stretch);
+    thread.joiner = order::joiner(text, stretch);
+    if stretch.joint == Joint::When {
+        order::condition(thread, stretch, &found, thread.joiner);
+    }
     for i in &found.nowhere {
         let word = stretch.words.get(*i).map_or("", |word| word.text.as_str());
         story.problems.push(Fault::new(

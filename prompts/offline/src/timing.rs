@@ -7,6 +7,7 @@ use crate::cut::{Joint, Stretch};
 use crate::deed;
 use crate::lexicon::{Act, Cue};
 use crate::mention::Who;
+use crate::order;
 use crate::robot_deed::robot_deed;
 use crate::story::{Story, Subject, Thread};
 use crate::whereabouts::place_of;
@@ -26,6 +27,7 @@ pub(crate) fn trigger(cue: Cue, found: &Found, thread: &Thread) -> Option<Trigge
         Cue::Blocking => deed::with_distance(Trigger::RobotBlocking(2.0), found.distance_m),
         Cue::Stopped => Trigger::RobotStopped,
         Cue::Moving => Trigger::RobotMoving,
+        Cue::Passed => Trigger::RobotPassed,
         Cue::Goal => Trigger::GoalReached,
         Cue::Meet => Trigger::AtEncounter,
         Cue::Says => found.gesture.map_or(Trigger::RobotNear(3.0), Trigger::RobotSays),
@@ -93,7 +95,7 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
     let until = stretch.joint == Joint::Until && !std::mem::take(&mut thread.not_until);
     // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
     if until
-        && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Says | Cue::Told | Cue::Echo)
+        && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Passed | Cue::Says | Cue::Told | Cue::Echo)
         && let Some(when) = trigger(cue, found, thread)
     {
         let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
@@ -155,6 +157,9 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         return;
     }
     let Some(when) = trigger(cue, found, thread) else { return };
+    if stretch.joint == Joint::When && order::passed(story, thread, &when, quote) {
+        return;
+    }
     if thread.made.is_empty() && !thread.went_on.is_empty() && !stretch.after_and {
         // `and goes on when it has stopped`
         for who in std::mem::take(&mut thread.went_on) {
@@ -356,6 +361,15 @@ pub(crate) fn quiet(
     // `there should be a doctor and a nurse standing together`
     if !bare && next == Some(Joint::And) && meant.last().is_some_and(|(_, to, _)| to + 1 == stretch.words.len()) {
         thread.listed.clone_from(&people);
+    }
+    // `a nurse crosses it, then a visitor`: the visitor does too, and later.
+    if bare && stretch.joint == Joint::Then && next.is_none() {
+        for (act, around) in thread.acts.clone() {
+            for who in &people {
+                let _rule = deed::apply(&mut story.cast, *who, act, &around);
+            }
+            order::note(story, thread, stretch, (act, &people), None, quote);
+        }
     }
     story.cast.last.clone_from(&people);
     thread.subject = Subject::People(people);

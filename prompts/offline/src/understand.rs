@@ -9,6 +9,7 @@ use socrates_model::{
 use crate::card::Ends;
 use crate::cast::{Person, ReadRule};
 use crate::lexicon::lexicon;
+use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
@@ -296,6 +297,10 @@ fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading)
                 None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),
             }
         }
+    }
+    for (quote, kind) in order::facts(story) {
+        order::tell(&kind, &mut reading.humans);
+        facts.push((quote, kind));
     }
     if let Some((class, quote)) = &story.place {
         facts.push((quote.clone(), FactKind::Place(*class)));

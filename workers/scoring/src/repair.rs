@@ -101,6 +101,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::DoorOpens { .. }
         | Predicate::HiddenUntil { .. }
         | Predicate::Order { .. }
+        | Predicate::Before { .. }
         | Predicate::EncounterAt { .. }
         | Predicate::Reaches { .. }
         | Predicate::StartsAt { .. }

@@ -61,6 +61,7 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
+        | FactKind::Before { .. }
         | FactKind::Place(_) => true,
         FactKind::Humans(_)
         | FactKind::Relates { .. }
@@ -88,6 +89,7 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::MeetsTimes { human, times, .. } => {
             matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times)
         }
+        FactKind::Before { first, then } => clause.predicate == Predicate::Before { first: *first, then: *then },
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),

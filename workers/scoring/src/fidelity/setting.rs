@@ -1,6 +1,6 @@
 //! Monitors of the setting: how many humans, where and when the encounter is, who starts at and who reaches a node.
 
-use socrates_model::{AgentId, HumanId, NodeId, PlaceClass};
+use socrates_model::{AgentId, HumanId, NodeId, PlaceClass, Point};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::gaps::ARRIVED_M;
@@ -9,6 +9,8 @@ use crate::fidelity::robot::held_on_request_s;
 use crate::fidelity::signals::Signals;
 use crate::tracks::{Sample, Track};
 
+/// Who is there less than this before another is there at the same time, s.
+const BEFORE_S: f64 = 0.3;
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
 
@@ -101,6 +103,36 @@ pub(super) fn starts_at(signals: &Signals<'_>, agent: AgentId, node: &NodeId, wi
     Finding::by_margin(within_m - distance, vec![start.t], text)
 }
 
+/// One is there before the other: two humans each at its encounter node, or a human and the robot at the human's.
+pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Finding {
+    let human = |agent: AgentId| if let AgentId::Human(id) = agent { Some(id) } else { None };
+    let place =
+        |agent: AgentId, other: AgentId| human(agent).or_else(|| human(other)).and_then(|id| signals.encounter(id));
+    let track = |agent: AgentId| human(agent).map_or(signals.tracks.robot.as_ref(), |id| signals.tracks.human(id));
+    let mut times = Vec::new();
+    for (agent, other) in [(first, then), (then, first)] {
+        let (Some((_, at)), Some(track)) = (place(agent, other), track(agent)) else {
+            return Finding::not_applicable("there is no encounter, or no map to tell where it is");
+        };
+        let Some(t) = arrival(track, at, f64::INFINITY) else {
+            return Finding::never(-1.0, vec![], format!("{agent} is never at its encounter"));
+        };
+        times.push(t);
+    }
+    let &[before, after] = times.as_slice() else { return Finding::not_applicable("there is nobody to compare") };
+    let margin = after - before;
+    let text = format!("{first} is there at {before:.1} s, {then} at {after:.1} s");
+    // At the same time is not before.
+    Finding::by_margin(margin - BEFORE_S, vec![before.max(after), before, after], text).shifted(margin - BEFORE_S)
+}
+
+/// When a track gets to a place, or is nearest to it within reach. Whoever goes aside for somebody passes the place beside it.
+fn arrival(track: &Track, at: Point, until_s: f64) -> Option<f64> {
+    let off = |s: &Sample| (s.at - at).norm();
+    let near = || track.present().filter(|s| s.t < until_s && off(s) <= MEET_NODE_M);
+    near().find(|s| off(s) <= ARRIVED_M).or_else(|| near().min_by(|a, b| off(a).total_cmp(&off(b)))).map(|s| s.t)
+}
+
 /// Human and robot get to the encounter at about the same time; how long the robot waits in between because it is asked to does
 /// not count.
 pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Finding {
@@ -114,13 +146,7 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     };
     // The first of several encounters is over when the next one begins.
     let until_s = signals.meeting(human, 1).map_or(f64::INFINITY, |meeting| meeting.to_s);
-    // Whoever goes aside for the other passes the place beside it, and is there when it is nearest.
-    let arrival = |track: &Track| {
-        let off = |s: &Sample| (s.at - at).norm();
-        let near = || track.present().filter(|s| s.t < until_s && off(s) <= MEET_NODE_M);
-        near().find(|s| off(s) <= ARRIVED_M).or_else(|| near().min_by(|a, b| off(a).total_cmp(&off(b)))).map(|s| s.t)
-    };
-    let (Some(first), Some(second)) = (arrival(robot), arrival(person)) else {
+    let (Some(first), Some(second)) = (arrival(robot, at, until_s), arrival(person, at, until_s)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };
     // A robot that stands because somebody asked it to is kept waiting by the scenario, not late.

@@ -1,6 +1,6 @@
 //! Where and in which order a human meets the robot: from the paths to lengths along the ways, and which meeting is on.
 
-use socrates_model::{Clause, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Visit};
+use socrates_model::{AgentId, Clause, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Visit};
 
 use crate::human::{Human, Meeting};
 use crate::recorder::Recorder;
@@ -14,6 +14,8 @@ pub(crate) type Marks = [(NodeId, f64)];
 
 /// A node or two around a meeting tells from where and to where the ways lead there, m.
 const AROUND_M: f64 = 0.5;
+/// Who is to be there after another comes so much later, s.
+const APART_S: f64 = 2.2;
 
 /// The meetings of a human in order. With one, the visits of its node are chosen so that nobody is too late; with
 /// several they are those of [`socrates_model::Paths::visits`].
@@ -37,7 +39,8 @@ pub(crate) fn of(
             (own, robot_way.project(&at).0)
         });
         let lead_s = if made.is_empty() {
-            rendezvous::lead_s(proposal.relation, several_toward(setup, proposal, visit.node))
+            let usual_s = rendezvous::lead_s(proposal.relation, several_toward(setup, proposal, visit.node));
+            ordered_s(setup, proposal.id).unwrap_or(usual_s)
         } else {
             let course = |way: &Polyline, s: f64| way.direction((s - AROUND_M).max(0.0));
             rendezvous::lead_by_ways_s(&course(way, human_s), &course(robot_way, robot_s))
@@ -45,6 +48,51 @@ pub(crate) fn of(
         made.push(Meeting { node: visit.node.clone(), at, human_s, robot_s, lead_s });
     }
     made
+}
+
+/// Who is to be there before or after somebody else, or the robot: how long before the robot it aims at being there, s.
+///
+/// Those of one order come `APART_S` after each other, the robot in their middle or in its own place among them.
+fn ordered_s(setup: &Setup, human: HumanId) -> Option<f64> {
+    let order: Vec<(AgentId, AgentId)> = setup
+        .proposal
+        .expected_events
+        .iter()
+        .filter_map(|clause| {
+            if let Predicate::Before { first, then } = &clause.predicate { Some((*first, *then)) } else { None }
+        })
+        .collect();
+    let own = AgentId::Human(human);
+    if !order.iter().any(|(first, then)| [*first, *then].contains(&own)) {
+        return None;
+    }
+    // Everybody whom a chain of such clauses ties to this one, in their order.
+    let mut tied = vec![own];
+    let mut at = 0;
+    while let Some(one) = tied.get(at).copied() {
+        for (first, then) in &order {
+            for (here, there) in [(first, then), (then, first)] {
+                if *here == one && !tied.contains(there) {
+                    tied.push(*there);
+                }
+            }
+        }
+        at += 1;
+    }
+    // How many come before one; a circle has no order, and its length bounds the search.
+    let rank = |one: AgentId| {
+        let mut ahead = vec![one];
+        let mut at = 0;
+        while let Some(here) = ahead.get(at).copied().filter(|_| ahead.len() <= tied.len()) {
+            let before = order.iter().filter(|(_, then)| *then == here).map(|(first, _)| *first);
+            let more: Vec<AgentId> = before.filter(|first| !ahead.contains(first)).collect();
+            ahead.extend(more);
+            at += 1;
+        }
+        ahead.len() as f64 - 1.0
+    };
+    let middle = if tied.contains(&AgentId::Robot) { rank(AgentId::Robot) } else { (tied.len() as f64 - 1.0) / 2.0 };
+    Some((middle - rank(own)) * APART_S)
 }
 
 /// Whether more than one comes towards the robot at this node and just passes it, or does so in a group; but no crowd: that has

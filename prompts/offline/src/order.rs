@@ -1,0 +1,148 @@
+//! Who is there before whom: `first …, then …`, `after the nurse has crossed, …`, `crosses behind the robot`.
+
+use socrates_model::reading::ReadHuman;
+use socrates_model::{AgentId, FactKind, HumanId, Trigger};
+
+use crate::clause::Found;
+use crate::cut::{Joint, Stretch};
+use crate::lexicon::Act;
+use crate::story::{Story, Thread};
+
+/// What the text says of who meets the robot before whom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Order {
+    /// Who met the robot in the last clause that told of it.
+    met: Vec<usize>,
+    /// First and later one, with the words.
+    pairs: Vec<(AgentId, AgentId, String)>,
+}
+
+/// The word before a clause, where it tells which of two comes first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Joiner {
+    /// `after`, `once`.
+    After,
+    /// `before`.
+    Before,
+}
+
+/// Whether somebody who does this has a time at which he is there.
+const fn meets(act: Act) -> bool {
+    matches!(act, Act::Cross | Act::Toward | Act::Overtake | Act::Pass)
+}
+
+/// The word that joins a clause to another, if it tells which comes first.
+pub(crate) fn joiner(text: &str, stretch: &Stretch) -> Option<Joiner> {
+    let before = text.get(..stretch.words.first()?.from)?.trim_end();
+    let word = before.rsplit(|c: char| !c.is_alphanumeric()).next()?.to_lowercase();
+    match word.as_str() {
+        "after" | "once" => Some(Joiner::After),
+        "before" => Some(Joiner::Before),
+        _ => None,
+    }
+}
+
+/// `crosses behind the robot`, `passes behind it`.
+fn behind_robot(stretch: &Stretch) -> bool {
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    (0..stretch.words.len()).any(|k| stem(k) == "behind" && (stem(k + 1) == "robot" || stem(k + 2) == "robot"))
+}
+
+/// A condition about the robot: `before the robot reaches the crossing`.
+pub(crate) fn condition(thread: &mut Thread, stretch: &Stretch, found: &Found, joiner: Option<Joiner>) {
+    let robot = !found.robots.is_empty() && found.mentions.is_empty();
+    thread.before_robot = stretch.joint == Joint::When && joiner == Some(Joiner::Before) && robot;
+}
+
+/// Notes a deed by which people meet the robot.
+pub(crate) fn note(
+    story: &mut Story,
+    thread: &mut Thread,
+    stretch: &Stretch,
+    (act, people): (Act, &[usize]),
+    trigger: Option<&Trigger>,
+    quote: &str,
+) {
+    if !meets(act) || people.is_empty() {
+        return;
+    }
+    if trigger == Some(&Trigger::RobotPassed) || act == Act::Cross && behind_robot(stretch) {
+        later(story, people, quote);
+    } else if std::mem::take(&mut thread.before_robot) {
+        earlier(story, people, quote);
+    }
+    let then = (stretch.joint == Joint::Then).then(|| story.order.met.clone());
+    let prior = thread.after.take().or(then).unwrap_or_default();
+    if prior.iter().all(|one| !people.contains(one)) {
+        for first in &prior {
+            for who in people {
+                pair(story, id(*first), id(*who), quote);
+            }
+        }
+    }
+    if stretch.joint == Joint::When && thread.joiner == Some(Joiner::After) {
+        thread.after = Some(people.to_vec());
+    }
+    story.order.met = people.to_vec();
+}
+
+/// `…, after it has passed`, `… before the robot arrives`: said behind what it times. True where somebody met the robot in the
+/// clause before.
+pub(crate) fn passed(story: &mut Story, thread: &mut Thread, when: &Trigger, quote: &str) -> bool {
+    let met = thread.made.is_empty() && thread.acts.iter().any(|(act, _)| meets(*act));
+    let Some(people) = thread.doer.clone().filter(|_| met) else { return false };
+    if *when == Trigger::RobotPassed {
+        later(story, &people, quote);
+    } else if std::mem::take(&mut thread.before_robot) {
+        earlier(story, &people, quote);
+    } else {
+        return false;
+    }
+    true
+}
+
+fn later(story: &mut Story, people: &[usize], quote: &str) {
+    for who in people {
+        pair(story, AgentId::Robot, id(*who), quote);
+    }
+}
+
+fn earlier(story: &mut Story, people: &[usize], quote: &str) {
+    for who in people {
+        pair(story, id(*who), AgentId::Robot, quote);
+    }
+}
+
+fn pair(story: &mut Story, first: AgentId, then: AgentId, quote: &str) {
+    let known = |(a, b, _): &(AgentId, AgentId, String)| [(first, then), (then, first)].contains(&(*a, *b));
+    if !story.order.pairs.iter().any(known) {
+        story.order.pairs.push((first, then, quote.to_owned()));
+    }
+}
+
+fn id(who: usize) -> AgentId {
+    AgentId::Human(HumanId::new(u32::try_from(who + 1).unwrap_or(u32::MAX)))
+}
+
+/// Tells in the line of the later of two whom it comes after.
+pub(crate) fn tell(kind: &FactKind, humans: &mut [ReadHuman]) {
+    let FactKind::Before { first, then } = kind else { return };
+    let who = |agent: &AgentId| if *agent == AgentId::Robot { "the robot".to_owned() } else { agent.to_string() };
+    let (told, words) = match (first, then) {
+        (_, AgentId::Human(then)) => (then, format!("after {}", who(first))),
+        (AgentId::Human(first), AgentId::Robot) => (first, "before the robot".to_owned()),
+        (AgentId::Robot, AgentId::Robot) => return,
+    };
+    if let Some(human) = humans.iter_mut().find(|human| human.id == *told) {
+        let joint = if human.summary.is_empty() { "" } else { ", " };
+        human.summary.push_str(&format!("{joint}{words}"));
+    }
+}
+
+/// The facts, with their words.
+pub(crate) fn facts(story: &Story) -> impl Iterator<Item = (String, FactKind)> + '_ {
+    let fact = |(first, then, quote): &(AgentId, AgentId, String)| {
+        (quote.clone(), FactKind::Before { first: *first, then: *then })
+    };
+    story.order.pairs.iter().map(fact)
+}
