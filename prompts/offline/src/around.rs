@@ -44,6 +44,12 @@ pub(crate) fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) ->
     let out = match found.mentions.first().map(|mention| &mention.who) {
         Some(Who::Bare(n) | Who::PartOf(n)) => last(*n).and_then(|from| doers.get(from..)),
         Some(Who::New { count: Some(n), .. }) if found.deeds.is_empty() => last(*n).and_then(|from| doers.get(from..)),
+        // `everybody except the nurse`: of those who do it.
+        Some(Who::Definite { plural: false, .. }) if found.deeds.is_empty() => {
+            let role = found.mentions.first().and_then(|mention| mention.role.clone());
+            let who = |i: &usize| role.is_some() && story.cast.people.get(*i).map(|one| &one.role) == role.as_ref();
+            doers.iter().position(who).map(|at| doers.get(at..=at).unwrap_or_default())
+        }
         Some(Who::Ordinal(n)) if *n > 0 => usize::try_from(*n).ok().map(|n| doers.get(n - 1..n).unwrap_or_default()),
         _ => None,
     };

@@ -19,6 +19,7 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
             && matches!(mentions(stretch.words.get(1..).unwrap_or_default()).as_slice(), [only] if only.from == 0 && only.to + 2 == stretch.words.len()))
     });
     of_them(&mut found);
+    excepting(&mut found);
     denied(&mut found);
     measured(&mut found);
     bracketed(&mut found);
@@ -26,6 +27,28 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     resumed(&mut found);
     parted(&mut found);
     fronted(apposed(found))
+}
+
+/// `Everybody except the nurse stops`, `Except for the first, they stop`: the exception stands behind what it is one to.
+fn excepting(found: &mut Vec<Stretch>) {
+    let Some(at) = found.iter().position(|stretch| stretch.joint == Joint::Except) else { return };
+    let Some(exception) = found.get(at) else { return };
+    let end = mentions(&exception.words).first().filter(|mention| mention.from == 0).map(|mention| mention.to);
+    let Some(end) = end else { return };
+    let verb = |word: &Word| lexicon().verbs.contains(&word.stem);
+    let acts = exception.words.get(end + 1).is_some_and(verb);
+    let idle = |stretch: &Stretch| stretch.words.len() <= 4 && !stretch.words.iter().any(verb);
+    if acts && at > 0 && found.get(at - 1).is_some_and(idle) {
+        let rest = found.get_mut(at).map(|exception| exception.words.split_off(end + 1)).unwrap_or_default();
+        if let Some(all) = found.get_mut(at - 1) {
+            all.words.extend(rest);
+        }
+    } else if at == 0 && exception.words.len() == end + 1 && found.len() > 1 {
+        found.swap(0, 1);
+        if let [all, exception, ..] = found.as_mut_slice() {
+            (all.joint, exception.joint) = (Joint::Opens, Joint::Except);
+        }
+    }
 }
 
 /// `of the two who remain, one makes room`: one of them.

@@ -86,6 +86,8 @@ pub(crate) struct Cast {
     pub(crate) supposed: bool,
     /// Whom such sentences spoke of, who may be spoken of again as somebody new.
     pub(crate) supposed_people: Vec<usize>,
+    /// Numbers that are no counts, as names: `patient 12`.
+    pub(crate) labels: Vec<(u32, usize)>,
     /// Names that the text gives to people, in order.
     pub(crate) names: Vec<String>,
     /// A colon stood before: what comes lists those who are there.
@@ -241,6 +243,7 @@ impl Cast {
                     set.iter().skip(set.len() - wanted).copied().collect()
                 }
             }
+            Who::Number(n) if self.is_label(*n) => self.labelled(*n, mention, quote),
             Who::Number(n) => {
                 self.beyond(*n, quote);
                 let wanted = usize::try_from((*n).max(1)).unwrap_or(usize::MAX);

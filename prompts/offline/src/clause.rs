@@ -56,9 +56,21 @@ pub(crate) struct Found {
     pub(crate) passive: bool,
     /// `there are`, `in the scenario`.
     pub(crate) declares: bool,
+    /// Amounts that cannot be played, with what is played instead.
+    pub(crate) limited: Vec<String>,
 }
 
 impl Found {
+    /// An amount within its limits; says so where it is not.
+    pub(crate) fn within(&mut self, amount: f64, (least, most): (f64, f64), unit: &str) -> f64 {
+        let kept = amount.clamp(least, most);
+        if amount < least || amount > most {
+            self.limited
+                .push(format!("`{amount} {unit}` is outside {least} to {most} {unit}; {kept} {unit} is played"));
+        }
+        kept
+    }
+
     /// Whether a deed of people (not only walking about) is in it.
     pub(crate) fn acts(&self) -> bool {
         !self.deeds.is_empty() || self.gesture.is_some()
@@ -221,7 +233,7 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
             return;
         }
     }
-    if temporal && let Some(at) = echoes(stretch) {
+    if temporal && let Some(at) = message::echoes(stretch) {
         found.cue = Some((Cue::Echo, 0));
         // `has made this gesture` is no deed of its own.
         let makes = |word: &crate::words::Word| matches!(word.stem.as_str(), "make" | "give");
@@ -262,40 +274,6 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
     if (stretch.joint == Joint::When || apart) && found.distance_m.is_some() {
         found.cue = Some((Cue::Near, 0));
     }
-}
-
-/// Where what was said before is spoken of: `upon the request`, `once the former has made this gesture`, `when he sees that`.
-fn echoes(stretch: &mut Stretch) -> Option<usize> {
-    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
-    let count = stretch.words.len();
-    let noun =
-        |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue" | "order");
-    let at = (0..count).find(|k| {
-        matches!(text(*k), "this" | "that" | "the" | "his" | "her" | "its" | "such") && noun(k + 1)
-            // `once it has said that`, `as soon as she does so`, `if it does ask`
-            || matches!(text(*k), "so" | "that" | "this")
-                && k + 1 == count
-                && *k > 0
-                && matches!(stem(k - 1), "do" | "say" | "ask" | "signal" | "request" | "tell")
-            // `only when the robot says it`
-            || text(*k) == "it" && k + 1 == count && *k > 0 && matches!(stem(k - 1), "say")
-            || matches!(stem(*k), "ask" | "say" | "signal" | "request" | "tell" | "gesture")
-                && *k > 0
-                // `if it does ask`, `once it has asked`
-                && matches!(stem(k - 1), "do" | "have")
-                && k + 2 >= count
-            || matches!(text(*k), "that" | "this")
-                && k + 1 == count
-                && *k > 0
-                && matches!(stem(k - 1), "see" | "hear" | "notice")
-    });
-    if let Some(at) = at {
-        // How often it was said is another wish.
-        let next = if matches!(text(at + 1), "twice" | "thrice" | "again") { at } else { at + 1 };
-        mark(stretch, at, next.min(count.saturating_sub(1)));
-    }
-    at
 }
 
 fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &[bool]) {

@@ -286,6 +286,14 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "and" => (Some(Joint::And), 1),
         // `all but two`, `all except one`, `everyone save two`
         "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),
+        // `all of them but the second`
+        "but"
+            if matches!(before, "them" | "everyone" | "everybody")
+                && text(i + 1) == "the"
+                && (i >= 3 && text(i - 3) == "all" || before != "them") =>
+        {
+            (Some(Joint::Except), 1)
+        }
         "but" if before == "all" => (None, 1),
         "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
         "besides" => (Some(Joint::Except), 1),

@@ -423,6 +423,18 @@ pub(crate) fn except(cast: &mut Cast, who: usize, rules: &[usize]) {
 pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
     person.never.push((act, quote.to_owned()));
+    let meeting =
+        ["never meet", "not meet", "stays away", "never comes near"].iter().any(|words| quote.contains(words));
+    if meeting {
+        cast.problems.push(Fault::new(
+            FaultCode::PRead,
+            "rough_scenario",
+            format!(
+                "`{quote}`: a scenario is a meeting of people and the robot; that somebody never meets it is not played"
+            ),
+        ));
+        return;
+    }
     if act == Act::ComeOut && person.relation.is_none() {
         // `nobody gets out`
         relate(cast, who, Relation::Staying, quote);

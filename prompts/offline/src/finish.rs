@@ -90,7 +90,12 @@ impl Story {
             return Some(if walks { Relation::Frontal } else { Relation::Static });
         }
         if does(person, &Action::FollowRobot) {
-            return Some(Relation::Behind);
+            // Whom the robot has passed was before it.
+            let passed = |read: &crate::cast::ReadRule| {
+                read.rule.act == Action::FollowRobot && read.rule.when == [Trigger::RobotPassed]
+            };
+            let later = person.rules.iter().any(passed);
+            return Some(if later { Relation::Frontal } else { Relation::Behind });
         }
         if let Some(Action::FollowHuman(leader)) =
             person.rules.iter().map(|read| &read.rule.act).find(|act| matches!(act, Action::FollowHuman(_)))

@@ -61,6 +61,7 @@ mod story;
 mod task;
 mod timing;
 mod whereabouts;
+mod who;
 mod whom;
 
 mod default_cast;
@@ -98,6 +99,8 @@ mod cut_tests;
 mod mention_tests;
 #[cfg(test)]
 mod notes_tests;
+#[cfg(test)]
+mod order_tests;
 #[cfg(test)]
 mod preface_tests;
 #[cfg(test)]

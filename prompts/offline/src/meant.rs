@@ -56,6 +56,10 @@ pub(crate) fn meant(
         if vague && mention.word.is_empty() && people.len() > 1 && people.iter().all(|i| *i >= known) {
             story.cast.notes.push(format!("`{said}` names no number; it was read as {} humans", people.len()));
         }
+        let most = words.first().is_some_and(|word| word.text == "most");
+        if most && matches!(mention.who, Who::PartOfNew(..)) {
+            story.cast.notes.push(format!("`{said}` names no number; it was read as {} humans", people.len()));
+        }
         if mention.who == Who::Object {
             // `The nurse wants the robot to follow her` is the nurse; `a second one follows him` is who came before.
             let robot = found.robots.iter().rev().find(|robot| **robot < mention.from);

@@ -34,7 +34,8 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
         let per_second = unit == "meter" && (next(2) == "second" || next(2) == "per" && next(3) == "second");
         let per_hour = unit == "km" && (matches!(next(2), "h" | "hour") || next(2) == "per" && next(3) == "hour");
         if per_second || per_hour {
-            found.pace_mps = Some((if per_hour { number / 3.6 } else { number }).clamp(0.3, 1.8));
+            let mps = if per_hour { number / 3.6 } else { number };
+            found.pace_mps = Some(found.within(mps, (0.3, 1.8), "m/s"));
             found.pace_said = true;
             mark(stretch, i, i + 2 + usize::from(next(2) == "per"));
             continue;
@@ -54,10 +55,11 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
                 || matches!(text(unit_at + 1), "away" | "off" | "left" | "before" | "apart" | "out" | "distant");
         }
         match unit {
-            "meter" => found.distance_m = Some(number.clamp(0.3, 15.0)),
-            "centimeter" => found.distance_m = Some((number / 100.0).clamp(0.3, 15.0)),
+            "meter" => found.distance_m = Some(found.within(number, (0.3, 15.0), "m")),
+            "centimeter" => found.distance_m = Some(found.within(number / 100.0, (0.3, 15.0), "m")),
             "second" | "minute" => {
-                let secs = (if unit == "minute" { number * 60.0 } else { number }).clamp(0.5, 120.0);
+                let secs = if unit == "minute" { number * 60.0 } else { number };
+                let secs = found.within(secs, (0.5, 120.0), "s");
                 // `after just a few seconds`
                 let roughly = |word: &str| {
                     matches!(word, "a" | "about" | "some" | "another" | "roughly" | "approximately" | "only" | "just")

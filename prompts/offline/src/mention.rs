@@ -4,72 +4,8 @@ use crate::lexicon::{Item, Lexicon, lexicon};
 use crate::noun::{band, noun, plural, stranger, thing};
 use crate::numbered::numbered;
 use crate::refer::{group, others, predicate};
+pub(crate) use crate::who::Who;
 use crate::words::Word;
-
-/// Whom a mention means.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Who {
-    /// Somebody not spoken of before: `two nurses`, `a visitor`.
-    New {
-        /// How many; `None` for a bare plural.
-        count: Option<u32>,
-        /// By `a` or `an`, which never picks from those who are there.
-        article: bool,
-    },
-    /// `another`, `two more`.
-    More(u32),
-    /// `one of them`.
-    PartOf(u32),
-    /// `one of three visitors`: so many, of how many.
-    PartOfNew(u32, u32),
-    /// `both visitors`, `neither of the two nurses`: all of so many.
-    AllOf(u32),
-    /// `the taller one`: somebody told from the others by a word.
-    ToldApart,
-    /// `one`, `two` without a noun.
-    Bare(u32),
-    /// `the other`, `the rest`; `None` for all the others.
-    Other(Option<u32>),
-    /// `the first`, `the second`; 0 for `the last`.
-    Ordinal(u32),
-    /// `the first two`, `the last three`.
-    Some {
-        /// From the beginning, else from the end.
-        first: bool,
-        /// How many.
-        count: u32,
-    },
-    /// `the nurse`, `the employees`.
-    Definite {
-        /// More than one.
-        plural: bool,
-        /// `the two nurses`.
-        count: Option<u32>,
-    },
-    /// `they`, `both`, `everyone`.
-    All,
-    /// `all three`, `all three of them`: those who are there, told to be so many.
-    SoMany(u32),
-    /// `all but one`: so many are left out.
-    AllBut(u32),
-    /// `the second of two visitors`.
-    OrdinalOf {
-        /// Which, from 1; 0 for the last.
-        number: u32,
-        /// Of how many.
-        count: u32,
-    },
-    /// `he`, `she`, `who`.
-    Same,
-    /// `him`, `her`: somebody spoken of before, as the object.
-    Object,
-    /// `a third`, `a fourth one`.
-    Further(u32),
-    /// `human 2`.
-    Number(u32),
-    /// `nobody`, `no people`.
-    Nobody,
-}
 
 /// One mention.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -226,6 +162,12 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                 (None, _) => made(Who::All, None, at),
             };
         }
+        // `most of the five people`
+        "most" if of_them(at + 1).as_ref().is_some_and(|of| of.count.is_some_and(|n| n > 2)) => {
+            let of = of_them(at + 1)?;
+            let count = of.count?;
+            return made(Who::PartOfNew(count - (count - 1) / 3, count), of.role, of.end);
+        }
         "none" | "each" | "all" | "everyone" | "everybody"
             if of_them(at + 1).as_ref().is_some_and(|of| of.count.is_some()) =>
         {
@@ -236,8 +178,15 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             if matches!(text(at + 1), "but" | "except" | "save")
                 && words.get(at + 2).is_some_and(|word| word.count().is_some()) =>
         {
+            let out = words.get(at + 2).and_then(Word::count).unwrap_or(1);
+            // `all but one of the five employees`
+            if let Some(of) = of_them(at + 3)
+                && let Some(count) = of.count.filter(|count| *count > out)
+            {
+                return made(Who::PartOfNew(count - out, count), of.role, of.end);
+            }
             let end = noun(words, at + 3, lex).unwrap_or(at + 2);
-            return made(Who::AllBut(words.get(at + 2).and_then(Word::count).unwrap_or(1)), None, end);
+            return made(Who::AllBut(out), None, end);
         }
         "they" | "them" | "everyone" | "everybody" | "none" => {
             let end = of_them(at + 1).map_or(at, |of| of.end);

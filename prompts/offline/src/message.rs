@@ -183,6 +183,40 @@ fn own_way(stretch: &Stretch, first: usize, last: usize) -> Option<usize> {
     }
 }
 
+/// Where what was said before is spoken of: `upon the request`, `once the former has made this gesture`, `when he sees that`.
+pub(crate) fn echoes(stretch: &mut Stretch) -> Option<usize> {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| stretch.words.get(k).map_or("", |word| word.stem.as_str());
+    let count = stretch.words.len();
+    let noun =
+        |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue" | "order");
+    let at = (0..count).find(|k| {
+        matches!(text(*k), "this" | "that" | "the" | "his" | "her" | "its" | "such") && noun(k + 1)
+            // `once it has said that`, `as soon as she does so`, `if it does ask`
+            || matches!(text(*k), "so" | "that" | "this")
+                && k + 1 == count
+                && *k > 0
+                && matches!(stem(k - 1), "do" | "say" | "ask" | "signal" | "request" | "tell")
+            // `only when the robot says it`
+            || text(*k) == "it" && k + 1 == count && *k > 0 && matches!(stem(k - 1), "say")
+            || matches!(stem(*k), "ask" | "say" | "signal" | "request" | "tell" | "gesture")
+                && *k > 0
+                // `if it does ask`, `once it has asked`
+                && matches!(stem(k - 1), "do" | "have")
+                && k + 2 >= count
+            || matches!(text(*k), "that" | "this")
+                && k + 1 == count
+                && *k > 0
+                && matches!(stem(k - 1), "see" | "hear" | "notice")
+    });
+    if let Some(at) = at {
+        // How often it was said is another wish.
+        let next = if matches!(text(at + 1), "twice" | "thrice" | "again") { at } else { at + 1 };
+        mark(stretch, at, next.min(count.saturating_sub(1)));
+    }
+    at
+}
+
 /// A message without a verb: what somebody hears, or nothing but the message itself.
 fn alone(stretch: &mut Stretch, found: &mut Found, temporal: bool) {
     let says = |at: usize| {

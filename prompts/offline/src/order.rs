@@ -50,7 +50,7 @@ fn behind_robot(stretch: &Stretch) -> bool {
 
 /// A condition about the robot: `before the robot reaches the crossing`.
 pub(crate) fn condition(thread: &mut Thread, stretch: &Stretch, found: &Found, joiner: Option<Joiner>) {
-    let robot = !found.robots.is_empty() && found.mentions.is_empty();
+    let robot = (found.cue.is_some() || !found.robots.is_empty()) && found.mentions.is_empty();
     thread.before_robot = stretch.joint == Joint::When && joiner == Some(Joiner::Before) && robot;
 }
 

@@ -177,6 +177,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if stretch.joint == Joint::When {
         order::condition(thread, stretch, &found, thread.joiner);
     }
+    for limited in std::mem::take(&mut found.limited) {
+        if !story.cast.notes.contains(&limited) {
+            story.cast.notes.push(limited);
+        }
+    }
     for i in &found.nowhere {
         let word = stretch.words.get(*i).map_or("", |word| word.text.as_str());
         story.problems.push(Fault::new(

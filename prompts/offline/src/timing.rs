@@ -12,6 +12,9 @@ use crate::robot_deed::robot_deed;
 use crate::story::{Story, Subject, Thread};
 use crate::whereabouts::place_of;
 
+/// What is done until the robot has passed is done for no longer than this, s.
+const PASSES_S: f64 = 30.0;
+
 /// Whether the robot is who the clause speaks of.
 pub(crate) fn robot_first(found: &Found) -> bool {
     found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot))
@@ -101,6 +104,13 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
         let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
         for who in people {
             deed::walk_on(&mut story.cast, who, when.clone(), quote);
+        }
+        // Until it has passed takes as long as it takes.
+        for (who, rule) in thread.made.iter().filter(|_| when == Trigger::RobotPassed) {
+            let own = story.cast.people.get_mut(*who).and_then(|person| person.rules.get_mut(rule + 1));
+            if let Some(read) = own.filter(|read| !read.lasts) {
+                read.rule.for_s = Some(PASSES_S);
+            }
         }
         thread.said = Some(when.clone());
         thread.ended = Some(when);

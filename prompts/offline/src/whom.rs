@@ -37,6 +37,9 @@ const MEN: &[&str] = &[
     "nephew",
 ];
 
+/// A number that is so much larger than the number of those who are there is a name.
+const LABEL_GAP: u32 = 4;
+
 impl Cast {
     /// Whom `he` or `she` means: one of those spoken of last whom the word fits.
     pub(crate) fn single(&self, word: &str) -> Vec<usize> {
@@ -96,6 +99,22 @@ impl Cast {
             }
             self.sets.retain(|set| !set.members.is_empty());
         }
+    }
+
+    /// Whether a number names somebody rather than counting: nobody counts to 12 at once.
+    pub(crate) fn is_label(&self, n: u32) -> bool {
+        let there = u32::try_from(self.people.len()).unwrap_or(u32::MAX);
+        !self.labels.is_empty() || n > there.saturating_add(LABEL_GAP)
+    }
+
+    /// Whoever is called by this number.
+    pub(crate) fn labelled(&mut self, n: u32, mention: &Mention, quote: &str) -> Vec<usize> {
+        if let Some((_, who)) = self.labels.iter().find(|(label, _)| *label == n) {
+            return vec![*who];
+        }
+        let joined = self.join(1, mention, false, quote);
+        self.labels.extend(joined.iter().map(|who| (n, *who)));
+        joined
     }
 
     /// `all three`: those of whom the text spoke, if they are so many; else it says so.

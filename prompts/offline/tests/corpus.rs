@@ -161,6 +161,7 @@ fn is(trigger: &Trigger, kind: &str, more: &[&str]) -> bool {
         | ("blocking", Trigger::RobotBlocking(_))
         | ("moving", Trigger::RobotMoving)
         | ("stopped", Trigger::RobotStopped)
+        | ("passed", Trigger::RobotPassed)
         | ("goal", Trigger::GoalReached)
         | ("encounter", Trigger::AtEncounter)
         | ("after", Trigger::AfterSecs(_)) => true,

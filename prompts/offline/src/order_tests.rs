@@ -1,0 +1,131 @@
+//! Requests that say who comes before whom, who is excepted, and amounts that name nobody or cannot be played.
+
+use socrates_model::{Action, AgentId, FactKind, FaultCode, Gesture, HumanId, Predicate, Reading, Relation, Trigger};
+
+use crate::read;
+use crate::tests::{map, proposed, request};
+
+fn told(rough: &str) -> Reading {
+    read(&request("Drive along the corridor", Some(rough)), &map("office"))
+}
+
+/// Who is there before whom; 0 is the robot.
+fn order(reading: &Reading) -> Vec<(u32, u32)> {
+    let number = |agent: &AgentId| if let AgentId::Human(id) = agent { id.number() } else { 0 };
+    let of = |kind: &FactKind| {
+        if let FactKind::Before { first, then } = kind { Some((number(first), number(then))) } else { None }
+    };
+    reading.facts.iter().filter_map(|fact| of(&fact.kind)).collect()
+}
+
+/// How many do something by a rule.
+fn doing(reading: &Reading, act: &Action) -> Vec<u32> {
+    let does = |rules: &[socrates_model::Rule]| rules.iter().any(|rule| rule.act == *act);
+    reading.humans.iter().filter(|human| does(&human.rules)).map(|human| human.id.number()).collect()
+}
+
+#[test]
+fn who_comes_first_is_read_and_demanded() {
+    for (rough, wanted) in [
+        ("First a nurse crosses, then a doctor crosses.", vec![(1, 2)]),
+        ("After the nurse has crossed, a doctor crosses.", vec![(1, 2)]),
+        ("First a visitor crosses, then an employee crosses, then a cleaner.", vec![(1, 2), (2, 3)]),
+        ("A man crosses behind the robot after it has passed.", vec![(0, 1)]),
+        ("A woman crosses in front of the robot. Only after the robot has passed, a man crosses.", vec![(0, 2)]),
+        ("Before the robot reaches the intersection, a visitor crosses it.", vec![(1, 0)]),
+        ("A nurse and a doctor cross.", vec![]),
+        ("When a nurse crosses, a doctor comes towards the robot.", vec![]),
+    ] {
+        let reading = told(rough);
+        assert_eq!(order(&reading), wanted, "{rough}");
+        let asked = request("Drive along the corridor", Some(rough));
+        let proposal = proposed(&asked, &map("office"));
+        let clauses: Vec<(u32, u32)> = proposal
+            .expected_events
+            .iter()
+            .filter(|clause| clause.must)
+            .filter_map(|clause| {
+                let Predicate::Before { first, then } = &clause.predicate else { return None };
+                let number = |agent: &AgentId| if let AgentId::Human(id) = agent { id.number() } else { 0 };
+                Some((number(first), number(then)))
+            })
+            .collect();
+        assert_eq!(clauses, wanted, "{rough}");
+    }
+}
+
+#[test]
+fn until_the_robot_has_passed_is_until_then() {
+    let reading = told("A visitor waits until the robot has passed and then walks on.");
+    let rules = &reading.humans[0].rules;
+    assert_eq!((&rules[0].when[..], &rules[0].act), (&[Trigger::RobotPassed][..], &Action::Navigate));
+    assert_eq!(rules[1].act, Action::StandStill);
+    let reading = told("Once the robot has passed, a visitor follows it.");
+    let rule = &reading.humans[0].rules[0];
+    assert_eq!((&rule.when[..], &rule.act), (&[Trigger::RobotPassed][..], &Action::FollowRobot));
+    assert_ne!(reading.humans[0].relation, Some(Relation::Behind), "it comes from somewhere else before");
+}
+
+#[test]
+fn exceptions_leave_out_who_is_excepted() {
+    for (rough, humans, who) in [
+        ("All but one of the five employees stop.", 5, vec![1, 2, 3, 4]),
+        ("All but two of four visitors stop.", 4, vec![1, 2]),
+        ("All but one of the four people stop; the other one looks at the robot.", 4, vec![1, 2, 3]),
+        ("A nurse and two doctors walk towards the robot. Everybody except the nurse stops.", 3, vec![2, 3]),
+        ("Three visitors come towards the robot. All of them but the second stop.", 3, vec![1, 3]),
+        ("Three visitors come towards the robot. Except for the first, they stop.", 3, vec![2, 3]),
+        ("Most of the five people stop.", 5, vec![1, 2, 3, 4]),
+    ] {
+        let reading = told(rough);
+        assert_eq!((reading.humans.len(), doing(&reading, &Action::StandStill)), (humans, who), "{rough}");
+    }
+}
+
+#[test]
+fn all_so_many_are_those_who_are_there() {
+    let wave = |rough: &str| {
+        let reading = told(rough);
+        let says = |kind: &FactKind| matches!(kind, FactKind::Gestures { gesture: Gesture::Acknowledged, .. });
+        let contradicts = reading.problems.iter().any(|fault| fault.code == FaultCode::PContra);
+        (reading.humans.len(), reading.facts.iter().filter(|fact| says(&fact.kind)).count(), contradicts)
+    };
+    assert_eq!(wave("Three colleagues chat. All three wave at the robot."), (3, 3, false));
+    assert_eq!(wave("All three wave at the robot."), (3, 3, false));
+    assert_eq!(wave("Three colleagues chat. All five wave at the robot."), (3, 3, true));
+    let reading = told("Three visitors walk towards the robot. All four wave at it.");
+    assert!(reading.notes.iter().any(|note| note.contains("and the robot")), "{:?}", reading.notes);
+}
+
+#[test]
+fn numbers_that_name_somebody_count_nobody() {
+    for (rough, humans) in [
+        ("Employee 42 talks with employee 17.", 2),
+        ("Patient 12 waits in the corridor.", 1),
+        ("Nurse number 9 crosses the corridor.", 1),
+        ("A patient aged 30 crosses the corridor.", 1),
+        ("Employee 7 follows employee 13.", 2),
+        ("On 14 March two visitors cross the corridor.", 2),
+        ("Human 2 follows human 1.", 2),
+    ] {
+        assert_eq!(told(rough).humans.len(), humans, "{rough}");
+    }
+    let reading = told("Employee 7 follows employee 13.");
+    assert_eq!(reading.humans[0].rules[0].act, Action::FollowHuman(HumanId::new(2)));
+}
+
+#[test]
+fn amounts_beyond_what_is_played_are_told() {
+    for (rough, words) in [
+        ("A person walks towards the robot at 9 m/s.", "9 m/s"),
+        ("A person looks at the robot for 30 minutes.", "1800 s"),
+        ("A person stops when the robot is within 40 m.", "40 m"),
+    ] {
+        let notes = told(rough).notes;
+        assert!(notes.iter().any(|note| note.contains(words)), "{rough}: {notes:?}");
+    }
+    let reading = told("A worker blocks the robot. After the robot has asked three times he lets it pass.");
+    assert!(reading.ignored.contains(&"three times".to_owned()), "{:?}", reading.ignored);
+    let reading = told("A person stays far away from the robot and never meets it.");
+    assert!(reading.problems.iter().any(|fault| fault.message.contains("never meets")), "{:?}", reading.problems);
+}
