@@ -535,7 +535,9 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             found.obeys = true;
             used.push(i);
         }
-        if matches!(text, "group" | "dyad") && matches!(before, "a" | "the" | "one" | "same" | "small" | "large") {
+        if matches!(text, "group" | "dyad" | "crowd" | "cluster")
+            && matches!(before, "a" | "the" | "one" | "same" | "small" | "large" | "loose" | "dense" | "tight")
+        {
             found.in_group = true;
             used.push(i);
         }
@@ -557,7 +559,10 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         found.declares |= exists || text == "scenario" || exactly;
         // `the lift opens`: of itself, and nobody does it.
         let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors");
-        let taken = takes_along(&stretch.words, i);
+        // `hands the robot a letter`, `joins the queue`
+        let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
+            && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");
+        let taken = takes_along(&stretch.words, i) || gives;
         if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.

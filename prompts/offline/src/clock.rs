@@ -74,6 +74,27 @@ fn date(pieces: &[Piece], at: usize) -> Option<usize> {
     // `two may stop`, `two march past`
     let doubtful = |k: usize| matches!(text_at(pieces, k), "may" | "march" | "mar");
     let day = |k: usize| number(pieces, k).is_some_and(|n| (1..=31).contains(&n));
+    // `what went wrong on the 3rd`
+    let text = text_at(pieces, at);
+    let numeral = text.starts_with(|c: char| c.is_ascii_digit()) && text.ends_with(|c: char| c.is_alphabetic());
+    let on = at >= 2
+        && text_at(pieces, at - 1) == "the"
+        && matches!(text_at(pieces, at - 2), "on" | "since" | "until" | "by");
+    let person =
+        word_at(pieces, at + 1).is_some_and(|next| lexicon().roles.contains_key(&next.stem) || next.text == "one");
+    if numeral && on && !person {
+        return Some(at + 1);
+    }
+    // `a girl, about six, …`
+    let aside = |k: Option<usize>| k.is_none_or(|k| word_at(pieces, k).is_none());
+    let of_role = |k: usize| word_at(pieces, k).is_some_and(|word| lexicon().roles.contains_key(&word.stem));
+    let about = at.checked_sub(1).filter(|k| matches!(text_at(pieces, *k), "about" | "aged"));
+    if about.is_some_and(|k| k > 1 && aside(k.checked_sub(1)) && of_role(k - 2))
+        && number(pieces, at).is_some()
+        && aside(Some(at + 1))
+    {
+        return Some(at + 1);
+    }
     let before = at.checked_sub(1).map_or("", |k| text_at(pieces, k));
     let dated = matches!(before, "on" | "of" | "by" | "since" | "until" | "till" | "from" | "before" | "the");
     let after = at + 1 + usize::from(text_at(pieces, at + 1) == "of");

@@ -123,6 +123,8 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
                     | "safety"
                     | "experience"
                     | "entrance"
+                    | "council"
+                    | "canteen"
                     | "satisfaction"
             ) || !generic && lex.places.iter().any(place)
         })

@@ -115,6 +115,21 @@ fn numbers_that_name_somebody_count_nobody() {
 }
 
 #[test]
+fn what_hands_do_is_said_not_to_be_played() {
+    for rough in [
+        "A woman hands the robot a letter.",
+        "Three people wait in a queue. The robot joins the queue.",
+        "A patient collapses in the corridor.",
+    ] {
+        let reading = told(rough);
+        assert!(reading.problems.iter().any(|fault| fault.code == FaultCode::PRead), "{rough}");
+    }
+    for rough in ["Two visitors walk hand in hand.", "A visitor raises his hand."] {
+        assert!(told(rough).problems.is_empty(), "{rough}");
+    }
+}
+
+#[test]
 fn amounts_beyond_what_is_played_are_told() {
     for (rough, words) in [
         ("A person walks towards the robot at 9 m/s.", "9 m/s"),

@@ -50,6 +50,7 @@ const SIGNS: &[&str] = &[
     "sometimes",
     "whether",
     "how",
+    "than",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
@@ -124,13 +125,28 @@ fn trials(pieces: &mut [Piece]) {
             && word(k + 1).is_none()
     };
     let samples: Vec<usize> = (0..pieces.len()).filter(sample).collect();
-    let told: Vec<usize> = (0..pieces.len())
-        .filter(|k| {
-            let many = word(*k).and_then(Word::count).is_some_and(|n| n > 6);
-            scene && many && word(k + 1).is_some_and(|noun| matches!(noun.stem.as_str(), "participant" | "subject"))
-        })
-        .flat_map(|k| [k, k + 1])
-        .collect();
+    let taking_part = |k: usize| word(k).is_some_and(|noun| matches!(noun.stem.as_str(), "participant" | "subject"));
+    let many = |k: usize| word(k).and_then(Word::count).is_some_and(|n| n > 6);
+    // Whoever is in the scene is named again: `a participant comes round the corner`.
+    let one = |k: usize| {
+        k > 0 && taking_part(k) && word(k - 1).is_some_and(|word| matches!(word.text.as_str(), "a" | "one" | "the"))
+    };
+    let again = (0..pieces.len()).any(one);
+    let samples_told: Vec<usize> =
+        (0..pieces.len()).filter(|k| (scene || again) && many(*k) && taking_part(k + 1)).collect();
+    let counts: Vec<u32> = samples_told.iter().filter_map(|k| word(*k).and_then(Word::count)).collect();
+    // `the other 12 are controls`
+    let others = (1..pieces.len()).filter(|k| {
+        word(k - 1).is_some_and(|word| word.text == "other")
+            && word(*k).and_then(Word::count).is_some_and(|n| n > 6 && counts.contains(&n))
+    });
+    let others: Vec<usize> = others.flat_map(|k| [k - 1, k]).collect();
+    // `each of the 24 participants`
+    let each = samples_told.iter().filter(|k| {
+        k.checked_sub(3).and_then(word).is_some_and(|word| matches!(word.text.as_str(), "each" | "all" | "every"))
+    });
+    let each: Vec<usize> = each.map(|k| k - 3).collect();
+    let told: Vec<usize> = samples_told.iter().flat_map(|k| [*k, k + 1]).chain(others).chain(each).collect();
     silence(pieces, told.into_iter().chain(samples));
 }
 
@@ -144,8 +160,9 @@ fn wanted(pieces: &mut [Piece]) {
                     text(k - 1),
                     "need" | "want" | "like" | "have" | "get" | "make" | "build" | "create" | "another"
                 )
-                && matches!(text(k + 1), "for" | "where" | "in")
-                && (text(k + 1) != "in" || matches!(text(k + 2), "which"))
+                && (matches!(text(k + 1), "for" | "where")
+                    || text(k + 1) == "in" && text(k + 2) == "which"
+                    || text(k + 1) == "of" && matches!(text(k + 2), "them" | "these" | "those"))
         })
         .collect();
     silence(pieces, places);
@@ -234,7 +251,7 @@ fn opines(words: &[Word], mention: &Mention) -> bool {
     let own = matches!(text(mention.from), "our" | "my");
     let verb = text(mention.to + 1);
     let to_me = (mention.to + 2..mention.to + 6)
-        .any(|k| matches!(text(k), "me" | "us" | "whether" | "if" | "proof" | "how" | "why" | "know"));
+        .any(|k| matches!(text(k), "me" | "us" | "whether" | "if" | "proof" | "how" | "why" | "know" | "see"));
     let says = matches!(
         verb,
         "claim"
