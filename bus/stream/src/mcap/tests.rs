@@ -41,6 +41,23 @@ fn a_cut_file_is_an_error_at_every_length() {
 }
 
 #[test]
+fn a_cut_file_is_read_up_to_the_cut_and_says_so() {
+    let recording = recording();
+    let bytes = write(&recording, None).unwrap();
+    assert_eq!(read_rest(&bytes).unwrap(), Rest { recording: recording.clone(), cut: None });
+    let mut read = 0;
+    for cut in (bytes.len() / 2..bytes.len()).step_by(7) {
+        let Ok(rest) = read_rest(&bytes[..cut]) else { continue };
+        read += 1;
+        let there = rest.recording.frames.len();
+        assert!(rest.cut.is_some() || there == recording.frames.len(), "cut at {cut}");
+        assert_eq!(rest.recording.frames[..], recording.frames[..there]);
+    }
+    assert!(read > 0);
+    assert!(read_rest(&bytes[..4]).is_err() && begins(&bytes[..4]) && begins(&bytes) && !begins(b"t,id") && !begins(b""));
+}
+
+#[test]
 fn a_flipped_bit_is_an_error_or_changes_nothing() {
     let recording = recording();
     let good = write(&recording, None).unwrap();

@@ -6,7 +6,7 @@ use socrates_model::Vector;
 
 const NEEDS: &[Need] = &[Need::Robot];
 
-/// The family. Velocities are those of the even 0.1 s grid, smoothed by the weights 1 2 1 (half power
+/// The family. Velocities are those of the even 0.1 s grid without its ends, smoothed by the weights 1 2 1 (half power
 /// near 2.5 Hz): else jerk is sampling noise.
 pub(super) const FAMILY: Family = Family {
     sheets: &[
@@ -128,7 +128,9 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
 
 /// Velocities of the even grid, smoothed.
 pub(super) fn smoothed(scene: &Scene<'_>) -> Vec<Vector> {
-    let triples = scene.even.windows(3);
+    // The ends have velocities of half a step only, which would be jerks.
+    let inner = scene.even.get(1..scene.even.len().saturating_sub(1)).unwrap_or_default();
+    let triples = inner.windows(3);
     triples
         .filter_map(|triple| {
             if let [a, b, c] = triple { Some((a.velocity + b.velocity * 2.0 + c.velocity) / 4.0) } else { None }
@@ -188,9 +190,11 @@ mod tests {
         for step in [0.1, 0.01] {
             let of = |speed: &dyn Fn(f64) -> f64| {
                 let mut run = recording(&[Walk::through(AgentId::Robot, &[(0., 0., 0.)])], 10.0, step);
+                let mut x = 0.0;
                 for state in &mut run.frames {
                     let t = state.tick as f64 * step;
-                    (state.vx, state.x) = (speed(t), t);
+                    (state.vx, state.x) = (speed(t), x);
+                    x += speed(t + 0.5 * step) * step;
                 }
                 value(&run, "sparc").unwrap()
             };
