@@ -209,32 +209,32 @@ fn not_whole(why: impl Into<String>) -> StreamError {
 impl Parts {
     /// Takes every message of a file; what came before an error is kept.
     fn fill(&mut self, bytes: &[u8]) -> Result<(), StreamError> {
-    let failed = |why: String| StreamError::Read { len: bytes.len(), why };
-    let mut options =
-        LinearReaderOptions::default().with_record_length_limit(MAX_RECORD).with_validate_chunk_crcs(true);
-    options.validate_data_section_crc = true;
-    let mut reader = MessageReader::new_with_options(options);
-    let mut rest = bytes;
-    while let Some(event) = reader.next_event() {
-        match event.map_err(|why| failed(why.to_string()))? {
-            MessageReadEvent::ReadRequest(wanted) => {
-                // Never more memory than the file has bytes, whatever its lengths claim.
-                let (given, left) = rest.split_at(wanted.min(rest.len()));
-                if let Some(room) = reader.insert(given.len()).get_mut(..given.len()) {
-                    room.copy_from_slice(given);
+        let failed = |why: String| StreamError::Read { len: bytes.len(), why };
+        let mut options =
+            LinearReaderOptions::default().with_record_length_limit(MAX_RECORD).with_validate_chunk_crcs(true);
+        options.validate_data_section_crc = true;
+        let mut reader = MessageReader::new_with_options(options);
+        let mut rest = bytes;
+        while let Some(event) = reader.next_event() {
+            match event.map_err(|why| failed(why.to_string()))? {
+                MessageReadEvent::ReadRequest(wanted) => {
+                    // Never more memory than the file has bytes, whatever its lengths claim.
+                    let (given, left) = rest.split_at(wanted.min(rest.len()));
+                    if let Some(room) = reader.insert(given.len()).get_mut(..given.len()) {
+                        room.copy_from_slice(given);
+                    }
+                    reader.notify_read(given.len());
+                    rest = left;
                 }
-                reader.notify_read(given.len());
-                rest = left;
-            }
-            MessageReadEvent::Message(message) => {
-                if !self.take(&message.channel.topic, &message.data)? && self.others.len() < MAX_TOPICS {
-                    let schema = message.channel.schema.as_ref().map_or("no schema", |schema| schema.name.as_str());
-                    self.others.entry(message.channel.topic.clone()).or_insert_with(|| schema.to_owned());
+                MessageReadEvent::Message(message) => {
+                    if !self.take(&message.channel.topic, &message.data)? && self.others.len() < MAX_TOPICS {
+                        let schema = message.channel.schema.as_ref().map_or("no schema", |schema| schema.name.as_str());
+                        self.others.entry(message.channel.topic.clone()).or_insert_with(|| schema.to_owned());
+                    }
                 }
             }
         }
-    }
-    Ok(())
+        Ok(())
     }
 
     /// Takes a message; `false` for one of a topic of others.
@@ -283,7 +283,8 @@ impl Parts {
 
     fn whole(self) -> Result<Recording, StreamError> {
         let Some(header) = self.header else {
-            let topics: Vec<String> = self.others.iter().map(|(topic, schema)| format!("`{topic}` ({schema})")).collect();
+            let topics: Vec<String> =
+                self.others.iter().map(|(topic, schema)| format!("`{topic}` ({schema})")).collect();
             let topics = if topics.is_empty() { "no message".to_owned() } else { topics.join(", ") };
             return Err(StreamError::Foreign { topics });
         };

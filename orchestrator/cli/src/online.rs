@@ -8,8 +8,8 @@ use socrates_scoring::fidelity::Signals;
 use socrates_scoring::metrics::{Online, Scene, measure};
 use socrates_scoring::{Sample, Tracks};
 
-use crate::config::Config;
 use crate::again::tracks::{Known, score};
+use crate::config::Config;
 use crate::mutations::{Scenario, evidence, realised, shipped};
 
 /// Metrics that may differ by more than 2 % between 10 and 100 Hz, with the reason; the README has the list too.
@@ -64,7 +64,9 @@ async fn every_metric_of_a_shipped_scenario_is_the_same_at_ten_and_at_a_hundred_
         let fine = values(&scenario, run);
         for every in [2, 5, 10] {
             let coarse = values(&scenario, &thinned(run, every));
-            wrong.extend(differing(&fine, &coarse, 0.02, BY_RATE).iter().map(|what| format!("{name} by {every}: {what}")));
+            wrong.extend(
+                differing(&fine, &coarse, 0.02, BY_RATE).iter().map(|what| format!("{name} by {every}: {what}")),
+            );
         }
         // The table of the bundle, with what a user can say of it.
         let graph = &scenario.prepared.location.graph;

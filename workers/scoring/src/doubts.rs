@@ -45,7 +45,8 @@ fn apart(tracks: &Tracks) -> Vec<String> {
     let all: Vec<(f64, f64)> = tracks.all().filter_map(ends).collect();
     let begin = all.iter().map(|(first, _)| *first).fold(f64::INFINITY, f64::min);
     let end = all.iter().map(|(_, last)| *last).fold(f64::NEG_INFINITY, f64::max);
-    if let Some((first, last)) = ends(robot).filter(|(first, last)| first - begin > HOLE_SECS || end - last > HOLE_SECS) {
+    if let Some((first, last)) = ends(robot).filter(|(first, last)| first - begin > HOLE_SECS || end - last > HOLE_SECS)
+    {
         found.push(format!(
             "the robot is recorded from {first:.1} to {last:.1} s of {begin:.1} to {end:.1} s: only that is its trip"
         ));

@@ -134,7 +134,11 @@ pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
     if steps / stride as f64 * (tracks.len() as f64) >= MOST_STATES as f64 {
         return Err(bad(
             last,
-            &format!("{} agents over {:.0} s are more than {MOST_STATES} states at ten a second: are times in milliseconds or frames? Seconds are expected", tracks.len(), end - begin),
+            &format!(
+                "{} agents over {:.0} s are more than {MOST_STATES} states at ten a second: are times in milliseconds or frames? Seconds are expected",
+                tracks.len(),
+                end - begin
+            ),
         ));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded just above, and end >= begin")]
@@ -201,7 +205,10 @@ impl Columns {
         let find = |name: &str| names.iter().position(|found| found == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
-                bad(line, &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, gesture, leaf"))
+                bad(
+                    line,
+                    &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, gesture, leaf"),
+                )
             })
         };
         Ok(Self {

@@ -54,7 +54,9 @@ fn a_cut_file_is_read_up_to_the_cut_and_says_so() {
         assert_eq!(rest.recording.frames[..], recording.frames[..there]);
     }
     assert!(read > 0);
-    assert!(read_rest(&bytes[..4]).is_err() && begins(&bytes[..4]) && begins(&bytes) && !begins(b"t,id") && !begins(b""));
+    assert!(
+        read_rest(&bytes[..4]).is_err() && begins(&bytes[..4]) && begins(&bytes) && !begins(b"t,id") && !begins(b"")
+    );
 }
 
 #[test]
@@ -76,7 +78,19 @@ fn a_file_of_another_program_is_told_apart() {
     let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
     writer.finish().unwrap();
     let error = read(&writer.into_inner().into_inner()).unwrap_err().to_string();
-    assert!(error.contains("no recording of ours"), "{error}");
+    assert!(error.contains("no recording of ours") && error.contains("no message"), "{error}");
+    let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
+    let schema = writer.add_schema("foxglove.PosesInFrame", "jsonschema", b"{}").unwrap();
+    let channel_id = writer.add_channel(schema, "/people", "json", &BTreeMap::new()).unwrap();
+    let header = MessageHeader { channel_id, sequence: 0, log_time: 0, publish_time: 0 };
+    writer.write_to_known_channel(&header, b"{}").unwrap();
+    writer.finish().unwrap();
+    let error = read_rest(&writer.into_inner().into_inner()).unwrap_err();
+    assert!(
+        matches!(&error, StreamError::Foreign { topics } if topics == "`/people` (foxglove.PosesInFrame)"),
+        "{error}"
+    );
+    assert!(!error.to_string().contains("damaged"), "{error}");
 }
 
 #[test]

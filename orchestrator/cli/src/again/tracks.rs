@@ -41,7 +41,8 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
     let mut told = Vec::new();
     let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
     let mut known = known.clone();
-    let mut recording = if is_mcap { ours(name, bytes, &mut told)? } else { table(name, bytes, &mut known, &mut told)? };
+    let mut recording =
+        if is_mcap { ours(name, bytes, &mut told)? } else { table(name, bytes, &mut known, &mut told)? };
     if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
         return Err(Complaint::input(
             format!("the robot's radius cannot be {radius} m"),
@@ -52,7 +53,12 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
         info.radius_m = known.radius_m.unwrap_or(info.radius_m);
         info.speed_mps = known.speed_mps.unwrap_or(info.speed_mps);
     }
-    for who in known.groups.iter().flatten().filter(|id| !recording.header.agents.iter().any(|info| info.agent == AgentId::Human(**id))) {
+    for who in known
+        .groups
+        .iter()
+        .flatten()
+        .filter(|id| !recording.header.agents.iter().any(|info| info.agent == AgentId::Human(**id)))
+    {
         told.push(format!("--groups names {}, who is not in the recording", AgentId::Human(*who)));
     }
     told.extend(socrates_scoring::doubts(&recording, known.location.as_ref()));
@@ -65,8 +71,12 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
     if !is_mcap && tracks.robot.is_some() {
         told.extend(assumed(&known));
     }
-    let evidence =
-        Evidence { location: known.location.as_ref(), goal: known.goal, groups: &known.groups, ..Evidence::of(&recording) };
+    let evidence = Evidence {
+        location: known.location.as_ref(),
+        goal: known.goal,
+        groups: &known.groups,
+        ..Evidence::of(&recording)
+    };
     let report = socrates_scoring::score(&evidence);
     let goal = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
     if tracks.robot.is_some() && !goal {
@@ -108,7 +118,8 @@ fn ours(name: &str, bytes: &[u8], told: &mut Vec<String>) -> Result<Recording, C
         Complaint::input(format!("`{name}`: {why}"), hint)
     })?;
     if let Some(why) = rest.cut {
-        let last = rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
+        let last =
+            rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
         told.push(format!("{why}: scored up to {last:.2} s"));
     }
     Ok(rest.recording)

@@ -44,7 +44,8 @@ struct Nearest(Least);
 
 impl Running for Nearest {
     fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
-        self.0.add(now.robot.filter(|robot| robot.there).zip(setting.goal).map(|(robot, goal)| (robot.at - goal).norm()));
+        self.0
+            .add(now.robot.filter(|robot| robot.there).zip(setting.goal).map(|(robot, goal)| (robot.at - goal).norm()));
     }
 
     fn values(&self, end: &End<'_>) -> Vec<Measured> {

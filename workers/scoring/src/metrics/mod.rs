@@ -132,10 +132,16 @@ impl Need {
             Self::Goal => "the robot's goal is not known",
             Self::Groups => "no groups are known",
             Self::Twin => "there is no run without the robot to compare with",
-            Self::PlannerTimes => "recordings hold no computing times of planners",
-            Self::Commands => "recordings hold no commands",
-            Self::Solo => "there is no run of the robot alone to compare with",
-            Self::OtherRobots => "recordings hold one robot",
+            Self::PlannerTimes => {
+                "recordings hold no computing times of planners; it would need the time of each call, which differs by machine"
+            }
+            Self::Commands => {
+                "recordings hold no commands; it would need the velocity that was commanded at every step"
+            }
+            Self::Solo => {
+                "there is no run of the robot alone to compare with; it would need one with the same seed and no people"
+            }
+            Self::OtherRobots => "recordings hold one robot; it would need the tracks of the others",
             Self::Events => "nobody makes a gesture",
         }
     }
@@ -242,13 +248,8 @@ pub const VERSION: u32 = 3;
 const ON_GRID: u32 = 2;
 
 /// Metrics whose formula has changed beside that since it was first published here, with the version it has now.
-const REVISED: &[(&str, u32)] = &[
-    ("ttc_p5", 3),
-    ("drac_max", 3),
-    ("post_encroachment_time", 3),
-    ("path_irregularity", 3),
-    ("freezing_events", 3),
-];
+const REVISED: &[(&str, u32)] =
+    &[("ttc_p5", 3), ("drac_max", 3), ("post_encroachment_time", 3), ("path_irregularity", 3), ("freezing_events", 3)];
 
 /// How distances are meant throughout, for tables that are read by others (`spec/evaluation` §2.7).
 pub const DISTANCE_CONVENTION: &str = "surface_clearance";

@@ -173,7 +173,13 @@ impl Way {
 }
 
 /// Turning along the shortest way, rad: of the way down the distances, pulled straight wherever the robot's disc fits.
-fn shortest_turn(field: &DistanceField, geodesic: &Geodesic, start: &Point, goal: &Point, radius_m: f64) -> Option<f64> {
+fn shortest_turn(
+    field: &DistanceField,
+    geodesic: &Geodesic,
+    start: &Point,
+    goal: &Point,
+    radius_m: f64,
+) -> Option<f64> {
     // As wide as the disc for which the shortest ways are.
     let room = (radius_m - 0.05).max(0.05);
     let mut way = vec![*start];
@@ -283,7 +289,16 @@ mod tests {
         let (with, without) = (of(&evidence), value(&run, "path_irregularity").unwrap());
         assert!(with < 0.05 && without > 0.15, "{with} {without}");
         // A weave on the way is irregular.
-        let weave = [(0., -4., 0.), (2., -3., 1.6), (4., -1.5, 1.2), (5., -0.3, 2.35), (6., 0.3, 2.35), (10., 2.9, 0.65), (11., 3.5, 0.65), (16., 7., 3.)];
+        let weave = [
+            (0., -4., 0.),
+            (2., -3., 1.6),
+            (4., -1.5, 1.2),
+            (5., -0.3, 2.35),
+            (6., 0.3, 2.35),
+            (10., 2.9, 0.65),
+            (11., 3.5, 0.65),
+            (16., 7., 3.),
+        ];
         let run = recording(&[Walk::through(AgentId::Robot, &weave)], 16.0, 0.1);
         assert!(of(&Evidence { recording: &run, ..evidence }) > with + 0.1);
     }

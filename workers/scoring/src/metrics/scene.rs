@@ -56,7 +56,8 @@ impl<'a> Scene<'a> {
         let mut arrived_s = signals.arrived_s;
         if let Some(goal) = goal.filter(|_| arrived_s.is_none()) {
             let pairs = std::iter::once(None).chain(rows.iter().map(Some)).zip(&rows).enumerate();
-            let reached = pairs.into_iter().find_map(|(index, (before, row))| Some((index, row.reaches_s(before, &goal)?)));
+            let reached =
+                pairs.into_iter().find_map(|(index, (before, row))| Some((index, row.reaches_s(before, &goal)?)));
             if let Some((index, t)) = reached {
                 rows.truncate(index + 1);
                 arrived_s = Some(t);
@@ -79,9 +80,9 @@ impl<'a> Scene<'a> {
             signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map_or_else(Vec::new, |robot| robot.present().copied().collect());
         let twin = signals.evidence.twin.ok_or_else(|| "there is no twin run".to_owned());
-        let twin =
-            twin.and_then(|twin| Tracks::read(twin).map_err(|why| format!("the twin run cannot be read: {why}")))
-                .map(|twin| grid::even(&twin));
+        let twin = twin
+            .and_then(|twin| Tracks::read(twin).map_err(|why| format!("the twin run cannot be read: {why}")))
+            .map(|twin| grid::even(&twin));
         Self { signals, tracks, goal, arrived_s, geodesic, rows, even, whole, recorded, distances, twin }
     }
 

@@ -82,7 +82,8 @@ fn the_radius_counts_and_must_be_one() {
 
 #[test]
 fn columns_tell_the_goal_and_the_groups() {
-    let text = "t,id,x,y,goal_x,goal_y,group\n0,robot,0,0,3,4,a\n0,1,5,5,,,a\n0,2,6,5,,,a\n0,3,7,5,,,b\n1,robot,1,0,3,4,\n";
+    let text =
+        "t,id,x,y,goal_x,goal_y,group\n0,robot,0,0,3,4,a\n0,1,5,5,,,a\n0,2,6,5,,,a\n0,3,7,5,,,b\n1,robot,1,0,3,4,\n";
     let found = Columns::read(text);
     assert_eq!(found.goal, Some(Point::new(3.0, 4.0)));
     assert_eq!(found.groups, [[HumanId::new(1), HumanId::new(2)]]);
@@ -102,7 +103,10 @@ fn nobody_is_met_by_a_robot_that_was_there_at_another_time() {
 
 #[test]
 fn a_gap_and_times_since_1970_are_told_and_the_rest_is_scored() {
-    let gap = of(&table(|k, line| if k == 50 { line.replace(",0,0,", ",nan,0,") } else { line.to_owned() }), &Known::default());
+    let gap = of(
+        &table(|k, line| if k == 50 { line.replace(",0,0,", ",nan,0,") } else { line.to_owned() }),
+        &Known::default(),
+    );
     assert!(tells(&gap, "has `nan` for a number: taken as a gap"), "{:?}", gap.told);
     assert!(value(&gap, "human_distance_min").is_some());
 }
