@@ -2,11 +2,12 @@
 
 use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::tracks::Sample;
 use socrates_model::Vector;
 
 const NEEDS: &[Need] = &[Need::Robot];
 
-/// The family. Velocities are those of the even 0.1 s grid without its ends, smoothed by the weights 1 2 1 (half power
+/// The family. Velocities are those of the even 0.1 s grid, smoothed by the weights 1 2 1 (half power
 /// near 2.5 Hz): else jerk is sampling noise.
 pub(super) const FAMILY: Family = Family {
     sheets: &[
@@ -126,16 +127,19 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     ]
 }
 
-/// Velocities of the even grid, smoothed.
+/// Velocities of the even grid, smoothed. Those at the ends are taken on, with the acceleration there: differences over
+/// half the time would be jerks.
 pub(super) fn smoothed(scene: &Scene<'_>) -> Vec<Vector> {
-    // The ends have velocities of half a step only, which would be jerks.
-    let inner = scene.even.get(1..scene.even.len().saturating_sub(1)).unwrap_or_default();
-    let triples = inner.windows(3);
-    triples
-        .filter_map(|triple| {
-            if let [a, b, c] = triple { Some((a.velocity + b.velocity * 2.0 + c.velocity) / 4.0) } else { None }
-        })
-        .collect()
+    let mut velocities: Vec<Vector> = scene.even.iter().map(|sample| sample.velocity).collect();
+    let steady = |from: &Sample, to: &Sample, inner: &Sample| (to.at - from.at) / EVEN_SECS * 2.0 - inner.velocity;
+    if let ([a, b, _, ..], Some(first)) = (scene.even.as_slice(), velocities.first_mut()) {
+        *first = steady(a, b, b);
+    }
+    if let ([.., _, a, b], Some(last)) = (scene.even.as_slice(), velocities.last_mut()) {
+        *last = steady(a, b, a);
+    }
+    let triples = velocities.windows(3);
+    triples.filter_map(|triple| if let [a, b, c] = triple { Some((a + b * 2.0 + c) / 4.0) } else { None }).collect()
 }
 
 /// Spectral arc length of the speed profile.
