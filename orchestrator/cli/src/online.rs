@@ -82,7 +82,13 @@ async fn every_metric_of_a_shipped_scenario_is_the_same_at_ten_and_at_a_hundred_
         let scored = score("agents.csv", table.as_bytes(), &known).unwrap();
         let metrics = scored.report.metrics.into_iter().filter(|metric| !metric.id.starts_with("hunav."));
         let found = metrics.map(|metric| (metric.id, metric.value)).collect();
-        wrong.extend(differing(&fine, &found, 0.02, BY_TRACKS).iter().map(|what| format!("{name} as a table: {what}")));
+        // Tracks do not have the robot's word that it has arrived: it does so when it first comes near its goal.
+        let mut silent = run.clone();
+        silent.events.retain(|event| event.kind != EventKind::RobotArrived);
+        let bundled = values(&scenario, &silent);
+        wrong.extend(
+            differing(&bundled, &found, 0.02, BY_TRACKS).iter().map(|what| format!("{name} as a table: {what}")),
+        );
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
