@@ -46,6 +46,12 @@ pub enum StreamError {
         /// What is missing or contradicts itself.
         why: String,
     },
+    /// An MCAP file of another program.
+    #[error("there is no recording of ours in it: it lacks the topic `/socrates/header` and has {topics}")]
+    Foreign {
+        /// Its topics with their schemas.
+        topics: String,
+    },
     /// A CSV file has a line that cannot be read.
     #[error("line {line}: {why}")]
     Csv {

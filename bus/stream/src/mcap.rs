@@ -34,6 +34,8 @@ const END: &str = "/socrates/end";
 const SCENE_EVERY: usize = 10;
 /// Largest record that is read, bytes.
 const MAX_RECORD: usize = 256 * 1024 * 1024;
+/// Most topics of others that are named.
+const MAX_TOPICS: usize = 12;
 /// Most states that are read: an hour with forty agents is 14.4 million.
 const MAX_STATES: usize = 32 * 1024 * 1024;
 
@@ -134,33 +136,59 @@ fn written(recording: &Recording, location: Option<&Location>) -> Result<Vec<u8>
     Ok(pen.writer.into_inner().into_inner())
 }
 
+/// A recording that may have been cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rest {
+    /// What is there.
+    pub recording: Recording,
+    /// Why it ends where it does; `None` for one that is whole.
+    pub cut: Option<String>,
+}
+
+/// Reads as much of a recording as there is: all of it, or all up to where the file is cut or damaged.
+///
+/// # Errors
+/// As [`read`], where not even two ticks are there or what is there contradicts itself.
+pub fn read_rest(bytes: &[u8]) -> Result<Rest, StreamError> {
+    let mut parts = Parts::default();
+    let why = match parts.fill(bytes) {
+        Ok(()) if parts.end.is_some() || parts.header.is_none() => {
+            return Ok(Rest { recording: parts.whole()?, cut: None });
+        }
+        Ok(()) => "the file was cut off".to_owned(),
+        Err(StreamError::Read { len, why }) => {
+            let agents = parts.header.as_ref().map_or(usize::MAX, |header| header.agents.len());
+            if parts.frames.len() / 2 < agents {
+                return Err(StreamError::Read { len, why });
+            }
+            format!("the file is cut off or damaged: {why}")
+        }
+        Err(other) => return Err(other),
+    };
+    match parts.header {
+        Some(header) if parts.frames.len() / 2 >= header.agents.len() => {
+            Ok(Rest { recording: Recording { header, frames: parts.frames, events: parts.events }, cut: Some(why) })
+        }
+        Some(_) | None => Err(StreamError::Read { len: bytes.len(), why }),
+    }
+}
+
+/// Whether bytes begin as an MCAP file does, as far as there are any.
+#[must_use]
+pub fn begins(bytes: &[u8]) -> bool {
+    const MAGIC: &[u8] = b"\x89MCAP0\r\n";
+    let shared = bytes.len().min(MAGIC.len());
+    shared > 0 && bytes.get(..shared) == MAGIC.get(..shared)
+}
+
 /// Reads a recording and checks that it is whole.
 ///
 /// # Errors
 /// [`StreamError::Read`] for bytes that are no MCAP file or are cut, [`StreamError::NotWhole`] for a file that lacks
 /// something, has states in a wrong order or another hash than it was written with.
 pub fn read(bytes: &[u8]) -> Result<Recording, StreamError> {
-    let failed = |why: String| StreamError::Read { len: bytes.len(), why };
-    let mut options =
-        LinearReaderOptions::default().with_record_length_limit(MAX_RECORD).with_validate_chunk_crcs(true);
-    options.validate_data_section_crc = true;
-    let mut reader = MessageReader::new_with_options(options);
-    let mut rest = bytes;
     let mut parts = Parts::default();
-    while let Some(event) = reader.next_event() {
-        match event.map_err(|why| failed(why.to_string()))? {
-            MessageReadEvent::ReadRequest(wanted) => {
-                // Never more memory than the file has bytes, whatever its lengths claim.
-                let (given, left) = rest.split_at(wanted.min(rest.len()));
-                if let Some(room) = reader.insert(given.len()).get_mut(..given.len()) {
-                    room.copy_from_slice(given);
-                }
-                reader.notify_read(given.len());
-                rest = left;
-            }
-            MessageReadEvent::Message(message) => parts.take(&message.channel.topic, &message.data)?,
-        }
-    }
+    parts.fill(bytes)?;
     parts.whole()
 }
 
@@ -170,6 +198,8 @@ struct Parts {
     frames: Vec<AgentState>,
     events: Vec<Event>,
     end: Option<End>,
+    /// Topics of others, with their schemas.
+    others: BTreeMap<String, String>,
 }
 
 fn not_whole(why: impl Into<String>) -> StreamError {
@@ -177,7 +207,38 @@ fn not_whole(why: impl Into<String>) -> StreamError {
 }
 
 impl Parts {
-    fn take(&mut self, topic: &str, data: &[u8]) -> Result<(), StreamError> {
+    /// Takes every message of a file; what came before an error is kept.
+    fn fill(&mut self, bytes: &[u8]) -> Result<(), StreamError> {
+        let failed = |why: String| StreamError::Read { len: bytes.len(), why };
+        let mut options =
+            LinearReaderOptions::default().with_record_length_limit(MAX_RECORD).with_validate_chunk_crcs(true);
+        options.validate_data_section_crc = true;
+        let mut reader = MessageReader::new_with_options(options);
+        let mut rest = bytes;
+        while let Some(event) = reader.next_event() {
+            match event.map_err(|why| failed(why.to_string()))? {
+                MessageReadEvent::ReadRequest(wanted) => {
+                    // Never more memory than the file has bytes, whatever its lengths claim.
+                    let (given, left) = rest.split_at(wanted.min(rest.len()));
+                    if let Some(room) = reader.insert(given.len()).get_mut(..given.len()) {
+                        room.copy_from_slice(given);
+                    }
+                    reader.notify_read(given.len());
+                    rest = left;
+                }
+                MessageReadEvent::Message(message) => {
+                    if !self.take(&message.channel.topic, &message.data)? && self.others.len() < MAX_TOPICS {
+                        let schema = message.channel.schema.as_ref().map_or("no schema", |schema| schema.name.as_str());
+                        self.others.entry(message.channel.topic.clone()).or_insert_with(|| schema.to_owned());
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a message; `false` for one of a topic of others.
+    fn take(&mut self, topic: &str, data: &[u8]) -> Result<bool, StreamError> {
         let unread = |why: serde_json::Error| not_whole(format!("a message of `{topic}` cannot be read: {why}"));
         match topic {
             HEADER => {
@@ -193,9 +254,9 @@ impl Parts {
             AGENTS => self.tick(data)?,
             EVENTS => self.events.push(serde_json::from_slice(data).map_err(unread)?),
             END => self.end = Some(serde_json::from_slice(data).map_err(unread)?),
-            _other => {}
+            _other => return Ok(false),
         }
-        Ok(())
+        Ok(true)
     }
 
     fn tick(&mut self, data: &[u8]) -> Result<(), StreamError> {
@@ -221,8 +282,12 @@ impl Parts {
     }
 
     fn whole(self) -> Result<Recording, StreamError> {
-        let header =
-            self.header.ok_or_else(|| not_whole(format!("there is no `{HEADER}`: this is no recording of ours")))?;
+        let Some(header) = self.header else {
+            let topics: Vec<String> =
+                self.others.iter().map(|(topic, schema)| format!("`{topic}` ({schema})")).collect();
+            let topics = if topics.is_empty() { "no message".to_owned() } else { topics.join(", ") };
+            return Err(StreamError::Foreign { topics });
+        };
         let end = self.end.ok_or_else(|| not_whole(format!("there is no `{END}`: it was cut off")))?;
         let recording = Recording { header, frames: self.frames, events: self.events };
         let (ticks, events) = (recording.ticks() as u64, recording.events.len() as u64);

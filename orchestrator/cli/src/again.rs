@@ -1,6 +1,7 @@
 //! `simulate` and `score`: a bundle again, or tracks of one's own.
 
 mod lines;
+pub(crate) mod tracks;
 
 use std::path::{Path, PathBuf};
 
@@ -8,6 +9,8 @@ use serde_json::json;
 use socrates_model::{Recording, Report, RunId};
 use socrates_scoring::Evidence;
 
+use crate::again::tracks::Known;
+use crate::args::ScoreOptions;
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
 use crate::play::{self, Made};
@@ -85,8 +88,15 @@ fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint
 }
 
 /// Scores a bundle again, or one file of tracks.
-pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<(), Complaint> {
+pub(crate) fn score(talk: &Talk, options: &ScoreOptions) -> Result<(), Complaint> {
+    let what = options.what.as_path();
     if what.is_dir() {
+        if options.tells() {
+            return Err(Complaint::input(
+                "a bundle knows its location, goal, radius and groups",
+                "these flags are for tracks of your own: name a CSV or an MCAP file",
+            ));
+        }
         return score_bundle(talk, what);
     }
     let bytes = std::fs::read(what).map_err(|why| {
@@ -95,36 +105,19 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
             "name a bundle folder, a CSV or an MCAP file",
         )
     })?;
-    let mcap = bytes.starts_with(b"\x89MCAP");
-    let hint = if mcap {
-        "the file is damaged or was cut off: copy it again, or make the run again with `socrates simulate BUNDLE --out FOLDER`"
-    } else {
-        "CSV has the columns t,id,x,y[,yaw]; id is `robot`, `human_1`, …"
+    let location = options.location.as_deref().map(|name| load_location(name, Path::new("."))).transpose()?;
+    let known = Known {
+        location: location.map(|(location, _)| location),
+        goal: options.goal,
+        radius_m: options.radius,
+        speed_mps: options.speed,
+        groups: options.groups.iter().map(|group| group.0.clone()).collect(),
     };
-    let bad = |why: String| Complaint::input(format!("`{}`: {why}", what.display()), hint);
-    let recording = if mcap {
-        socrates_stream::mcap::read(&bytes).map_err(|why| bad(why.to_string()))?
-    } else {
-        let text = std::str::from_utf8(&bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
-        socrates_stream::csv::read_tracks(text).map_err(|why| bad(why.to_string()))?
-    };
-    let location = location.map(|name| load_location(name, Path::new("."))).transpose()?.map(|(location, _)| location);
-    for doubt in socrates_scoring::doubts(&recording, location.as_ref()) {
-        talk.warn(&doubt);
+    let scored = tracks::score(&what.display().to_string(), &bytes, &known)?;
+    for told in &scored.told {
+        talk.warn(told);
     }
-    if !mcap {
-        for doubt in lines::doubts(&bytes)? {
-            talk.warn(&doubt);
-        }
-    }
-    let unreadable = |why: String| {
-        Complaint::input(
-            format!("`{}`: {why}", what.display()),
-            "a recording has at least two moments, finite numbers, rising times and one track for each agent",
-        )
-    };
-    socrates_scoring::Tracks::read(&recording).map_err(|why| unreadable(why.to_string()))?;
-    let report = socrates_scoring::score(&Evidence { location: location.as_ref(), ..Evidence::of(&recording) });
+    let report = &scored.report;
     for metric in &report.metrics {
         let value = metric
             .value
@@ -132,7 +125,10 @@ pub(crate) fn score(talk: &Talk, what: &Path, location: Option<&str>) -> Result<
         talk.line(&format!("{:<34} {value}", metric.id));
     }
     talk.line(&format!("verdict    {} · {}", report.verdict, report.verdict_text));
-    talk.result(&json!({ "verdict": report.verdict, "metrics": values(&report), "recording_hash": recording.hash() }));
+    talk.result(&json!({
+        "verdict": report.verdict, "metrics": values(report), "missing": missing(report), "told": scored.told,
+        "recording_hash": scored.recording.hash(),
+    }));
     Ok(())
 }
 
@@ -145,8 +141,7 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
             report.planner == "reference" && report.seed == entry.seed && entry.planner != "reference"
         });
         let twin = bundle.runs.iter().find(|(_, report)| report.planner == "none" && report.seed == entry.seed);
-        // The leading run is judged before any other begins, so it has no twin.
-        let twin = twin.filter(|_| entry.planner != "none" && place > 0);
+        let twin = twin.map(|(recording, _)| recording).filter(|_| entry.planner != "none");
         let evidence = Evidence {
             location: Some(&bundle.location),
             request: Some(&bundle.request),
@@ -154,8 +149,9 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
             proposal: Some(&bundle.proposal),
             paths: Some(&bundle.paths),
             reference: reference.map(|(recording, _)| recording),
-            twin: twin.map(|(recording, _)| recording),
-            recording,
+            // The leading run is judged before any other begins, so the report in the bundle knows no twin.
+            twin: twin.filter(|_| place > 0),
+            ..Evidence::of(recording)
         };
         let report = socrates_scoring::score(&evidence);
         // Reports from before there were signatures have none.
@@ -169,7 +165,13 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
             report.verdict,
             if same { "same report as the bundle" } else { "ANOTHER report than the bundle" }
         ));
-        rows.push(json!({ "planner": entry.planner, "seed": entry.seed, "verdict": report.verdict, "same": same, "metrics": values(&report) }));
+        // Now there is one, and what the robot costs people can be told of this run as of the others.
+        let late = twin.filter(|_| place == 0).map(|_| socrates_scoring::score(&Evidence { twin, ..evidence }));
+        let report = late.unwrap_or(report);
+        rows.push(json!({
+            "planner": entry.planner, "seed": entry.seed, "verdict": report.verdict, "same": same, "metrics": values(&report),
+            "missing": missing(&report),
+        }));
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": bundle.manifest.verdict, "runs": rows }));
     if differ > 0 {
@@ -180,6 +182,12 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
         .with_code(Code::Ours));
     }
     Ok(())
+}
+
+/// Why metrics have no value, by id.
+fn missing(report: &Report) -> serde_json::Value {
+    let without = report.metrics.iter().filter(|metric| metric.value.is_none());
+    serde_json::Value::Object(without.map(|metric| (metric.id.clone(), json!(metric.note))).collect())
 }
 
 /// Metric values by id.

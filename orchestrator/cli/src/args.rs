@@ -108,14 +108,8 @@ pub(crate) enum Verb {
     },
     /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
     Simulate(SimulateOptions),
-    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw]`, or MCAP).
-    Score {
-        /// Bundle folder, CSV or MCAP file.
-        what: PathBuf,
-        /// Location for tracks of your own: a shipped name or a folder.
-        #[arg(long)]
-        location: Option<String>,
-    },
+    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw,gesture]`, or MCAP).
+    Score(ScoreOptions),
     /// Watch the agent states of a run that is being made.
     Watch {
         /// Its bundle folder, or a zenoh endpoint such as `tcp/127.0.0.1:7447`.
@@ -255,6 +249,39 @@ pub(crate) struct RunOptions {
     /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
     #[arg(long)]
     pub(crate) ask: bool,
+}
+
+/// Options of `score`: all but the first are for tracks of one's own.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct ScoreOptions {
+    /// Bundle folder, CSV or MCAP file.
+    pub(crate) what: PathBuf,
+    /// Location for tracks of your own: a shipped name or a folder.
+    #[arg(long)]
+    pub(crate) location: Option<String>,
+    /// Goal of the robot on the map, m; default: columns `goal_x` and `goal_y`, or where it said that it arrived.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = crate::again::tracks::point)]
+    pub(crate) goal: Option<socrates_model::Point>,
+    /// Radius of the robot, m; default: as recorded, 0.25 for a CSV.
+    #[arg(long, value_name = "M")]
+    pub(crate) radius: Option<f64>,
+    /// Nominal speed of the robot for STL, m/s; default: as recorded, 0.8 for a CSV.
+    #[arg(long, value_name = "M/S")]
+    pub(crate) speed: Option<f64>,
+    /// People who belong together, such as `1+2,3+4`; default: the column `group`.
+    #[arg(long, value_delimiter = ',', value_parser = crate::again::tracks::group)]
+    pub(crate) groups: Vec<crate::again::tracks::Group>,
+}
+
+impl ScoreOptions {
+    /// Whether anything is said that a bundle knows by itself.
+    pub(crate) const fn tells(&self) -> bool {
+        self.location.is_some()
+            || self.goal.is_some()
+            || self.radius.is_some()
+            || self.speed.is_some()
+            || !self.groups.is_empty()
+    }
 }
 
 /// Options of `simulate`.

@@ -122,7 +122,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
             done(again::simulate(talk, what, planner.as_deref(), *seed, out.as_ref()))
         }
         Verb::Bt { verb } => done(bt::bt(talk, verb)),
-        Verb::Score { what, location } => done(again::score(talk, what, location.as_deref())),
+        Verb::Score(options) => done(again::score(talk, options)),
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
         Verb::Status { what } => done(watch::status(talk, what).await),
         Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),

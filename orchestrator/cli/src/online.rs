@@ -1,12 +1,97 @@
-//! Metrics while a run goes on are those of its recording, over every shipped request.
+//! Metrics while a run goes on are those of its recording, of its recording at another rate, and of its tracks alone, over
+//! every shipped request.
 
-use socrates_model::{EventKind, MetricValue};
+use std::collections::BTreeMap;
+
+use socrates_model::{AgentId, EventKind, MetricValue, Recording};
 use socrates_scoring::fidelity::Signals;
 use socrates_scoring::metrics::{Online, Scene, measure};
 use socrates_scoring::{Sample, Tracks};
 
+use crate::again::tracks::{Known, score};
 use crate::config::Config;
-use crate::mutations::{evidence, realised, shipped};
+use crate::mutations::{Scenario, evidence, realised, shipped};
+
+/// Metrics that may differ by more than 2 % between 10 and 100 Hz, with the reason; the README has the list too.
+const BY_RATE: &[(&str, &str)] = &[];
+
+/// Metrics that tracks alone give otherwise than the bundle, with the reason; the README has the list too.
+const BY_TRACKS: &[(&str, &str)] = &[];
+
+/// Every so manieth tick of a recording.
+fn thinned(run: &Recording, every: u64) -> Recording {
+    let mut thin = run.clone();
+    thin.frames.retain(|state| state.tick % every == 0);
+    thin
+}
+
+fn values(scenario: &Scenario, run: &Recording) -> BTreeMap<String, Option<f64>> {
+    let evidence = evidence(&scenario.prepared, &scenario.made, run);
+    let tracks = Tracks::read(run).unwrap();
+    let signals = Signals::new(&evidence, &tracks);
+    let values = measure(&Scene::new(&signals)).into_iter().filter(|value| !value.id.starts_with("hunav."));
+    values.map(|value| (value.id, value.value)).collect()
+}
+
+/// What differs by more than a share and a thousandth, and is not excused.
+fn differing(
+    wanted: &BTreeMap<String, Option<f64>>,
+    found: &BTreeMap<String, Option<f64>>,
+    share: f64,
+    excused: &[(&str, &str)],
+) -> Vec<String> {
+    let close = |a: f64, b: f64| (a - b).abs() <= share * a.abs().max(b.abs()) + 1e-3;
+    let same = |a: &Option<f64>, b: &Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => close(*a, *b),
+        (None, None) => true,
+        (Some(_), None) | (None, Some(_)) => false,
+    };
+    wanted
+        .iter()
+        .filter(|(id, _)| !excused.iter().any(|(excused, _)| excused == id))
+        .filter(|(id, value)| found.get(*id).is_none_or(|found| !same(value, found)))
+        .map(|(id, value)| format!("{id}: {value:?} and {:?}", found.get(id)))
+        .collect()
+}
+
+#[tokio::test]
+async fn every_metric_of_a_shipped_scenario_is_the_same_at_ten_and_at_a_hundred_hertz_and_from_its_tracks() {
+    let config = Config::load(None, std::iter::empty(), &[]).unwrap();
+    let mut wrong = Vec::new();
+    for prepared in shipped(&config).unwrap() {
+        let scenario = realised(prepared, 1).await.unwrap();
+        let (name, run) = (&scenario.prepared.name, &scenario.run);
+        let fine = values(&scenario, run);
+        for every in [2, 5, 10] {
+            let coarse = values(&scenario, &thinned(run, every));
+            wrong.extend(
+                differing(&fine, &coarse, 0.02, BY_RATE).iter().map(|what| format!("{name} by {every}: {what}")),
+            );
+        }
+        // The table of the bundle, with what a user can say of it.
+        let graph = &scenario.prepared.location.graph;
+        let robot = run.header.agents.iter().find(|info| info.agent == AgentId::Robot).unwrap();
+        let known = Known {
+            location: Some(scenario.prepared.location.clone()),
+            goal: scenario.made.paths.robot.last().and_then(|id| graph.node(id)).map(|node| node.at),
+            radius_m: Some(robot.radius_m),
+            speed_mps: Some(robot.speed_mps),
+            groups: scenario.made.proposal.groups.iter().map(|group| group.members.clone()).collect(),
+        };
+        let table = socrates_stream::csv::write_agents(run);
+        let scored = score("agents.csv", table.as_bytes(), &known).unwrap();
+        let metrics = scored.report.metrics.into_iter().filter(|metric| !metric.id.starts_with("hunav."));
+        let found = metrics.map(|metric| (metric.id, metric.value)).collect();
+        // Tracks do not have the robot's word that it has arrived: it does so when it first comes near its goal.
+        let mut silent = run.clone();
+        silent.events.retain(|event| event.kind != EventKind::RobotArrived);
+        let bundled = values(&scenario, &silent);
+        wrong.extend(
+            differing(&bundled, &found, 0.02, BY_TRACKS).iter().map(|what| format!("{name} as a table: {what}")),
+        );
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
 
 #[tokio::test]
 async fn values_while_a_shipped_scenario_runs_are_those_of_its_recording() {

@@ -29,9 +29,32 @@ pub fn doubts(recording: &Recording, location: Option<&Location>) -> Vec<String>
         found.extend(pace(track));
         found.extend(holes(track));
     }
+    found.extend(apart(&tracks));
     if let Some(location) = location {
         let field = DistanceField::new(&location.grid);
         found.extend(tracks.all().filter_map(|track| off(track, location, &field)));
+    }
+    found
+}
+
+/// Who is recorded at other times than the robot: outside its own record nobody is there.
+fn apart(tracks: &Tracks) -> Vec<String> {
+    let Some(robot) = &tracks.robot else { return Vec::new() };
+    let ends = |track: &Track| Some((track.present().next()?.t, track.present().next_back()?.t));
+    let mut found = Vec::new();
+    let all: Vec<(f64, f64)> = tracks.all().filter_map(ends).collect();
+    let begin = all.iter().map(|(first, _)| *first).fold(f64::INFINITY, f64::min);
+    let end = all.iter().map(|(_, last)| *last).fold(f64::NEG_INFINITY, f64::max);
+    if let Some((first, last)) = ends(robot).filter(|(first, last)| first - begin > HOLE_SECS || end - last > HOLE_SECS)
+    {
+        found.push(format!(
+            "the robot is recorded from {first:.1} to {last:.1} s of {begin:.1} to {end:.1} s: only that is its trip"
+        ));
+    }
+    for human in &tracks.humans {
+        if robot.beside(human).next().is_none() {
+            found.push(format!("{} is never recorded together with the robot: it counts for nothing", human.agent));
+        }
     }
     found
 }
@@ -90,6 +113,8 @@ fn off(track: &Track, location: &Location, field: &DistanceField) -> Option<Stri
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::AgentId;
+
     use super::*;
     use crate::fixture::{Walk, floor, recording};
 
@@ -106,6 +131,14 @@ mod tests {
         assert!(doubts(&holed, None)[0].contains("no sample for 2.1 s from 1.9 s"), "{:?}", doubts(&holed, None));
         let inside = recording(&[Walk::robot(0., 7., 0.6, 0.), Walk::human(1, 5., 1., -1., 0.)], 10.0, 0.1);
         assert!(doubts(&inside, Some(&place))[0].contains("is the map's origin another"));
+        let mut early = plain.clone();
+        crate::fixture::gone(&mut early, AgentId::Robot, 6.0..11.0);
+        assert_eq!(
+            doubts(&early, None),
+            ["the robot is recorded from 0.0 to 5.9 s of 0.0 to 10.0 s: only that is its trip"]
+        );
+        crate::fixture::absent(&mut early, 1, 0.0..5.95);
+        assert!(doubts(&early, None)[1].contains("human_1 is never recorded together with the robot"));
         let alone = recording(&[Walk::human(1, 5., 1., -1., 0.)], 10.0, 0.1);
         assert!(doubts(&alone, None)[0].starts_with("there is no robot"));
         let empty = recording(&[Walk::robot(0., 0., 0.6, 0.)], 10.0, 0.1);

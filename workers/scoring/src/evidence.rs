@@ -1,6 +1,6 @@
 //! What a report is made from.
 
-use socrates_model::{HumanId, Location, Paths, Proposal, Reading, Recording, Relation, Request};
+use socrates_model::{HumanId, Location, Paths, Point, Proposal, Reading, Recording, Relation, Request};
 
 /// Everything known about one run. Only the recording is needed; what is missing is said in the report.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +21,10 @@ pub struct Evidence<'a> {
     pub reference: Option<&'a Recording>,
     /// The same scenario and seed without a robot, to tell what the robot's presence costs people.
     pub twin: Option<&'a Recording>,
+    /// The robot's goal where no paths tell it: of tracks from elsewhere.
+    pub goal: Option<Point>,
+    /// Who belongs together, where no proposal tells it.
+    pub groups: &'a [Vec<HumanId>],
 }
 
 impl<'a> Evidence<'a> {
@@ -43,6 +47,8 @@ impl<'a> Evidence<'a> {
             paths: None,
             reference: None,
             twin: None,
+            goal: None,
+            groups: &[],
         }
     }
 }

@@ -151,11 +151,15 @@ pub(crate) fn event(run: &mut Recording, t: f64, kind: EventKind) {
 
 /// Takes a human out of the run for a stretch of time, as the simulation writes those who come and go.
 pub(crate) fn absent(run: &mut Recording, number: u32, times: std::ops::Range<f64>) {
+    gone(run, AgentId::Human(HumanId::new(number)), times);
+}
+
+/// The same for anybody.
+pub(crate) fn gone(run: &mut Recording, id: AgentId, times: std::ops::Range<f64>) {
     if run.header.absent().is_none() {
         run.header.leaves.push(ABSENT_LEAF.into());
     }
     let leaf = run.header.absent().unwrap();
-    let id = AgentId::Human(HumanId::new(number));
     for state in run.frames.iter_mut().filter(|state| state.agent == id.number()) {
         if times.contains(&(state.tick as f64 * run.header.step_s)) {
             state.flags = AgentState::flags(id, Gesture::None, leaf);

@@ -345,7 +345,7 @@ mod tests {
         assert_eq!((time.runs, time.values, time.estimate), (15, 0, None));
         let csv = found.csv();
         assert!(
-            csv.lines().count() == found.cells.len() + 1 && csv.contains(",near,time_to_goal,s,-1,median,15,0,,,,1,")
+            csv.lines().count() == found.cells.len() + 1 && csv.contains(",near,time_to_goal,s,-1,median,15,0,,,,2,")
         );
     }
 

@@ -47,7 +47,6 @@ impl Inputs {
 
     fn score(&self) -> Report {
         score(&Evidence {
-            recording: &self.recording,
             location: self.location.as_ref(),
             request: self.request.as_ref(),
             reading: self.reading.as_ref(),
@@ -55,6 +54,7 @@ impl Inputs {
             paths: self.paths.as_ref(),
             reference: self.reference.as_ref(),
             twin: self.twin.as_ref(),
+            ..Evidence::of(&self.recording)
         })
     }
 }

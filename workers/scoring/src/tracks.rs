@@ -261,7 +261,7 @@ impl Tracks {
     }
 
     fn map(&self, change: impl Fn(&Track) -> Vec<Sample>) -> Self {
-        let one = |track: &Track| Track { samples: change(track), ..track.head() };
+        let one = |track: &Track| track.with(change(track));
         Self { robot: self.robot.as_ref().map(one), humans: self.humans.iter().map(one).collect() }
     }
 }
@@ -275,6 +275,11 @@ impl Track {
             role: self.role.clone(),
             samples: Vec::new(),
         }
+    }
+
+    /// The same agent with other samples.
+    pub(crate) fn with(&self, samples: Vec<Sample>) -> Self {
+        Self { samples, ..self.head() }
     }
 
     /// The human's id.

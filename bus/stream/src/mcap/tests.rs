@@ -41,6 +41,25 @@ fn a_cut_file_is_an_error_at_every_length() {
 }
 
 #[test]
+fn a_cut_file_is_read_up_to_the_cut_and_says_so() {
+    let recording = recording();
+    let bytes = write(&recording, None).unwrap();
+    assert_eq!(read_rest(&bytes).unwrap(), Rest { recording: recording.clone(), cut: None });
+    let mut read = 0;
+    for cut in (bytes.len() / 2..bytes.len()).step_by(7) {
+        let Ok(rest) = read_rest(&bytes[..cut]) else { continue };
+        read += 1;
+        let there = rest.recording.frames.len();
+        assert!(rest.cut.is_some() || there == recording.frames.len(), "cut at {cut}");
+        assert_eq!(rest.recording.frames[..], recording.frames[..there]);
+    }
+    assert!(read > 0);
+    assert!(
+        read_rest(&bytes[..4]).is_err() && begins(&bytes[..4]) && begins(&bytes) && !begins(b"t,id") && !begins(b"")
+    );
+}
+
+#[test]
 fn a_flipped_bit_is_an_error_or_changes_nothing() {
     let recording = recording();
     let good = write(&recording, None).unwrap();
@@ -59,7 +78,19 @@ fn a_file_of_another_program_is_told_apart() {
     let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
     writer.finish().unwrap();
     let error = read(&writer.into_inner().into_inner()).unwrap_err().to_string();
-    assert!(error.contains("no recording of ours"), "{error}");
+    assert!(error.contains("no recording of ours") && error.contains("no message"), "{error}");
+    let mut writer = Writer::new(Cursor::new(Vec::new())).unwrap();
+    let schema = writer.add_schema("foxglove.PosesInFrame", "jsonschema", b"{}").unwrap();
+    let channel_id = writer.add_channel(schema, "/people", "json", &BTreeMap::new()).unwrap();
+    let header = MessageHeader { channel_id, sequence: 0, log_time: 0, publish_time: 0 };
+    writer.write_to_known_channel(&header, b"{}").unwrap();
+    writer.finish().unwrap();
+    let error = read_rest(&writer.into_inner().into_inner()).unwrap_err();
+    assert!(
+        matches!(&error, StreamError::Foreign { topics } if topics == "`/people` (foxglove.PosesInFrame)"),
+        "{error}"
+    );
+    assert!(!error.to_string().contains("damaged"), "{error}");
 }
 
 #[test]

@@ -12,6 +12,9 @@ const HOLE_SECS: f64 = 1.0;
 const SPARSE_SECS: f64 = 5.0;
 /// Headings beyond this are of another unit, rad: twice round.
 const ROUND_RAD: f64 = 4.0 * std::f64::consts::PI;
+/// Nobody goes farther between two lines than this, m, at more than this, m/s: a jump.
+const LEAP_M: f64 = 2.0;
+const LEAP_MPS: f64 = 20.0;
 /// Two places nearer to each other than this are one, m.
 const SAME_M: f64 = 1e-6;
 
@@ -54,6 +57,20 @@ pub(super) fn doubts(bytes: &[u8]) -> Result<Vec<String>, Complaint> {
         if let Some((_, b)) = twice.first() {
             let more = if twice.len() > 1 { format!(", and {} more are", twice.len() - 1) } else { String::new() };
             found.push(format!("line {}: `{id}` at {} s is there twice{more}: the first one counts", b.line, b.t));
+        }
+        let far = |(a, b): &(&Fix, &Fix)| (b.x - a.x).hypot(b.y - a.y);
+        let leaps = |pair: &(&Fix, &Fix)| far(pair) > LEAP_M && far(pair) > LEAP_MPS * (pair.1.t - pair.0.t);
+        let mut leaping = pairs().filter(|(a, b)| b.t > a.t).filter(leaps);
+        if let Some((a, b)) = leaping.next() {
+            let more = leaping.count();
+            let more = if more > 0 { format!(", and {more} times more") } else { String::new() };
+            found.push(format!(
+                "line {}: `{id}` jumps {:.0} m within {:.2} s from line {} on{more}: is it the same one?",
+                b.line,
+                far(&(a, b)),
+                b.t - a.t,
+                a.line
+            ));
         }
         let mut steps: Vec<f64> = pairs().map(|(a, b)| b.t - a.t).filter(|step| *step > 0.0).collect();
         steps.sort_by(f64::total_cmp);
@@ -134,6 +151,15 @@ mod tests {
     fn a_hole_is_told_with_its_line() {
         let holed = csv(|k, _| (20..45).contains(&k).then(String::new));
         assert_eq!(told(&holed), ["`robot` has no line for 2.6 s from 1.9 s on (line 40): taken as a straight line"]);
+    }
+
+    #[test]
+    fn a_jump_is_told_once_with_its_lines() {
+        let jump = csv(|k, t| (k == 30).then(|| format!("{t:.1},robot,500,0,0")));
+        assert_eq!(
+            told(&jump),
+            ["line 62: `robot` jumps 499 m within 0.10 s from line 60 on, and 1 times more: is it the same one?"]
+        );
     }
 
     #[test]

@@ -28,6 +28,7 @@ struct Course {
     share: MeanWhileBelow,
 }
 
+#[derive(Clone)]
 struct Blame(Vec<Course>);
 
 impl Blame {

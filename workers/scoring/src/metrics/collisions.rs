@@ -77,6 +77,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 /// Contacts so far.
+#[derive(Clone)]
 struct Contacts {
     /// Seconds in contact, by human.
     touching: Vec<Below>,
@@ -92,8 +93,8 @@ impl Contacts {
 
 impl Running for Contacts {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
-        for (touching, piece) in self.touching.iter_mut().zip(now.pieces) {
-            touching.add(*piece);
+        for (touching, pieces) in self.touching.iter_mut().zip(now.pieces) {
+            pieces.iter().for_each(|piece| touching.add(*piece));
         }
         for (human, from_s) in now.touched {
             if let (Some(shares), Some(share)) = (self.shares.get_mut(*human), now.share(*human, *from_s)) {
@@ -153,6 +154,26 @@ mod tests {
         let run = recording(&[Walk::robot(0., 0., 0., 0.), Walk::human(1, 3., 0., -1., 0.)], 6.0, 0.1);
         assert_eq!(value(&run, "person_on_robot_collisions"), Some(1.0));
         assert_eq!(value(&run, "robot_on_person_collisions"), Some(0.0));
+    }
+
+    #[test]
+    fn a_wall_is_touched_from_half_a_cell_inside_the_disc_on() {
+        let place = crate::fixture::floor(&[(-20., 0.5, 20., 2.)], &[], &[]);
+        // The wall begins at y = 0.5 m; the disc has 0.25 m.
+        let touches = |y: f64| {
+            let run = recording(&[Walk::robot(-3., y, 0.5, 0.)], 6.0, 0.1);
+            let evidence = crate::evidence::Evidence { location: Some(&place), ..crate::evidence::Evidence::of(&run) };
+            crate::metrics::tests::value_of(&evidence, "wall_collisions")
+        };
+        assert_eq!((touches(0.22), touches(0.28), touches(0.36)), (Some(0.0), Some(0.0), Some(1.0)));
+    }
+
+    #[test]
+    fn a_graze_between_two_samples_is_a_contact() {
+        // At 2 m/s past each other with 1 cm of overlap: in touch for less than a tenth of a second.
+        let walks = || vec![Walk::robot(-1.1, 0., 1., 0.), Walk::human(1, 1.0, 0.52, -1., 0.)];
+        at_both_rates(&walks, 3.0, "human_collisions", 1.0, 0.0);
+        at_both_rates(&walks, 3.0, "human_distance_min", -0.01, 1e-6);
     }
 
     #[test]

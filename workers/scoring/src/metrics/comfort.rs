@@ -89,7 +89,7 @@ fn gaussian(person: &Sample, robot: &Sample) -> f64 {
     if size > 30.0 { 0.0 } else { libm::exp(-size) }
 }
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Comfort {
     discomfort: Mean,
     energy: f64,
@@ -99,7 +99,8 @@ impl Running for Comfort {
     fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
         let Some(robot) = now.robot else { return };
         let there = now.humans.iter().filter(|human| human.there);
-        self.discomfort.add(now.t, Some(there.map(|human| gaussian(human, robot)).fold(0.0, f64::max)));
+        let felt = robot.there.then(|| there.map(|human| gaussian(human, robot)).fold(0.0, f64::max));
+        self.discomfort.add(now.t, felt);
         for (human, radius_m) in now.humans.iter().zip(setting.humans_radius_m) {
             let touch = setting.robot_radius_m + radius_m;
             if robot.there && human.there && (robot.at - human.at).norm() < touch {
@@ -127,7 +128,7 @@ fn together(scene: &Scene<'_>) -> Vec<Measured> {
             let mut there = samples.iter().rev().filter(|sample| sample.there);
             there.find(|sample| sample.speed() > crate::tracks::MOVING_MPS).map_or(0.0, |s| s.t)
         };
-        scene.signals.full.humans.iter().map(|human| last(&human.samples)).fold(arrived, f64::max) - begin
+        scene.whole.humans.iter().map(|human| last(&human.samples)).fold(arrived, f64::max) - begin
     });
     vec![or_why(over, "the robot never arrives")]
 }

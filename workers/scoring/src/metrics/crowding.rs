@@ -53,6 +53,7 @@ pub(super) const FAMILY: Family = Family {
 const MEAN_M: [f64; 3] = [5.0, 3.0, 10.0];
 const MOST_M: f64 = 2.5;
 
+#[derive(Clone)]
 struct Crowding {
     /// Time within each radius, by human.
     humans: Vec<(Pen, [Below; 3])>,

@@ -47,7 +47,7 @@ pub(super) const FAMILY: Family = Family {
     measure: Measure::Online(Begin(|_| Box::new(Distances::default()))),
 };
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Distances {
     least: Least,
     mean: Mean,
@@ -57,7 +57,7 @@ struct Distances {
 
 impl Running for Distances {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
-        self.least.add(now.nearest);
+        self.least.add(now.least);
         self.mean.add(now.t, now.nearest.map(|distance| distance.max(0.0)));
         self.clearing.add(now.clearance);
         self.clearing_mean.add(now.t, now.clearance);

@@ -48,6 +48,7 @@ fn drac(line: &Vector, motion: &Vector, gap: f64) -> f64 {
     closing * closing / (2.0 * gap)
 }
 
+#[derive(Clone)]
 struct Crash {
     top: Option<f64>,
     /// Gap, robot and human when both were last there, by human.

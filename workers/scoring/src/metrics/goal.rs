@@ -39,12 +39,13 @@ pub(super) const FAMILY: Family = Family {
 };
 
 /// The smallest straight distance so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Nearest(Least);
 
 impl Running for Nearest {
     fn push(&mut self, setting: &Setting<'_>, now: &Now<'_>) {
-        self.0.add(now.robot.zip(setting.goal).map(|(robot, goal)| (robot.at - goal).norm()));
+        self.0
+            .add(now.robot.filter(|robot| robot.there).zip(setting.goal).map(|(robot, goal)| (robot.at - goal).norm()));
     }
 
     fn values(&self, end: &End<'_>) -> Vec<Measured> {

@@ -85,9 +85,9 @@ pub(super) const FAMILY: Family = Family {
 };
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let (Some(robot), Some(proposal)) = (scene.robot(), scene.signals.evidence.proposal) else { return Vec::new() };
+    let Some(robot) = scene.robot() else { return Vec::new() };
     let groups: Vec<Vec<&Track>> =
-        proposal.groups.iter().map(|group| members(scene, &group.members)).filter(|group| group.len() >= 2).collect();
+        scene.groups().iter().map(|group| members(scene, group)).filter(|group| group.len() >= 2).collect();
     if groups.is_empty() {
         return FAMILY.sheets.iter().map(|_| Err("no group of two is in the recording".to_owned())).collect();
     }

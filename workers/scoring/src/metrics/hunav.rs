@@ -254,11 +254,10 @@ fn zones(values: &[f64]) -> [f64; 3] {
     found
 }
 
-/// Smallest distance of the robot's surface from a group's centre at every sample; groups as the proposal names them.
+/// Smallest distance of the robot's surface from a group's centre at every sample; groups as the evidence names them.
 fn group_distances(scene: &Scene<'_>, tracks: &Tracks, robot: &Track) -> Vec<f64> {
-    let Some(proposal) = scene.signals.evidence.proposal else { return Vec::new() };
     let groups: Vec<Vec<&Track>> =
-        proposal.groups.iter().map(|group| group.members.iter().filter_map(|id| tracks.human(*id)).collect()).collect();
+        scene.groups().iter().map(|group| group.iter().filter_map(|id| tracks.human(*id)).collect()).collect();
     robot
         .samples
         .iter()
@@ -305,7 +304,7 @@ fn contacts(robot: &Track, humans: &[Track]) -> (usize, usize) {
 }
 
 fn measure(scene: &Scene<'_>) -> Vec<Measured> {
-    let tracks = scene.tracks.thinned(STEP_SECS);
+    let tracks = scene.recorded.thinned(STEP_SECS);
     let Some(robot) = &tracks.robot else { return Vec::new() };
     let humans = &tracks.humans;
     let n = count(robot.samples.len().max(1));

@@ -59,6 +59,7 @@ struct Intrusion {
     front: Below,
 }
 
+#[derive(Clone)]
 struct Intrusions(Vec<Intrusion>);
 
 impl Intrusions {
@@ -71,13 +72,13 @@ impl Intrusions {
 impl Running for Intrusions {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
         let Some(robot) = now.robot else { return };
-        for (index, ((intrusion, piece), human)) in self.0.iter_mut().zip(now.pieces).zip(now.humans).enumerate() {
+        for (index, ((intrusion, pieces), human)) in self.0.iter_mut().zip(now.pieces).zip(now.humans).enumerate() {
             for zone in &mut intrusion.zones {
-                zone.add(*piece);
+                pieces.iter().for_each(|piece| zone.add(*piece));
             }
             // Only pieces with an end inside count, so angles matter only there.
             if let Some((r, others)) = now.before
-                && let Some(h) = others.get(index).filter(|h| h.there && human.there)
+                && let Some(h) = others.get(index).filter(|h| h.there && human.there && r.there && robot.there)
                 && (reaches(r, h) || reaches(robot, human))
             {
                 intrusion.front.add(Some((r.t, margin(r, h), robot.t, margin(robot, human))));

@@ -1,8 +1,8 @@
 //! Metrics: how well the robot did. A catalogue of families, one file each.
 //!
-//! Every value is independent of the recording's sampling rate: times and shares are taken on the
-//! piecewise-linear curve, sums over changes on an even 0.1 s grid. Robot metrics are taken from the start to
-//! the robot's arrival (or the end, where it never arrives).
+//! Every value is independent of the recording's sampling rate: all are taken on one even 0.1 s grid of positions, with
+//! velocities by differences (`grid`), times and shares on the piecewise-linear curve over it. Robot metrics are taken
+//! from the robot's first sample to its arrival (or its last, where it never arrives).
 
 mod blame;
 mod collisions;
@@ -15,6 +15,7 @@ mod forces;
 pub mod francis;
 mod goal;
 mod goals;
+mod grid;
 mod groups;
 mod hunav;
 mod intrusion;
@@ -131,10 +132,16 @@ impl Need {
             Self::Goal => "the robot's goal is not known",
             Self::Groups => "no groups are known",
             Self::Twin => "there is no run without the robot to compare with",
-            Self::PlannerTimes => "recordings hold no computing times of planners",
-            Self::Commands => "recordings hold no commands",
-            Self::Solo => "there is no run of the robot alone to compare with",
-            Self::OtherRobots => "recordings hold one robot",
+            Self::PlannerTimes => {
+                "recordings hold no computing times of planners; it would need the time of each call, which differs by machine"
+            }
+            Self::Commands => {
+                "recordings hold no commands; it would need the velocity that was commanded at every step"
+            }
+            Self::Solo => {
+                "there is no run of the robot alone to compare with; it would need one with the same seed and no people"
+            }
+            Self::OtherRobots => "recordings hold one robot; it would need the tracks of the others",
             Self::Events => "nobody makes a gesture",
         }
     }
@@ -235,10 +242,14 @@ pub const CATALOG: &[Family] = &[
 ];
 
 /// Version of the catalogue: it changes when a formula does, so that figures of different versions are not mixed.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
-/// Metrics whose formula has changed since it was first published here, with the version it has now.
-const REVISED: &[(&str, u32)] = &[("ttc_p5", 2), ("drac_max", 2)];
+/// Version of what nothing else is said of: 2 since everything is taken on one even grid.
+const ON_GRID: u32 = 2;
+
+/// Metrics whose formula has changed beside that since it was first published here, with the version it has now.
+const REVISED: &[(&str, u32)] =
+    &[("ttc_p5", 3), ("drac_max", 3), ("post_encroachment_time", 3), ("path_irregularity", 3), ("freezing_events", 3)];
 
 /// How distances are meant throughout, for tables that are read by others (`spec/evaluation` §2.7).
 pub const DISTANCE_CONVENTION: &str = "surface_clearance";
@@ -268,7 +279,8 @@ impl Sheet {
     /// Version of this metric's formula, from 1; figures of different versions are not mixed.
     #[must_use]
     pub fn version(&self) -> u32 {
-        REVISED.iter().find(|(id, _)| *id == self.id).map_or(1, |(_, version)| *version)
+        let plain = if self.as_coded_elsewhere() { 1 } else { ON_GRID };
+        REVISED.iter().find(|(id, _)| *id == self.id).map_or(plain, |(_, version)| *version)
     }
 
     /// Whether the value is another tool's, with its dependence on sampling rate and map.
@@ -489,6 +501,42 @@ pub(crate) mod tests {
         crate::fixture::absent(&mut run, 2, 0.0..99.0);
         for sheet in sheets() {
             assert_eq!(value(&run, sheet.id), value(&alone, sheet.id), "{}", sheet.id);
+        }
+    }
+
+    #[test]
+    fn outside_its_own_record_the_robot_is_not_there() {
+        use socrates_model::AgentId;
+        // Recorded for its first six seconds only; a person walks over the place of its last sample later on.
+        let walks = [Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 12., 0., -0.9, 0.)];
+        let short = recording(&walks, 6.0, 0.1);
+        let mut long = recording(&walks, 20.0, 0.1);
+        crate::fixture::gone(&mut long, AgentId::Robot, 6.05..99.0);
+        for sheet in sheets().filter(|sheet| !sheet.as_coded_elsewhere()) {
+            match (value(&short, sheet.id), value(&long, sheet.id)) {
+                // Its last velocity is the same too, so nothing differs.
+                (Some(a), Some(b)) => assert!((a - b).abs() < 1e-6, "{}: {a} and {b}", sheet.id),
+                (None, None) => {}
+                other => panic!("{}: {other:?}", sheet.id),
+            }
+        }
+        assert_eq!(value(&long, "near_misses"), Some(0.0));
+        assert_eq!(value(&long, "stalled_time"), Some(0.0));
+        // Nobody who comes when it has gone is met.
+        crate::fixture::absent(&mut long, 1, 0.0..6.5);
+        assert_eq!(value(&long, "human_distance_min"), None);
+    }
+
+    #[test]
+    fn velocities_that_are_recorded_change_nothing() {
+        let walks = [Walk::robot(0., 0., 0.6, 0.), Walk::human(1, 9., 0.6, -1., 0.)];
+        let plain = recording(&walks, 12.0, 0.05);
+        let mut without = plain.clone();
+        for state in &mut without.frames {
+            (state.vx, state.vy) = (0.0, 0.0);
+        }
+        for sheet in sheets().filter(|sheet| !sheet.as_coded_elsewhere()) {
+            assert_eq!(value(&plain, sheet.id), value(&without, sheet.id), "{}", sheet.id);
         }
     }
 

@@ -38,6 +38,7 @@ impl Misses {
     }
 }
 
+#[derive(Clone)]
 struct Near(Vec<Misses>);
 
 impl Near {
@@ -49,9 +50,11 @@ impl Near {
 
 impl Running for Near {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
-        for (misses, piece) in self.0.iter_mut().zip(now.pieces) {
-            misses.near.add(*piece);
-            misses.touching.add(*piece);
+        for (misses, pieces) in self.0.iter_mut().zip(now.pieces) {
+            for piece in pieces {
+                misses.near.add(*piece);
+                misses.touching.add(*piece);
+            }
         }
     }
 

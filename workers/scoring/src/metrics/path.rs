@@ -1,5 +1,6 @@
 //! The robot's path against the shortest one.
 
+use socrates_maps::{DistanceField, Geodesic};
 use socrates_model::Point;
 use socrates_model::geometry::wrap_angle;
 
@@ -7,6 +8,8 @@ use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count, or_why};
 use crate::tracks::Sample;
 
+/// Step at which the shortest way is followed, m.
+const TRACE_M: f64 = 0.25;
 /// Steps shorter than this have no direction, m.
 const STEP_M: f64 = 0.02;
 
@@ -63,7 +66,7 @@ pub(super) const FAMILY: Family = Family {
             direction: Direction::Down,
             needs: ROBOT,
             source: "SocNavBench, path_irregularity, without its dependence on the origin",
-            about: "turning of the direction of travel, less the turn from the first to the last direction, over the path length",
+            about: "turning of the direction of travel, less that along the shortest way (without a map or a goal: the turn from the first to the last direction), over the path length",
         },
         Sheet {
             id: "cumulative_heading_change",
@@ -158,30 +161,73 @@ impl Way {
         });
     }
 
-    fn irregularity(&self) -> Measured {
-        let turn = self.first_direction.zip(self.direction).map(|(first, last)| wrap_angle(last - first).abs());
-        let least = turn.map(|turn| (self.turned_rad - turn).max(0.0) / self.length_m.max(STEP_M));
-        or_why(least, "the robot does not move")
+    fn irregularity(&self, setting: &Setting<'_>) -> Measured {
+        let ends = self.first_direction.zip(self.direction).map(|(first, last)| wrap_angle(last - first).abs());
+        let least = setting.field.zip(setting.geodesic).zip(self.start.zip(setting.goal));
+        let least = least.and_then(|((field, geodesic), (start, goal))| {
+            shortest_turn(field, geodesic, &start, &goal, setting.robot_radius_m)
+        });
+        let turn = ends.map(|ends| (self.turned_rad - least.unwrap_or(ends)).max(0.0) / self.length_m.max(STEP_M));
+        or_why(turn, "the robot does not move")
     }
+}
+
+/// Turning along the shortest way, rad: of the way down the distances, pulled straight wherever the robot's disc fits.
+fn shortest_turn(
+    field: &DistanceField,
+    geodesic: &Geodesic,
+    start: &Point,
+    goal: &Point,
+    radius_m: f64,
+) -> Option<f64> {
+    // As wide as the disc for which the shortest ways are.
+    let room = (radius_m - 0.05).max(0.05);
+    let mut way = vec![*start];
+    let most = geodesic.distance(start)? / TRACE_M * 2.0 + 10.0;
+    while let Some(at) = way.last().copied().filter(|at| (goal - at).norm() > TRACE_M) {
+        if count(way.len()) > most {
+            return None;
+        }
+        way.push(at + geodesic.direction(&at)?.try_normalize(1e-9)? * TRACE_M);
+    }
+    way.push(*goal);
+    let open = |from: &Point, to: &Point| {
+        let steps = libm::ceil((to - from).norm() / 0.1).max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "ways on maps are short")]
+        let steps = steps as usize;
+        // The ends are on the way itself.
+        (1..steps).all(|k| field.clearance(&(from + (to - from) * (count(k) / count(steps)))) >= room)
+    };
+    let (mut turned, mut before, mut index) = (0.0, None::<f64>, 0);
+    while let Some(from) = way.get(index).filter(|_| index + 1 < way.len()) {
+        let mut next = index + 1;
+        while way.get(next + 1).is_some_and(|to| open(from, to)) {
+            next += 1;
+        }
+        let step = way.get(next)? - from;
+        let direction = libm::atan2(step.y, step.x);
+        turned += before.map_or(0.0, |before| wrap_angle(direction - before).abs());
+        before = Some(direction);
+        index = next;
+    }
+    Some(turned)
 }
 
 impl Running for Way {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
-        for sample in now.even {
-            self.step(sample);
+        if let Some(robot) = now.robot.filter(|robot| robot.there) {
+            self.step(robot);
         }
     }
 
     fn values(&self, end: &End<'_>) -> Vec<Measured> {
-        let mut whole = self.clone();
-        end.tail.iter().for_each(|sample| whole.step(sample));
-        let length = whole.length_m;
-        let shortest = whole.start.and_then(|start| end.setting.to_goal_m(&start)).filter(|way| *way > 0.0);
+        let length = self.length_m;
+        let shortest = self.start.and_then(|start| end.setting.to_goal_m(&start)).filter(|way| *way > 0.0);
         let speed = end.setting.robot_speed_mps;
         let succeeded = if end.succeeded() { 1.0 } else { 0.0 };
         let no_way = "the map has no way to the goal for the robot's disc";
         let straight =
-            whole.start.zip(end.setting.goal).map(|(start, goal)| (goal - start).norm()).filter(|way| *way > 1e-6);
+            self.start.zip(end.setting.goal).map(|(start, goal)| (goal - start).norm()).filter(|way| *way > 1e-6);
         vec![
             Ok(length),
             or_why(shortest.map(|way| succeeded * way / length.max(way)), no_way),
@@ -197,9 +243,9 @@ impl Running for Way {
                 Some(way) => or_why((length > 0.0).then(|| (way / length).min(1.0)), "the robot does not move"),
             },
             or_why(straight.map(|straight| length / straight), "start and goal are one place"),
-            whole.irregularity(),
-            Ok(whole.heading_rad),
-            or_why((whole.triples > 0).then(|| whole.curvature / count(whole.triples)), "the path is shorter than 1 m"),
+            self.irregularity(end.setting),
+            Ok(self.heading_rad),
+            or_why((self.triples > 0).then(|| self.curvature / count(self.triples)), "the path is shorter than 1 m"),
         ]
     }
 }
@@ -208,7 +254,7 @@ impl Running for Way {
 mod tests {
     use std::f64::consts::TAU;
 
-    use socrates_model::{AgentId, EventKind};
+    use socrates_model::{AgentId, EventKind, Point};
 
     use crate::evidence::Evidence;
     use crate::fixture::{Walk, event, floor, recording};
@@ -228,6 +274,33 @@ mod tests {
             let run = recording(&[Walk::robot(x, y, 0.5, 0.1)], 10.0, 0.1);
             assert!(value(&run, "path_irregularity").unwrap() < 1e-9);
         }
+    }
+
+    #[test]
+    fn turning_that_the_shortest_way_asks_for_is_not_irregular() {
+        // Over a wall that ends at y = 2 m and under one that begins at 1 m, as the shortest way does: no turn from the
+        // first to the last direction, and two turns on the way.
+        let place = floor(&[(-0.2, -9., 0.2, 2.), (3.0, 1., 3.4, 9.)], &[], &[]);
+        let slalom =
+            [(0., -4., 0.), (5., -0.3, 2.35), (6., 0.3, 2.35), (10., 2.9, 0.65), (11., 3.5, 0.65), (16., 7., 3.)];
+        let run = recording(&[Walk::through(AgentId::Robot, &slalom)], 16.0, 0.1);
+        let evidence = Evidence { location: Some(&place), goal: Some(Point::new(7., 3.)), ..Evidence::of(&run) };
+        let of = |evidence: &Evidence<'_>| value_of(evidence, "path_irregularity").unwrap();
+        let (with, without) = (of(&evidence), value(&run, "path_irregularity").unwrap());
+        assert!(with < 0.05 && without > 0.15, "{with} {without}");
+        // A weave on the way is irregular.
+        let weave = [
+            (0., -4., 0.),
+            (2., -3., 1.6),
+            (4., -1.5, 1.2),
+            (5., -0.3, 2.35),
+            (6., 0.3, 2.35),
+            (10., 2.9, 0.65),
+            (11., 3.5, 0.65),
+            (16., 7., 3.),
+        ];
+        let run = recording(&[Walk::through(AgentId::Robot, &weave)], 16.0, 0.1);
+        assert!(of(&Evidence { recording: &run, ..evidence }) > with + 0.1);
     }
 
     #[test]

@@ -22,13 +22,6 @@ const NO_VALUE: &[(&str, &str)] = &[
     ("relative_time", "there is no run of the robot alone to compare with"),
 ];
 
-/// Metrics that may differ by more than 2 %, with by how much and why; the README has the list too.
-const COARSE: &[(&str, f64, &str)] = &[(
-    "ttc_p5",
-    0.05,
-    "when a collision course begins and ends is known to one sample, and 5 % of it is a short time",
-)];
-
 /// The robot stops for a gesture, drives between two who talk, brushes one and meets one who crosses.
 fn walks() -> Vec<Walk> {
     vec![
@@ -83,8 +76,7 @@ mod tests {
             match (&coarse[sheet.id], &fine[sheet.id], why) {
                 ((None, note), (None, _), Some(why)) if note.contains(why) => {}
                 ((Some(a), _), (Some(b), _), None) => {
-                    let slack = COARSE.iter().find(|(id, ..)| *id == sheet.id).map_or(1e-3, |(_, slack, _)| *slack);
-                    if (a - b).abs() > 0.02 * b.abs() + slack {
+                    if (a - b).abs() > 0.02 * b.abs() + 1e-3 {
                         wrong.push(format!("{}: {a} at 10 Hz, {b} at 100 Hz", sheet.id));
                     }
                 }

@@ -2,6 +2,7 @@
 
 use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
+use crate::tracks::Sample;
 use socrates_model::Vector;
 
 const NEEDS: &[Need] = &[Need::Robot];
@@ -126,14 +127,19 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     ]
 }
 
-/// Velocities of the even grid, smoothed.
+/// Velocities of the even grid, smoothed. Those at the ends are taken on, with the acceleration there: differences over
+/// half the time would be jerks.
 pub(super) fn smoothed(scene: &Scene<'_>) -> Vec<Vector> {
-    let triples = scene.even.windows(3);
-    triples
-        .filter_map(|triple| {
-            if let [a, b, c] = triple { Some((a.velocity + b.velocity * 2.0 + c.velocity) / 4.0) } else { None }
-        })
-        .collect()
+    let mut velocities: Vec<Vector> = scene.even.iter().map(|sample| sample.velocity).collect();
+    let steady = |from: &Sample, to: &Sample, inner: &Sample| (to.at - from.at) / EVEN_SECS * 2.0 - inner.velocity;
+    if let ([a, b, _, ..], Some(first)) = (scene.even.as_slice(), velocities.first_mut()) {
+        *first = steady(a, b, b);
+    }
+    if let ([.., _, a, b], Some(last)) = (scene.even.as_slice(), velocities.last_mut()) {
+        *last = steady(a, b, a);
+    }
+    let triples = velocities.windows(3);
+    triples.filter_map(|triple| if let [a, b, c] = triple { Some((a + b * 2.0 + c) / 4.0) } else { None }).collect()
 }
 
 /// Spectral arc length of the speed profile.
@@ -188,9 +194,11 @@ mod tests {
         for step in [0.1, 0.01] {
             let of = |speed: &dyn Fn(f64) -> f64| {
                 let mut run = recording(&[Walk::through(AgentId::Robot, &[(0., 0., 0.)])], 10.0, step);
+                let mut x = 0.0;
                 for state in &mut run.frames {
                     let t = state.tick as f64 * step;
-                    (state.vx, state.x) = (speed(t), t);
+                    (state.vx, state.x) = (speed(t), x);
+                    x += speed(t + 0.5 * step) * step;
                 }
                 value(&run, "sparc").unwrap()
             };

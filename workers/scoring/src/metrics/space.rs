@@ -52,6 +52,7 @@ pub(super) const FAMILY: Family = Family {
     measure: Measure::Online(Begin(|_| Box::new(Space::new()))),
 };
 
+#[derive(Clone)]
 struct Space {
     mean: Mean,
     kept: Below,

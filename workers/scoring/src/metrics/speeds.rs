@@ -48,6 +48,7 @@ pub(super) const FAMILY: Family = Family {
     measure: Measure::Online(Begin(|humans| Box::new(Speeds::new(humans)))),
 };
 
+#[derive(Clone)]
 struct Speeds {
     mean: Mean,
     least: Least,

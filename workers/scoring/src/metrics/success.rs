@@ -39,6 +39,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 /// Everything that is asked is known at the end.
+#[derive(Clone)]
 struct Task;
 
 impl Running for Task {

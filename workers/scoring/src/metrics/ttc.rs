@@ -1,6 +1,7 @@
 //! Time to collision at constant velocity.
 
 use crate::metrics::online::{End, Now, Running, Setting};
+use crate::metrics::scene::EVEN_SECS;
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, or_why};
 use crate::series::Series;
 use crate::tracks::Sample;
@@ -67,7 +68,7 @@ pub(crate) fn time_to_collision(r: &Sample, h: &Sample, radii_m: f64) -> Option<
 }
 
 /// The shortest time to collision with anybody, as it goes on.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Times {
     /// The whole curve: a quantile needs all of it.
     curve: Vec<(f64, f64)>,
@@ -77,13 +78,13 @@ struct Times {
 
 impl Running for Times {
     fn push(&mut self, _setting: &Setting<'_>, now: &Now<'_>) {
-        if now.robot.is_none() {
+        if !now.robot.is_some_and(|robot| robot.there) {
             return;
         }
         let least = now.ttc_s.iter().copied().flatten().fold(FAR_SECS, f64::min);
         // A curve that jumps from far to near between two samples must not be cut in a straight line: the
         // exposed time is that of pieces with both ends near, and half of those with one.
-        if let Some((t0, before)) = self.curve.last() {
+        if let Some((t0, before)) = self.curve.last().filter(|(t0, _)| now.t - t0 < 1.5 * EVEN_SECS) {
             let near = |v: f64| if v < EXPOSED_SECS { 1.0 } else { 0.0 };
             let short = |v: f64| (EXPOSED_SECS - v).max(0.0);
             self.exposed += (now.t - t0) * (near(*before) + near(least)) / 2.0;

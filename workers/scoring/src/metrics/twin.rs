@@ -73,7 +73,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
     };
     let (mut area, mut seconds, mut spent, mut turned) = (0.0, 0.0, 0.0, 0.0);
     let mut delays = Vec::new();
-    for human in &scene.signals.full.humans {
+    for human in &scene.whole.humans {
         let Some(other) = twin.of(human.agent) else {
             return fail(format!("{} is not in the twin run", human.agent));
         };

@@ -97,6 +97,7 @@ impl Entries {
     }
 }
 
+#[derive(Clone)]
 struct Zones {
     mean: Mean,
     below: [Below; 3],
@@ -121,10 +122,10 @@ impl Running for Zones {
         for below in &mut self.below {
             below.add(now.nearest_piece);
         }
-        for (human, piece) in now.pieces.iter().enumerate() {
+        for (human, pieces) in now.pieces.iter().enumerate() {
             for zone in [&mut self.intimate, &mut self.personal] {
                 if let Some(entries) = zone.get_mut(human) {
-                    entries.add(human, *piece, now);
+                    pieces.iter().for_each(|piece| entries.add(human, *piece, now));
                 }
             }
         }

@@ -1,5 +1,9 @@
 //! Tracks as comma-separated text: for spreadsheets, and from other people's recordings.
 
+mod plain;
+
+pub use plain::{Plain, plain};
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -28,10 +32,20 @@ impl Rate {
     }
 }
 
-/// Most states that a file may make: 256 MiB in memory.
+/// Most states that a file may make at every tick: 256 MiB in memory. With more, there are ten a second.
 const MAX_STATES: usize = 4 * 1024 * 1024;
-/// Assumed radius where a file says nothing, m: that of a person in the native profile.
-const RADIUS_M: f64 = 0.28;
+/// Most states that a file may make at all: 1 GiB in memory, five hours with ninety people.
+const MOST_STATES: usize = 4 * MAX_STATES;
+/// Ticks between states where there would be too many: ten a second are what scores are computed from.
+const SPARSE: usize = 10;
+/// Assumed radius of a person where a file says nothing, m: as in the native profile.
+pub const HUMAN_RADIUS_M: f64 = 0.28;
+/// Assumed radius of the robot, m: as in the native profile.
+pub const ROBOT_RADIUS_M: f64 = 0.25;
+/// Assumed nominal speed of the robot, m/s: as in the native profile.
+pub const ROBOT_SPEED_MPS: f64 = 0.8;
+/// Assumed nominal speed of a person, m/s.
+const HUMAN_SPEED_MPS: f64 = 1.2;
 /// Times nearer than this are one time that was rounded twice, s.
 const SAME_SECS: f64 = 1e-6;
 /// Index of the leaf of the absent in the recordings that are made here.
@@ -83,15 +97,16 @@ struct Fix {
     x: f64,
     y: f64,
     yaw: Option<f64>,
+    gesture: Gesture,
     /// Whether the agent is there.
     there: bool,
 }
 
 /// Reads tracks: columns `t` (s), `id` (`robot`, `human_3` or a number; 0 is the robot), `x`, `y` (m) and maybe `yaw`
-/// (rad) and `leaf`, in any order; other columns are passed over. Lines may come in any order. The tracks are brought
-/// to the step of 0.01 s by straight lines between fixes. Before its first and after its last fix the robot stands
-/// still and a human is not there, and neither it is at a fix whose `leaf` is `absent` nor on the way to or from one;
-/// all other leaves are passed over.
+/// (rad), `gesture` and `leaf`, in any order; other columns are passed over. Lines may come in any order. The tracks are
+/// brought to the step of 0.01 s by straight lines between fixes, or to ten a second where that would be too many.
+/// Before its first and after its last fix an agent is not there, and neither it is at a fix whose `leaf` is `absent`
+/// nor on the way to or from one; all other leaves are passed over.
 ///
 /// # Errors
 /// [`StreamError::Csv`] with the line.
@@ -114,20 +129,26 @@ pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
     let end = tracks.values().flatten().map(|fix| fix.t).fold(f64::NEG_INFINITY, f64::max);
     let steps = libm::floor((end - begin) / STEP_SECS + 1e-6);
     #[expect(clippy::cast_precision_loss, reason = "the limit is far below 2^53")]
-    if steps * (tracks.len() as f64) >= MAX_STATES as f64 {
+    let stride = if steps * (tracks.len() as f64) >= MAX_STATES as f64 { SPARSE } else { 1 };
+    #[expect(clippy::cast_precision_loss, reason = "the limit is far below 2^53")]
+    if steps / stride as f64 * (tracks.len() as f64) >= MOST_STATES as f64 {
         return Err(bad(
             last,
-            &format!("{} agents over {:.0} s are more than {MAX_STATES} states", tracks.len(), end - begin),
+            &format!(
+                "{} agents over {:.0} s are more than {MOST_STATES} states at ten a second: are times in milliseconds or frames? Seconds are expected",
+                tracks.len(),
+                end - begin
+            ),
         ));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded just above, and end >= begin")]
-    let ticks = steps as usize + 1;
+    let ticks = (steps as usize / stride) + 1;
     for track in tracks.values_mut() {
         track.sort_by(|a, b| a.t.total_cmp(&b.t));
         track.dedup_by(|later, kept| later.t <= kept.t);
     }
     let mut per_agent: Vec<Vec<AgentState>> =
-        tracks.iter().map(|(agent, track)| resampled(*agent, track, begin, ticks)).collect();
+        tracks.iter().map(|(agent, track)| resampled(*agent, track, begin, ticks, stride)).collect();
     let mut leaves = vec![String::new()];
     if per_agent.iter().flatten().any(|state| state.leaf() == ABSENT) {
         leaves.push(ABSENT_LEAF.to_owned());
@@ -153,11 +174,11 @@ pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
 }
 
 fn info(agent: AgentId) -> AgentInfo {
-    let role = match agent {
-        AgentId::Robot => "robot",
-        AgentId::Human(_) => "person",
+    let (role, radius_m, speed_mps) = match agent {
+        AgentId::Robot => ("robot", ROBOT_RADIUS_M, ROBOT_SPEED_MPS),
+        AgentId::Human(_) => ("person", HUMAN_RADIUS_M, HUMAN_SPEED_MPS),
     };
-    AgentInfo { agent, radius_m: RADIUS_M, speed_mps: 1.2, role: role.to_owned() }
+    AgentInfo { agent, radius_m, speed_mps, role: role.to_owned() }
 }
 
 fn bad(line: usize, why: &str) -> StreamError {
@@ -170,6 +191,7 @@ struct Columns {
     x: usize,
     y: usize,
     yaw: Option<usize>,
+    gesture: Option<usize>,
     leaf: Option<usize>,
 }
 
@@ -183,10 +205,21 @@ impl Columns {
         let find = |name: &str| names.iter().position(|found| found == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
-                bad(line, &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, leaf"))
+                bad(
+                    line,
+                    &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, gesture, leaf"),
+                )
             })
         };
-        Ok(Self { t: need("t")?, id: need("id")?, x: need("x")?, y: need("y")?, yaw: find("yaw"), leaf: find("leaf") })
+        Ok(Self {
+            t: need("t")?,
+            id: need("id")?,
+            x: need("x")?,
+            y: need("y")?,
+            yaw: find("yaw"),
+            gesture: find("gesture"),
+            leaf: find("leaf"),
+        })
     }
 
     fn fix(&self, line: usize, text: &str) -> Result<(AgentId, Fix), StreamError> {
@@ -216,16 +249,21 @@ impl Columns {
             Some(at) => Some(number(at, "yaw")?),
             None => None,
         };
+        let gesture = match self.gesture.and_then(|at| cells.get(at)).filter(|gesture| !gesture.is_empty()) {
+            Some(gesture) => gesture.parse::<Gesture>().map_err(|why| bad(line, &why.to_string()))?,
+            None => Gesture::None,
+        };
         let there = self.leaf.and_then(|at| cells.get(at)).is_none_or(|leaf| *leaf != ABSENT_LEAF);
-        Ok((agent, Fix { t: number(self.t, "t")?, x: number(self.x, "x")?, y: number(self.y, "y")?, yaw, there }))
+        let (t, x, y) = (number(self.t, "t")?, number(self.x, "x")?, number(self.y, "y")?);
+        Ok((agent, Fix { t, x, y, yaw, gesture, there }))
     }
 }
 
-fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<AgentState> {
+fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize, stride: usize) -> Vec<AgentState> {
     let mut states: Vec<AgentState> = Vec::with_capacity(ticks);
     let mut at = 0_usize;
     let mut heading = track.first().and_then(|fix| fix.yaw).unwrap_or_else(|| first_heading(track));
-    for tick in 0..ticks {
+    for tick in (0..ticks).map(|tick| tick * stride) {
         #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 ticks")]
         let t = begin + tick as f64 * STEP_SECS;
         while track.get(at + 1).is_some_and(|next| next.t <= t + SAME_SECS) {
@@ -237,7 +275,7 @@ fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<Age
         // Half a step of slack at the ends, so that rounding of times takes nobody away.
         let (early, late) = (t < from.t - 0.5 * STEP_SECS, t > from.t + 0.5 * STEP_SECS);
         let there = from.there && !early && next.map_or(!late, |next| next.there || !late);
-        let leaf = if there || agent == AgentId::Robot { 0 } else { ABSENT };
+        let leaf = if there { 0 } else { ABSENT };
         let to = to.filter(|_| leaf != ABSENT);
         let (x, y, vx, vy) = match to {
             Some(to) => {
@@ -257,8 +295,10 @@ fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize) -> Vec<Age
             (None, _) => heading,
         };
         let before = states.last().map_or(heading, |last| last.yaw);
-        let omega = socrates_model::geometry::wrap_angle(heading - before) / STEP_SECS;
-        let flags = AgentState::flags(agent, Gesture::None, leaf);
+        #[expect(clippy::cast_precision_loss, reason = "one or ten")]
+        let omega = socrates_model::geometry::wrap_angle(heading - before) / (STEP_SECS * stride as f64);
+        let gesture = if there { from.gesture } else { Gesture::None };
+        let flags = AgentState::flags(agent, gesture, leaf);
         states.push(AgentState { tick: tick as u64, agent: agent.number(), flags, x, y, yaw: heading, vx, vy, omega });
     }
     states
@@ -294,7 +334,7 @@ mod tests {
     }
 
     #[test]
-    fn people_are_not_there_before_their_first_and_after_their_last_line_and_the_robot_stands() {
+    fn nobody_is_there_before_the_first_and_after_the_last_line() {
         let text = "t,id,x,y\n0.5,robot,0,0\n1,robot,1,0\n0,1,5,5\n2,1,5,3\n0.7,2,0,3\n1.3,2,0,4\n";
         let recording = read_tracks(text).unwrap();
         let absent = recording.header.absent().unwrap();
@@ -302,12 +342,32 @@ mod tests {
             let states = recording.track(AgentId::from_number(number)).filter(|state| state.leaf() != absent);
             states.map(|state| state.tick).collect()
         };
-        assert_eq!((there(0).len(), there(1).len()), (201, 201));
+        assert_eq!((there(0), there(1).len()), ((50..=100).collect::<Vec<u64>>(), 201));
         assert_eq!(there(2), (70..=130).collect::<Vec<u64>>());
         let gone = recording.tick(150)[2];
         assert!((gone.y - 4.0).abs() < 1e-12 && gone.speed() < 1e-12);
         // Where everybody is there all the time, there is no such leaf.
         assert_eq!(read_tracks("t,id,x,y\n0,1,5,5\n2,1,5,3\n").unwrap().header.leaves, [""]);
+    }
+
+    #[test]
+    fn gestures_are_read_and_last_until_another_line_says_otherwise() {
+        let text = "t,id,x,y,gesture\n0,1,5,5,NONE\n1,1,5,4,wait\n2,1,5,3,\n";
+        let recording = read_tracks(text).unwrap();
+        let waits: Vec<u64> =
+            recording.frames.iter().filter(|state| state.gesture() == Gesture::Wait).map(|state| state.tick).collect();
+        assert_eq!(waits, (100..200).collect::<Vec<u64>>());
+    }
+
+    #[test]
+    fn a_crowd_over_a_long_time_is_read_ten_times_a_second() {
+        let mut text = String::from("t,id,x,y\n");
+        for id in 0..100 {
+            text.push_str(&format!("0,{id},0,{id}\n500,{id},500,{id}\n"));
+        }
+        let recording = read_tracks(&text).unwrap();
+        assert_eq!((recording.ticks(), recording.tick(1)[0].tick, recording.tick(5000)[7].tick), (5001, 10, 50_000));
+        assert!((recording.tick(1)[3].x - 0.1).abs() < 1e-9);
     }
 
     #[test]
@@ -344,7 +404,8 @@ mod tests {
             ("t,id,x,y\n0,1,one,2\n", 2, "`one`"),
             ("t,id,x,y\n0,1,nan,2\n", 2, "`nan`"),
             ("t,id,x,y\n0,1\n", 2, "`x`"),
-            ("t,id,x,y\n0,1,0,0\n900000,1,0,0\n", 3, "states"),
+            ("t,id,x,y\n0,1,0,0\n900000,1,0,0\n900000,2,0,0\n", 4, "milliseconds"),
+            ("t,id,x,y,gesture\n0,1,0,0,BOW\n", 2, "`BOW`"),
         ] {
             let error = read_tracks(text).unwrap_err();
             let StreamError::Csv { line: found, why } = &error else { panic!("{error}") };

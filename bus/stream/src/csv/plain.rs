@@ -1,0 +1,189 @@
+//! Other people's spellings of a table of tracks made plain: what can be read without doubt is read, and told.
+//!
+//! | found | made of it |
+//! |---|---|
+//! | `;` or tabs between the cells, with them decimal commas | commas, decimal points |
+//! | times since 1970, in s, ms, µs or ns | seconds from the first line on |
+//! | a line with an empty or NaN number, or one that is cut | a gap: an empty line, so that the others keep their number |
+
+use super::{bad, quoted};
+use crate::error::StreamError;
+
+/// Times from here on are counted from 1970 and not from the beginning of a run: 1973 in s.
+const EPOCH: f64 = 1e8;
+/// Smallest times since 1970 in a unit, and how many of it are a second.
+const UNITS: [(f64, f64, &str); 4] =
+    [(1e17, 1e9, "nanoseconds"), (1e14, 1e6, "microseconds"), (1e11, 1e3, "milliseconds"), (EPOCH, 1.0, "seconds")];
+/// Share of lines that may be gaps: with more of them the table is not what it is taken for.
+const GAPS: f64 = 0.5;
+/// So many gaps are told line by line.
+const TOLD: usize = 3;
+
+/// A table as [`super::read_tracks`] reads it, with what had to be made of the one that was given.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plain {
+    /// The table, with the same lines.
+    pub text: String,
+    /// What was made of what, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Makes a table plain. What cannot be read at all is left as it is, for [`super::read_tracks`] to name.
+///
+/// # Errors
+/// [`StreamError::Csv`] where most lines have no numbers.
+pub fn plain(text: &str) -> Result<Plain, StreamError> {
+    let text = text.trim_start_matches('\u{feff}');
+    let mut notes = Vec::new();
+    let Some((head_at, head)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
+        return Ok(Plain { text: text.to_owned(), notes });
+    };
+    let separator = separator(head);
+    if separator != ',' {
+        let name = if separator == ';' { "`;`" } else { "tabs" };
+        notes.push(format!("the columns are separated by {name}: read so, with decimal commas where there are any"));
+    }
+    let mut rows: Vec<Vec<String>> = text.lines().map(|line| cells(line, separator)).collect();
+    let column = |name: &str| rows.get(head_at)?.iter().position(|cell| cell.to_lowercase() == name);
+    let numbers = [column("t"), column("x"), column("y"), column("yaw")];
+    let numbers: Vec<usize> = numbers.into_iter().flatten().collect();
+    let time = column("t");
+    if separator != ',' {
+        for row in rows.iter_mut().skip(head_at + 1) {
+            for cell in numbers.iter().filter_map(|at| row.get(*at).map(|_| *at)).collect::<Vec<_>>() {
+                row.get_mut(cell).into_iter().for_each(|cell| *cell = cell.replace(',', "."));
+            }
+        }
+    }
+    let gaps = gaps(&mut rows, head_at, &numbers)?;
+    notes.extend(gaps);
+    if let Some(time) = time {
+        notes.extend(since_begin(&mut rows, head_at, time));
+    }
+    if notes.is_empty() {
+        return Ok(Plain { text: text.to_owned(), notes });
+    }
+    let lines = rows.iter().map(|row| row.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(","));
+    Ok(Plain { text: lines.collect::<Vec<_>>().join("\n"), notes })
+}
+
+/// What is between the cells: a comma wherever the head has one.
+fn separator(head: &str) -> char {
+    [',', ';', '\t'].into_iter().find(|separator| head.contains(*separator)).unwrap_or(',')
+}
+
+fn cells(line: &str, separator: char) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            _ if letter == separator && !quoted => cells.push(String::new()),
+            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
+        }
+    }
+    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
+}
+
+/// Empties the lines in which a number is missing.
+fn gaps(rows: &mut [Vec<String>], head_at: usize, numbers: &[usize]) -> Result<Vec<String>, StreamError> {
+    let last = rows.len();
+    let said = |row: &[String]| row.iter().any(|cell| !cell.is_empty());
+    let lines = rows.iter().skip(head_at + 1).filter(|row| said(row)).count();
+    let mut found: Vec<(usize, String)> = Vec::new();
+    for (index, row) in rows.iter_mut().enumerate().skip(head_at + 1).filter(|(_, row)| said(row)) {
+        let why = numbers.iter().find_map(|at| match row.get(*at).map(|cell| (cell, cell.parse::<f64>())) {
+            None if index + 1 == last => Some("is cut off".to_owned()),
+            None => Some("has too few cells".to_owned()),
+            Some((cell, _)) if cell.is_empty() => Some("has an empty number".to_owned()),
+            Some((cell, Ok(value))) if !value.is_finite() => Some(format!("has `{cell}` for a number")),
+            Some((cell, Err(_))) if index + 1 == last => Some(format!("is cut off at `{cell}`")),
+            // Words where numbers are due are an error of another kind, which the reader names.
+            Some((_, Ok(_) | Err(_))) => None,
+        });
+        if let Some(why) = why {
+            row.clear();
+            found.push((index + 1, why));
+        }
+    }
+    #[expect(clippy::cast_precision_loss, reason = "lines of a file")]
+    if let Some((line, why)) = found.first()
+        && found.len() as f64 > GAPS * lines as f64
+    {
+        return Err(bad(*line, &format!("the line {why}, and so do {} of {lines} lines in all", found.len())));
+    }
+    let mut notes: Vec<String> =
+        found.iter().take(TOLD).map(|(line, why)| format!("line {line} {why}: taken as a gap")).collect();
+    if found.len() > TOLD {
+        notes.push(format!("{} more lines are taken as gaps", found.len() - TOLD));
+    }
+    Ok(notes)
+}
+
+/// Times since 1970 become seconds from the first on.
+fn since_begin(rows: &mut [Vec<String>], head_at: usize, time: usize) -> Option<String> {
+    let value = |row: &Vec<String>| row.get(time)?.parse::<f64>().ok();
+    let first = rows.iter().skip(head_at + 1).filter_map(value).reduce(f64::min)?;
+    let (_, per_second, name) = UNITS.into_iter().find(|(from, ..)| first >= *from)?;
+    for row in rows.iter_mut().skip(head_at + 1) {
+        if let Some(t) = value(row)
+            && let Some(cell) = row.get_mut(time)
+        {
+            *cell = format!("{:.6}", (t - first) / per_second);
+        }
+    }
+    Some(format!("times are {name} since 1970: taken as seconds from the first line on"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csv::read_tracks;
+
+    const TABLE: &str = "t,id,x,y\n0.0,robot,0.0,0.5\n0.1,robot,0.1,0.5\n0.2,robot,0.2,0.5\n0.3,robot,0.3,0.5\n";
+
+    fn same_as_the_table(text: &str, note: &str) {
+        let made = plain(text).unwrap();
+        assert!(made.notes.iter().any(|found| found.contains(note)), "{:?}", made.notes);
+        let (found, wanted) = (read_tracks(&made.text).unwrap(), read_tracks(TABLE).unwrap());
+        assert_eq!(found.ticks(), wanted.ticks());
+        for (a, b) in found.frames.iter().zip(&wanted.frames) {
+            assert!((a.x - b.x).abs() < 1e-5 && (a.y - b.y).abs() < 1e-9, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_plain_table_stays_as_it_is() {
+        assert_eq!(plain(TABLE).unwrap(), Plain { text: TABLE.to_owned(), notes: vec![] });
+        assert!(plain("").unwrap().notes.is_empty());
+    }
+
+    #[test]
+    fn semicolons_tabs_and_decimal_commas_are_read() {
+        same_as_the_table(&TABLE.replace(',', ";"), "separated by `;`");
+        same_as_the_table(&TABLE.replace(',', "\t"), "separated by tabs");
+        same_as_the_table(&TABLE.replace(',', ";").replace('.', ","), "separated by `;`");
+    }
+
+    #[test]
+    fn times_since_1970_begin_at_zero_whatever_their_unit() {
+        for (unit, name) in [(1.0, "are seconds"), (1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")] {
+            let mut text = String::from("t,id,x,y\n");
+            for k in 0..4 {
+                text.push_str(&format!("{},robot,0.{k},0.5\n", (1_700_000_000.0 + 0.1 * f64::from(k)) * unit));
+            }
+            same_as_the_table(&text, name);
+        }
+    }
+
+    #[test]
+    fn a_missing_number_and_a_cut_line_are_gaps_with_their_line() {
+        same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,nan,0.5"), "line 3 has `nan` for a number");
+        same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,,0.5"), "line 3 has an empty number");
+        same_as_the_table(&format!("{TABLE}0.4,rob"), "line 6 is cut off: taken as a gap");
+        let most = plain("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n").unwrap_err().to_string();
+        assert!(most.contains("line 2") && most.contains("2 of 3 lines"), "{most}");
+        // A word is not a gap.
+        assert!(read_tracks(&plain("t,id,x,y\n0,1,one,2\n1,1,1,2\n").unwrap().text).is_err());
+    }
+}

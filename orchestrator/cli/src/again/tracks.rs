@@ -1,0 +1,226 @@
+//! One recording from a file, ours or anybody's, scored with what is said of it on the command line.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use socrates_model::{AgentId, HumanId, Location, Point, Recording, Report};
+use socrates_scoring::Evidence;
+use socrates_stream::csv::{HUMAN_RADIUS_M, ROBOT_RADIUS_M, ROBOT_SPEED_MPS};
+use socrates_stream::{StreamError, mcap};
+
+use super::lines;
+use crate::exit::Complaint;
+use crate::files;
+
+/// Radii that are believed, m.
+const RADII_M: std::ops::RangeInclusive<f64> = 0.05..=2.0;
+
+/// What is known of a recording beside its tracks.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Known {
+    pub(crate) location: Option<Location>,
+    pub(crate) goal: Option<Point>,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) speed_mps: Option<f64>,
+    pub(crate) groups: Vec<Vec<HumanId>>,
+}
+
+/// A recording with its report.
+#[derive(Debug)]
+pub(crate) struct Scored {
+    pub(crate) recording: Recording,
+    pub(crate) report: Report,
+    /// What looks wrong, what was mended, and what was assumed, in sentences.
+    pub(crate) told: Vec<String>,
+}
+
+/// Reads and scores the bytes of a file.
+///
+/// # Errors
+/// What cannot be read, with what would be.
+pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Complaint> {
+    let mut told = Vec::new();
+    let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
+    let mut known = known.clone();
+    let mut recording =
+        if is_mcap { ours(name, bytes, &mut told)? } else { table(name, bytes, &mut known, &mut told)? };
+    if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
+        return Err(Complaint::input(
+            format!("the robot's radius cannot be {radius} m"),
+            format!("--radius takes metres from {} to {}", RADII_M.start(), RADII_M.end()),
+        ));
+    }
+    for info in recording.header.agents.iter_mut().filter(|info| info.agent == AgentId::Robot) {
+        info.radius_m = known.radius_m.unwrap_or(info.radius_m);
+        info.speed_mps = known.speed_mps.unwrap_or(info.speed_mps);
+    }
+    for who in known
+        .groups
+        .iter()
+        .flatten()
+        .filter(|id| !recording.header.agents.iter().any(|info| info.agent == AgentId::Human(**id)))
+    {
+        told.push(format!("--groups names {}, who is not in the recording", AgentId::Human(*who)));
+    }
+    told.extend(socrates_scoring::doubts(&recording, known.location.as_ref()));
+    let tracks = socrates_scoring::Tracks::read(&recording).map_err(|why| {
+        Complaint::input(
+            format!("`{name}`: {why}"),
+            "a recording has at least two moments, finite numbers, rising times and one track for each agent",
+        )
+    })?;
+    if !is_mcap && tracks.robot.is_some() {
+        told.extend(assumed(&known));
+    }
+    let evidence = Evidence {
+        location: known.location.as_ref(),
+        goal: known.goal,
+        groups: &known.groups,
+        ..Evidence::of(&recording)
+    };
+    let report = socrates_scoring::score(&evidence);
+    let goal = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
+    if tracks.robot.is_some() && !goal {
+        told.push(
+            "the robot's goal is not known: success, SPL and whatever asks for it have no value, and standing at the end is not counted as freezing; --goal X,Y tells it"
+                .to_owned(),
+        );
+    }
+    Ok(Scored { recording, report, told })
+}
+
+/// What is taken where nothing is said.
+fn assumed(known: &Known) -> Option<String> {
+    let mut parts = vec![format!("radius of people {HUMAN_RADIUS_M} m")];
+    if known.radius_m.is_none() {
+        parts.push(format!("radius of the robot {ROBOT_RADIUS_M} m (--radius)"));
+    }
+    if known.speed_mps.is_none() {
+        parts.push(format!("nominal speed of the robot {ROBOT_SPEED_MPS} m/s (--speed)"));
+    }
+    Some(format!("assumed: {}", parts.join(", ")))
+}
+
+fn ours(name: &str, bytes: &[u8], told: &mut Vec<String>) -> Result<Recording, Complaint> {
+    let rest = mcap::read_rest(bytes).map_err(|why| {
+        let hint = match &why {
+            StreamError::Foreign { .. } => {
+                "MCAP files of `socrates run` and `socrates simulate` are read; of others, write a CSV with the columns t,id,x,y[,yaw,gesture]"
+            }
+            StreamError::Link { .. }
+            | StreamError::Shm { .. }
+            | StreamError::Write { .. }
+            | StreamError::Read { .. }
+            | StreamError::NotWhole { .. }
+            | StreamError::Csv { .. } => {
+                "the MCAP file is damaged or was cut off: copy it again, or make the run again with `socrates simulate BUNDLE --out FOLDER`"
+            }
+        };
+        Complaint::input(format!("`{name}`: {why}"), hint)
+    })?;
+    if let Some(why) = rest.cut {
+        let last =
+            rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
+        told.push(format!("{why}: scored up to {last:.2} s"));
+    }
+    Ok(rest.recording)
+}
+
+fn table(name: &str, bytes: &[u8], known: &mut Known, told: &mut Vec<String>) -> Result<Recording, Complaint> {
+    let bad = |why: String| {
+        Complaint::input(
+            format!("`{name}`: {why}"),
+            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, metres and radians; id is `robot`, `human_1`, …",
+        )
+    };
+    let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
+    let plain = socrates_stream::csv::plain(text).map_err(|why| bad(why.to_string()))?;
+    told.extend(plain.notes);
+    let recording = socrates_stream::csv::read_tracks(&plain.text).map_err(|why| bad(why.to_string()))?;
+    told.extend(lines::doubts(plain.text.as_bytes())?);
+    let columns = Columns::read(&plain.text);
+    known.goal = known.goal.or(columns.goal);
+    if known.groups.is_empty() {
+        known.groups = columns.groups;
+    }
+    Ok(recording)
+}
+
+/// What columns beside the tracks tell: `goal_x` and `goal_y` of the robot, `group` of people.
+#[derive(Debug, Default, PartialEq)]
+struct Columns {
+    goal: Option<Point>,
+    groups: Vec<Vec<HumanId>>,
+}
+
+impl Columns {
+    fn read(text: &str) -> Self {
+        let mut lines = text.lines().filter(|line| !line.trim().is_empty());
+        let head = lines.next().map(|head| files::cells(&head.to_lowercase())).unwrap_or_default();
+        let column = |wanted: &str| head.iter().position(|name| name == wanted);
+        let Some(id) = column("id") else { return Self::default() };
+        let goal = column("goal_x").zip(column("goal_y"));
+        let group = column("group");
+        let mut found = Self::default();
+        let mut groups: BTreeMap<String, BTreeSet<HumanId>> = BTreeMap::new();
+        if goal.is_none() && group.is_none() {
+            return found;
+        }
+        for line in lines {
+            let cells = files::cells(line);
+            let Some(agent) = cells.get(id).and_then(|id| agent(id)) else { continue };
+            let number = |at: usize| cells.get(at)?.parse::<f64>().ok().filter(|value| value.is_finite());
+            match agent {
+                // The last goal is the one that counts: a recording may have several trips' worth of via points.
+                AgentId::Robot => {
+                    let at = goal.and_then(|(x, y)| Some(Point::new(number(x)?, number(y)?)));
+                    found.goal = at.or(found.goal);
+                }
+                AgentId::Human(id) => {
+                    let name = group.and_then(|at| cells.get(at)).filter(|name| !name.is_empty());
+                    name.into_iter().for_each(|name| {
+                        groups.entry(name.clone()).or_default().insert(id);
+                    });
+                }
+            }
+        }
+        found.groups =
+            groups.into_values().filter(|group| group.len() > 1).map(|group| group.into_iter().collect()).collect();
+        found
+    }
+}
+
+fn agent(id: &str) -> Option<AgentId> {
+    id.parse::<u32>().map(AgentId::from_number).ok().or_else(|| id.parse().ok())
+}
+
+/// `X,Y` as a point.
+///
+/// # Errors
+/// What is no such point.
+pub(crate) fn point(text: &str) -> Result<Point, String> {
+    let wrong = || format!("`{text}` is no point; it is X,Y in metres on the map, such as 31.5,-2");
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    Ok(Point::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
+}
+
+/// `1+2` as the people of one group.
+///
+/// # Errors
+/// What is no such group.
+pub(crate) fn group(text: &str) -> Result<Group, String> {
+    let wrong = || format!("`{text}` is no group; groups are numbers of people, such as 1+2,3+4");
+    let one = |id: &str| match agent(id.trim()) {
+        Some(AgentId::Human(id)) => Ok(id),
+        Some(AgentId::Robot) | None => Err(wrong()),
+    };
+    let members: Vec<HumanId> = text.split('+').map(one).collect::<Result<_, _>>()?;
+    if members.len() < 2 { Err(wrong()) } else { Ok(Group(members)) }
+}
+
+/// People who belong together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Group(pub(crate) Vec<HumanId>);
+
+#[cfg(test)]
+mod tests;
