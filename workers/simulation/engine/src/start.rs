@@ -142,10 +142,9 @@ pub(crate) fn humans(
 /// across, alone, and nothing asks for that very place.
 fn goes_off(setup: &Setup, proposal: &HumanProposal, nodes: &[NodeId]) -> bool {
     let Some(last) = nodes.last() else { return false };
-    let asked = |clause: &Clause| match &clause.predicate {
-        Predicate::Reaches { agent, .. } => *agent == proposal.id.into(),
-        Predicate::Enters { human, .. } => *human == proposal.id,
-        other => other.group().is_some() && other.group() == proposal.group,
+    let asked = |clause: &Clause| {
+        matches!(&clause.predicate, Predicate::Reaches { agent, .. } if *agent == proposal.id.into())
+            || matches!(&clause.predicate, Predicate::Enters { human, .. } if *human == proposal.id)
     };
     matches!(proposal.relation, Relation::Leaving | Relation::Crossing)
         && proposal.group.is_none()
