@@ -33,6 +33,7 @@ pub mod rule;
 pub mod drive;
 pub mod recording;
 pub mod report;
+mod telling;
 
 pub mod fault;
 pub mod job;

@@ -2,7 +2,7 @@
 
 use socrates_model::{AgentState, EventKind, Gesture, Location, Recording};
 
-use crate::label::text_width;
+use crate::label::{Area, text_width};
 use crate::map_layer::Frame;
 use crate::palette;
 use crate::presence::There;
@@ -28,14 +28,21 @@ pub(crate) struct Look {
     px_per_m: f64,
     /// Least radius of an agent, px.
     least_px: f64,
+    /// Part of the picture in which words stay.
+    bounds: Area,
+}
+
+/// Height of letters in a picture of this height, px.
+pub(crate) fn text_px(height_px: f64) -> f64 {
+    (height_px / 36.0).clamp(11.0, 26.0)
 }
 
 impl Look {
     /// The look of a recording on a picture of this height at this scale.
-    pub(crate) fn new(recording: &Recording, px_per_m: f64, height_px: f64, names: bool) -> Self {
+    pub(crate) fn new(recording: &Recording, px_per_m: f64, height_px: f64, names: bool, bounds: Area) -> Self {
         let crowd = recording.header.agents.len() > CROWD;
         let least_px = if crowd { height_px / 140.0 } else { height_px / 72.0 };
-        Self { text_px: (height_px / 36.0).clamp(11.0, 26.0), names, crowd, px_per_m, least_px }
+        Self { text_px: text_px(height_px), names, crowd, px_per_m, least_px, bounds }
     }
 
     /// Whether an agent's name is written.
@@ -219,6 +226,9 @@ fn draw_words(
         (at.0 + reach, at.1 - h / 2.0),
         (at.0 - reach - w, at.1 - h / 2.0),
     ];
+    // Words that would be cut at an edge are moved into the picture.
+    let Area { x: left, y: top, w: wide, h: high } = look.bounds;
+    let inside = |(x, y): (f64, f64)| (x.min(left + wide - w).max(left), y.min(top + high - h).max(top));
     let covered = |place: &(f64, f64)| -> f64 {
         taken
             .iter()
@@ -230,7 +240,7 @@ fn draw_words(
             .sum()
     };
     let mut best = (f64::MAX, (at.0, at.1));
-    for place in places {
+    for place in places.map(inside) {
         let hidden = covered(&place);
         if hidden < best.0 - 1e-9 {
             best = (hidden, place);
@@ -268,10 +278,27 @@ mod tests {
     fn drawn(run: &Recording, names: bool) -> String {
         let location = hall("hall");
         let frame = Frame::around(&location, 640.0, 360.0, (0.0, 0.0));
-        let look = Look::new(run, frame.len(&location, 1.0), 360.0, names);
+        let bounds = Area { x: 0.0, y: 0.0, w: 640.0, h: 360.0 };
+        let look = Look::new(run, frame.len(&location, 1.0), 360.0, names, bounds);
         let mut svg = Svg::part();
         draw_everybody(&mut svg, &location, &frame, run, 2.0, &look);
         svg.text_so_far()
+    }
+
+    #[test]
+    fn a_name_at_an_edge_stays_in_the_picture() {
+        let at = (1.0, 2.0);
+        let look_at = |bounds: Area| {
+            let run = walk(1);
+            let look = Look::new(&run, 30.0, 360.0, true, bounds);
+            let mut taken = vec![(at.0 - 8.0, at.1 - 8.0, 16.0, 16.0)];
+            draw_words(&mut Svg::part(), at, &state(1, 0.0, 0.0, 0.0, 0.0), 8.0, &look, &mut taken);
+            taken[1]
+        };
+        let (x, y, w, h) = look_at(Area { x: 0.0, y: 0.0, w: 640.0, h: 360.0 });
+        assert!(x >= 0.0 && y >= 0.0 && x + w <= 640.0 && y + h <= 360.0, "{x} {y}");
+        let (x, y, ..) = look_at(Area { x: -100.0, y: -100.0, w: 640.0, h: 360.0 });
+        assert!(x < 0.0 && y < 0.0, "above and in the middle where there is room: {x} {y}");
     }
 
     #[test]

@@ -7,8 +7,8 @@
 
 use socrates_model::{Action, EventKind, Location, Paths, Point, Recording};
 
-use crate::actor::{self, Look};
-use crate::label::{text_width, wrapped};
+use crate::actor::{self, Look, text_px};
+use crate::label::{Area, wrapped};
 use crate::map_layer::{Frame, draw_floor};
 use crate::page_data::marks;
 use crate::palette;
@@ -26,6 +26,8 @@ pub const PANELS: usize = 4;
 const CAPTION_SECS: f64 = 2.0;
 /// So many are told at once.
 const CAPTIONS: usize = 3;
+/// Height of a line of words beside the map, in heights of its letters.
+const LINE: f64 = 1.5;
 /// What begins within so long is how somebody starts, s.
 const FIRST_SECS: f64 = 0.5;
 
@@ -145,9 +147,34 @@ pub(crate) struct Panel<'a> {
     pub(crate) frame: Frame,
     pub(crate) at: (f64, f64),
     pub(crate) size: (f64, f64),
+    /// The part with the map: above it is the clock, below it the captions.
+    pub(crate) view: Area,
     pub(crate) title: String,
     pub(crate) look: Look,
-    captions: Vec<(f64, String)>,
+    pub(crate) captions: Vec<(f64, String)>,
+}
+
+impl Panel<'_> {
+    /// Lower left corner of the line of letters with the clock.
+    pub(crate) fn clock_at(&self) -> (f64, f64) {
+        let size = self.look.text_px;
+        (self.at.0 + size * 0.6, self.at.1 + size * 1.1)
+    }
+
+    /// Lower left corner of a caption, the newest in the lowest row.
+    pub(crate) fn caption_at(&self, row: usize) -> (f64, f64) {
+        let size = self.look.text_px;
+        #[expect(clippy::cast_precision_loss, reason = "a few rows")]
+        let up = size * LINE * row as f64;
+        (self.at.0 + size * 0.6, self.at.1 + self.size.1 - up - size * 0.5)
+    }
+
+    /// What is told at a moment, the newest first, for so many seconds of the run.
+    pub(crate) fn told(&self, now_s: f64, secs: f64) -> impl Iterator<Item = String> {
+        let fresh = self.captions.iter().filter(move |(t, _)| *t <= now_s + 1e-9 && now_s - t < secs);
+        let size = self.look.text_px;
+        fresh.rev().take(CAPTIONS).map(move |(_, words)| wrapped(words, self.size.0 - size * 1.2, size, 1).concat())
+    }
 }
 
 /// The times of a film of these runs.
@@ -249,17 +276,20 @@ impl<'a> Film<'a> {
         for (index, recording) in shown.iter().enumerate() {
             #[expect(clippy::cast_precision_loss, reason = "at most four panels")]
             let at = ((index % 2) as f64 * (size.0 + gap), (index / 2) as f64 * (size.1 + gap));
-            let frame = camera(location, paths, all, size, at);
-            ground.rect(at, size, &format!("fill=\"{}\"", palette::UNKNOWN));
+            let view = view(at, size, text_px(h / rows), options.labels);
+            let frame = camera(location, paths, all, (view.w, view.h), (view.x, view.y));
+            ground.rect((view.x, view.y), (view.w, view.h), &format!("fill=\"{}\"", palette::UNKNOWN));
             draw_floor(&mut ground, location, &frame);
+            draw_edges(&mut ground, &view, options.labels);
             let header = &recording.header;
-            let look = Look::new(recording, frame.len(location, 1.0), h / rows, options.labels);
+            let look = Look::new(recording, frame.len(location, 1.0), h / rows, options.labels, view);
             panels.push(Panel {
                 recording,
                 location,
                 frame,
                 at,
                 size,
+                view,
                 title: format!("{} · seed {}", header.planner, header.seed),
                 look,
                 captions: captions(recording),
@@ -280,53 +310,59 @@ impl<'a> Film<'a> {
     /// What moves, at a moment of the run, as SVG without the ground.
     fn drawing(&self, now_s: f64) -> String {
         let mut svg = Svg::new(f64::from(self.options.size.0), f64::from(self.options.size.1));
-        // Doors and people outside the camera of one panel must not be seen in the next one; a lone panel is cut by
-        // the picture itself.
-        let clipped = self.panels.len() > 1;
+        // Doors and people outside the camera of one panel must not be seen in the next one, nor under the words; a lone
+        // panel without words is cut by the picture itself.
+        let clipped = self.panels.len() > 1 || self.options.labels;
         for (index, panel) in self.panels.iter().enumerate() {
             if clipped {
                 svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
-                svg.rect(panel.at, panel.size, "");
+                svg.rect((panel.view.x, panel.view.y), (panel.view.w, panel.view.h), "");
                 svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
             }
             actor::draw_doors(&mut svg, panel.location, &panel.frame, panel.recording, now_s);
             actor::draw_everybody(&mut svg, panel.location, &panel.frame, panel.recording, now_s, &panel.look);
-            if self.options.labels {
-                self.draw_words(&mut svg, panel, now_s);
-            }
             if clipped {
                 svg.raw("</g>");
+            }
+            if self.options.labels {
+                self.draw_words(&mut svg, panel, now_s);
             }
         }
         svg.finish()
     }
 
+    /// Seconds of the run for which a caption stands.
+    pub(crate) fn caption_s(&self) -> f64 {
+        CAPTION_SECS * self.times.speed.max(1.0)
+    }
+
     fn draw_words(&self, svg: &mut Svg, panel: &Panel<'_>, now_s: f64) {
         let size = panel.look.text_px;
-        let (x, y) = panel.at;
-        let plate = |svg: &mut Svg, at: (f64, f64), words: &str| {
-            let w = text_width(words, size) + size * 0.8;
-            svg.rect(at, (w, size * 1.7), &format!("rx=\"{:.1}\" fill=\"#ffffff\" fill-opacity=\"0.88\"", size * 0.3));
-            svg.heading((at.0 + size * 0.5, at.1 + size * 1.2), words, size, palette::INK);
-        };
-        let margin = size * 0.6;
         let speed = if (self.times.speed - 1.0).abs() < 1e-9 {
             String::new()
         } else {
             format!(" ({}×)", (self.times.speed * 100.0).round() / 100.0)
         };
-        plate(svg, (x + margin, y + margin), &format!("{} · {now_s:.1} s{speed}", panel.title));
-        // The newest ones, each on a plate of its own, so that what comes fast is told as well.
-        let fresh = panel
-            .captions
-            .iter()
-            .filter(|(t, _)| *t <= now_s + 1e-9 && now_s - t < CAPTION_SECS * self.times.speed.max(1.0));
-        for (row, (_, words)) in fresh.rev().take(CAPTIONS).enumerate() {
-            let words = wrapped(words, panel.size.0 - size * 3.0, size, 1).concat();
-            #[expect(clippy::cast_precision_loss, reason = "a few rows")]
-            let up = size * 1.7 * (row as f64 + 1.0);
-            plate(svg, (x + margin, y + panel.size.1 - up - margin), &words);
+        svg.heading(panel.clock_at(), &format!("{} · {now_s:.1} s{speed}", panel.title), size, palette::INK);
+        // The newest ones, each on a line of its own, so that what comes fast is told as well.
+        for (row, words) in panel.told(now_s, self.caption_s()).enumerate() {
+            svg.heading(panel.caption_at(row), &words, size, palette::INK);
         }
+    }
+}
+
+/// The part of a panel in which the map is seen: words have strips of their own, so that they hide nobody.
+fn view(at: (f64, f64), size: (f64, f64), text_px: f64, labels: bool) -> Area {
+    #[expect(clippy::cast_precision_loss, reason = "a few captions")]
+    let (above, below) =
+        if labels { (text_px * (LINE + 0.1), text_px * (LINE * CAPTIONS as f64 + 0.2)) } else { (0.0, 0.0) };
+    Area { x: at.0, y: at.1 + above, w: size.0, h: size.1 - above - below }
+}
+
+/// Lines between the map and the strips of words: both may be white.
+pub(crate) fn draw_edges(svg: &mut Svg, view: &Area, labels: bool) {
+    for y in [view.y, view.y + view.h].into_iter().filter(|_| labels) {
+        svg.line((view.x, y), (view.x + view.w, y), &format!("stroke=\"{}\" stroke-width=\"2\"", palette::UNKNOWN));
     }
 }
 
@@ -416,6 +452,32 @@ mod tests {
         };
         assert!(words(true).contains("reference") && words(true).contains("h2"));
         assert!(!words(false).contains("reference") && !words(false).contains("h2"));
+    }
+
+    #[test]
+    fn clock_and_captions_stand_beside_the_map_and_hide_nobody() {
+        let (location, mut run) = (hall("hall"), walk(2));
+        let opens = |n: u64| EventKind::Door { door: format!("door {n}"), open: true };
+        let time = |n: u64| socrates_model::SimTime::from_nanos(1_900_000_000 + n * 20_000_000);
+        run.events = (0..4).map(|n| socrates_model::Event { time: time(n), kind: opens(n) }).collect();
+        let film = Film::new(&location, None, &[&run], &[&run], FilmOptions { size: (640, 360), ..SMALL }).unwrap();
+        let panel = &film.panels[0];
+        let size = panel.look.text_px;
+        assert!(panel.clock_at().1 + 0.3 * size <= panel.view.y, "below the letters of the clock is the map");
+        let told: Vec<String> = panel.told(2.0, film.caption_s()).collect();
+        assert_eq!(told, ["door 3 opens", "door 2 opens", "door 1 opens"]);
+        let highest = panel.caption_at(told.len() - 1).1 - size;
+        assert!(highest >= panel.view.y + panel.view.h, "{highest}");
+        for agent in [0, 1, 2] {
+            let state = run.tick(200)[agent];
+            let (x, y) = panel.frame.px(&location, &state.point());
+            let r = panel.look.radius_px(0.3);
+            let view = panel.view;
+            assert!(x - r >= view.x && x + r <= view.x + view.w && y - r >= view.y && y + r <= view.y + view.h);
+        }
+        let bare = FilmOptions { labels: false, ..SMALL };
+        let bare = Film::new(&location, None, &[&run], &[&run], bare).unwrap().panels[0].view;
+        assert_eq!((bare.w, bare.h), (320.0, 180.0));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use socrates_model::{EventKind, Gesture};
 
 use crate::actor::{body, moment};
-use crate::film::{Film, Panel};
+use crate::film::{Film, Panel, draw_edges};
 use crate::label::text_width;
 use crate::map_layer::draw_floor;
 use crate::palette;
@@ -22,16 +22,18 @@ impl Film<'_> {
         svg.rect((0.0, 0.0), (w, h), "fill=\"#ffffff\"");
         for (index, panel) in self.panels.iter().enumerate() {
             svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
-            svg.rect(panel.at, panel.size, "");
+            let (at, size) = ((panel.view.x, panel.view.y), (panel.view.w, panel.view.h));
+            svg.rect(at, size, "");
             svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
-            svg.rect(panel.at, panel.size, &format!("fill=\"{}\"", palette::UNKNOWN));
+            svg.rect(at, size, &format!("fill=\"{}\"", palette::UNKNOWN));
             draw_floor(&mut svg, panel.location, &panel.frame);
+            draw_edges(&mut svg, &panel.view, self.options.labels);
             self.animate_doors(&mut svg, panel);
             self.animate_agents(&mut svg, panel);
+            svg.raw("</g>");
             if self.options.labels {
                 self.animate_words(&mut svg, panel);
             }
-            svg.raw("</g>");
         }
         svg.finish()
     }
@@ -127,7 +129,15 @@ impl Film<'_> {
             let size = panel.look.text_px * 0.95;
             if panel.look.named(info.agent.number()) {
                 let name = info.agent.to_string().replace("human_", "h");
-                svg.label((0.0, -r - size * 0.35), &name, size, palette::agent_words(info.agent.number()));
+                // Below whoever comes so near to the upper edge that its name would be cut.
+                let highest = spots.iter().map(|(_, y)| *y).fold(f64::INFINITY, f64::min);
+                let cut = highest - r - size * 1.4 < panel.view.y;
+                svg.label(
+                    (0.0, if cut { r + size * 1.05 } else { -r - size * 0.35 }),
+                    &name,
+                    size,
+                    palette::agent_words(info.agent.number()),
+                );
             }
             self.animate_gestures(svg, panel, *place, r, size);
             svg.raw("</g>");
@@ -238,23 +248,33 @@ impl Film<'_> {
         }
     }
 
-    /// The run's name and a clock that counts whole seconds.
+    /// The run's name, a clock that counts whole seconds, and captions.
     fn animate_words(&self, svg: &mut Svg, panel: &Panel<'_>) {
         let size = panel.look.text_px;
-        let at = (panel.at.0 + size * 0.6, panel.at.1 + size * 0.6);
-        let wide = text_width(&panel.title, size) + size * 3.0;
-        svg.rect(at, (wide, size * 1.7), &format!("rx=\"{:.1}\" fill=\"#ffffff\" fill-opacity=\"0.88\"", size * 0.3));
-        svg.heading((at.0 + size * 0.5, at.1 + size * 1.2), &panel.title, size, palette::INK);
+        let at = panel.clock_at();
+        svg.heading(at, &panel.title, size, palette::INK);
+        let clock = at.0 + text_width(&panel.title, size) + size * 2.5;
         let mut second = self.times.from_s.floor();
         while second <= self.times.to_s {
             svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&[(second, second + 1.0)])));
             svg.text(
-                (at.0 + wide - size * 0.5, at.1 + size * 1.2),
+                (clock, at.1),
                 &format!("{second:.0} s"),
                 &format!("font-size=\"{size:.1}\" text-anchor=\"end\" fill=\"{}\"", palette::INK),
             );
             svg.raw("</g>");
             second += 1.0;
+        }
+        // The rows change where a caption comes or goes.
+        let secs = self.caption_s();
+        let mut changes: Vec<f64> = panel.captions.iter().flat_map(|(t, _)| [*t, t + secs]).collect();
+        changes.sort_by(f64::total_cmp);
+        for (from, to) in changes.iter().zip(changes.iter().skip(1)).filter(|(from, to)| to > from) {
+            for (row, words) in panel.told(f64::midpoint(*from, *to), secs).enumerate() {
+                svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&[(*from, *to)])));
+                svg.heading(panel.caption_at(row), &words, size, palette::INK);
+                svg.raw("</g>");
+            }
         }
     }
 }

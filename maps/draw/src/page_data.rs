@@ -1,18 +1,11 @@
 //! What the script of the report page plays and lists, as JSON.
 
-use std::collections::BTreeSet;
-
 use serde_json::{Value, json};
-use socrates_model::{
-    Action, AgentId, ClauseRole, Event, EventKind, HumanId, Location, Point, Reading, Recording, Report, ordinal,
-};
+use socrates_model::{Action, ClauseRole, Event, EventKind, Location, Point, Reading, Recording, Report};
 
 use crate::facts::fact_words;
 use crate::play;
 use crate::series::curves;
-
-/// Who has come no farther than this has kept its place, m.
-const PLACE_M: f64 = 0.5;
 
 /// All runs, where on the map they happen, and what was asked for.
 pub(crate) fn page_data(location: &Location, way: &[Point], reading: &Reading, runs: &[(Recording, Report)]) -> Value {
@@ -87,22 +80,14 @@ fn series(recording: &Recording, hz: u32) -> Value {
 
 /// The marks of a time line.
 pub(crate) fn marks(recording: &Recording) -> Vec<Value> {
-    let again = crate::run::several(recording);
-    let told = |event: &Event| mark(event.time.secs(), &event.kind, &again, &|human| stood(recording, human, event));
-    recording.events.iter().filter_map(told).collect()
-}
-
-/// Whether somebody has kept its place since the run began: it was met at no time of its own.
-fn stood(recording: &Recording, human: HumanId, until: &Event) -> bool {
-    let ticks = usize::try_from(until.time.tick()).unwrap_or(usize::MAX).saturating_add(1);
-    let mut track = recording.track(AgentId::Human(human)).take(ticks).map(|state| state.point());
-    track.next().is_some_and(|first| track.all(|at| (at - first).norm() <= PLACE_M))
+    recording.events.iter().filter_map(|event| mark(recording, event)).collect()
 }
 
 /// A mark on the time line: time, lane (agent number), kind and words.
-fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>, stood: &dyn Fn(HumanId) -> bool) -> Option<Value> {
+fn mark(recording: &Recording, event: &Event) -> Option<Value> {
+    let secs = event.time.secs();
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
-    match kind {
+    match &event.kind {
         EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
             mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
         }
@@ -110,15 +95,7 @@ fn mark(secs: f64, kind: &EventKind, again: &BTreeSet<HumanId>, stood: &dyn Fn(H
         EventKind::Sees { human, distance_m } => {
             mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
         }
-        EventKind::Encounter { human, .. } if stood(*human) => {
-            mark(human.number(), "encounter", format!("the robot comes to {human}"))
-        }
-        EventKind::Encounter { human, gap_s, nth, .. } => {
-            // To a millisecond first, as the report has it: else two roundings would tell two figures.
-            let which = if again.contains(human) { format!("{} ", ordinal(*nth)) } else { String::new() };
-            let gap_s = ((gap_s * 1e3).round() / 1e3).abs();
-            mark(human.number(), "encounter", format!("{which}encounter of {human} and the robot, gap {gap_s:.1} s"))
-        }
+        EventKind::Encounter { human, .. } => mark(human.number(), "encounter", recording.encounter_words(event)?),
         EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
         EventKind::WallContact { agent, .. } => mark(agent.number(), "contact", format!("{agent} touches a wall")),
         EventKind::Door { door, open } => mark(0, "door", format!("{door} {}", if *open { "opens" } else { "closes" })),
@@ -161,6 +138,8 @@ fn parted(tag: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::HumanId;
+
     use super::*;
 
     #[test]
@@ -174,17 +153,13 @@ mod tests {
     }
 
     #[test]
-    fn who_keeps_its_place_is_come_to_and_who_walks_meets_with_a_gap() {
+    fn an_encounter_is_told_as_in_the_story() {
         let mut run = crate::fixture::walk(1);
-        let human = HumanId::new(1);
-        let kind = EventKind::Encounter { human, node: socrates_model::NodeId::new("m").unwrap(), gap_s: 0.0, nth: 1 };
+        let node = socrates_model::NodeId::new("m").unwrap();
+        let kind = EventKind::Encounter { human: HumanId::new(1), node, gap_s: 0.4, nth: 1 };
         run.events = vec![Event { time: socrates_model::SimTime::from_nanos(3_000_000_000), kind }];
-        let words = |run: &Recording| marks(run)[0][3].as_str().unwrap().to_owned();
-        assert!(words(&run).contains("gap 0.0 s"), "{}", words(&run));
-        for state in run.frames.iter_mut().filter(|state| state.agent == 1) {
-            (state.x, state.y) = (1.0, 1.0);
-        }
-        assert_eq!(words(&run), "the robot comes to human_1");
+        assert_eq!(marks(&run)[0][3], run.encounter_words(&run.events[0]).unwrap());
+        assert_eq!(marks(&run)[0][3], "human_1 and the robot meet at m, gap 0.4 s");
     }
 
     #[test]

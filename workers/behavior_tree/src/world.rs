@@ -15,6 +15,11 @@ pub trait World {
     fn robot_blocking(&self, within_m: f64) -> bool;
     /// Whether the robot moves, in any direction.
     fn robot_moving(&self) -> bool;
+    /// Whether the robot has come to a stand: one that has not set off yet has not stopped. A world that knows of the
+    /// present only need not say more than [`World::robot_moving`].
+    fn robot_stopped(&self) -> bool {
+        self.robot_distance_m().is_some() && !self.robot_moving()
+    }
     /// The gesture the robot makes.
     fn robot_gesture(&self) -> Gesture;
     /// Whether the robot has passed this human ([`Trigger::RobotPassed`](socrates_model::Trigger::RobotPassed)); a world

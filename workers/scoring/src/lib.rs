@@ -40,6 +40,8 @@ mod crowds;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod lasting;
+#[cfg(test)]
 mod meetings;
 #[cfg(test)]
 mod scenarios;

@@ -3,9 +3,9 @@
 use std::collections::BTreeSet;
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId, ordinal};
+use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId};
 
-use crate::fidelity::{Judged, Signals, does, to_millis};
+use crate::fidelity::{Judged, Signals, does};
 use crate::metrics::Scene;
 use crate::tracks::MOVING_MPS;
 
@@ -21,7 +21,6 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     let mut lines: Vec<(f64, String)> = Vec::new();
     let mut add = |t: f64, text: String| lines.push((t, text));
     let events = &signals.evidence.recording.events;
-    let again = several(events);
     let mut led: BTreeSet<HumanId> = BTreeSet::new();
     for (index, event) in events.iter().enumerate() {
         let t = event.time.secs();
@@ -36,7 +35,7 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
                 continue;
             }
         }
-        if let Some(text) = told(signals, &event.kind, &again) {
+        if let Some(text) = told(signals, event) {
             add(t, text);
         }
     }
@@ -65,13 +64,6 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     story
 }
 
-/// Who meets the robot more than once.
-fn several(events: &[Event]) -> BTreeSet<HumanId> {
-    let again =
-        |kind: &EventKind| if let EventKind::Encounter { human, nth: 2.., .. } = kind { Some(*human) } else { None };
-    events.iter().filter_map(|event| again(&event.kind)).collect()
-}
-
 fn is_leaf_of(kind: &EventKind, human: HumanId) -> bool {
     matches!(kind, EventKind::Leaf { human: who, .. } if *who == human)
 }
@@ -84,8 +76,8 @@ fn goes_at(signals: &Signals<'_>, human: HumanId, from_s: f64, to_s: f64) -> Opt
 }
 
 /// An event in words; steps along paths are not told.
-fn told(signals: &Signals<'_>, kind: &EventKind, again: &BTreeSet<HumanId>) -> Option<String> {
-    Some(match kind {
+fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
+    Some(match &event.kind {
         EventKind::Gesture { gesture: Gesture::None, .. } | EventKind::Node { .. } => return None,
         EventKind::Gesture { agent, gesture } => format!("{agent} says {gesture}"),
         EventKind::Leaf { human, leaf } => match phrase(leaf) {
@@ -94,13 +86,7 @@ fn told(signals: &Signals<'_>, kind: &EventKind, again: &BTreeSet<HumanId>) -> O
             None => format!("{human} runs {leaf}"),
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
-        EventKind::Encounter { human, node, .. } if signals.evidence.stands(*human) => {
-            format!("the robot comes to {human} at {node}")
-        }
-        EventKind::Encounter { human, node, gap_s, nth } => {
-            let which = if again.contains(human) { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
-            format!("{human} and the robot meet{which} at {node}, gap {:.1} s", to_millis(*gap_s).abs())
-        }
+        EventKind::Encounter { .. } => return signals.evidence.recording.encounter_words(event),
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
         EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {:.0} mm deep", depth_m * 1e3),
         EventKind::Door { door, open } => format!("{door} {}", if *open { "opens" } else { "closes" }),

@@ -1,4 +1,4 @@
-//! `IsRobotStopped`: the robot stands still.
+//! `IsRobotStopped`: the robot has moved and stands still.
 
 use socrates_model::Trigger;
 
@@ -16,7 +16,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     library: Library::Native,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN],
-    about: "holds while there is a robot and it stands still",
+    about: "holds while there is a robot that has moved before and stands still",
     role: Role::Asks(means),
     tick,
     halt: halt_leaf,
@@ -27,5 +27,5 @@ fn means(_ports: &Ports<'_>) -> Option<Trigger> {
 }
 
 fn tick(t: &mut Ticker<'_>, _node: usize) -> Status {
-    Status::of(t.world.robot_distance_m().is_some() && !t.world.robot_moving())
+    Status::of(t.world.robot_stopped())
 }

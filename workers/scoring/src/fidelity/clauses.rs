@@ -5,7 +5,7 @@ use std::convert::identity;
 
 use socrates_model::report::Standing;
 use socrates_model::{
-    Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, ordinal, rule::RobotDo,
+    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, ordinal, rule::RobotDo,
 };
 
 use crate::fidelity::finding::Finding;
@@ -129,6 +129,42 @@ fn stands_for_queue(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> 
     members.min_by(|a, b| nearest(a).total_cmp(&nearest(b))).is_none_or(|first| first == human)
 }
 
+/// Whether a human who follows somebody has to meet the robot by itself as well. Who follows another human comes as
+/// near to the robot as that one, and who follows the robot has met it wherever it comes near. Somebody has to be met
+/// in every scenario: where nobody else is, these are.
+fn only_follows(signals: &Signals<'_>, given: &[Clause], human: HumanId) -> bool {
+    let led = |one: HumanId, leader: &dyn Fn(AgentId) -> bool| {
+        given.iter().any(|clause| {
+            clause.role == ClauseRole::Setup
+                && clause.must
+                && matches!(clause.predicate, Predicate::Follows { follower, leader: who, .. } if follower == one.into() && leader(who))
+        })
+    };
+    let by_rule = |one: HumanId| {
+        let rules =
+            signals.evidence.proposal.and_then(|proposal| proposal.human(one)).map_or(&[][..], |one| &one.rules);
+        !rules.is_empty() && rules.iter().all(|rule| matches!(rule.act, Action::FollowHuman(_)))
+    };
+    let after_human = |one: HumanId| by_rule(one) || led(one, &|who| matches!(who, AgentId::Human(_)));
+    if led(human, &|who| who == AgentId::Robot) {
+        return signals.of(human).iter().any(|moment| moment.distance_m <= MEET_NODE_M);
+    }
+    let others = signals.evidence.paths.map_or(&[][..], |paths| &paths.encounters);
+    after_human(human) && others.iter().any(|other| other.human != human && !after_human(other.human))
+}
+
+/// Whether a human whose place was at its encounter has gone from there to let the robot through, and met it all the same.
+fn made_way(signals: &Signals<'_>, human: HumanId) -> bool {
+    let Some(person) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else { return false };
+    let Some((_, node)) = signals.encounter(human) else { return false };
+    let moments = signals.of(human);
+    person.relation == Relation::Static
+        && person.rules.iter().any(|rule| rule.act == Action::GiveWay)
+        && moments.first().is_some_and(|moment| (moment.human.at - node).norm() <= MEET_NODE_M)
+        && moments.iter().any(|moment| (moment.robot.at - node).norm() <= MEET_NODE_M)
+        && moments.iter().any(|moment| moment.distance_m <= MEET_NODE_M)
+}
+
 /// What must be seen whatever the proposal lists: everybody is there, nobody breaks physics, and
 /// every encounter of the paths happens. A scenario cannot be realised by promising nothing.
 fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
@@ -154,7 +190,8 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
         for encounter in &paths.encounters {
             let human = encounter.human;
-            if !stands_for_queue(signals, given, human) {
+            let shown = only_follows(signals, given, human) || made_way(signals, human);
+            if shown || !stands_for_queue(signals, given, human) {
                 continue;
             }
             let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);

@@ -72,7 +72,11 @@ pub(super) fn follows(
     }
     let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| (b - a, a)).max_by(|a, b| a.0.total_cmp(&b.0));
     let text = match longest {
+        Some((length, from)) if length >= for_s => {
+            format!("{what}: {length:.1} s from {from:.1} s, but {leader} hardly goes anywhere then")
+        }
         Some((length, from)) => format!("{what}: only {length:.1} s from {from:.1} s"),
+        None if found.margin.is_infinite() => format!("{what}: it never came about"),
         None => format!("{what}: not once, short by {:.2} m at {:.1} s", -found.margin, found.best_s),
     };
     Finding::fails(found.margin, vec![found.best_s], text).shifted(longest.map_or(0.0, |(length, _)| length) - for_s)

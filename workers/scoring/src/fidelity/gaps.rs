@@ -10,8 +10,7 @@ use crate::fidelity::signals::Signals;
 pub(super) const ARRIVED_M: f64 = 1.5;
 
 /// A gap as reports have it, to a millisecond: whoever writes it with fewer digits begins from the same figure.
-#[must_use]
-pub(crate) fn to_millis(gap_s: f64) -> f64 {
+fn to_millis(gap_s: f64) -> f64 {
     (gap_s * 1e3).round() / 1e3
 }
 

@@ -310,7 +310,10 @@ pub(super) fn lasting(
         stretches(marks, 0.0).into_iter().map(|(from, to)| (to - from, from)).max_by(|a, b| a.0.total_cmp(&b.0));
     let text = match longest {
         Some((length, from)) => format!("{human} {what}: only {length:.1} s from {from:.1} s"),
-        None => format!("{human} {what}: not once; best at {:.1} s, short by {:.2}", found.best_s, -found.margin),
+        None if found.margin.is_finite() => {
+            format!("{human} {what}: not once; best at {:.1} s, short by {:.2}", found.best_s, -found.margin)
+        }
+        None => format!("{human} {what}: it never came about"),
     };
     Finding::fails(found.margin, vec![found.best_s], text).shifted(longest.map_or(0.0, |(length, _)| length) - for_s)
 }

@@ -15,6 +15,7 @@ mod finding;
 mod follow;
 mod gaps;
 mod groups;
+mod kept;
 mod leaves;
 mod meeting;
 mod openings;
@@ -35,5 +36,5 @@ pub use robot::{GOAL_M, goal as robot_goal};
 pub use signals::{Moment, Signals};
 pub use verdict::{Ruling, rule};
 
-pub(crate) use gaps::{encounter_gaps, to_millis};
+pub(crate) use gaps::encounter_gaps;
 pub(crate) use leaves::does;

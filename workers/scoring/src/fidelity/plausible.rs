@@ -10,6 +10,8 @@ use crate::tracks::Track;
 
 /// Overlap that contact resolution may leave, m.
 const OVERLAP_M: f64 = 0.02;
+/// By how much of a cell the distance to a wall may be off.
+const FIELD_CELLS: f64 = 0.25;
 /// Fastest plausible agent, m/s, and what rounding of positions may add.
 const FASTEST_MPS: f64 = 2.0;
 const SPEED_SLACK_MPS: f64 = 0.1;
@@ -44,8 +46,8 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
         found.extend(too_fast(a));
     }
     if let (Some(location), Some(field)) = (signals.evidence.location, &signals.field) {
-        // A wall is known to the size of a cell only.
-        let allowed = OVERLAP_M + location.grid.resolution_m;
+        // The field is exact to a part of a cell only.
+        let allowed = OVERLAP_M + FIELD_CELLS * location.grid.resolution_m;
         for track in signals.tracks.all() {
             let worst = track
                 .present()

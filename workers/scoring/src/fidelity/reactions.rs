@@ -6,6 +6,7 @@ use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 
 use crate::fidelity::acts::{seen, timely};
 use crate::fidelity::finding::Finding;
+use crate::fidelity::kept::kept;
 use crate::fidelity::leaves::does;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::{Moment, Signals};
@@ -49,6 +50,8 @@ fn trigger_mark(
                     .min(flag(moment.sight.unwrap_or(true)))
             }
             Trigger::RobotMoving => moment.robot.speed() - MOVING_MPS,
+            // A robot that has not set off yet has not stopped.
+            Trigger::RobotStopped if moment.t < signals.moves_s => -MOVING_MPS,
             Trigger::RobotStopped => MOVING_MPS - moment.robot.speed(),
             Trigger::RobotPassed => (Trigger::PASSED_WITHIN_M + slack_m - nearest_m)
                 .min(moment.distance_m + slack_m - nearest_m - Trigger::PASSED_BY_M),
@@ -86,6 +89,11 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
     signals.of(human).iter().map(mark).collect()
 }
 
+/// Whether all triggers hold at a moment of a human.
+pub(super) fn holds(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment: &Moment) -> bool {
+    trigger_mark(signals, human, when, moment, 0.0).margin >= 0.0
+}
+
 /// Times at which the triggers begin to hold.
 fn rises(marks: &[Mark]) -> Vec<f64> {
     let mut held = false;
@@ -101,7 +109,7 @@ fn rises(marks: &[Mark]) -> Vec<f64> {
 }
 
 /// Actions that have a beginning of their own; walking and standing go on all the time.
-const fn has_onset(action: &Action) -> bool {
+pub(super) const fn has_onset(action: &Action) -> bool {
     !matches!(action, Action::Navigate | Action::StandStill)
 }
 
@@ -163,9 +171,10 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
     );
     let times = vec![onset, trigger.t];
     if delay > within_s && again.is_some_and(|rise| onset - rise <= within_s) {
-        return Finding::late(within_s - delay, times, format!("{text}, when the trigger came again"));
+        let found = Finding::late(within_s - delay, times, format!("{text}, when the trigger came again"));
+        return kept(signals, human, when, act, found);
     }
-    timely(delay, within_s, times, text)
+    kept(signals, human, when, act, timely(delay, within_s, times, text))
 }
 
 /// How long after the reason for it a gesture is made, s: after the last rise of the triggers of a rule with this

@@ -10,7 +10,7 @@ use crate::evidence::Evidence;
 use crate::fidelity::doors::Doors;
 use crate::fidelity::leaves::{LeafSpan, leaf_spans};
 use crate::fidelity::times::{Meeting, meetings_of};
-use crate::tracks::{Sample, Track, Tracks};
+use crate::tracks::{MOVING_MPS, Sample, Track, Tracks};
 
 /// Time between two moments, s (`spec/evaluation` §5.3: 10 to 20 Hz).
 pub(super) const MOMENT_SECS: f64 = 0.05;
@@ -76,6 +76,8 @@ pub struct Signals<'a> {
     pub leaves: BTreeMap<HumanId, Vec<LeafSpan>>,
     /// Whether the recording tells leaves of anybody: then one who has none does nothing by its tree.
     pub tells_leaves: bool,
+    /// When the robot first moves, s; infinite where it never does.
+    pub moves_s: f64,
     /// When the robot arrived, s.
     pub arrived_s: Option<f64>,
     /// Distance to walls; `None` without a map.
@@ -122,6 +124,8 @@ impl<'a> Signals<'a> {
             .filter_map(|track| Some((track.human()?, leaf_spans(evidence.recording, track))))
             .collect();
         let tells_leaves = leaves.values().any(|spans| !spans.is_empty());
+        let moves = full.robot.as_ref().and_then(|robot| robot.present().find(|sample| sample.speed() > MOVING_MPS));
+        let moves_s = moves.map_or(f64::INFINITY, |sample| sample.t);
         let arrived_s = evidence
             .recording
             .events
@@ -129,7 +133,7 @@ impl<'a> Signals<'a> {
             .find(|event| event.kind == EventKind::RobotArrived)
             .map(|event| event.time.secs());
         let meetings = meetings_of(evidence, tracks.robot.as_ref());
-        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, arrived_s, field, meetings }
+        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, moves_s, arrived_s, field, meetings }
     }
 
     /// Moments of a human; empty when it or the robot is missing.

@@ -17,6 +17,11 @@ const RIM_M: f64 = 0.4;
 /// Members keep so far from the robot's way, m.
 const CLEAR_OF_WAY_M: f64 = 0.75;
 
+/// Distance of neighbors where there is no room for a circle, m, and how many steps of 0.1 m to either side a place for
+/// one of them is looked for.
+const SQUEEZE_M: f64 = 0.75;
+const SQUEEZE_STEPS: i32 = 30;
+
 /// What is known of the floor round a group.
 pub(crate) struct Around<'a> {
     pub(crate) floor: &'a Floor,
@@ -116,6 +121,34 @@ pub(crate) fn line(home: &Point, count: usize, around: &Around<'_>) -> Option<Ve
     best.map(|(_, places)| places)
 }
 
+/// Where no circle fits, as in an aisle: each on the free place nearest to `home`, looking at the middle of them all.
+pub(crate) fn squeezed(home: &Point, count: usize, around: &Around<'_>) -> Option<Vec<(Point, f64)>> {
+    let mut places: Vec<Point> = Vec::new();
+    for _ in 0..count {
+        let mut best: Option<(f64, Point)> = None;
+        for (right, up) in (-SQUEEZE_STEPS..=SQUEEZE_STEPS).flat_map(|right| {
+            (-SQUEEZE_STEPS..=SQUEEZE_STEPS).map(move |up| (0.1 * f64::from(right), 0.1 * f64::from(up)))
+        }) {
+            let at = home + Vector::new(right, up);
+            let far = (at - home).norm();
+            let free = around.free(&at)
+                && places.iter().all(|other| (at - other).norm() >= SQUEEZE_M)
+                && around.floor.straight(home, &at, around.body.min(around.floor.wall_clearance_m(home)).min(0.2));
+            if free && best.is_none_or(|(least, _)| far < least - 1e-9) {
+                best = Some((far, at));
+            }
+        }
+        places.push(best?.1);
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a few people")]
+    let middle = places.iter().map(|at| at.coords).sum::<Vector>() / places.len().max(1) as f64;
+    let toward = |at: &Point| {
+        let way = middle - at.coords;
+        if way.norm() > 0.05 { libm::atan2(way.y, way.x) } else { 0.0 }
+    };
+    Some(places.iter().map(|at| (*at, toward(at))).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,6 +168,19 @@ mod tests {
             assert!((pair[0].1 - pair[1].1).abs() < 1e-9);
         }
         assert!(places.iter().all(|(at, _)| route.project(at).1 >= BESIDE_M - 1e-9), "{places:?}");
+    }
+
+    #[test]
+    fn people_in_an_aisle_too_narrow_for_a_circle_stand_free_of_its_walls_and_of_each_other() {
+        let floor = Floor::new(&crate::fixture::carve(12.0, 4.0, &[(0.5, 1.5, 11.5, 2.6)]));
+        let around = Around { floor: &floor, route: None, taken: &[], body: 0.28 };
+        let places = squeezed(&Point::new(6.0, 2.05), 3, &around).unwrap();
+        for (place, (at, _)) in places.iter().enumerate() {
+            assert!(floor.clearance_m(at) >= 0.28 + MARGIN_M && (at.x - 6.0).abs() < 1.5, "{at}");
+            assert!(places.iter().skip(place + 1).all(|(other, _)| (at - other).norm() >= SQUEEZE_M), "{places:?}");
+        }
+        let shut = Floor::new(&crate::fixture::carve(12.0, 4.0, &[(0.5, 1.8, 11.5, 2.2)]));
+        assert_eq!(squeezed(&Point::new(6.0, 2.05), 3, &Around { floor: &shut, ..around }), None);
     }
 
     #[test]

@@ -29,6 +29,7 @@ mod block;
 mod cells;
 mod drive;
 mod ending;
+mod ends;
 mod gathering;
 mod human;
 mod lanes;

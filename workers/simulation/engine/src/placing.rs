@@ -255,7 +255,8 @@ fn formation(
             }
         }
     }
-    best.map_or_else(|| ring_places(home, ring.min(0.6), count, heading), |(_, places)| places)
+    let squeezed = || gathering::squeezed(home, count, &Around { floor, route, taken, body });
+    best.map(|(_, places)| places).or_else(squeezed).unwrap_or_else(|| ring_places(home, ring.min(0.6), count, heading))
 }
 
 /// How free the better of the two half circles round a group is for a robot, 0 to 1.

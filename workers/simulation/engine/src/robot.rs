@@ -3,6 +3,8 @@
 use socrates_model::time::STEP_SECS;
 use socrates_model::{AgentId, Command, Gesture, NodeId, Point, Polyline, Pose, RobotModel, Vector};
 
+use crate::view::MOVING_MPS;
+
 /// Largest change of turning rate, rad/s².
 const ALPHA_MAX: f64 = 4.0;
 /// How long a gesture is held, s.
@@ -18,6 +20,8 @@ pub(crate) struct Robot {
     pub(crate) v: f64,
     pub(crate) omega: f64,
     pub(crate) velocity: Vector,
+    /// Whether it ever moved.
+    pub(crate) has_moved: bool,
     pub(crate) command: Command,
     pub(crate) calls: u64,
     pub(crate) gesture: Gesture,
@@ -91,6 +95,7 @@ impl Robot {
             self.velocity = velocity;
             self.v = velocity.dot(&self.heading());
         }
+        self.has_moved |= self.velocity.norm() > MOVING_MPS;
         let before = self.s;
         let (s, aside) = self.route.project_within(&at, self.s - 0.3, self.s + 3.0);
         // Far off its way the nearest point says little; then only progress counts.

@@ -182,6 +182,7 @@ impl Engine {
         let robot = self.robot.as_ref().map(|robot| RobotSeen {
             at: robot.at(),
             speed_mps: robot.velocity.norm(),
+            has_moved: robot.has_moved,
             gesture: robot.gesture,
         });
         let gestures: Vec<(HumanId, Gesture)> = self.humans.iter().map(|human| (human.id, human.gesture)).collect();

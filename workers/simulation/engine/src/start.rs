@@ -11,10 +11,11 @@ use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
     Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
-    Predicate, RecordingHeader, Relation, Vector,
+    Predicate, RecordingHeader, Relation, Trigger, Vector,
 };
 
 use crate::block::blockers;
+use crate::ends;
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::make_room::Facing;
@@ -72,6 +73,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         v: 0.0,
         omega: 0.0,
         velocity: Vector::zeros(),
+        has_moved: false,
         command: Command::default(),
         calls: 0,
         gesture: Gesture::None,
@@ -123,7 +125,7 @@ pub(crate) fn humans(
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
             .filter_map(|other| other.route.end())
             .collect();
-        human.route = apart(human.route, &taken, floor);
+        human.route = ends::apart(human.route, &taken, floor);
         let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
         if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
             inside.insert(proposal.id, door.middle());
@@ -136,68 +138,28 @@ pub(crate) fn humans(
     humans
 }
 
+/// Whether somebody has nothing more to do at the end of its path and may stand beside it: it came out of a room or went
+/// across, alone, and nothing asks for that very place.
+fn goes_off(setup: &Setup, proposal: &HumanProposal, nodes: &[NodeId]) -> bool {
+    let Some(last) = nodes.last() else { return false };
+    let asked = |clause: &Clause| {
+        matches!(&clause.predicate, Predicate::Reaches { agent, .. } if *agent == proposal.id.into())
+            || matches!(&clause.predicate, Predicate::Enters { human, .. } if *human == proposal.id)
+    };
+    matches!(proposal.relation, Relation::Leaving | Relation::Crossing)
+        && proposal.group.is_none()
+        && setup.location.door_of(last).is_none()
+        && setup.paths.encounters_of(proposal.id).all(|node| node != last)
+        && !proposal.rules.iter().any(|rule| rule.when.contains(&Trigger::GoalReached))
+        && !setup.proposal.expected_events.iter().any(asked)
+}
+
 /// Groups that wait in line: those of which a clause says so.
 fn lines(proposal: &socrates_model::Proposal) -> Vec<GroupId> {
     let queue = |clause: &Clause| {
         if let Predicate::Queues { group, .. } = clause.predicate { Some(group) } else { None }
     };
     proposal.expected_events.iter().filter_map(queue).collect()
-}
-
-/// Who walks to the robot's own goal ends beside it, so that both can arrive.
-fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
-    let (Some(end), Some(goal)) = (route.end(), robot_way.end()) else { return route };
-    if (end - goal).norm() > 0.9 {
-        return route;
-    }
-    let mut best: Option<(f64, Point)> = None;
-    for ring in 0..=6_u32 {
-        for turn in 0..24_u32 {
-            let angle = f64::from(turn) / 24.0 * std::f64::consts::TAU;
-            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.3 + 0.2 * f64::from(ring));
-            let aside = robot_way.project(&at).1;
-            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 && floor.straight(&end, &at, 0.2);
-            let cost = (at - goal).norm() + 2.0 * (1.1 - aside).max(0.0);
-            if free && aside > 0.6 && best.is_none_or(|(least, _)| cost < least - 1e-9) {
-                best = Some((cost, at));
-            }
-        }
-    }
-    let mut points: Vec<Point> = route.points().to_vec();
-    if let (Some(last), Some((_, at))) = (points.last_mut(), best) {
-        // Turns off before the goal instead of stepping on it.
-        let before = route.point(route.length_m() - 0.8);
-        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
-        points.push(at);
-    }
-    Polyline::new(&points)
-}
-
-/// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive.
-fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
-    let crowded = |at: &Point| taken.iter().any(|other| (other - at).norm() < 0.75);
-    let Some(end) = route.end().filter(|end| route.length_m() > 1.0 && crowded(end)) else { return route };
-    let mut best: Option<(f64, Point)> = None;
-    for ring in 0..=4_u32 {
-        for turn in 0..16_u32 {
-            let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
-            let at = end + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.8 + 0.2 * f64::from(ring));
-            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.1 && floor.straight(&end, &at, 0.2);
-            // Short of the others, so that nobody has to walk round them.
-            let cost = (at - end).norm() + 0.3 * (at - route.point(route.length_m() - 1.0)).norm();
-            if free && !crowded(&at) && best.is_none_or(|(least, _)| cost < least - 1e-9) {
-                best = Some((cost, at));
-            }
-        }
-    }
-    let Some((_, at)) = best else { return route };
-    let mut points: Vec<Point> = route.points().to_vec();
-    let before = route.point(route.length_m() - 0.9);
-    if let Some(last) = points.last_mut() {
-        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
-    }
-    points.push(at);
-    Polyline::new(&points)
 }
 
 fn human(
@@ -210,7 +172,10 @@ fn human(
     let nodes: &[NodeId] = setup.paths.humans.get(&proposal.id).map_or(&[], Vec::as_slice);
     let (mut route, marks) = way(setup, nodes);
     if route.length_m() > 1.0 {
-        route = clear_end(route, robot_way, floor);
+        route = ends::clear_end(route, robot_way, floor);
+        if goes_off(setup, proposal, nodes) {
+            route = ends::aside(route, robot_way, &setup.location.doors, floor);
+        }
     }
     let meetings = meetings::of(setup, proposal, (&route, &marks), (robot_way, robot_marks));
     let speed_mps = proposal.speed_mps.unwrap_or_else(|| drawn_speed(setup.seed, proposal.id));

@@ -103,6 +103,21 @@ fn a_frontal_human_meets_the_robot_at_the_node_and_passes_it() {
 }
 
 #[test]
+fn a_robot_that_has_not_set_off_yet_has_not_stopped() {
+    let looks = rule(Trigger::RobotStopped, Action::LookAtRobot);
+    let cast = [Cast(Relation::Frontal, &["e", "d", "c", "b", "a"], vec![looks])];
+    let recording = run(setup(corridor(), &["a", "b", "c", "d", "e"], &cast, &[(1, "c")]));
+    let began = |name: &str| -> Vec<f64> {
+        let of = |kind: &EventKind| matches!(kind, EventKind::Leaf { leaf, .. } if leaf == name);
+        recording.events.iter().filter(|event| of(&event.kind)).map(|event| event.time.secs()).collect()
+    };
+    let moves = recording.track(AgentId::Robot).position(|state| state.speed() > 0.1).unwrap() as f64 * 0.01;
+    assert!(moves > 0.05, "it stands at first");
+    let looks = began("LookAtRobot");
+    assert!(!looks.is_empty() && looks.iter().all(|t| *t > moves + 1.0), "moves from {moves} s, looks from {looks:?}");
+}
+
+#[test]
 fn people_who_cross_come_at_the_robots_time_whatever_the_seed() {
     for seed in 1..=8 {
         let cast =

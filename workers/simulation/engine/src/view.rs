@@ -14,7 +14,7 @@ pub(crate) const HALF_FIELD_OF_VIEW_RAD: f64 = 100.0 * std::f64::consts::PI / 18
 /// The robot blocks somebody whose direction of travel points at it within this angle, rad.
 const BLOCKING_RAD: f64 = 0.5;
 /// A robot faster than this moves, m/s.
-const MOVING_MPS: f64 = 0.1;
+pub(crate) const MOVING_MPS: f64 = 0.1;
 /// Within this distance of its encounter node a human is at it, m.
 const AT_ENCOUNTER_M: f64 = 1.0;
 
@@ -23,6 +23,8 @@ const AT_ENCOUNTER_M: f64 = 1.0;
 pub(crate) struct RobotSeen {
     pub(crate) at: Point,
     pub(crate) speed_mps: f64,
+    /// Whether it has moved in this run.
+    pub(crate) has_moved: bool,
     pub(crate) gesture: Gesture,
 }
 
@@ -112,6 +114,10 @@ impl World for View<'_> {
 
     fn robot_passed(&self) -> bool {
         self.robot_distance_m().is_some_and(|distance_m| Trigger::is_passed(distance_m, self.human.nearest_robot_m))
+    }
+
+    fn robot_stopped(&self) -> bool {
+        self.robot.is_some_and(|robot| robot.has_moved && robot.speed_mps <= MOVING_MPS)
     }
 
     fn robot_gesture(&self) -> Gesture {

@@ -1,0 +1,162 @@
+//! Where paths end: beside the robot's goal, beside each other, and out of the way of those who still go somewhere.
+
+use socrates_model::geometry::nearest_on_segment;
+use socrates_model::{Door, Point, Polyline, Vector};
+
+use crate::floor::Floor;
+use crate::setup::PERSON_RADIUS_M;
+
+/// Nearer than this to the robot's way somebody stands on it, and at this distance the robot passes with room, m.
+const ON_WAY_M: f64 = 0.8;
+const OFF_WAY_M: f64 = 1.0;
+/// Least distance from the robot's way that is worth a step aside, m.
+const LEAST_OFF_M: f64 = 0.7;
+/// Nearer than this to a door somebody stands before it, m; a place that is chosen in front of it is farther; beside its
+/// frame so far is enough.
+const BEFORE_DOOR_M: f64 = 2.0;
+const CLEAR_OF_DOOR_M: f64 = 3.0;
+const BESIDE_DOOR_M: f64 = 0.4;
+/// Distance from a wall at which people stand along it, m.
+const BY_WALL_M: f64 = 0.45;
+/// How far from the end of the path a place is looked for, in rings of 0.25 m.
+const RINGS: u32 = 8;
+
+/// Who walks to the robot's own goal ends beside it, so that both can arrive.
+pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
+    let (Some(end), Some(goal)) = (route.end(), robot_way.end()) else { return route };
+    if (end - goal).norm() > 0.9 {
+        return route;
+    }
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 0..=6_u32 {
+        for turn in 0..24_u32 {
+            let angle = f64::from(turn) / 24.0 * std::f64::consts::TAU;
+            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.3 + 0.2 * f64::from(ring));
+            let aside = robot_way.project(&at).1;
+            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 && floor.straight(&end, &at, 0.2);
+            let cost = (at - goal).norm() + 2.0 * (1.1 - aside).max(0.0);
+            if free && aside > 0.6 && best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+    }
+    let mut points: Vec<Point> = route.points().to_vec();
+    if let (Some(last), Some((_, at))) = (points.last_mut(), best) {
+        // Turns off before the goal instead of stepping on it.
+        let before = route.point(route.length_m() - 0.8);
+        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
+        points.push(at);
+    }
+    Polyline::new(&points)
+}
+
+/// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive.
+pub(crate) fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
+    let crowded = |at: &Point| taken.iter().any(|other| (other - at).norm() < 0.75);
+    let Some(end) = route.end().filter(|end| route.length_m() > 1.0 && crowded(end)) else { return route };
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 0..=4_u32 {
+        for turn in 0..16_u32 {
+            let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
+            let at = end + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.8 + 0.2 * f64::from(ring));
+            let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.1 && floor.straight(&end, &at, 0.2);
+            // Short of the others, so that nobody has to walk round them.
+            let cost = (at - end).norm() + 0.3 * (at - route.point(route.length_m() - 1.0)).norm();
+            if free && !crowded(&at) && best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+    }
+    let Some((_, at)) = best else { return route };
+    let mut points: Vec<Point> = route.points().to_vec();
+    let before = route.point(route.length_m() - 0.9);
+    if let Some(last) = points.last_mut() {
+        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
+    }
+    points.push(at);
+    Polyline::new(&points)
+}
+
+/// Whether a point is in front of a door: so near to it and not beside its frame.
+fn before(door: &Door, at: &Point, near_m: f64) -> bool {
+    let along = door.to - door.from;
+    let length = along.norm().max(1e-6);
+    let share_m = (at - door.from).dot(&along) / length;
+    nearest_on_segment(at, &door.from, &door.to).0 < near_m
+        && (-BESIDE_DOOR_M..=length + BESIDE_DOOR_M).contains(&share_m)
+}
+
+/// Who would stay on the robot's way or in front of a door ends at the wall beside it, where there is room.
+pub(crate) fn aside(route: Polyline, robot_way: &Polyline, doors: &[Door], floor: &Floor) -> Polyline {
+    let Some(end) = route.end() else { return route };
+    let off = |at: &Point| if robot_way.length_m() > 0.0 { robot_way.project(at).1 } else { f64::INFINITY };
+    let barred = |at: &Point, near_m: f64| doors.iter().any(|door| before(door, at, near_m));
+    if off(&end) >= ON_WAY_M && !barred(&end, BEFORE_DOOR_M) {
+        return route;
+    }
+    let mut best: Option<(f64, Point)> = None;
+    for ring in 1..=RINGS {
+        for turn in 0..16_u32 {
+            let angle = f64::from(turn) / 16.0 * std::f64::consts::TAU;
+            let far = 0.25 * f64::from(ring);
+            let at = end + Vector::new(libm::cos(angle), libm::sin(angle)) * far;
+            let room = floor.wall_clearance_m(&at);
+            if room < PERSON_RADIUS_M + 0.05
+                || off(&at) < LEAST_OFF_M
+                || barred(&at, CLEAR_OF_DOOR_M)
+                || !floor.straight(&end, &at, 0.2)
+            {
+                continue;
+            }
+            let cost = far + 3.0 * (OFF_WAY_M - off(&at)).max(0.0) + 0.5 * (room - BY_WALL_M).max(0.0);
+            if best.is_none_or(|(least, _)| cost < least - 1e-9) {
+                best = Some((cost, at));
+            }
+        }
+    }
+    let Some((_, at)) = best else { return route };
+    let mut points: Vec<Point> = route.points().to_vec();
+    // Turns off before the end instead of walking to it first.
+    let before = route.point(route.length_m() - 0.8);
+    if let Some(last) = points.last_mut() {
+        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
+    }
+    points.push(at);
+    Polyline::new(&points)
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::{DoorKind, DoorOpens};
+
+    use super::*;
+    use crate::fixture::carve;
+
+    #[test]
+    fn who_would_stay_on_the_robots_way_or_before_a_door_ends_at_the_wall() {
+        let floor = Floor::new(&carve(20.0, 6.0, &[(0.5, 1.0, 19.5, 4.0)]));
+        let along = Polyline::new(&[Point::new(1.0, 2.5), Point::new(19.0, 2.5)]);
+        let walk = |x: f64, y: f64| Polyline::new(&[Point::new(2.0, 3.2), Point::new(x, y)]);
+        let ended = aside(walk(10.0, 2.5), &along, &[], &floor);
+        let end = ended.end().unwrap();
+        assert!((end.y - 2.5).abs() >= 0.95 && floor.wall_clearance_m(&end) >= 0.33, "{end}");
+        assert!((end - Point::new(10.0, 2.5)).norm() <= 2.0, "{end}");
+        // A door in the lower wall, the robot elsewhere.
+        let away = Polyline::new(&[Point::new(1.0, 3.6), Point::new(1.0, 1.4)]);
+        let door = Door {
+            id: "lift".into(),
+            kind: DoorKind::Elevator,
+            from: Point::new(9.4, 1.0),
+            to: Point::new(10.6, 1.0),
+            opens: DoorOpens::Never,
+            hold_s: 12.0,
+            inside: vec![],
+        };
+        let end = aside(walk(10.0, 2.5), &away, std::slice::from_ref(&door), &floor).end().unwrap();
+        assert!(!before(&door, &end, CLEAR_OF_DOOR_M) && (end - Point::new(10.0, 2.5)).norm() > 0.5, "{end}");
+        // Who is in nobody's way stays where it is, and so does who has no room.
+        assert_eq!(aside(walk(15.0, 2.5), &away, std::slice::from_ref(&door), &floor), walk(15.0, 2.5));
+        let narrow = Floor::new(&carve(20.0, 6.0, &[(0.5, 2.0, 19.5, 3.2)]));
+        assert_eq!(aside(walk(10.0, 2.6), &along, &[], &narrow), walk(10.0, 2.6));
+    }
+}
