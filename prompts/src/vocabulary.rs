@@ -285,7 +285,10 @@ fn predicates() -> Vec<(Value, String)> {
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
             "one clause (c1, c2, … in order) before another (setup)",
         ),
-        row(&Predicate::EncounterAt { place: PlaceClass::Intersection }, "the encounter is at such a place (setup)"),
+        row(
+            &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
+            "the encounter is at such a place (setup)",
+        ),
         row(&Predicate::OnTime { human, gap_s: 4.0 }, "at the encounter at most so far apart in time (setup)"),
         row(&Predicate::Plausible, "nobody overlaps or runs impossibly fast (setup)"),
         row(&Predicate::RobotArrives, "the robot gets to its goal (outcome)"),

@@ -87,6 +87,7 @@ mod mended;
 mod routes;
 mod rules;
 mod solve;
+mod spot;
 mod twice;
 
 #[cfg(test)]
@@ -101,6 +102,8 @@ mod notes_tests;
 mod preface_tests;
 #[cfg(test)]
 mod said_tests;
+#[cfg(test)]
+mod spot_tests;
 #[cfg(test)]
 mod tests;
 
