@@ -291,7 +291,10 @@ fn predicates() -> Vec<(Value, String)> {
             &Predicate::Before { first: AgentId::Robot, then: human.into() },
             "one is at the encounter before the other: two humans, or a human and the robot (setup)",
         ),
-        row(&Predicate::EncounterAt { place: PlaceClass::Intersection }, "the encounter is at such a place (setup)"),
+        row(
+            &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
+            "the encounter is at such a place (setup)",
+        ),
         row(&Predicate::OnTime { human, gap_s: 4.0 }, "at the encounter at most so far apart in time (setup)"),
         row(&Predicate::Plausible, "nobody overlaps or runs impossibly fast (setup)"),
         row(&Predicate::RobotArrives, "the robot gets to its goal (outcome)"),

@@ -168,8 +168,8 @@ fn ends(
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let stands = own.len() == 1;
     let last = is_end(&paths.robot, robot_step);
-    // A standing group may be where the robot's way ends: it joins them.
-    let joined = stands && human.group.is_some();
+    // Who stands may be where the robot's way ends: it comes up to them, or joins their group.
+    let joined = stands;
     if is_start || last && !((indoors || stands) && at_car || joined) {
         let which = if last { "last" } else { "first" };
         let message = format!(
@@ -199,7 +199,24 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
     if wanted == PlaceClass::Plain || nodes_of(graph, wanted).is_empty() {
         return Vec::new();
     }
-    let is_wanted = |node: &NodeId| family(wanted).iter().any(|class| graph.node_is(node, *class));
+    // The one place that is meant, where the proposal names it: `the kitchen` is not any room.
+    let named: Vec<NodeId> = proposal
+        .expected_events
+        .iter()
+        .filter(|clause| clause.must && clause.role == ClauseRole::Setup)
+        .filter_map(|clause| {
+            if let Predicate::EncounterAt { place, nodes } = &clause.predicate {
+                Some(nodes).filter(|_| *place == wanted)
+            } else {
+                None
+            }
+        })
+        .flatten()
+        .cloned()
+        .collect();
+    let of_class = |node: &NodeId| family(wanted).iter().any(|class| graph.node_is(node, *class));
+    let is_wanted = |node: &NodeId| if named.is_empty() { of_class(node) } else { named.contains(node) };
+    let candidates = if named.is_empty() { nodes_of(graph, wanted) } else { named.clone() };
     let fits = |encounter: &Encounter| {
         is_wanted(&encounter.node)
             || paths.robot.iter().position(|node| *node == encounter.node).is_some_and(|at| {
@@ -231,7 +248,7 @@ fn types(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> 
                 "meets the robot at `{}` ({}), but the proposal wants `{wanted}`; candidates: {}",
                 encounter.node,
                 list(graph.classes(&encounter.node)),
-                list(nodes_of(graph, wanted).iter().take(LISTED))
+                list(candidates.iter().take(LISTED))
             );
             Fault::new(FaultCode::GType, encounter.human, message)
         })
@@ -290,7 +307,8 @@ mod tests {
             paths.robot = end.clone();
         };
         assert!(codes(|paths, proposal| joins(paths, proposal, true)).is_empty());
-        assert_eq!(codes(|paths, proposal| joins(paths, proposal, false)), ["G-MEETEND", "G-MEETEND"]);
+        // Who stands alone may be come up to as well; who walks is not met where the robot stops.
+        assert!(codes(|paths, proposal| joins(paths, proposal, false)).is_empty());
         let leaves = |paths: &mut Paths, proposal: &mut Proposal| {
             with(paths, proposal, true);
             paths.robot = end.iter().rev().cloned().collect();
@@ -358,6 +376,21 @@ mod tests {
             paths.humans.insert(HumanId::new(1), nodes(&["n_2", "n_1", "n_center"]));
         };
         assert_eq!(codes(stop), ["G-MEETEND"]);
+    }
+
+    #[test]
+    fn a_place_that_is_named_is_no_other_of_its_class() {
+        let at = |name: &str| {
+            codes(|_, proposal| {
+                for clause in &mut proposal.expected_events {
+                    if let Predicate::EncounterAt { nodes: named, .. } = &mut clause.predicate {
+                        *named = nodes(&[name]);
+                    }
+                }
+            })
+        };
+        assert!(at("n_center").is_empty());
+        assert_eq!(at("n_2"), ["G-TYPE", "G-TYPE"]);
     }
 
     #[test]

@@ -9,6 +9,8 @@ use crate::routes::walks;
 const TOGETHER_M: f64 = 2.0;
 /// Agents start at least so far apart unless they belong together, m.
 const APART_M: f64 = 0.8;
+/// So many humans may start at one node: the engine places them next to each other.
+const SHARED: usize = 3;
 
 /// Every fault of groups and starts.
 pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault> {
@@ -52,10 +54,13 @@ fn starts(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault>
     for (index, (one, here)) in everybody.iter().enumerate() {
         for (other, there) in everybody.iter().skip(index + 1) {
             let distance_m = apart(Some(here), Some(there), location);
-            if distance_m < APART_M && !belong(*one, *other, proposal) {
+            let human = |agent: &AgentId| matches!(agent, AgentId::Human(_));
+            let few = everybody.iter().filter(|(_, start)| start == here).count() <= SHARED;
+            let shared = here == there && few && human(one) && human(other);
+            if distance_m < APART_M && !shared && !belong(*one, *other, proposal) {
                 let message = format!(
                     "{one} and {other} start at `{here}` and `{there}`, {distance_m:.1} m apart; at least {APART_M} m are needed \
-                     unless they are one group or share a room"
+                     unless they are one group, share a room, or start as two or three at one node"
                 );
                 faults.push(Fault::new(FaultCode::GColl, format!("{one}, {other}"), message));
             }
@@ -64,7 +69,7 @@ fn starts(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault>
     faults
 }
 
-/// Whether two may start at one node: the engine spreads groups, the people of a car, and who walks with the robot.
+/// Whether two may start at one node: the engine spreads groups, the people of a car, who stands at one place, and who walks with the robot.
 fn belong(one: AgentId, other: AgentId, proposal: &Proposal) -> bool {
     let human = |agent: AgentId| match agent {
         AgentId::Robot => None,
@@ -74,9 +79,11 @@ fn belong(one: AgentId, other: AgentId, proposal: &Proposal) -> bool {
         (Some(a), Some(b)) => {
             let indoors = |relation: Relation| matches!(relation, Relation::Leaving | Relation::Staying);
             let along = |relation: Relation| matches!(relation, Relation::Behind | Relation::Abreast);
+            let stands = |relation: Relation| relation == Relation::Static;
             a.group.is_some() && a.group == b.group
                 || indoors(a.relation) && indoors(b.relation)
                 || along(a.relation) && along(b.relation)
+                || stands(a.relation) && stands(b.relation)
         }
         (None, Some(human)) | (Some(human), None) => {
             // A standing group with which the robot starts is placed round it.
@@ -96,7 +103,7 @@ fn apart(a: Option<&NodeId>, b: Option<&NodeId>, location: &Location) -> f64 {
 mod tests {
     use super::*;
     use crate::testing::{crossing_paths, crossing_proposal, hard_codes, nodes, plus_map};
-    use socrates_model::{GroupId, GroupProposal};
+    use socrates_model::{GroupId, GroupProposal, HumanProposal};
 
     fn grouped(second: &[&str]) -> Vec<String> {
         let (mut paths, mut proposal) = (crossing_paths(), crossing_proposal());
@@ -117,10 +124,32 @@ mod tests {
     }
 
     #[test]
-    fn strangers_do_not_start_on_top_of_each_other() {
+    fn a_crowd_does_not_start_at_one_node_but_two_or_three_may() {
         let (mut paths, proposal) = (crossing_paths(), crossing_proposal());
-        let start = paths.humans[&HumanId::new(1)][0].clone();
-        paths.humans.get_mut(&HumanId::new(2)).unwrap()[0] = start;
+        let way = paths.humans[&HumanId::new(1)].clone();
+        for human in 2..=3 {
+            paths.humans.insert(HumanId::new(human), way.clone());
+            assert!(hard_codes(&check(&paths, &proposal, &plus_map())).is_empty(), "{human}");
+        }
+        paths.humans.insert(HumanId::new(4), way.clone());
+        let found = hard_codes(&check(&paths, &proposal, &plus_map()));
+        assert!(!found.is_empty() && found.iter().all(|code| code == "G-COLL"), "{found:?}");
+        // Nobody starts where the robot does.
+        paths.humans.retain(|human, _| human.number() == 1);
+        paths.humans.get_mut(&HumanId::new(1)).unwrap()[0] = paths.robot[0].clone();
         assert_eq!(hard_codes(&check(&paths, &proposal, &plus_map())), ["G-COLL"]);
+    }
+
+    #[test]
+    fn who_stands_may_stand_at_one_place_with_others() {
+        let (mut paths, mut proposal) = (crossing_paths(), crossing_proposal());
+        let template = proposal.humans[0].clone();
+        proposal.humans = (1..=5)
+            .map(|human| HumanProposal { id: HumanId::new(human), relation: Relation::Static, ..template.clone() })
+            .collect();
+        paths.humans = (1..=5).map(|human| (HumanId::new(human), nodes(&["n_center"]))).collect();
+        assert!(hard_codes(&check(&paths, &proposal, &plus_map())).is_empty());
+        proposal.humans[0].relation = Relation::Frontal;
+        assert!(!hard_codes(&check(&paths, &proposal, &plus_map())).is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! The proposal against the request's reading and the map: `P-` faults.
 
-use socrates_model::{Fault, FaultCode, Location, PlaceClass, Predicate, Proposal, Reading, RobotRule};
+use socrates_model::{Fault, FaultCode, Location, NodeId, PlaceClass, Predicate, Proposal, Reading, RobotRule};
 use socrates_model::{Gesture, HumanId, Trigger};
 
 use socrates_model::rule::{RobotDo, RobotWhen};
@@ -40,7 +40,7 @@ fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
     wanted.extend(proposal.robot.start.map(|class| ("robot start".to_owned(), class)));
     wanted.extend(proposal.robot.goal.map(|class| ("robot goal".to_owned(), class)));
     for clause in &proposal.expected_events {
-        if let Predicate::EncounterAt { place } = clause.predicate {
+        if let Predicate::EncounterAt { place, .. } = clause.predicate {
             wanted.push((format!("clause {}", clause.id), place));
         }
     }
@@ -52,6 +52,14 @@ fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
             Fault::new(FaultCode::PPlace, at, message)
         })
         .collect();
+    for clause in &proposal.expected_events {
+        let Predicate::EncounterAt { nodes, .. } = &clause.predicate else { continue };
+        let unknown: Vec<&NodeId> = nodes.iter().filter(|node| graph.node(node).is_none()).collect();
+        if !unknown.is_empty() {
+            let message = format!("the map has no node {}; leave `nodes` out to mean the whole class", list(unknown));
+            faults.push(Fault::new(FaultCode::PPlace, format!("clause {}", clause.id), message));
+        }
+    }
     // Only words that are never used for another place are looked for in prose.
     for (word, class) in [
         ("elevator", PlaceClass::Elevator),

@@ -85,7 +85,7 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
             let clause = proposal
                 .expected_events
                 .iter()
-                .any(|clause| matches!(clause.predicate, Predicate::EncounterAt { place } if place == *class));
+                .any(|clause| matches!(clause.predicate, Predicate::EncounterAt { place, .. } if place == *class));
             if proposal.place == *class || clause {
                 None
             } else {

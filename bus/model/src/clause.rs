@@ -282,10 +282,13 @@ pub enum Predicate {
         /// Who is there later.
         then: AgentId,
     },
-    /// The encounter lies on a place of this class.
+    /// The encounter lies on a place of this class, or on one of the nodes where some are named.
     EncounterAt {
         /// The class.
         place: PlaceClass,
+        /// The nodes that count, where one place of the class is meant: `the kitchen`. Empty: every node of the class.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        nodes: Vec<NodeId>,
     },
     /// The agent comes within `within_m` of the node.
     Reaches {

@@ -381,8 +381,9 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     if class != desk.draft.proposal.place {
         desk.draft.proposal.place = class;
         for clause in &mut desk.draft.proposal.expected_events {
-            if let socrates_model::Predicate::EncounterAt { place: old } = &mut clause.predicate {
+            if let socrates_model::Predicate::EncounterAt { place: old, nodes } = &mut clause.predicate {
                 *old = class;
+                nodes.clear();
                 clause.text = format!("it happens at {}", place::an(class));
             }
         }
@@ -416,6 +417,8 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
         crowded: false,
         ends,
         place: class,
+        meant: &[],
+        standing: Vec::new(),
     }
 }
 

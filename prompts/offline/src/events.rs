@@ -2,7 +2,7 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, PlaceClass,
+    Action, AgentId, Clause, ClauseRole, Fact, FactKind, Gesture, HumanId, HumanProposal, Location, NodeId, PlaceClass,
     Predicate, Proposal, Reading, Relation, Rule, Trigger, ordinal,
 };
 
@@ -10,6 +10,7 @@ use crate::card::Card;
 use crate::deed::distance_m;
 use crate::place;
 use crate::prose::done;
+use crate::spot;
 use crate::understand::Extra;
 
 /// A robot that does its part has met somebody once they were this near, m: the usual distance of passing in a corridor.
@@ -87,7 +88,8 @@ pub(crate) fn events(
     list.setup(true, source(|kind| matches!(kind, FactKind::Humans(_))), headcount(count), Predicate::Humans { count });
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
     for fact in &reading.facts {
-        of_fact(&mut list, fact, proposal, extras);
+        let at = |class: PlaceClass| spot::nodes(location, &fact.quote, class, &proposal.humans);
+        of_fact(&mut list, fact, proposal, extras, &at);
     }
     let line = part.card.is_some_and(|card| card.roles.iter().any(|role| role.line));
     for group in proposal.groups.iter().filter(|_| !line) {
@@ -100,9 +102,11 @@ pub(crate) fn events(
         }
         of_relation(&mut list, "", human, proposal, gap_s);
     }
-    if place::has(location, proposal.place) {
+    let said =
+        |clause: &Clause| matches!(clause.predicate, Predicate::EncounterAt { place, .. } if place == proposal.place);
+    if place::has(location, proposal.place) && !list.0.iter().any(said) {
         let text = format!("it happens at {}", place::an(proposal.place));
-        list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place });
+        list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place, nodes: Vec::new() });
     }
     of_card(&mut list, part, proposal, location);
     list.add(ClauseRole::Outcome, true, "", "the robot gets to its goal".to_owned(), Predicate::RobotArrives);
@@ -131,7 +135,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         }
     };
     for fact in reading.facts.iter().filter(own) {
-        of_fact(&mut list, fact, proposal, &[]);
+        of_fact(&mut list, fact, proposal, &[], &|_| Vec::new());
     }
     for rule in &human.rules {
         of_rule(&mut list, "", human, rule, false);
@@ -150,7 +154,13 @@ pub(crate) fn headcount(count: u32) -> String {
     }
 }
 
-fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) {
+fn of_fact(
+    list: &mut List,
+    fact: &Fact,
+    proposal: &Proposal,
+    extras: &[Extra],
+    at: &dyn Fn(PlaceClass) -> Vec<NodeId>,
+) {
     match &fact.kind {
         FactKind::Group { group, .. } => of_group(list, &fact.id, *group, proposal),
         FactKind::Reacts { human, rule } => {
@@ -170,18 +180,14 @@ fn of_fact(list: &mut List, fact: &Fact, proposal: &Proposal, extras: &[Extra]) 
             list.setup(true, &fact.id, text, Predicate::MeetsAgain { human: *human, nth: *times, within_m: AGAIN_M });
             if let Some(class) = place {
                 let text = format!("they meet at {}", place::an(*class));
-                list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class });
+                list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: Vec::new() });
             }
         }
         FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),
         FactKind::RobotSays(gesture) => says(list, &fact.id, AgentId::Robot, *gesture),
         FactKind::Place(class) => {
-            list.setup(
-                true,
-                &fact.id,
-                format!("it happens at {}", place::an(*class)),
-                Predicate::EncounterAt { place: *class },
-            );
+            let text = format!("it happens at {}", place::an(*class));
+            list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: at(*class) });
         }
         FactKind::Before { first, then } => {
             let text = format!("{first} is there before {then}");

@@ -60,6 +60,8 @@ impl Story {
         if self.robot_part == Some("leading") && self.robot_enters.is_none() {
             self.robot_enters = self.headed.take();
         }
+        self.stays_with_group();
+        self.come_up_to();
         self.standing();
         self.startled();
         self.clashes();
@@ -89,13 +91,15 @@ impl Story {
                 others.iter().any(|p| p.doings.iter().any(|doing| doing.starts_with("walks")) || !p.rules.is_empty());
             return Some(if walks { Relation::Frontal } else { Relation::Static });
         }
+        // Who does something else first at a word of the robot is met by it, and follows it then.
+        let hears = |read: &ReadRule| read.rule.when.iter().any(|when| matches!(when, Trigger::RobotSays(_)));
+        let first = person.rules.first().is_some_and(|read| hears(read) && read.rule.act != Action::FollowRobot);
         if does(person, &Action::FollowRobot) {
             // Whom the robot has passed was before it.
-            let passed = |read: &crate::cast::ReadRule| {
-                read.rule.act == Action::FollowRobot && read.rule.when == [Trigger::RobotPassed]
-            };
+            let passed =
+                |read: &ReadRule| read.rule.act == Action::FollowRobot && read.rule.when == [Trigger::RobotPassed];
             let later = person.rules.iter().any(passed);
-            return Some(if later { Relation::Frontal } else { Relation::Behind });
+            return Some(if first || later { Relation::Frontal } else { Relation::Behind });
         }
         if let Some(Action::FollowHuman(leader)) =
             person.rules.iter().map(|read| &read.rule.act).find(|act| matches!(act, Action::FollowHuman(_)))
@@ -107,8 +111,11 @@ impl Story {
                 .and_then(|leader| self.relation_of(leader))
                 .or(Some(Relation::Frontal));
         }
-        if person.rules.iter().any(|read| matches!(read.rule.gesture, Some(Gesture::Wait | Gesture::Proceed))) {
-            return Some(Relation::Crossing);
+        // In a doorway or an aisle there is only one way, and two meet on it.
+        let one_way = matches!(self.place, Some((PlaceClass::Doorway | PlaceClass::NarrowPassage, _)));
+        let signals = |read: &ReadRule| matches!(read.rule.gesture, Some(Gesture::Wait | Gesture::Proceed));
+        if person.rules.iter().any(signals) {
+            return Some(if one_way { Relation::Frontal } else { Relation::Crossing });
         }
         // Whoever is followed stands to the robot as those behind do.
         let id = u32::try_from(who + 1).ok().map(socrates_model::HumanId::new);
@@ -121,6 +128,50 @@ impl Story {
         match self.place.as_ref().map(|(class, _)| *class) {
             Some(PlaceClass::Intersection) => Some(Relation::Crossing),
             Some(_) | None => Some(Relation::Frontal),
+        }
+    }
+
+    /// `The robot drives to the waiting area and says follow me`: whom it speaks to there, and who stands, stands there.
+    fn come_up_to(&mut self) {
+        let open = |class: PlaceClass| matches!(class, PlaceClass::OpenArea | PlaceClass::Room);
+        let stands = self.cast.people.iter().all(|person| is(person, Relation::Static));
+        if self.place.is_none() && !self.robot_says.is_empty() && stands && !self.cast.people.is_empty() {
+            self.place = self.robot_enters.clone().filter(|(class, _)| open(*class));
+        }
+    }
+
+    /// Who leaves a standing group, or stays in it, comes out of no room and stays in none.
+    fn stays_with_group(&mut self) {
+        let rooms = matches!(self.place, Some((PlaceClass::Room | PlaceClass::Elevator, _)));
+        for (_, members, _) in &self.cast.groups {
+            let all = || members.iter().filter_map(|i| self.cast.people.get(*i));
+            let stands = |person: &Person| {
+                is(person, Relation::Static)
+                    || person
+                        .doings
+                        .iter()
+                        .any(|doing| matches!(doing.as_str(), "talks" | "stands" | crate::bind::QUEUES))
+            };
+            let indoors = |person: &Person| is(person, Relation::Leaving) || is(person, Relation::Staying);
+            if rooms || !all().any(indoors) || !all().all(stands) {
+                continue;
+            }
+            for who in members {
+                let Some(person) = self.cast.people.get_mut(*who) else { continue };
+                let Some((relation, quote)) = person.relation.as_mut() else { continue };
+                if *relation == Relation::Leaving {
+                    let note = format!(
+                        "`{quote}`: human_{} stays where its group stands; that it leaves is not played",
+                        who + 1
+                    );
+                    self.cast.notes.push(note);
+                    person.doings.retain(|doing| doing != "comes out of the room");
+                }
+                if matches!(relation, Relation::Leaving | Relation::Staying) {
+                    *relation = Relation::Static;
+                    person.start = None;
+                }
+            }
         }
     }
 

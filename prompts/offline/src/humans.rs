@@ -15,6 +15,8 @@ const LATE_M: f64 = 2.0;
 const HUMAN_MPS: f64 = 1.2;
 /// People start at least so far from each other and the robot unless they belong together, m.
 const APART_M: f64 = 0.8;
+/// So many may start at one node where there is no room for all to start apart.
+const SHARED: usize = 3;
 /// Somebody goes on at least so far after the meeting, m.
 const ONWARD_M: f64 = 4.0;
 
@@ -23,6 +25,9 @@ const ENDS_APART_M: f64 = 1.5;
 
 /// Who overtakes comes level with the robot after so much of its way, m.
 const EARLY_M: f64 = 4.0;
+
+/// The robot starts at least so far from those who stand at a place by name, so that it comes to them, m.
+const SEEN_M: f64 = 6.0;
 
 /// One human's way and where it meets the robot.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +51,10 @@ pub(crate) struct Taken<'a> {
     pub(crate) ends: Ends,
     /// The class of place where people should meet.
     pub(crate) place: PlaceClass,
+    /// The nodes of the place by name, if it has one: who stands stands there, together with others.
+    pub(crate) meant: &'a [usize],
+    /// Where those stand who have been placed there.
+    pub(crate) standing: Vec<usize>,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
@@ -65,7 +74,10 @@ const NOWHERE: usize = usize::MAX;
 
 impl Taken<'_> {
     fn free(&self, node: usize) -> bool {
-        self.crowded || self.starts.iter().all(|other| (self.net.at(*other) - self.net.at(node)).norm() >= APART_M)
+        let near = |other: &&usize| (self.net.at(**other) - self.net.at(node)).norm() < APART_M;
+        let others = self.starts.iter().filter(near).count();
+        // The robot's own start, the first of them, is its alone.
+        others == 0 || self.crowded && others < SHARED && !self.starts.iter().take(1).any(|robot| near(&robot))
     }
 
     /// Whether somebody may end there: nobody else does near by, and nobody has to get through.
@@ -342,9 +354,10 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
     Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
 }
 
-/// Standing: at the meeting node, or at the free node of the robot's way nearest to it.
+/// Standing: at the meeting node, or at the free node of the robot's way nearest to it; at a place by name with the others.
 fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
     match taken.ends {
+        Ends::Past if !taken.meant.is_empty() => return together(route, taken),
         Ends::Past => {}
         Ends::With => {
             let at = *route.nodes.last()?;
@@ -357,6 +370,22 @@ fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
     let at = places.into_iter().filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
     Some(Way { nodes: vec![at], meet: at, cost: 0.0 })
+}
+
+/// At the node of a place by name that has the fewest people so far.
+fn together(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let there = |i: &usize| route.nodes.get(*i).is_some_and(|node| taken.meant.contains(node));
+    // Where the robot's way ends they are last: it has to pass the others to get to them.
+    let rank = |i: &usize| {
+        let node = route.nodes.get(*i);
+        let others = taken.standing.iter().filter(|other| Some(*other) == node).count();
+        (others + usize::from(i + 1 == route.nodes.len()), i.abs_diff(route.meet), *i)
+    };
+    let at = (1..route.nodes.len()).filter(there).min_by_key(rank)?;
+    let near = (SEEN_M - net.length_m(route.nodes.get(..=at)?)).max(0.0);
+    let node = *route.nodes.get(at)?;
+    Some(Way { nodes: vec![node], meet: node, cost: near })
 }
 
 fn sources(human: &HumanProposal, location: &Location) -> Option<PlaceClass> {

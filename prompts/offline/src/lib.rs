@@ -89,6 +89,7 @@ mod mended;
 mod routes;
 mod rules;
 mod solve;
+mod spot;
 mod twice;
 
 #[cfg(test)]
@@ -105,6 +106,8 @@ mod order_tests;
 mod preface_tests;
 #[cfg(test)]
 mod said_tests;
+#[cfg(test)]
+mod spot_tests;
 #[cfg(test)]
 mod tests;
 

@@ -1,17 +1,18 @@
 //! The proposal: the reading, or a card, in detail.
 
+use socrates_model::job::Stage;
 use socrates_model::reading::ReadHuman;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    Action, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass, Proposal,
-    Reading, Relation, Request, RobotProposal, Trigger,
+    Action, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass, Predicate,
+    Proposal, Reading, Relation, Request, RobotProposal, Trigger,
 };
 use socrates_prompts::Question;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::understand::{Extra, understand};
-use crate::{NAME, default_cast, events, pattern, place, prose};
+use crate::{NAME, default_cast, events, pattern, place, prose, solve, spot};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -77,7 +78,33 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         author: NAME.to_owned(),
     };
     proposal.expected_events = events::events(&proposal, reading, &part, &extras, location);
+    reachable(&mut proposal, question);
     proposal
+}
+
+/// A place by name where nobody can be met on the way of the robot is given up, and said so: any of its class will do then.
+fn reachable(proposal: &mut Proposal, question: &Question) {
+    let meant = spot::of_proposal(proposal);
+    if meant.is_empty() {
+        return;
+    }
+    let ask = Question { stage: Stage::Paths, feedback: Vec::new(), refused: None, ..question.clone() };
+    if solve::solve(&ask, proposal).is_some_and(|paths| spot::met_at(&meant, &paths, proposal)) {
+        return;
+    }
+    for clause in &mut proposal.expected_events {
+        if let Predicate::EncounterAt { place, nodes } = &mut clause.predicate
+            && *place == proposal.place
+        {
+            nodes.clear();
+        }
+    }
+    let names: Vec<String> = meant.iter().map(|node| format!("`{node}`")).collect();
+    proposal.notes.push(format!(
+        "nobody can be met at {} on a way that does all the rest; another {} was taken",
+        names.join(", "),
+        place::words(proposal.place)
+    ));
 }
 
 fn where_at(

@@ -247,6 +247,8 @@ pub(crate) struct Wish {
     pub(crate) via: Option<PlaceClass>,
     /// Whether doorways and aisles are to be kept away from.
     pub(crate) roomy: bool,
+    /// Whether the way may lead into rooms.
+    pub(crate) indoors: bool,
     /// 1: straight over the meeting node, -1: round a corner, 0: no matter.
     pub(crate) straight: f64,
     /// Ways shorter than this are not good enough, m.
@@ -264,7 +266,7 @@ type Ways = Vec<Vec<usize>>;
 pub(crate) fn over(net: &Net<'_>, meet: usize, wish: &Wish) -> Vec<Route> {
     let mut arms: Vec<(usize, Ways, Ways)> = Vec::new();
     for (arm, step) in net.near(meet) {
-        if net.inside(*arm) && wish.place != PlaceClass::Room {
+        if net.inside(*arm) && !wish.indoors {
             continue;
         }
         // Rooms are where people come from; the robot goes there only when its task says so.

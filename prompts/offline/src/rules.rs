@@ -110,6 +110,10 @@ fn alternate(rules: &mut [ReadRule]) {
         let waits = matches!(read.rule.when[..], [Trigger::RobotMoving | Trigger::RobotStopped]);
         if waits && read.rule.gesture.is_none() && matches!(read.rule.act, Action::StandStill | Action::Navigate) {
             read.rule.latched = false;
+            // It stands for as long as the robot moves.
+            if read.rule.act == Action::StandStill && !read.lasts {
+                read.rule.for_s = None;
+            }
         }
     }
 }

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_maps::{DistanceField, Sight};
-use socrates_model::rule::RobotDo;
+use socrates_model::rule::{RobotDo, RobotWhen};
 use socrates_model::{
-    Encounter, FORMAT, FactKind, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Proposal,
-    Relation,
+    Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
 };
 use socrates_prompts::Question;
 
@@ -15,10 +14,9 @@ use crate::card::{Card, Ends, card};
 use crate::draw::Draw;
 use crate::edit_paths;
 use crate::humans::{Taken, Way, follows, led_past, way};
-use crate::named;
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
-use crate::task::{self, End};
+use crate::spot;
 use crate::twice;
 
 /// Meeting nodes that are tried, and ways of the robot over each.
@@ -32,6 +30,12 @@ const ALIKE: f64 = 2.5;
 const BESIDE_M: f64 = 1.15;
 const OVERTAKES_M: f64 = 12.0;
 const SQUEEZED: f64 = 2.0;
+
+/// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
+const SETS_OFF_M: f64 = 1.5;
+const EARLY: f64 = 8.0;
+/// More people than this who come towards the robot come as a stream.
+const STREAM: usize = 8;
 
 /// A person who wants other paths is given one of so many.
 const OTHERS: usize = 6;
@@ -48,11 +52,11 @@ struct Solution {
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let task = crate::task::read(&question.request.task, &question.location);
     let net = Net::new(&question.location);
-    let rooms = rooms(&net, question);
+    let rooms = spot::rooms(&net, question);
     let net = net
         .with_ends(
-            ends(&question.location, &task.starts, proposal.robot.start),
-            ends(&question.location, &task.goals, proposal.robot.goal),
+            &spot::ends(question, &task.starts, proposal.robot.start, false),
+            &spot::ends(question, &task.goals, proposal.robot.goal, true),
         )
         .with_rooms(rooms);
     let told = |code: FaultCode| {
@@ -117,36 +121,6 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     Some(paths)
 }
 
-/// The places where the task has the way begin or end by name, unless the scenario has it begin or end elsewhere.
-fn ends<'a>(location: &Location, named: &'a [End], class: Option<PlaceClass>) -> &'a [NodeId] {
-    let nodes = task::nodes(named);
-    let suits = |class: PlaceClass| nodes.iter().any(|node| location.graph.node_is(node, class));
-    if class.is_none_or(suits) { nodes } else { &[] }
-}
-
-/// Words before the name of a room that somebody comes out of.
-const OUT_OF: &[&str] = &["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "];
-
-/// The rooms that people come out of, where the text names them: `out of the kitchen`.
-fn rooms(net: &Net<'_>, question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
-    let mut found = BTreeMap::new();
-    for fact in &question.reading.facts {
-        let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
-            fact.kind
-        else {
-            continue;
-        };
-        let Some((_, from)) = OUT_OF.iter().find_map(|word| fact.quote.split_once(word)) else { continue };
-        let words: Vec<&str> = from.split_whitespace().take(5).collect();
-        let name = words.join(" ");
-        let name = name.split([',', ';', '.']).next().unwrap_or_default();
-        if let Some(room) = named::find(&question.location, name) {
-            found.insert(human, room.nodes.iter().filter_map(|id| net.index(id)).collect());
-        }
-    }
-    found
-}
-
 /// Whether a fault is one of the place of the meeting. A slip of the pen is none: then the same paths are written again.
 const fn moves(code: FaultCode) -> bool {
     matches!(
@@ -188,6 +162,7 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         place: proposal.place,
         via: None,
         roomy: false,
+        indoors: proposal.place == PlaceClass::Room,
         straight,
         least_m: if twice { twice::LEAST_M } else { 6.5 } + 2.0 * longer,
         aim_m: if twice {
@@ -230,6 +205,14 @@ fn solutions(net: &Net<'_>, proposal: &Proposal, wish: &Wish) -> Vec<Solution> {
             .flat_map(|start| out_of(net, proposal, wish, start))
             .collect();
     }
+    let meant = spot::indices(net, proposal);
+    if !meant.is_empty() && found.is_none_or(|card| card.ends == Ends::Past) {
+        let there = at_meant(net, proposal, wish, &meant);
+        if !there.is_empty() {
+            return there;
+        }
+    }
+    let walkers = proposal.humans.iter().filter(|human| human.relation == Relation::Frontal).count();
     let typed: Vec<usize> =
         socrates_maps::place::nodes_of(net.location, wish.place).iter().filter_map(|id| net.index(id)).collect();
     let nodes: Vec<usize> = if wish.place == PlaceClass::Plain { (0..net.len()).collect() } else { typed };
@@ -240,7 +223,40 @@ fn solutions(net: &Net<'_>, proposal: &Proposal, wish: &Wish) -> Vec<Solution> {
         }
         Some(Ends::Past) | None => {}
     }
-    at_nodes(net, proposal, wish, &nodes, false)
+    // So many come as a stream: two or three from each node.
+    at_nodes(net, proposal, wish, &nodes, walkers > STREAM)
+}
+
+/// Ways to a place by name: through it, or into it where it is a dead end.
+fn at_meant(net: &Net<'_>, proposal: &Proposal, wish: &Wish, meant: &[usize]) -> Vec<Solution> {
+    let wish = &Wish { indoors: true, ..*wish };
+    let moves = |human: &HumanProposal| !matches!(human.relation, Relation::Static | Relation::Staying);
+    let mut found = at_nodes(net, proposal, wish, meant, false);
+    if proposal.humans.iter().any(|human| !moves(human)) {
+        let walkers = proposal.humans.iter().any(moves);
+        for goal in meant.iter().filter(|node| net.near(**node).len() < 2 || net.inside(**node)) {
+            found.extend(up_to(net, proposal, wish, *goal, walkers));
+        }
+    }
+    found
+}
+
+/// The robot's ways that end with people who stand at a place; whoever walks is met on the way there.
+fn up_to(net: &Net<'_>, proposal: &Proposal, wish: &Wish, goal: usize, walkers: bool) -> Vec<Solution> {
+    let tree = net.tree(goal, &|_| false);
+    let wish = Wish { aim_m: 14.0, straight: 0.0, goal: None, ..*wish };
+    let mut routes: Vec<Route> = outside(net, &tree, goal)
+        .filter_map(|start| {
+            let nodes: Vec<usize> = tree.way(start).into_iter().rev().collect();
+            let open = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+            let last = nodes.len().checked_sub(1)?;
+            let meet = if walkers { (1..last).rev().find(|i| nodes.get(*i).is_some_and(open))? } else { last };
+            let value = score(net, &nodes, meet, &wish);
+            value.is_finite().then_some(Route { nodes, meet, score: value + 6.0 })
+        })
+        .collect();
+    best(&mut routes);
+    routes.into_iter().filter_map(|route| people(net, proposal, route, false)).collect()
 }
 
 fn anywhere(net: &Net<'_>, proposal: &Proposal, wish: &Wish, crowded: bool) -> Vec<Solution> {
@@ -267,7 +283,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
-        .filter(|node| (!net.inside(**node) || wish.place == PlaceClass::Room) && net.near(**node).len() >= 2)
+        .filter(|node| (!net.inside(**node) || wish.indoors) && net.near(**node).len() >= 2)
         .map(|node| {
             let own = if net.kind(*node) == wish.place { 2.0 } else { 0.0 };
             let arms = net.near(*node).len();
@@ -464,13 +480,16 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
     let ends = card(&proposal.pattern).map_or(Ends::Past, |card| card.ends);
     let starts = route.nodes.first().copied().into_iter().collect();
     let goals = route.nodes.last().copied().into_iter().collect();
-    let mut taken = Taken { net, starts, goals, crowded, ends, place: proposal.place };
+    let meant = spot::indices(net, proposal);
+    let mut taken =
+        Taken { net, starts, goals, crowded, ends, place: proposal.place, meant: &meant, standing: Vec::new() };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
-    let along = proposal
-        .humans
-        .iter()
-        .any(|human| !matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast));
+    let beside = |relation: Relation| matches!(relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
+    let along = proposal.humans.iter().any(|human| !beside(human.relation));
     let mut cost = 0.0;
+    let near = proposal.robot.script.iter().filter(|line| matches!(line.act, RobotDo::Say(_)));
+    let near = near.filter_map(|line| if let RobotWhen::HumanNear(m) = line.when { Some(m) } else { None });
+    let says_m = near.fold(-SETS_OFF_M, f64::max);
     let twice = twice::asked(proposal);
     let mut again: BTreeMap<HumanId, usize> = BTreeMap::new();
     for human in &proposal.humans {
@@ -505,11 +524,20 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
             },
             None => own,
         };
+        let start_m =
+            own.nodes.first().zip(route.nodes.first()).map(|(own, robot)| (net.at(*own) - net.at(*robot)).norm());
+        // What the robot says to somebody near is said on the way, not before it sets off.
+        if start_m.is_some_and(|m| m < says_m + SETS_OFF_M) && !beside(human.relation) {
+            cost += EARLY;
+        }
         let followed = proposal.robot.script.iter().any(|line| line.act == RobotDo::Follow(human.id));
         let own = if followed { led_past(own, &taken) } else { own };
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());
+        }
+        if human.relation == Relation::Static {
+            taken.standing.extend(own.nodes.first());
         }
         if own.nodes.len() > 1 && mate.is_none() {
             taken.goals.extend(own.nodes.last());
@@ -548,9 +576,17 @@ fn written(net: &Net<'_>, solution: &Solution, proposal: &Proposal) -> Paths {
     let humans: BTreeMap<HumanId, Vec<NodeId>> =
         solution.ways.iter().map(|(id, way)| (*id, net.named(&way.nodes))).collect();
     let length = libm::round(net.length_m(&solution.route.nodes) * 10.0) / 10.0;
+    let mut at: Vec<String> = Vec::new();
+    for encounter in &encounters {
+        let node = format!("`{}`", encounter.node);
+        if !at.contains(&node) {
+            at.push(node);
+        }
+    }
     let reasoning = format!(
-        "The robot goes {length} m over a meeting place that is {}; {} encounters lie on its way in this order.",
+        "The robot goes {length} m over a meeting place that is {} ({}); {} encounters lie on its way in this order.",
         place::an(proposal.place),
+        at.join(", "),
         encounters.len()
     );
     Paths {

@@ -60,6 +60,10 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             }
             continue;
         }
+        // `fetch goods from the rack`: the way leads there, unless the text says where it leads then.
+        let fetches =
+            stretch.words.iter().any(|word| matches!(word.stem.as_str(), "fetch" | "get" | "collect" | "pick"))
+                && !text.to_lowercase().split_whitespace().any(|word| TO.contains(&word));
         let named = named_ends(&mut task, &mut stretch, &found, text, location);
         for (class, at) in found.places {
             if named.iter().any(|(from, to)| (*from..=*to).contains(&at)) {
@@ -78,6 +82,7 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             );
             let rides = class == PlaceClass::Elevator && near(&["take", "use", "ride", "enter", "the", "an"]).is_some();
             let slot = match (from, to, via) {
+                (Some(_), None, _) if fetches => &mut task.goal,
                 (Some(from), Some(to), _) if from < to => &mut task.start,
                 (Some(_), None, _) => &mut task.start,
                 (None, None, Some(_)) => &mut task.via,
@@ -88,6 +93,9 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
             if slot.is_none() {
                 *slot = Some((class, quote.clone()));
             }
+        }
+        if fetches {
+            task.goals.append(&mut task.starts);
         }
         load(&mut stretch);
         for word in stretch.words {
@@ -258,6 +266,8 @@ mod tests {
         assert_eq!(task.via.unwrap().0, PlaceClass::Corridor);
         let task = of("Deliver mail to the kitchen and come back to the exit");
         assert_eq!((task.goal.unwrap().0, task.back.as_deref()), (PlaceClass::Room, Some("come back to the exit")));
+        let task = of("Fetch goods from the open area");
+        assert_eq!((task.start, task.goal.map(|(class, _)| class)), (None, Some(PlaceClass::OpenArea)));
         assert_eq!(of("Return the cup to the kitchen").back, None);
         let task = of("Deliver coffee from one corner of the warehouse to another.");
         assert_eq!(task.start, None);
@@ -291,6 +301,13 @@ mod tests {
             ("office", "Deliver a parcel to the other end of the corridor", vec![], vec![]),
             ("office", "Clean the floor in the office in the evening", vec![], vec![]),
             ("office", "Go to charge", vec![], vec![]),
+            ("warehouse", "Fetch goods from the packing area", vec![], one("packing area", 3)),
+            (
+                "warehouse",
+                "Fetch a box from the packing area and bring it to the loading dock",
+                one("packing area", 3),
+                one("loading dock", 1),
+            ),
         ] {
             assert_eq!(ends(map, text), (start, goal), "{text}");
         }

@@ -61,7 +61,7 @@ pub(crate) fn proposed(request: &Request, location: &Location) -> Proposal {
 }
 
 /// Proposal and paths as the stages would make them.
-fn answers(request: &Request, location: &Location, seed: u64) -> (Question, Proposal, Paths) {
+pub(crate) fn answers(request: &Request, location: &Location, seed: u64) -> (Question, Proposal, Paths) {
     let mut ask = question(Stage::Proposal, request, location, seed);
     let proposal = parsed(socrates_prompts::parse_proposal(&Offline::answer(&ask), &ask));
     ask.stage = Stage::Paths;

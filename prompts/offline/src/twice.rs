@@ -44,7 +44,7 @@ pub(crate) fn asked(proposal: &Proposal) -> Vec<(HumanId, Option<PlaceClass>)> {
             let place = clauses.iter().filter(|other| !clause.source.is_empty() && other.source == clause.source);
             let place = place
                 .filter_map(
-                    |other| if let Predicate::EncounterAt { place } = other.predicate { Some(place) } else { None },
+                    |other| if let Predicate::EncounterAt { place, .. } = other.predicate { Some(place) } else { None },
                 )
                 .next();
             Some((human, place))

@@ -13,7 +13,7 @@ use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, cut, default_cast, place, words};
+use crate::{again, aside, cut, default_cast, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -432,9 +432,23 @@ fn again_and_again(rough: &str, story: &mut Story) {
     story.cast.notes.push(format!("`{words}` was read as three times, with the way free in between"));
 }
 
+/// Says where the map has no place of a name, so that another of its kind is taken.
+fn other_places(location: &Location, reading: &mut Reading) {
+    let mut notes = Vec::new();
+    for fact in &reading.facts {
+        let FactKind::Place(class) = fact.kind else { continue };
+        let unknown = spot::named_in(location, &fact.quote, class).filter(|meant| meant.nodes.is_empty());
+        notes.extend(unknown.filter(|_| place::has(location, class)).map(|meant| {
+            format!("`{}`: this map has no place of that name; {} is taken instead", meant.name, place::an(class))
+        }));
+    }
+    reading.notes.append(&mut notes);
+}
+
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     errand(task, reading);
     ends(story, task, location, reading);
+    other_places(location, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.

@@ -96,7 +96,9 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && matches!(class, PlaceClass::Exit | PlaceClass::Room | PlaceClass::OpenArea)
             && found.mentions.iter().all(|mention| mention.to < *at)
             && found.robots.is_empty()
-            && found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at);
+            && (found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at)
+                // `until he turns into the ward`
+                || before(*at, stretch, &["into"]) && found.deeds.is_empty() && !found.mentions.is_empty());
         if headed && story.robot_part != Some("leading") {
             story.cast.notes.push(format!(
                 "`{quote}`: people are met on their way and walk on; that they end at {} is not demanded",

@@ -344,7 +344,7 @@ pub(crate) fn elevator() -> Case {
             must("c2", Predicate::StaysInside { human: HumanId::new(2), door: String::new() }),
             must("c3", Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }),
             must("c4", Predicate::HiddenUntil { human: HumanId::new(2), within_m: 5.0 }),
-            must("c5", Predicate::EncounterAt { place: PlaceClass::Elevator }),
+            must("c5", Predicate::EncounterAt { place: PlaceClass::Elevator, nodes: vec![] }),
             must("c6", Predicate::Looks { human: HumanId::new(2), for_s: 2.0 }),
             must("c7", Predicate::Order { first: "c3".into(), then: "c1".into() }),
             Clause { role: ClauseRole::Outcome, ..must("o1", Predicate::RobotEntersLast) },
@@ -374,6 +374,23 @@ fn an_elevator_with_one_who_leaves_and_one_who_stays_is_realised() {
     assert_eq!(report.verdict, Verdict::Realised, "{}\n{:#?}", report.verdict_text, report.clauses);
     assert!(report.robot_text.contains("entered after everybody had left"), "{}", report.robot_text);
     assert!(report.story.iter().any(|line| line == "12.0 s  car opens"), "{:?}", report.story);
+}
+
+#[test]
+fn a_place_that_is_named_is_judged_by_its_nodes() {
+    let at = |node: &str| {
+        let mut case = elevator();
+        for clause in &mut case.plan.expected_events {
+            if let Predicate::EncounterAt { nodes, .. } = &mut clause.predicate {
+                nodes.push(crate::fixture::node(node));
+            }
+        }
+        let report = case.judge(&elevator_run(leaver(), 12.0));
+        report.clauses.iter().find(|clause| clause.id == "c5").unwrap().standing
+    };
+    assert_eq!(at("c"), Standing::Holds);
+    // Of the same class, but nobody is met there.
+    assert_eq!(at("d"), Standing::Fails);
 }
 
 #[test]

@@ -302,7 +302,7 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::Queues { group, gap_m } => either(groups::queues(signals, *group, *gap_m)),
         Predicate::Order { first, then } => order(found, first, then),
         Predicate::Before { first, then } => setting::before(signals, *first, *then),
-        Predicate::EncounterAt { place } => setting::encounter_at(signals, *place),
+        Predicate::EncounterAt { place, nodes } => setting::encounter_at(signals, *place, nodes),
         Predicate::Reaches { agent, node, within_m } => setting::reaches(signals, *agent, node, *within_m),
         Predicate::StartsAt { agent, node, within_m } => setting::starts_at(signals, *agent, node, *within_m),
         Predicate::OnTime { human, gap_s } => setting::on_time(signals, *human, *gap_s),

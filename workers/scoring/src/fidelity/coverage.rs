@@ -93,7 +93,9 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
-        FactKind::Place(place) => named || clause.predicate == Predicate::EncounterAt { place: *place },
+        FactKind::Place(place) => {
+            named || matches!(clause.predicate, Predicate::EncounterAt { place: at, .. } if at == *place)
+        }
         FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)

@@ -91,7 +91,14 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
 
 /// Whether all triggers hold at a moment of a human.
 pub(super) fn holds(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment: &Moment) -> bool {
-    trigger_mark(signals, human, when, moment, 0.0).margin >= 0.0
+    // Only who was passed needs to know how near the robot has been.
+    let nearest_m = if when.contains(&Trigger::RobotPassed) {
+        let before = signals.of(human).iter().take_while(|other| other.t <= moment.t);
+        before.map(|other| other.distance_m).fold(f64::INFINITY, f64::min)
+    } else {
+        moment.distance_m
+    };
+    trigger_mark(signals, human, when, (moment, nearest_m), 0.0).margin >= 0.0
 }
 
 /// Times at which the triggers begin to hold.

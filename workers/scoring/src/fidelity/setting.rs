@@ -38,8 +38,8 @@ pub(super) fn humans(signals: &Signals<'_>, count: u32) -> Finding {
     }
 }
 
-/// An encounter lies on a place of this class.
-pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass) -> Finding {
+/// An encounter lies on one of the named nodes, or on a place of this class where none is named.
+pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[NodeId]) -> Finding {
     let (Some(location), Some(paths)) = (signals.evidence.location, signals.evidence.paths) else {
         return Finding::not_applicable("there is no map or no paths to tell where the encounters are");
     };
@@ -50,7 +50,7 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass) -> Finding 
         .encounters
         .iter()
         .map(|encounter| &encounter.node)
-        .filter(|node| location.graph.node_is(node, place))
+        .filter(|node| if named.is_empty() { location.graph.node_is(node, place) } else { named.contains(node) })
         .collect();
     let first = here.first().and_then(|node| {
         let at = signals.node(node)?;
@@ -58,15 +58,16 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass) -> Finding 
         robot.samples.iter().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0))
     });
     let list = |nodes: Vec<&NodeId>| nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
+    let what = if named.is_empty() {
+        format!("a place of class `{place}`")
+    } else {
+        format!("the {} meant ({})", place.name().replace('_', " "), list(named.iter().collect()))
+    };
     if here.is_empty() {
         let all = paths.encounters.iter().map(|encounter| &encounter.node).collect();
-        return Finding::fails(
-            -1.0,
-            vec![],
-            format!("no encounter is at a place of class `{place}`: they are at {}", list(all)),
-        );
+        return Finding::fails(-1.0, vec![], format!("no encounter is at {what}: they are at {}", list(all)));
     }
-    Finding::holds(1.0, first.map(|(_, t)| t).into_iter().collect(), format!("{} is of class `{place}`", list(here)))
+    Finding::holds(1.0, first.map(|(_, t)| t).into_iter().collect(), format!("{} is {what}", list(here)))
 }
 
 /// The agent comes within a distance of the node.

@@ -108,7 +108,7 @@ fn spot(
                     cost += 5.0;
                 }
             }
-            if human.relation == Relation::Staying || human.relation == Relation::Static && door.is_some() {
+            if matches!(human.relation, Relation::Staying | Relation::Static) {
                 // The robot's own place stays free.
                 if let Some(end) = robot.and_then(|(_, route)| route.end()) {
                     cost += 4.0 * (1.05 - (at - end).norm()).max(0.0);

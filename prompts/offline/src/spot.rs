@@ -1,0 +1,294 @@
+//! Which place of a class is meant, where the text names it: `the kitchen`, `in front of the meeting room`, `the doorway`.
+
+use std::collections::BTreeMap;
+
+use socrates_model::{
+    ClauseRole, Encounter, FactKind, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Predicate, Proposal,
+    Reading, Relation,
+};
+
+use socrates_prompts::Question;
+
+use crate::clause::{self, Found};
+use crate::cut::{Stretch, sentences};
+use crate::lexicon::lexicon;
+use crate::routes::Net;
+use crate::task::{self, End};
+use crate::{named, place};
+
+/// A place by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Meant {
+    /// As the text says it.
+    pub(crate) name: String,
+    /// The nodes of that name; none where the map knows no such place.
+    pub(crate) nodes: Vec<NodeId>,
+}
+
+/// Words of a name before the word for the place, and after it, at most.
+const BEFORE: usize = 2;
+const AFTER: usize = 2;
+
+/// The place of the class that a quote names; `None` where any place of the class is meant.
+pub(crate) fn named_in(location: &Location, quote: &str, class: PlaceClass) -> Option<Meant> {
+    // Cars and their lobbies are told apart by who uses them.
+    if matches!(class, PlaceClass::Elevator | PlaceClass::ElevatorLobby | PlaceClass::Plain) {
+        return None;
+    }
+    let read = |mut stretch: Stretch| {
+        let found = clause::read(&mut stretch);
+        (stretch, found)
+    };
+    let stretches: Vec<(Stretch, Found)> = sentences(quote).into_iter().flatten().map(read).collect();
+    if class == PlaceClass::Doorway {
+        return doorways(location, quote, &stretches);
+    }
+    let mut unknown = None;
+    for (stretch, found) in &stretches {
+        for (_, at) in found.places.iter().filter(|(other, _)| *other == class) {
+            let (own, whole) = phrase(stretch, *at, quote);
+            if named::telling(&own).is_empty() && named::find(location, &whole).is_none() {
+                continue;
+            }
+            let Some(known) = named::find(location, &whole) else {
+                unknown.get_or_insert(Meant { name: own, nodes: Vec::new() });
+                continue;
+            };
+            let outside = class == PlaceClass::Room && outside(stretch, *at);
+            let nodes = if outside { before_doors(location, &known.nodes) } else { known.nodes };
+            return Some(Meant { name: own, nodes });
+        }
+    }
+    unknown
+}
+
+/// The name from the word for the place on, and with the words before it.
+fn phrase(stretch: &Stretch, at: usize, quote: &str) -> (String, String) {
+    let lex = lexicon();
+    let describes = |k: &usize| {
+        stretch.words.get(*k).is_some_and(|word| {
+            !lex.stop.contains(&word.text) && !lex.verbs.contains(&word.stem) && !lex.roles.contains_key(&word.stem)
+        })
+    };
+    let belongs = |k: &usize| {
+        stretch.words.get(*k).is_some_and(|word| word.is_digits() || named::telling(&word.text).is_empty())
+            && describes(k)
+    };
+    let from = (1..=BEFORE).filter_map(|back| at.checked_sub(back)).take_while(describes).last().unwrap_or(at);
+    let to = (at + 1..=at + AFTER).take_while(belongs).last().unwrap_or(at);
+    let said = |from: usize| {
+        let (first, last) = (stretch.words.get(from), stretch.words.get(to));
+        let span = first.zip(last).and_then(|(first, last)| quote.get(first.from..last.to));
+        span.unwrap_or_default().trim_start_matches("the ").to_owned()
+    };
+    (said(at), said(from))
+}
+
+/// `in front of the kitchen`, `outside the ward`, `at the meeting room door`.
+fn outside(stretch: &Stretch, at: usize) -> bool {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let article = |k: &usize| matches!(text(*k), "the" | "a" | "an" | "this" | "that");
+    let before = (1..=3).filter_map(|back| at.checked_sub(back)).find(|k| !article(k));
+    let door = (at + 1..=at + AFTER).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "door"));
+    before.is_some_and(|k| {
+        matches!(text(k), "outside" | "before")
+            || text(k) == "of" && k.checked_sub(1).is_some_and(|k| text(k) == "front")
+            || door && matches!(text(k), "at" | "by" | "near")
+    })
+}
+
+fn is_door(location: &Location, id: &NodeId) -> bool {
+    location.graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway)
+}
+
+/// The nodes right outside the doors of these.
+fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
+    let graph = &location.graph;
+    let doors: Vec<NodeId> =
+        rooms.iter().flat_map(|room| graph.neighbors(room)).filter(|id| is_door(location, id)).collect();
+    let from = if doors.is_empty() { rooms.to_vec() } else { doors };
+    let mut found: Vec<NodeId> = Vec::new();
+    for node in from.iter().flat_map(|id| graph.neighbors(id)) {
+        if !place::is_inside(location, &node) && !is_door(location, &node) && !found.contains(&node) {
+            found.push(node);
+        }
+    }
+    found
+}
+
+/// A node that only has a way through a door is no doorway: those are that the map calls so, and of them those of a room by name.
+fn doorways(location: &Location, quote: &str, stretches: &[(Stretch, Found)]) -> Option<Meant> {
+    let graph = &location.graph;
+    let mut nodes: Vec<NodeId> =
+        graph.nodes.iter().map(|node| node.id.clone()).filter(|id| is_door(location, id)).collect();
+    let rooms = stretches.iter().flat_map(|(stretch, found)| {
+        found.places.iter().filter(|(class, _)| *class == PlaceClass::Room).map(move |(_, at)| (stretch, *at))
+    });
+    let of = rooms.filter_map(|(stretch, at)| named::find(location, &phrase(stretch, at, quote).1)).next();
+    let own = |id: &NodeId| of.as_ref().is_none_or(|of| graph.neighbors(id).iter().any(|next| of.nodes.contains(next)));
+    let narrow = |id: &NodeId| graph.node(id).is_some_and(|node| node.kind.to_lowercase().contains("narrow"));
+    if nodes.iter().any(own) {
+        nodes.retain(own);
+    }
+    if quote.to_lowercase().contains("narrow") && nodes.iter().any(narrow) {
+        nodes.retain(narrow);
+    }
+    (!nodes.is_empty()).then(|| Meant { name: "doorway".to_owned(), nodes })
+}
+
+/// The nodes that count for a place of the text, in a clause; none where every node of the class does.
+pub(crate) fn nodes(location: &Location, quote: &str, class: PlaceClass, humans: &[HumanProposal]) -> Vec<NodeId> {
+    let relation = |wanted: &[Relation]| humans.iter().any(|human| wanted.contains(&human.relation));
+    // Who comes out of a room or car is met before it.
+    if matches!(class, PlaceClass::Room | PlaceClass::Doorway) && relation(&[Relation::Leaving, Relation::Staying]) {
+        return Vec::new();
+    }
+    let graph = &location.graph;
+    let walks = relation(&[
+        Relation::Frontal,
+        Relation::Crossing,
+        Relation::Behind,
+        Relation::Ahead,
+        Relation::Abreast,
+        Relation::Leaving,
+    ]);
+    let meant = named_in(location, quote, class).map(|meant| meant.nodes).unwrap_or_default();
+    let all = if meant.is_empty() { socrates_maps::place::nodes_of(location, class) } else { meant.clone() };
+    // Nobody walks on beyond a dead end, and nobody crosses in a doorway: they meet right before it.
+    let dead = all.iter().all(|id| graph.degree(id) < 2) && walks;
+    let crossed = class == PlaceClass::Doorway && relation(&[Relation::Crossing]);
+    if !dead && !crossed {
+        return meant;
+    }
+    let mut found = all.clone();
+    let beside = |id: &NodeId| {
+        let next = graph.neighbors(id);
+        let through = next.iter().filter(|id| is_door(location, id)).flat_map(|door| graph.neighbors(door));
+        next.clone().into_iter().chain(through).collect::<Vec<_>>()
+    };
+    for node in all.iter().flat_map(beside) {
+        if !found.contains(&node) {
+            found.push(node);
+        }
+    }
+    found
+}
+
+/// The nodes that a proposal names for its place; none where any of the class will do.
+pub(crate) fn of_proposal(proposal: &Proposal) -> Vec<NodeId> {
+    let own = proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup);
+    let named = own.filter_map(|clause| {
+        if let Predicate::EncounterAt { place, nodes } = &clause.predicate {
+            Some(nodes.clone()).filter(|_| *place == proposal.place)
+        } else {
+            None
+        }
+    });
+    named.flatten().collect()
+}
+
+/// The same by index.
+pub(crate) fn indices(net: &Net<'_>, proposal: &Proposal) -> Vec<usize> {
+    of_proposal(proposal).iter().filter_map(|id| net.index(id)).collect()
+}
+
+/// Whether somebody is met at one of these nodes, and everybody else at most next to it; who walks with the robot is met anywhere.
+pub(crate) fn met_at(meant: &[NodeId], paths: &Paths, proposal: &Proposal) -> bool {
+    let along = |encounter: &&Encounter| {
+        let human = proposal.human(encounter.human);
+        human.is_some_and(|human| matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast))
+    };
+    let beside = |encounter: &Encounter| {
+        let at = paths.robot.iter().position(|node| *node == encounter.node);
+        let around = at.map_or(0..0, |at| at.saturating_sub(1)..(at + 2).min(paths.robot.len()));
+        paths.robot.get(around).unwrap_or_default().iter().any(|node| meant.contains(node))
+    };
+    paths.encounters.iter().any(|encounter| meant.contains(&encounter.node))
+        && paths.encounters.iter().filter(|encounter| !along(encounter)).all(beside)
+}
+
+/// Where the robot's way begins or ends, where the story says so by name.
+fn robot_end(location: &Location, reading: &Reading, goal: bool) -> Vec<NodeId> {
+    let wanted = |kind: &FactKind| {
+        if let FactKind::RobotGoal(class) = kind {
+            Some(*class).filter(|_| goal)
+        } else if let FactKind::RobotStart(class) = kind {
+            Some(*class).filter(|_| !goal)
+        } else {
+            None
+        }
+    };
+    let said = reading.facts.iter().filter_map(|fact| wanted(&fact.kind).map(|class| (class, fact.quote.as_str())));
+    said.filter_map(|(class, quote)| named_in(location, quote, class))
+        .next()
+        .map(|meant| meant.nodes)
+        .unwrap_or_default()
+}
+
+/// The places where the way begins or ends by name: those of the scenario, or those of the task unless the scenario has it
+/// begin or end elsewhere.
+pub(crate) fn ends(question: &Question, named: &[End], class: Option<PlaceClass>, goal: bool) -> Vec<NodeId> {
+    let said = robot_end(&question.location, &question.reading, goal);
+    let nodes = if said.is_empty() { task::nodes(named).to_vec() } else { said };
+    let suits = |class: PlaceClass| nodes.iter().any(|node| question.location.graph.node_is(node, class));
+    if class.is_none_or(suits) { nodes } else { Vec::new() }
+}
+
+/// Words before the name of a room that somebody comes out of.
+const OUT_OF: &[&str] = &["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "];
+
+/// The rooms that people come out of, where the text names them: `out of the kitchen`.
+pub(crate) fn rooms(net: &Net<'_>, question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
+    let mut found = BTreeMap::new();
+    for fact in &question.reading.facts {
+        let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
+            fact.kind
+        else {
+            continue;
+        };
+        let Some((_, from)) = OUT_OF.iter().find_map(|word| fact.quote.split_once(word)) else { continue };
+        let words: Vec<&str> = from.split_whitespace().take(5).collect();
+        let name = words.join(" ");
+        let name = name.split([',', ';', '.']).next().unwrap_or_default();
+        if let Some(room) = named::find(&question.location, name) {
+            found.insert(human, room.nodes.iter().filter_map(|id| net.index(id)).collect());
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::map;
+
+    fn ids(on: &str, quote: &str, class: PlaceClass) -> Option<Vec<String>> {
+        let meant = named_in(&map(on), quote, class)?;
+        Some(meant.nodes.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn a_place_is_the_one_that_the_map_calls_so() {
+        for (on, quote, class, wanted) in [
+            ("hospital", "Two patients stand in the waiting area", PlaceClass::OpenArea, &["wa1", "wa2"][..]),
+            ("hospital", "A nurse stands at the nurse station", PlaceClass::OpenArea, &["ns"]),
+            ("hospital", "A nurse stops at ward 2", PlaceClass::Room, &["p2"]),
+            ("office", "Four people queue in front of the counter in the kitchen", PlaceClass::Room, &["kt"]),
+            ("office", "They queue in front of the meeting room door", PlaceClass::Room, &["ib", "h3"]),
+            ("office", "A woman and the robot meet at the narrow doorway", PlaceClass::Doorway, &["nd"]),
+            ("hospital", "They stand in the doorway of the ward", PlaceClass::Doorway, &["d1", "d2"]),
+            ("warehouse", "A worker waits at the loading dock", PlaceClass::Exit, &["kx"]),
+            ("hospital", "Two people talk in the cafeteria", PlaceClass::Room, &[]),
+        ] {
+            let found = ids(on, quote, class).unwrap_or_else(|| panic!("{quote}"));
+            assert_eq!(found, wanted, "{quote}");
+        }
+        for (on, quote, class) in [
+            ("hospital", "A nurse waits in the busy corridor", PlaceClass::Corridor),
+            ("office", "They talk in a room", PlaceClass::Room),
+            ("office", "A guard stops the robot at the exit", PlaceClass::Exit),
+        ] {
+            assert_eq!(ids(on, quote, class), None, "{quote}");
+        }
+    }
+}
