@@ -231,13 +231,19 @@ pub(crate) fn people_deed(
     });
     let inside = found.places.first().map(|(class, _)| *class);
     let place = if matches!(act, Act::ComeOut | Act::Stay) {
-        found
-            .places
-            .iter()
+        // `runs out of the ward and goes to the elevator`: what stands first behind the verb.
+        let inside =
+            |class: &PlaceClass| matches!(class, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway);
+        let behind = found.places.iter().filter(|(class, place)| inside(class) && *place > at);
+        behind
+            .min_by_key(|(_, place)| *place)
+            .or_else(|| found.places.iter().find(|(class, _)| inside(class)))
             .map(|(class, _)| *class)
-            .find(|class| matches!(class, PlaceClass::Elevator | PlaceClass::Room | PlaceClass::Doorway))
             .or_else(|| people.iter().find_map(|i| story.cast.people.get(*i).and_then(|p| p.start)))
-            .or_else(|| story.place.as_ref().map(|(class, _)| *class).filter(|class| *class == PlaceClass::Elevator))
+            .or_else(|| at_elevator(story))
+    } else if act == Act::Enter {
+        // `the door opens and they all get in`, before an elevator
+        inside.or_else(|| at_elevator(story))
     } else {
         inside
     };
@@ -325,6 +331,12 @@ pub(crate) fn people_deed(
     }
     story.cast.last = people.to_vec();
     thread.doer = Some(people.to_vec());
+}
+
+/// The elevator, where the text tells of one or of the place before it.
+fn at_elevator(story: &Story) -> Option<PlaceClass> {
+    let near = |class: PlaceClass| matches!(class, PlaceClass::Elevator | PlaceClass::ElevatorLobby);
+    story.place.as_ref().filter(|(class, _)| near(*class)).map(|_| PlaceClass::Elevator)
 }
 
 /// What those do who stand one behind the other.

@@ -178,10 +178,20 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         && person
             .is_some_and(|person| person.relation.is_some() || act == Act::Ahead && does(person, &Action::FollowRobot));
     let on_the_way = act == Act::Talk && person.is_some_and(walks) || then;
-    if let Some(relation) = relation(act).filter(|_| !on_the_way) {
+    // `waits in the elevator`, `stand in the lift and talk`
+    let in_elevator = matches!(act, Act::Stand | Act::Talk | Act::Stop)
+        && around.place == Some(PlaceClass::Elevator)
+        && crate::whereabouts::in_car(&around.quote)
+        && cast.people.get(who).is_some_and(|person| person.relation.is_none());
+    if in_elevator {
+        relate(cast, who, Relation::Staying, &around.quote);
+    } else if let Some(relation) = relation(act).filter(|_| !on_the_way) {
         relate(cast, who, relation, &around.quote);
     }
     let person = cast.people.get_mut(who)?;
+    if in_elevator {
+        person.start = around.place;
+    }
     if matches!(act, Act::ComeOut | Act::Stay) && around.place.is_some() {
         person.start = around.place;
     }

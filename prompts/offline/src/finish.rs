@@ -21,6 +21,17 @@ impl Story {
             Some(weak) if self.place.is_none() || inside && weak.0 == PlaceClass::Elevator => self.place = Some(weak),
             Some(_) | None => {}
         }
+        // `comes out of the ward and goes to the elevator`: met before the ward, on the way.
+        let mut leavers = self.cast.people.iter().filter(|person| is(person, Relation::Leaving)).peekable();
+        let of_rooms = leavers.peek().is_some() && leavers.all(|person| person.start == Some(PlaceClass::Room));
+        let end = |quote: &str| ["to the elevator", "to the lift"].iter().any(|words| quote.contains(words));
+        let place = &mut self.place;
+        if of_rooms
+            && let Some((_, quote)) = place.take_if(|(class, quote)| *class == PlaceClass::Elevator && end(quote))
+        {
+            let note = format!("`{quote}`: people are met on their way; that they end at the elevator is not demanded");
+            self.cast.notes.push(note);
+        }
         let elevator = self.place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::Elevator);
         let leaving = self.cast.people.iter().any(|p| is(p, Relation::Leaving));
         for who in 0..self.cast.people.len() {
@@ -93,7 +104,10 @@ impl Story {
         }
         // Who does something else first at a word of the robot is met by it, and follows it then.
         let hears = |read: &ReadRule| read.rule.when.iter().any(|when| matches!(when, Trigger::RobotSays(_)));
-        let first = person.rules.first().is_some_and(|read| hears(read) && read.rule.act != Action::FollowRobot);
+        let first = person
+            .rules
+            .first()
+            .is_some_and(|read| hears(read) && !matches!(read.rule.act, Action::FollowRobot | Action::Navigate));
         if does(person, &Action::FollowRobot) {
             // Whom the robot has passed was before it.
             let passed =

@@ -100,6 +100,9 @@ fn word(read: &ReadRule) -> bool {
     read.rule.when.iter().any(|trigger| matches!(trigger, Trigger::RobotSays(_) | Trigger::HumanSays(..)))
 }
 
+/// Longer than any robot moves or stands at a time, s.
+const ALTERNATES_S: f64 = 60.0;
+
 /// `stands still while it moves and walks on when it stops`: each as long as its condition holds, again and again.
 fn alternate(rules: &mut [ReadRule]) {
     let has = |trigger: &Trigger| rules.iter().any(|read| read.rule.when == [trigger.clone()]);
@@ -108,11 +111,14 @@ fn alternate(rules: &mut [ReadRule]) {
     }
     for read in rules {
         let waits = matches!(read.rule.when[..], [Trigger::RobotMoving | Trigger::RobotStopped]);
-        if waits && read.rule.gesture.is_none() && matches!(read.rule.act, Action::StandStill | Action::Navigate) {
+        if waits
+            && read.rule.gesture.is_none()
+            && matches!(read.rule.act, Action::StandStill | Action::Navigate | Action::LookAtRobot)
+        {
             read.rule.latched = false;
             // It stands for as long as the robot moves.
-            if read.rule.act == Action::StandStill && !read.lasts {
-                read.rule.for_s = None;
+            if read.rule.act != Action::Navigate && !read.lasts {
+                read.rule.for_s = Some(ALTERNATES_S);
             }
         }
     }

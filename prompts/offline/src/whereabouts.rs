@@ -115,6 +115,20 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
     }
 }
 
+/// `in the elevator`, and not in the lobby before it.
+pub(crate) fn in_car(quote: &str) -> bool {
+    let quote = quote.to_lowercase();
+    ["elevator", "lift"].iter().any(|car| {
+        quote.match_indices(car).any(|(at, _)| {
+            let (before, after) =
+                (quote.get(..at).unwrap_or_default(), quote.get(at + car.len()..).unwrap_or_default());
+            let inside = ["in the ", "inside the ", "in an ", "in a ", "in ", "inside "];
+            let besides = [" lobby", " hall", " area", " door"];
+            inside.iter().any(|words| before.ends_with(words)) && !besides.iter().any(|words| after.starts_with(words))
+        })
+    })
+}
+
 /// Whether one of these words stands before a place, with at most two words between.
 fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());

@@ -50,7 +50,7 @@ const OPEN: [(&str, &str, usize); 29] = [
 ];
 
 /// Facts of the sets kept aside that were right when the test saw them first.
-const FIRST_LOOKS: [usize; 4] = [107, 120, 127, 220];
+const FIRST_LOOKS: [usize; 5] = [107, 120, 127, 220, 199];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -249,7 +249,7 @@ fn what_was_kept_aside_last_is_read() {
 }
 
 /// Written by people who did not know the grammar, and unread by whoever works on it: only the figures are told. 95 in 100
-/// are aimed at: 585 of 609 facts of the four, the sixth (127 of 129) and the eighth (220 of 231) at the only time they were run.
+/// are aimed at: at the only time they were run, the sixth got 127 of 129, the eighth 220 of 231, the ninth 199 of 233.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
@@ -258,6 +258,7 @@ fn what_is_kept_aside_is_read_no_worse_than_at_first() {
         ("fifth", include_str!("../corpus/sealed-5.toml"), FIRST_LOOKS[1]),
         ("sixth", include_str!("../corpus/sealed-6.toml"), FIRST_LOOKS[2]),
         ("eighth", include_str!("../corpus/sealed-8.toml"), FIRST_LOOKS[3]),
+        ("ninth", include_str!("../corpus/sealed-9.toml"), FIRST_LOOKS[4]),
     ] {
         let (right, all, _unread) = judge(corpus);
         println!("kept aside, {name}: {right} of {all} facts");

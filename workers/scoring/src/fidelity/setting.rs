@@ -1,6 +1,6 @@
 //! Monitors of the setting: how many humans, where and when the encounter is, who starts at and who reaches a node.
 
-use socrates_model::{AgentId, HumanId, NodeId, PlaceClass, Point};
+use socrates_model::{AgentId, HumanId, NodeId, PlaceClass, Point, Relation};
 
 use crate::fidelity::finding::Finding;
 use crate::fidelity::gaps::ARRIVED_M;
@@ -46,11 +46,19 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[No
     if paths.encounters.is_empty() {
         return Finding::fails(-1.0, vec![], "the paths have no encounter");
     }
+    let lies =
+        |node: &NodeId| if named.is_empty() { location.graph.node_is(node, place) } else { named.contains(node) };
+    // Who comes out of an elevator, or stays in it, is met before its door.
+    let from_inside = |human: HumanId| {
+        let relation = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map(|human| human.relation);
+        let inside = matches!(relation, Some(Relation::Leaving | Relation::Staying));
+        inside && paths.of(AgentId::Human(human)).and_then(|nodes| nodes.first()).is_some_and(lies)
+    };
     let here: Vec<&NodeId> = paths
         .encounters
         .iter()
+        .filter(|encounter| lies(&encounter.node) || from_inside(encounter.human))
         .map(|encounter| &encounter.node)
-        .filter(|node| if named.is_empty() { location.graph.node_is(node, place) } else { named.contains(node) })
         .collect();
     let first = here.first().and_then(|node| {
         let at = signals.node(node)?;
