@@ -167,7 +167,9 @@ impl Story {
                         .any(|doing| matches!(doing.as_str(), "talks" | "stands" | crate::bind::QUEUES))
             };
             let indoors = |person: &Person| is(person, Relation::Leaving) || is(person, Relation::Staying);
-            if rooms || !all().any(indoors) || !all().all(stands) {
+            // `four come out of the ward and block the corridor while they discuss`: they come out together, and stand then.
+            let together = all().all(|person| is(person, Relation::Leaving));
+            if rooms || together || !all().any(indoors) || !all().all(stands) {
                 continue;
             }
             for who in members {
