@@ -187,13 +187,13 @@ fn actions() -> Vec<Action> {
 
 fn relations() -> Vec<(Value, String)> {
     vec![
-        row(&Relation::Frontal, "comes towards the robot on the same way"),
+        row(&Relation::Frontal, "comes towards the robot"),
         row(&Relation::Behind, "comes from behind; follows or overtakes"),
-        row(&Relation::Ahead, "walks ahead of the robot, the same way"),
+        row(&Relation::Ahead, "walks ahead of the robot"),
         row(&Relation::Crossing, "crosses the robot's way"),
         row(&Relation::Static, "stands where the robot passes; every member of a standing group"),
-        row(&Relation::Leaving, "comes out of the room or elevator where the robot passes or enters"),
-        row(&Relation::Staying, "stays inside the room or elevator that the robot enters"),
+        row(&Relation::Leaving, "comes out of the room or elevator"),
+        row(&Relation::Staying, "stays inside it as the robot enters"),
         row(&Relation::Abreast, "walks beside the robot"),
     ]
 }
@@ -201,7 +201,7 @@ fn relations() -> Vec<(Value, String)> {
 fn robot_when() -> Vec<(Value, String)> {
     vec![
         row(&RobotWhen::Start, "from the start"),
-        row(&RobotWhen::Blocked(3.0), "a human in its way for so many seconds"),
+        row(&RobotWhen::Blocked(3.0), "a human in its way so many seconds"),
         row(&RobotWhen::HumanNear(3.0), "a human is within this distance"),
         row(&RobotWhen::HumanSays(Gesture::Wait), "a human makes this gesture"),
         row(&RobotWhen::AtEncounter(HumanId::new(1)), "where it meets this human"),
@@ -213,7 +213,7 @@ fn robot_do() -> Vec<(Value, String)> {
     vec![
         row(&RobotDo::Say(Gesture::ExcuseMe), "makes the gesture"),
         row(&RobotDo::Hold(3.0), "stands for so many seconds"),
-        row(&RobotDo::WaitForLeavers, "waits until everybody who leaves is out"),
+        row(&RobotDo::WaitForLeavers, "waits until all who leave are out"),
         row(&RobotDo::Follow(HumanId::new(1)), "follows this human"),
         row(&RobotDo::Abreast(HumanId::new(1)), "goes beside this human"),
         row(&RobotDo::Lead(4.0), "waits for followers further behind"),
@@ -225,13 +225,10 @@ fn predicates() -> Vec<(Value, String)> {
     let group = GroupId(1);
     vec![
         row(&Predicate::Humans { count: 2 }, "so many are there all the time (setup)"),
-        row(&Predicate::Meets { human, within_m: 2.5 }, "so near to each other at their encounter (setup)"),
-        row(
-            &Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 },
-            "they meet a second (nth) time, where the request asks for it (setup)",
-        ),
+        row(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter (setup)"),
+        row(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for (setup)"),
         row(&Predicate::HeadOn { human }, "comes straight at the robot (setup)"),
-        row(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses the robot's way, both there within gap_s (setup)"),
+        row(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses its way, both there within gap_s (setup)"),
         row(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot (setup)"),
         row(&Predicate::Overtakes { human }, "overtakes the robot (setup)"),
         row(&Predicate::RobotPasses { human }, "the robot passes it (setup)"),
@@ -242,26 +239,20 @@ fn predicates() -> Vec<(Value, String)> {
                 gap_m: [0.5, 3.5],
                 for_s: 5.0,
             },
-            "goes behind the leader (robot or human) (setup)",
+            "goes behind the leader (setup)",
         ),
         row(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot (setup)"),
         row(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it (setup)"),
         row(
             &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
-            "so many humans walk by, at such angles to the robot's heading (setup)",
+            "so many walk by at such angles to the robot's heading (setup)",
         ),
         row(
             &Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 },
-            "so many people per m² round the robot (setup)",
+            "people per m² round the robot (setup)",
         ),
-        row(
-            &Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 },
-            "so many humans so near at one time (setup)",
-        ),
-        row(
-            &Predicate::Converges { within_m: 2.5, within_s: 4.0 },
-            "all come to the encounter at about the same time (setup)",
-        ),
+        row(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once (setup)"),
+        row(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time (setup)"),
         row(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way (setup)"),
         row(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at the robot (setup)"),
         row(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still (setup)"),
@@ -279,30 +270,27 @@ fn predicates() -> Vec<(Value, String)> {
             &Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] },
             "opens while the robot is so near (setup)",
         ),
-        row(&Predicate::HiddenUntil { human, within_m: 4.0 }, "the two cannot see each other until so near (setup)"),
+        row(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near (setup)"),
         row(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together (setup)"),
         row(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together (setup)"),
         row(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line (setup)"),
         row(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
-            "one clause (c1, c2, … in order) before another (setup)",
+            "one clause (c1, c2, …) before another (setup)",
         ),
-        row(
-            &Predicate::Before { first: AgentId::Robot, then: human.into() },
-            "one is at the encounter before the other: two humans, or a human and the robot (setup)",
-        ),
+        row(&Predicate::Before { first: AgentId::Robot, then: human.into() }, "is at its encounter first (setup)"),
         row(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place (setup)",
         ),
-        row(&Predicate::OnTime { human, gap_s: 4.0 }, "at the encounter at most so far apart in time (setup)"),
-        row(&Predicate::Plausible, "nobody overlaps or runs impossibly fast (setup)"),
+        row(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time (setup)"),
+        row(&Predicate::Plausible, "everybody moves as people do (setup)"),
         row(&Predicate::RobotArrives, "the robot gets to its goal (outcome)"),
-        row(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance from everybody (outcome)"),
+        row(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance (outcome)"),
         row(&Predicate::RobotEntersLast, "the robot enters after everybody is out (outcome)"),
-        row(&Predicate::RobotLeavesFirst, "the robot is out before anybody goes in (outcome)"),
+        row(&Predicate::RobotLeavesFirst, "the robot is out before others go in (outcome)"),
         row(&Predicate::RobotJoins { group }, "the robot ends at the rim of the group (outcome)"),
-        row(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group and ends away from it (outcome)"),
+        row(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group, ends away (outcome)"),
         row(
             &Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 },
             "the robot stops on the gesture (outcome)",
