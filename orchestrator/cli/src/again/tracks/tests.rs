@@ -93,7 +93,7 @@ fn columns_tell_the_goal_and_the_groups() {
 fn nobody_is_met_by_a_robot_that_was_there_at_another_time() {
     let mut text = String::from("t,id,x,y\n");
     for k in 0..100 {
-        let t = k as f64 * 0.1;
+        let t = f64::from(k) * 0.1;
         text.push_str(&format!("{t:.1},robot,{:.2},0\n{:.1},human_1,{:.2},0.1\n", 0.5 * t, t + 100.0, 5.0 - 0.5 * t));
     }
     let scored = of(&text, &Known::default());
