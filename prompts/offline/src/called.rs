@@ -1,34 +1,15 @@
 //! Names of people beside who they are: `Dele, the porter`, `our foreman, Marek`, `her colleague Jonas`,
 //! `two loaders, Chuy and Big Tom`.
 
+use crate::clock::{MONTHS, WEEKDAYS};
 use crate::lexicon::lexicon;
 use crate::noun::plural;
 use crate::words::{Piece, Word, comma_at, text_at, word_at};
 
 /// Words before a name that belong to it.
 const TITLES: &[&str] = &["mr", "mrs", "ms", "miss", "prof", "sister", "dr"];
-/// Words with a capital that are no names of people.
-const DAYS: &[&str] = &[
-    "monday",
-    "tuesday",
-    "wednesday",
-    "thursday",
-    "friday",
-    "saturday",
-    "sunday",
-    "january",
-    "february",
-    "april",
-    "june",
-    "july",
-    "august",
-    "september",
-    "october",
-    "november",
-    "december",
-    "christmas",
-    "easter",
-];
+/// Feasts have a capital and are no names of people, as days and months are not.
+const FEASTS: &[&str] = &["christmas", "easter"];
 /// Words before who somebody is.
 const WHOSE: &[&str] = &["our", "the", "a", "an", "my", "her", "his", "their", "your", "this", "that", "another"];
 /// Words that begin where somebody is from.
@@ -153,7 +134,7 @@ fn capital(pieces: &[Piece], at: usize) -> bool {
             && word.text.len() > 1
             && word.text.chars().all(char::is_alphabetic)
             && !lexicon().has(word)
-            && !DAYS.contains(&word.text.as_str())
+            && [WEEKDAYS, MONTHS, FEASTS].iter().all(|list| !list.contains(&word.text.as_str()))
             // `Thereupon the picker hurries`
             && !["ly", "upon", "wards", "fter", "while"].iter().any(|end| word.text.ends_with(end))
             && !lexicon().roles.contains_key(&word.stem)

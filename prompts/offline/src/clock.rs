@@ -3,6 +3,14 @@
 use crate::lexicon::lexicon;
 use crate::words::{Piece, Word, text_at, word_at};
 
+/// Days of the week.
+pub(crate) const WEEKDAYS: &[&str] = &["monday", "tuesday", "wednesday", "thursday", "friday", "saturday", "sunday"];
+/// Months that are nothing else.
+pub(crate) const MONTHS: &[&str] =
+    &["january", "february", "april", "june", "july", "august", "september", "october", "november", "december"];
+/// Months that are other words too: `two may stop`, `two march past`.
+const DOUBTFUL_MONTHS: &[&str] = &["may", "march", "mar"];
+const SHORT_MONTHS: &[&str] = &["jan", "feb", "apr", "jun", "jul", "aug", "sep", "sept", "oct", "nov", "dec"];
 /// Words right before an hour.
 const BEFORE: &[&str] = &["at", "around", "about", "by", "since", "until", "till", "before", "after", "past", "from"];
 /// Words right after an hour.
@@ -14,7 +22,8 @@ const DAY: &[&str] = &["morning", "afternoon", "evening", "night", "noon", "midn
 pub(crate) fn clock(pieces: &mut [Piece]) {
     let mut told = Vec::new();
     for at in 0..pieces.len() {
-        if let Some(to) = minutes(pieces, at).or_else(|| hour(pieces, at)).or_else(|| date(pieces, at)) {
+        let found = [minutes, hour, numeral, age, date].iter().find_map(|told| told(pieces, at));
+        if let Some(to) = found {
             told.extend(at..to);
         }
     }
@@ -42,59 +51,34 @@ fn minutes(pieces: &[Piece], at: usize) -> Option<usize> {
     half.then_some(at + 2)
 }
 
-/// `on 14 march`, `3rd of June`, `from May 2`: where that ends.
-fn date(pieces: &[Piece], at: usize) -> Option<usize> {
-    const MONTHS: &[&str] = &[
-        "january",
-        "february",
-        "march",
-        "april",
-        "may",
-        "june",
-        "july",
-        "august",
-        "september",
-        "october",
-        "november",
-        "december",
-        "jan",
-        "feb",
-        "mar",
-        "apr",
-        "jun",
-        "jul",
-        "aug",
-        "sep",
-        "sept",
-        "oct",
-        "nov",
-        "dec",
-    ];
-    let month = |k: usize| MONTHS.contains(&text_at(pieces, k));
-    // `two may stop`, `two march past`
-    let doubtful = |k: usize| matches!(text_at(pieces, k), "may" | "march" | "mar");
-    let day = |k: usize| number(pieces, k).is_some_and(|n| (1..=31).contains(&n));
-    // `what went wrong on the 3rd`
+/// `what went wrong on the 3rd`: where that ends.
+fn numeral(pieces: &[Piece], at: usize) -> Option<usize> {
     let text = text_at(pieces, at);
     let numeral = text.starts_with(|c: char| c.is_ascii_digit()) && text.ends_with(|c: char| c.is_alphabetic());
     let on = at >= 2
         && text_at(pieces, at - 1) == "the"
         && matches!(text_at(pieces, at - 2), "on" | "since" | "until" | "by");
-    let person =
-        word_at(pieces, at + 1).is_some_and(|next| lexicon().roles.contains_key(&next.stem) || next.text == "one");
-    if numeral && on && !person {
-        return Some(at + 1);
-    }
-    // `a girl, about six, …`
-    let aside = |k: Option<usize>| k.is_none_or(|k| word_at(pieces, k).is_none());
-    let of_role = |k: usize| word_at(pieces, k).is_some_and(|word| lexicon().roles.contains_key(&word.stem));
-    let about = at.checked_sub(1).filter(|k| matches!(text_at(pieces, *k), "about" | "aged"));
-    if about.is_some_and(|k| k > 1 && aside(k.checked_sub(1)) && of_role(k - 2))
-        && number(pieces, at).is_some()
-        && aside(Some(at + 1))
-    {
-        return Some(at + 1);
-    }
+    let person = of_role(pieces, at + 1) || text_at(pieces, at + 1) == "one";
+    (numeral && on && !person).then_some(at + 1)
+}
+
+/// `a girl, about six, …`: where that ends.
+fn age(pieces: &[Piece], at: usize) -> Option<usize> {
+    let about = at.checked_sub(1).filter(|k| *k > 1 && matches!(text_at(pieces, *k), "about" | "aged"))?;
+    let aside = word_at(pieces, about - 1).is_none() && word_at(pieces, at + 1).is_none();
+    (aside && of_role(pieces, about - 2) && number(pieces, at).is_some()).then_some(at + 1)
+}
+
+/// Whether a word for people stands at this place.
+fn of_role(pieces: &[Piece], at: usize) -> bool {
+    word_at(pieces, at).is_some_and(|word| lexicon().roles.contains_key(&word.stem))
+}
+
+/// `on 14 march`, `3rd of June`, `from May 2`: where that ends.
+fn date(pieces: &[Piece], at: usize) -> Option<usize> {
+    let doubtful = |k: usize| DOUBTFUL_MONTHS.contains(&text_at(pieces, k));
+    let month = |k: usize| doubtful(k) || [MONTHS, SHORT_MONTHS].iter().any(|list| list.contains(&text_at(pieces, k)));
+    let day = |k: usize| number(pieces, k).is_some_and(|n| (1..=31).contains(&n));
     let before = at.checked_sub(1).map_or("", |k| text_at(pieces, k));
     let dated = matches!(before, "on" | "of" | "by" | "since" | "until" | "till" | "from" | "before" | "the");
     let after = at + 1 + usize::from(text_at(pieces, at + 1) == "of");

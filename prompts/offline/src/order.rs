@@ -48,10 +48,10 @@ fn behind_robot(stretch: &Stretch) -> bool {
     (0..stretch.words.len()).any(|k| stem(k) == "behind" && (stem(k + 1) == "robot" || stem(k + 2) == "robot"))
 }
 
-/// A condition about the robot: `before the robot reaches the crossing`.
-pub(crate) fn condition(thread: &mut Thread, stretch: &Stretch, found: &Found, joiner: Option<Joiner>) {
+/// A clause that says when, by what the robot does: `before the robot reaches the crossing`.
+pub(crate) fn condition(thread: &mut Thread, found: &Found) {
     let robot = (found.cue.is_some() || !found.robots.is_empty()) && found.mentions.is_empty();
-    thread.before_robot = stretch.joint == Joint::When && joiner == Some(Joiner::Before) && robot;
+    thread.before_robot = robot && thread.joiner == Some(Joiner::Before);
 }
 
 /// Notes a deed by which people meet the robot.

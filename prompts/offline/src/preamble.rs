@@ -1,5 +1,6 @@
 //! What is told before the story: `This one is about gestures between humans: …`, `Tenants have complained that it frightens people.`
 
+use crate::clock::WEEKDAYS;
 use crate::lexicon::lexicon;
 use crate::mention::{Mention, Who, mentions};
 use crate::words::{Piece, Word, silence, word_at};
@@ -177,22 +178,8 @@ fn general(words: &[Word], found: &[Mention], heads: bool) -> bool {
 
 /// Whether words tell of a day.
 fn dated(words: &[Word]) -> bool {
-    words.iter().any(|word| {
-        matches!(
-            word.text.as_str(),
-            "monday"
-                | "tuesday"
-                | "wednesday"
-                | "thursday"
-                | "friday"
-                | "saturday"
-                | "sunday"
-                | "weekend"
-                | "morning"
-                | "afternoon"
-                | "evening"
-        )
-    })
+    let part = |word: &Word| matches!(word.text.as_str(), "weekend" | "morning" | "afternoon" | "evening");
+    words.iter().any(|word| WEEKDAYS.contains(&word.text.as_str()) || part(word))
 }
 
 /// Whether words tell of whoever asks, or in general.

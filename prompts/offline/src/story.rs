@@ -175,7 +175,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     let mut found = clause::read(stretch);
     thread.joiner = order::joiner(text, stretch);
     if stretch.joint == Joint::When {
-        order::condition(thread, stretch, &found, thread.joiner);
+        order::condition(thread, &found);
     }
     for limited in std::mem::take(&mut found.limited) {
         if !story.cast.notes.contains(&limited) {

@@ -21,6 +21,18 @@ const BY_WALL_M: f64 = 0.45;
 /// How far from the end of the path a place is looked for, in rings of 0.25 m.
 const RINGS: u32 = 8;
 
+/// A route that ends at another place: it turns off so far before its old end, where nothing is between, instead of walking to
+/// that first.
+fn turned_off(route: &Polyline, to: Point, short_m: f64, floor: &Floor) -> Polyline {
+    let mut points: Vec<Point> = route.points().to_vec();
+    let before = route.point(route.length_m() - short_m);
+    if let Some(last) = points.last_mut().filter(|_| floor.straight(&before, &to, 0.2)) {
+        *last = before;
+    }
+    points.push(to);
+    Polyline::new(&points)
+}
+
 /// Who walks to the robot's own goal ends beside it, so that both can arrive.
 pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
     let (Some(end), Some(goal)) = (route.end(), robot_way.end()) else { return route };
@@ -40,14 +52,8 @@ pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) ->
             }
         }
     }
-    let mut points: Vec<Point> = route.points().to_vec();
-    if let (Some(last), Some((_, at))) = (points.last_mut(), best) {
-        // Turns off before the goal instead of stepping on it.
-        let before = route.point(route.length_m() - 0.8);
-        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
-        points.push(at);
-    }
-    Polyline::new(&points)
+    let Some((_, at)) = best else { return route };
+    turned_off(&route, at, 0.8, floor)
 }
 
 /// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive.
@@ -68,13 +74,7 @@ pub(crate) fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline
         }
     }
     let Some((_, at)) = best else { return route };
-    let mut points: Vec<Point> = route.points().to_vec();
-    let before = route.point(route.length_m() - 0.9);
-    if let Some(last) = points.last_mut() {
-        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
-    }
-    points.push(at);
-    Polyline::new(&points)
+    turned_off(&route, at, 0.9, floor)
 }
 
 /// Whether a point is in front of a door: so near to it and not beside its frame.
@@ -115,14 +115,7 @@ pub(crate) fn aside(route: Polyline, robot_way: &Polyline, doors: &[Door], floor
         }
     }
     let Some((_, at)) = best else { return route };
-    let mut points: Vec<Point> = route.points().to_vec();
-    // Turns off before the end instead of walking to it first.
-    let before = route.point(route.length_m() - 0.8);
-    if let Some(last) = points.last_mut() {
-        *last = if floor.straight(&before, &at, 0.2) { before } else { *last };
-    }
-    points.push(at);
-    Polyline::new(&points)
+    turned_off(&route, at, 0.8, floor)
 }
 
 #[cfg(test)]
