@@ -81,7 +81,7 @@ pub(crate) fn subject_of(
             | Act::Stand
             | Act::Toward
             | Act::Cross
-    ) || act == Act::Approach && !found.robots.iter().any(|robot| *robot > at);
+    ) || act == Act::Approach && !found.robots.iter().chain(&found.met).any(|robot| *robot > at);
     // `out of the room that the robot drives into and nods to it`: what is nodded to nods not.
     let object_robot = act == Act::Gesture
         && found.robots.first().is_some_and(|robot| *robot > to && *robot <= to + 3)
@@ -159,6 +159,21 @@ pub(crate) fn people_deed(
             story.cast.people.get(*who).is_some_and(|person| person.doings.iter().any(|doing| doing == "startled"))
         });
     let act = if flees { Act::RunAway } else { act };
+    // `steps to the left`
+    let aside = act == Act::Walk
+        && matches!(stretch.words.get(at).map(|word| word.stem.as_str()), Some("step" | "move" | "shift" | "dodge" | "jump"))
+        && (to + 1..to + 4).any(|k| {
+            stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "left" | "right"))
+                && (to + 1..k).all(|k| stretch.words.get(k).is_some_and(|word| word.label || matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her")))
+        });
+    let act = if aside { Act::GiveWay } else { act };
+    // `walks 2 m behind participant 1`
+    let trails = act == Act::Walk
+        && (to + 1..to + 5).any(|k| {
+            stretch.words.get(k).is_some_and(|word| word.text == "behind")
+                && meant.iter().any(|(from, _, some)| *from == k + 1 && !some.is_empty() && some.iter().all(|i| !people.contains(i)))
+        });
+    let act = if trails { Act::Follow } else { act };
     // `is accompanied by a technician`
     let beside = act == Act::Lead
         && stretch.words.get(at).is_some_and(|word| word.stem == "accompany")
@@ -264,6 +279,14 @@ pub(crate) fn people_deed(
     {
         thread.waiting.clone_from(&thread.said);
     }
+    // `The robot says EXCUSE_ME. A worker who blocks the aisle answers that it may proceed.`
+    let replies = act == Act::Gesture
+        && thread.waiting.is_none()
+        && matches!(thread.said, Some(Trigger::RobotSays(_)))
+        && stretch.words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "answer" | "reply" | "respond"));
+    if replies {
+        thread.waiting.clone_from(&thread.said);
+    }
     let around = Around {
         vague: thread.vague && near.is_none(),
         trigger: thread.waiting.clone().or(near),
@@ -282,7 +305,7 @@ pub(crate) fn people_deed(
         gives_up: act == Act::GoOn
             && stretch.words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "give" | "lose" | "get")),
         then: stretch.joint == Joint::Then,
-        goes_on: thread.doer.as_deref() == Some(people),
+        goes_on: thread.doer.as_deref() == Some(people) && !replies,
         quote: quote.to_owned(),
     };
     let answers = matches!(act, Act::Gesture).then(|| around.gesture).flatten();

@@ -28,6 +28,8 @@ pub(crate) struct Found {
     pub(crate) mentions: Vec<Mention>,
     /// Robot words that no phrase has as its object.
     pub(crate) robots: Vec<usize>,
+    /// Robot words that are part of what somebody does: `comes up to the robot`.
+    pub(crate) met: Vec<usize>,
     pub(crate) deeds: Vec<Deed>,
     pub(crate) cue: Option<(Cue, usize)>,
     pub(crate) gesture: Option<Gesture>,
@@ -316,7 +318,9 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                     named,
                     "this" | "that" | "the" | "each" | "every" | "whole" | "entire" | "a" | "same" | "per" | "one"
                 );
-            if trip {
+            // `arms crossed`
+            let limbs = phrase.means == Act::Cross && matches!(named, "arms" | "legs" | "fingers");
+            if trip || limbs {
                 continue;
             }
             // `the guide signals`: a noun here.
@@ -366,9 +370,19 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
             if found_so {
                 continue;
             }
+            // `walks away in the opposite direction`: away from where it stood.
+            let off = phrase.means == Act::Toward
+                && (0..first + 2).any(|k| matches!(text_of(stretch, k), "away" | "off"))
+                && at.iter().any(|i| matches!(text_of(stretch, *i), "opposite" | "other"));
             let says_not = stretch.words.get(first).is_some_and(|word| word.text == "not");
             found.deeds.push(Deed {
-                act: if aside { Act::Ignore } else { phrase.means },
+                act: if aside {
+                    Act::Ignore
+                } else if off {
+                    Act::GoOn
+                } else {
+                    phrase.means
+                },
                 at: first,
                 to: last,
                 negated: !says_not && !aside && negated(stretch, first),
@@ -428,6 +442,10 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
     };
     let kept = found.deeds.iter().copied().filter(keep).collect();
     found.deeds = kept;
+}
+
+fn text_of(stretch: &Stretch, at: usize) -> &str {
+    stretch.words.get(at).map_or("", |word| word.text.as_str())
 }
 
 /// Whether somebody looks at a thing that he holds or passes, and not at the robot: `at his phone`.
@@ -523,7 +541,9 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
                         | "beside"
                 )
             });
-            if !taken.get(i).copied().unwrap_or(false) && before != "of" && before != "by" && !object {
+            if taken.get(i).copied().unwrap_or(false) {
+                found.met.push(i);
+            } else if before != "of" && before != "by" && !object {
                 found.robots.push(i);
             }
             used.push(i);

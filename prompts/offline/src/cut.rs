@@ -283,6 +283,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "and" if text(i + 1) == "a" && text(i + 2) == "half" => (None, 1),
         "at" if text(i + 1) == "that" && matches!(text(i + 2), "he" | "she" | "they" | "it") => (Some(Joint::Said), 2),
         "having" if opens && matches!(stem(i + 1), "reach" | "arrive") => (Some(Joint::When), 1),
+        // `up and down`, `back and forth` is one way of walking.
+        "and" if matches!((before, text(i + 1)), ("up", "down") | ("back", "forth") | ("round", "round")) => (None, 1),
         "and" => (Some(Joint::And), 1),
         // `all but two`, `all except one`, `everyone save two`
         "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),

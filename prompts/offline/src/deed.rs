@@ -5,6 +5,8 @@ use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Rel
 use crate::cast::{Cast, Person, ReadRule};
 use crate::finish::does;
 use crate::lexicon::Act;
+use crate::relation::{contradiction, relate, relation};
+use crate::short;
 
 /// What is known around a deed.
 #[derive(Debug, Clone, Default)]
@@ -71,35 +73,6 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
     })
 }
 
-/// How an act sets somebody to the robot's way.
-pub(crate) fn relation(act: Act) -> Option<Relation> {
-    Some(match act {
-        Act::Toward => Relation::Frontal,
-        Act::Overtake | Act::Behind => Relation::Behind,
-        Act::Abreast => Relation::Abreast,
-        Act::Ahead => Relation::Ahead,
-        Act::Cross => Relation::Crossing,
-        Act::ComeOut => Relation::Leaving,
-        Act::Stay => Relation::Staying,
-        Act::Talk | Act::Stand => Relation::Static,
-        Act::RunAway
-        | Act::GiveWay
-        | Act::Block
-        | Act::Look
-        | Act::Approach
-        | Act::Follow
-        | Act::Enter
-        | Act::WalkTogether
-        | Act::Stop
-        | Act::Ignore
-        | Act::Gesture
-        | Act::Lead
-        | Act::Pass
-        | Act::GoOn
-        | Act::Walk => return None,
-    })
-}
-
 /// Words for the reading line.
 pub(crate) fn words(act: Act, around: &Around) -> String {
     let place = |class: Option<PlaceClass>, other: &str| {
@@ -135,8 +108,36 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
     }
 }
 
+/// `He blocks it. After ten seconds he steps aside.`: so long after that began, not after the start of the run.
+fn since_last(cast: &mut Cast, who: usize, act: Act, around: &Around) -> Option<(Act, Around)> {
+    let Some(Trigger::AfterSecs(secs)) = around.trigger else { return None };
+    let last = cast.people.get_mut(who)?.rules.last_mut()?;
+    let [when] = last.rule.when.as_slice() else { return None };
+    let waits = !matches!(when, Trigger::Always | Trigger::AfterSecs(_))
+        && (last.rule.act != Action::Navigate || last.rule.gesture.is_some())
+        && (!last.lasts || last.rule.for_s == Some(secs));
+    // `after 15 s she stops and stands still`: both then.
+    let again = last.quote == around.quote || manner(act).is_some_and(|(action, ..)| action == last.rule.act);
+    if !waits && !again || around.gives_up {
+        return None;
+    }
+    let walks = matches!(act, Act::Walk | Act::Pass | Act::GoOn);
+    let trigger = (!walks).then(|| when.clone());
+    if !again {
+        (last.rule.for_s, last.lasts) = (Some(secs), true);
+        // Who signals twice stays there in between.
+        if act == Act::Gesture && last.rule.act == Action::Navigate {
+            last.rule.act = Action::StandStill;
+        }
+    }
+    let act = if walks { Act::GoOn } else { act };
+    Some((act, Around { trigger, vague: false, then: !again, goes_on: again, ..around.clone() }))
+}
+
 /// Applies a deed to one human. Returns the index of the rule it made.
 pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> Option<usize> {
+    let later = since_last(cast, who, act, around);
+    let (act, around) = later.as_ref().map_or((act, around), |(act, around)| (*act, around));
     let doing = words(act, around);
     if let Some(person) = cast.people.get_mut(who)
         && !person.doings.contains(&doing)
@@ -225,6 +226,20 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
             ));
         }
     }
+    // `overtakes it, comes back and follows it`: who has overtaken is no longer behind.
+    let overtook = cast.people.get(who).is_some_and(|person| person.doings.iter().any(|doing| doing == "overtakes the robot"));
+    if act == Act::Follow && overtook && around.object.is_none() {
+        let what = format!("human_{} overtakes the robot; that it follows it afterwards", who + 1);
+        short::unplayed(&mut cast.problems, &around.quote, &what);
+        cast.people.get_mut(who)?.doings.retain(|doing| doing != "follows the robot");
+        return None;
+    }
+    // `follows it until it stops, then overtakes it`
+    let trails = cast.people.get(who).is_some_and(|person| does(person, &Action::FollowRobot));
+    if act == Act::Overtake && around.trigger.is_some() && trails {
+        let what = format!("human_{} walks on then; that it gets past the robot", who + 1);
+        short::unplayed(&mut cast.problems, &around.quote, &what);
+    }
     let excepting = cast.excepting;
     // `A nurse asks a patient to follow her. He follows her.`
     let called = around.object.filter(|id| {
@@ -298,6 +313,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         (None, _) if matches!(action, Action::FollowHuman(_)) => {
             called.map_or(Trigger::Always, |id| Trigger::HumanSays(id, Gesture::FollowMe))
         }
+        // `follows at 2 m` says how far behind, not when.
+        (None, _) if act == Act::Follow => usual,
         (None, _) => with_distance(usual, around.distance_m),
     };
     let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
@@ -457,14 +474,6 @@ pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
     }
 }
 
-fn contradiction(who: usize, first: &str, second: &str) -> Fault {
-    Fault::new(
-        FaultCode::PContra,
-        format!("human_{}", who + 1),
-        format!("`{first}` and `{second}` cannot both hold for the same human; correct one of the two"),
-    )
-}
-
 /// Adds a rule, unless the text only says again what another rule holds already: `is surprised, stops and looks`.
 fn once(person: &mut Person, read: ReadRule) -> usize {
     // `until it says EXCUSE_ME, whereupon he gives way`: what is done then is more than walking on.
@@ -554,44 +563,4 @@ pub(crate) const fn distance_m(trigger: &Trigger) -> Option<f64> {
 
 fn leaves(person: &Person) -> bool {
     person.relation.as_ref().is_some_and(|(relation, _)| *relation == Relation::Leaving)
-}
-
-/// Whether the words say that it happens right in front of the robot.
-fn before_robot(quote: &str) -> bool {
-    let lower = quote.to_lowercase();
-    ["front of the robot", "front of it", "before the robot", "before it", "the robot's path", "the robot's way"]
-        .iter()
-        .any(|words| lower.contains(words))
-}
-
-/// Sets the relation; two that exclude each other are a contradiction, quoted.
-pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
-    let Some(person) = cast.people.get_mut(who) else { return };
-    let Some((old, first)) = person.relation.clone() else {
-        person.relation = Some((new, quote.to_owned()));
-        return;
-    };
-    let pair = |a: Relation, b: Relation| old == a && new == b || old == b && new == a;
-    let clash = pair(Relation::Leaving, Relation::Staying)
-        || pair(Relation::Frontal, Relation::Behind)
-        || pair(Relation::Ahead, Relation::Behind)
-        || pair(Relation::Frontal, Relation::Ahead);
-    if clash {
-        cast.problems.push(socrates_model::Fault::new(
-            socrates_model::FaultCode::PContra,
-            format!("human_{}", who + 1),
-            format!("`{first}` and `{quote}` cannot both hold for the same human; correct one of the two"),
-        ));
-    } else if new == Relation::Crossing
-        && old == Relation::Leaving
-        && person.start != Some(PlaceClass::Elevator)
-        && before_robot(quote)
-    {
-        // Who comes out right before the robot meets it where it crosses.
-        person.relation = Some((new, quote.to_owned()));
-    } else if matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
-        && !matches!(old, Relation::Leaving | Relation::Staying)
-    {
-        person.relation = Some((new, quote.to_owned()));
-    }
 }

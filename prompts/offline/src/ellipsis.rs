@@ -78,7 +78,7 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     if !found.mentions.is_empty() || only.negated {
         return None;
     }
-    let relation = deed::relation(only.act)?;
+    let relation = crate::relation::relation(only.act)?;
     let is = |i: &usize| {
         story
             .cast

@@ -4,6 +4,7 @@ use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Rel
 
 use crate::cast::{Person, ReadRule};
 use crate::deed;
+use crate::relation;
 use crate::robot_deed::up_to_planner;
 use crate::rules;
 use crate::story::Story;
@@ -41,7 +42,7 @@ impl Story {
                 if person.doings.is_empty() {
                     self.cast.notes.push(format!("nothing is said of human_{}; it stays in the elevator", who + 1));
                 }
-                deed::relate(&mut self.cast, who, Relation::Staying, &quote);
+                relation::relate(&mut self.cast, who, Relation::Staying, &quote);
                 if let Some(person) = self.cast.people.get_mut(who) {
                     person.start = Some(PlaceClass::Elevator);
                 }

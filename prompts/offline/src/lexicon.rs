@@ -120,6 +120,8 @@ pub(crate) struct Lexicon {
     pub(crate) gestures: Vec<Phrase<Gesture>>,
     pub(crate) cues: Vec<Phrase<Cue>>,
     pub(crate) distances: Vec<Phrase<f64>>,
+    /// Ways of walking that are not played.
+    pub(crate) unplayed: Vec<Phrase<()>>,
     pub(crate) pace: BTreeMap<String, f64>,
     /// Every known word, also those of plain English.
     pub(crate) known: BTreeSet<String>,
@@ -152,6 +154,7 @@ struct File {
     gesture: Vec<GestureRow>,
     trigger: Vec<PhraseRow<Cue>>,
     distance: Vec<DistanceRow>,
+    unplayed: UnplayedRow,
     pace: Vec<PaceRow>,
 }
 
@@ -197,6 +200,12 @@ struct GestureRow {
 struct DistanceRow {
     phrase: String,
     m: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct UnplayedRow {
+    phrases: Vec<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -266,6 +275,7 @@ impl Lexicon {
         let gestures =
             sorted(file.gesture.iter().flat_map(|row| row.phrases.iter().map(|text| (text.as_str(), row.name))), &item);
         let distances = sorted(file.distance.iter().map(|row| (row.phrase.as_str(), row.m)), &item);
+        lex.unplayed = sorted(file.unplayed.phrases.iter().map(|text| (text.as_str(), ())), &item);
         (lex.actions, lex.cues, lex.gestures, lex.distances) = (actions, cues, gestures, distances);
         lex
     }

@@ -33,6 +33,19 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         mark(stretch, with, stretch.words.len().saturating_sub(1));
         return;
     }
+    // `stops the robot with a gesture`
+    let stops = stems.windows(2).position(|pair| matches!(pair, ["stop" | "halt", "robot"]))
+        .or_else(|| stems.windows(3).position(|three| matches!(three, ["stop" | "halt", "the", "robot"])));
+    let with = stops.and_then(|stops| (stops..stems.len()).find(|k| stems.get(*k) == Some(&"with")));
+    if let (Some(stops), Some(with)) = (stops, with)
+        && (with + 1..stems.len().min(with + 5))
+            .any(|k| matches!(stems.get(k), Some(&("hand" | "palm" | "gesture" | "sign" | "signal" | "motion"))))
+    {
+        (found.gesture, found.gesture_at) = (Some(Gesture::Wait), stops);
+        mark(stretch, stops, stops);
+        mark(stretch, with, stretch.words.len().saturating_sub(1));
+        return;
+    }
     let verbs = lexicon().actions.iter().filter(|phrase| phrase.means == Act::Gesture);
     let verb = verbs
         .filter_map(|phrase| find(&stretch.words, phrase, 0, false, &|_| true))

@@ -3,9 +3,10 @@
 use socrates_model::reading::ReadHuman;
 use socrates_model::{AgentId, FactKind, HumanId, Trigger};
 
-use crate::clause::Found;
+use crate::clause::{Found, mark};
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::Act;
+use crate::short;
 use crate::story::{Story, Thread};
 
 /// What the text says of who meets the robot before whom.
@@ -54,6 +55,44 @@ pub(crate) fn condition(thread: &mut Thread, found: &Found) {
     thread.before_robot = robot && thread.joiner == Some(Joiner::Before);
 }
 
+/// `one after the other`, `one by one`.
+pub(crate) fn in_turn(stretch: &Stretch) -> bool {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    (0..stretch.words.len()).any(|k| {
+        text(k) == "one"
+            && (text(k + 1) == "by" && text(k + 2) == "one"
+                || text(k + 1) == "after" && (text(k + 2) == "another" || text(k + 3) == "other"))
+    })
+}
+
+/// `…, one after the other`, `One after another, …`: of those of the clause before, or after.
+pub(crate) fn alone_in_turn(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, quote: &str) {
+    mark(stretch, 0, stretch.words.len());
+    match (thread.doer.clone(), thread.acts.clone()) {
+        (Some(people), acts) if !acts.is_empty() => {
+            for (act, _) in acts {
+                each(story, act, &people, quote);
+            }
+        }
+        (_, _) => thread.in_turn = true,
+    }
+}
+
+/// Each of several meets the robot before the next; what else they do one after the other is not played so.
+fn each(story: &mut Story, act: Act, people: &[usize], quote: &str) {
+    let walks = meets(act) || matches!(act, Act::Walk | Act::GoOn);
+    if walks && !people.iter().any(|who| story.cast.people.get(*who).is_some_and(|person| person.group.is_some())) {
+        for next in people.windows(2) {
+            if let [first, then] = next {
+                pair(story, id(*first), id(*then), quote);
+            }
+        }
+    } else if people.len() > 1 && !matches!(act, Act::ComeOut | Act::Enter) {
+        // Through a door they come one after the other anyway.
+        short::unplayed(&mut story.problems, quote, "that one does it after the other");
+    }
+}
+
 /// Notes a deed by which people meet the robot.
 pub(crate) fn note(
     story: &mut Story,
@@ -63,6 +102,9 @@ pub(crate) fn note(
     trigger: Option<&Trigger>,
     quote: &str,
 ) {
+    if std::mem::take(&mut thread.in_turn) || in_turn(stretch) {
+        each(story, act, people, quote);
+    }
     if !meets(act) || people.is_empty() {
         return;
     }

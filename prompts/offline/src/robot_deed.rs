@@ -5,6 +5,7 @@ use socrates_model::{PlaceClass, Relation};
 use crate::clause::Found;
 use crate::deed::{self, Around};
 use crate::lexicon::Act;
+use crate::relation;
 use crate::story::Story;
 
 /// The robot's own deeds: what they ask of people, of the places, of its script.
@@ -12,7 +13,7 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
     let class = found.places.first().map(|(class, _)| *class);
     let set = |story: &mut Story, relation: Relation| {
         for who in object {
-            deed::relate(&mut story.cast, *who, relation, quote);
+            relation::relate(&mut story.cast, *who, relation, quote);
             let doing = if relation == Relation::Ahead { "walks ahead of the robot" } else { "walks beside the robot" };
             if let Some(person) = story.cast.people.get_mut(*who) {
                 person.doings.retain(|known| known != doing && known != "walks");

@@ -11,10 +11,12 @@ use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
 use crate::lexicon::{Act, Cue, lexicon};
+use crate::relation;
 use crate::meant::meant;
 use crate::mention::Who;
 use crate::order::{self, Joiner, Order};
 use crate::robot_deed::robot_deed;
+use crate::short;
 use crate::timing::{quiet, robot_first, timing, trigger};
 use crate::whereabouts::place_of;
 
@@ -96,6 +98,8 @@ pub(crate) struct Thread {
     pub(crate) before_robot: bool,
     /// Who met the robot in a clause after `after`.
     pub(crate) after: Option<Vec<usize>>,
+    /// `One after another, four people …`
+    pub(crate) in_turn: bool,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -119,7 +123,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         }
     }
     for mut sentence in sentences {
-        (thread.waiting, thread.doer) = (None, None);
+        (thread.waiting, thread.doer, thread.in_turn) = (None, None, false);
         story.cast.listing = false;
         story.cast.supposed = supposes(&sentence);
         story.cast.excepting = excepts(&sentence);
@@ -171,6 +175,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     {
         thread.only_then = !thread.only.is_empty();
         return;
+    }
+    if order::in_turn(stretch) && stretch.words.len() <= 4 {
+        return order::alone_in_turn(story, thread, stretch, &quote);
     }
     let mut found = clause::read(stretch);
     thread.joiner = order::joiner(text, stretch);
@@ -314,6 +321,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         return;
     }
     if !found.acts() {
+        short::keeps(story, stretch, &found, &quote);
         return quiet(story, thread, &found, &meant, stretch, &quote, next);
     }
     let said = matches!(thread.waiting, Some(Trigger::RobotSays(_) | Trigger::HumanSays(..)));
@@ -488,7 +496,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                     && let Subject::People(people) = &previous
                 {
                     for who in people {
-                        deed::relate(&mut story.cast, *who, socrates_model::Relation::Frontal, quote);
+                        relation::relate(&mut story.cast, *who, socrates_model::Relation::Frontal, quote);
                     }
                 }
                 robot_deed(story, act, &found, &object, quote);
@@ -558,6 +566,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         {
             thread.subject = subject;
         }
+    }
+    if matches!(thread.subject, Subject::People(_)) {
+        short::note(story, stretch, &found, &meant, (&quote, thread.waiting.is_some()));
     }
     if let Some(mps) = found.pace_mps {
         let object = meant.first().map(|(_, _, some)| some.clone()).unwrap_or_default();

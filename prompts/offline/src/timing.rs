@@ -6,6 +6,7 @@ use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
 use crate::deed;
 use crate::lexicon::{Act, Cue};
+use crate::relation;
 use crate::mention::Who;
 use crate::order;
 use crate::robot_deed::robot_deed;
@@ -283,14 +284,14 @@ pub(crate) fn quiet(
     });
     if of_robot.is_some() {
         for who in &people {
-            deed::relate(&mut story.cast, *who, socrates_model::Relation::Behind, quote);
+            relation::relate(&mut story.cast, *who, socrates_model::Relation::Behind, quote);
         }
     }
     if let Some(behind) = behind.filter(|behind| robot_leads(found) && found.robots.iter().all(|robot| robot < behind))
     {
         // `the robot is behind him`
         for who in meant.iter().filter(|(from, _, _)| *from > behind).flat_map(|(_, _, some)| some) {
-            deed::relate(&mut story.cast, *who, socrates_model::Relation::Ahead, quote);
+            relation::relate(&mut story.cast, *who, socrates_model::Relation::Ahead, quote);
         }
     }
     if people.is_empty() {

@@ -111,7 +111,7 @@ fn holds(fact: &str, reading: &Reading) -> bool {
             human(who, reading).is_some_and(|human| human.relation == Some(relation))
         }
         [who, ..] => human(who.trim_end_matches(':'), reading)
-            .is_some_and(|human| human.rules.iter().any(|rule| does(&words[1..], rule))),
+            .is_some_and(|human| (0..human.rules.len()).any(|at| does(&words[1..], &timed(&human.rules, at)))),
         [] => false,
     }
 }
@@ -122,6 +122,14 @@ fn id(number: &str) -> HumanId {
 
 fn human<'a>(number: &str, reading: &'a Reading) -> Option<&'a socrates_model::reading::ReadHuman> {
     reading.humans.iter().find(|human| human.id == id(number))
+}
+
+/// The rule; where one with the same trigger lasts so long before it, it also waits for that time.
+fn timed(rules: &[Rule], at: usize) -> Rule {
+    let mut rule = rules[at].clone();
+    let before = at.checked_sub(1).map(|before| &rules[before]).filter(|before| before.when == rule.when);
+    rule.when.extend(before.and_then(|before| before.for_s).map(Trigger::AfterSecs));
+    rule
 }
 
 /// `look_at_robot when near`, `block for 10`, `follow_human 1`.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{FaultCode, Predicate, Verdict};
+use socrates_model::{Fault, FaultCode, Predicate, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -93,15 +93,33 @@ pub fn rule(
     Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
 }
 
-/// Wishes of the text that nothing was played for: said beside every verdict, so that none is read as more than it is.
+/// Words of a request named beside a verdict: more of them stand in the report.
+const WORDS_NAMED: usize = 3;
+
+/// Wishes of the text that nothing was played for, and words that nothing was read from: said beside every verdict, so
+/// that none is read as more than it is.
 fn unplayed(evidence: &Evidence<'_>) -> String {
-    let problems = evidence.reading.map_or(&[][..], |reading| reading.problems.as_slice());
-    let mut wishes = problems.iter().filter(|fault| fault.at == "rough_scenario" && fault.code == FaultCode::PRead);
-    let Some(first) = wishes.next() else { return String::new() };
-    let quote = first.message.split('`').nth(1).unwrap_or_default();
-    let more = wishes.count();
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    format!(" · not played: `{quote}`{more}")
+    let Some(reading) = evidence.reading else { return String::new() };
+    let more = |count: usize| if count > 0 { format!(" and {count} more") } else { String::new() };
+    let wish = |fault: &&Fault| fault.at == "rough_scenario" && fault.code == FaultCode::PRead;
+    let wishes: Vec<&str> = reading
+        .problems
+        .iter()
+        .filter(wish)
+        .map(|fault| fault.message.split('`').nth(1).unwrap_or_default())
+        .collect();
+    let mut text = wishes
+        .split_first()
+        .map_or_else(String::new, |(first, rest)| format!(" · not played: `{first}`{}", more(rest.len())));
+    let named: Vec<String> = reading.ignored.iter().take(WORDS_NAMED).map(|word| format!("`{word}`")).collect();
+    if !named.is_empty() {
+        text.push_str(&format!(
+            " · words not read: {}{}",
+            named.join(", "),
+            more(reading.ignored.len() - named.len())
+        ));
+    }
+    text
 }
 
 /// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.
