@@ -47,6 +47,8 @@ pub(crate) struct Person {
     pub(crate) called: Option<String>,
     /// Words that say that it walks on after all it did.
     pub(crate) goes_on: Option<String>,
+    /// Words by which whoever comes out crosses the robot's way then.
+    pub(crate) crosses: Option<String>,
     /// Whether it meets the robot more than once.
     pub(crate) again: Option<crate::again::Again>,
     /// What was ruled out for it, with the words.

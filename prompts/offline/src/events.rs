@@ -170,8 +170,12 @@ fn of_fact(
             let stated = index.zip(extra).and_then(|(i, extra)| extra.stated.get(i)).copied().unwrap_or(false);
             of_rule(list, &fact.id, who, rule, stated);
         }
-        FactKind::Relates { human, .. } => {
-            if let Some(who) = proposal.human(*human) {
+        FactKind::Relates { human, relation } => {
+            let who = proposal.human(*human);
+            if *relation == Relation::Crossing && who.is_some_and(|who| who.relation == Relation::Leaving) {
+                let text = format!("{human} crosses the robot's way");
+                list.setup(true, &fact.id, text, Predicate::Crosses { human: *human, gap_s: GAP_S });
+            } else if let Some(who) = who {
                 of_relation(list, &fact.id, who, proposal, GAP_S);
             }
         }

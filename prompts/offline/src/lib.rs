@@ -109,6 +109,8 @@ mod preface_tests;
 #[cfg(test)]
 mod said_tests;
 #[cfg(test)]
+mod short_tests;
+#[cfg(test)]
 mod spot_tests;
 #[cfg(test)]
 mod tests;

@@ -68,7 +68,15 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
         && before_robot(quote);
     let ends = matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
         && !matches!(old, Relation::Leaving | Relation::Staying);
-    if excludes && !in_turn(quote) {
+    // `come out of a room and cross its way`: both are played, and judged.
+    let both = pair(Relation::Leaving, Relation::Crossing) && !at_door && person.start != Some(PlaceClass::Elevator);
+    if both {
+        let words = if new == Relation::Crossing { quote } else { &first };
+        person.crosses = Some(words.to_owned());
+        if new == Relation::Leaving {
+            person.relation = Some((new, quote.to_owned()));
+        }
+    } else if excludes && !in_turn(quote) {
         cast.problems.push(contradiction(who, &first, quote));
     } else if closer || at_door || ends {
         person.relation = Some((new, quote.to_owned()));

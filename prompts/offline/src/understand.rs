@@ -279,6 +279,8 @@ fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading)
     for (i, person) in story.cast.people.iter().enumerate() {
         if let Some((relation, quote)) = person.relation.clone() {
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
+            let crosses = person.crosses.clone().filter(|_| relation == Relation::Leaving);
+            facts.extend(crosses.map(|quote| (quote, FactKind::Relates { human: id(i), relation: Relation::Crossing })));
         }
         let twice = person.again.as_ref();
         let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));

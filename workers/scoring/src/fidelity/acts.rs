@@ -219,6 +219,9 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
                     Some(delay) if delay > SAID_SECS => {
                         timely(delay, SAID_SECS, vec![t], format!("{text}, {delay:.1} s after its reason"))
                     }
+                    Some(delay) if delay < 0.0 => {
+                        Finding::fails(delay, vec![t], format!("{text}, {:.1} s too early", -delay))
+                    }
                     Some(delay) => near.shifted(SAID_SECS - delay),
                     None => near,
                 },

@@ -24,6 +24,8 @@ const AT_GOAL_M: f64 = 0.6;
 const EARLY_M: f64 = 0.3;
 /// How much sooner than its trigger an action may start, s: a tree reads the tick before.
 const EARLY_SECS: f64 = 0.3;
+/// How much sooner than after what comes before it a gesture may be made, s.
+const TOO_EARLY_SECS: f64 = 1.5;
 
 /// How far all triggers hold at a moment, at which the robot has been so near at its nearest; distances are widened by `slack_m`.
 fn trigger_mark(
@@ -185,15 +187,26 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
 }
 
 /// How long after the reason for it a gesture is made, s: after the last rise of the triggers of a rule with this
-/// gesture up to then, no sooner than earlier rules end. `None` where no rule asks for it or no reason is seen.
+/// gesture up to then, no sooner than earlier rules end; below 0 where it is made too soon for them. `None` where no rule asks for it or no reason is seen.
 pub(super) fn said_after(signals: &Signals<'_>, human: HumanId, gesture: Gesture, said_s: f64) -> Option<f64> {
     let rules = &signals.evidence.proposal?.human(human)?.rules;
-    let delay = |rule: &Rule| {
-        let rise =
-            rises(&marks(signals, human, &rule.when, EARLY_M)).into_iter().rfind(|t| *t <= said_s + EARLY_SECS)?;
-        Some((said_s - busy_until(signals, human, &rule.act, rise)).max(0.0))
+    let delay = |(at, rule): (usize, &Rule)| {
+        let all = rises(&marks(signals, human, &rule.when, EARLY_M));
+        let rise = all.iter().copied().rfind(|t| *t <= said_s + EARLY_SECS)?;
+        // What the same reason calls for before it lasts as long as its rules say.
+        let before = || rules.iter().take(at).filter(|other| other.when == rule.when);
+        let due_s = before().filter_map(|other| other.for_s).sum::<f64>();
+        // Whoever walks up to the robot, or out of its way, may be there sooner.
+        let stands = |rule: &&Rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::Block);
+        let stood_s = before().filter(stands).filter_map(|other| other.for_s).sum::<f64>();
+        let soonest = all.first().map_or(rise, |first| first.min(rise)) + stood_s;
+        if said_s < soonest - TOO_EARLY_SECS {
+            return Some(said_s - soonest);
+        }
+        Some((said_s - busy_until(signals, human, &rule.act, rise).max(rise + due_s)).max(0.0))
     };
-    rules.iter().filter(|rule| rule.gesture == Some(gesture)).filter_map(delay).min_by(f64::total_cmp)
+    let said = |(_, rule): &(usize, &Rule)| rule.gesture == Some(gesture);
+    rules.iter().enumerate().filter(said).filter_map(delay).min_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// Whether another rule with the same action had a reason at the time.
