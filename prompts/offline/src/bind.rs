@@ -60,6 +60,13 @@ pub(crate) fn subject_of(
     if act == Act::Behind && after && next_to {
         return Subject::Robot;
     }
+    // `The robot approaches an employee from behind.`
+    let between = before.is_some_and(|(from, _, _)| {
+        found.robots.iter().any(|robot| robot < from) && found.deeds.iter().all(|deed| deed.at >= at)
+    });
+    if act == Act::Behind && between && joined.is_empty() && !found.passive {
+        return Subject::Robot;
+    }
     // `The robot comes from behind`; but `the robot is approached from behind`.
     if act == Act::Behind && before.is_none() && joined.is_empty() && next_to && !found.passive {
         return Subject::Robot;
@@ -267,6 +274,11 @@ pub(crate) fn people_deed(
     let near = at_distance
         .filter(|_| !matches!(act, Act::Follow | Act::Ahead | Act::Behind | Act::Abreast))
         .map(Trigger::RobotNear);
+    // `At 1.5 m he looks up and jumps aside`: both then.
+    if near.is_some() && stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from")) {
+        thread.waiting.clone_from(&near);
+        thread.vague = false;
+    }
     if matches!(act, Act::Stay | Act::ComeOut) {
         told_apart(&mut story.cast, people, act);
     }

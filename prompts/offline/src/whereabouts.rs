@@ -99,6 +99,21 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && (found.deeds.iter().any(|deed| matches!(deed.act, Act::Walk | Act::GoOn) && deed.at < *at)
                 // `until he turns into the ward`
                 || before(*at, stretch, &["into"]) && found.deeds.is_empty() && !found.mentions.is_empty());
+        // `walks from the kitchen to the reception`: neither is where he is met.
+        let walks = found.mentions.first().is_some_and(|mention| mention.to < *at)
+            && found.robots.is_empty()
+            && comes_out.is_none()
+            && !transit;
+        let trip = walks && matches!(found.places.as_slice(), [(_, from), (_, to)]
+            if before(*from, stretch, &["from"]) && before(*to, stretch, &["to", "into"]));
+        if trip && before(*at, stretch, &["from"]) {
+            story.cast.notes.push(format!(
+                "`{quote}`: people are met on their way; that they start at {} is not demanded",
+                crate::place::an(class)
+            ));
+            continue;
+        }
+        let headed = headed || trip;
         if headed && story.robot_part != Some("leading") {
             story.cast.notes.push(format!(
                 "`{quote}`: people are met on their way and walk on; that they end at {} is not demanded",
