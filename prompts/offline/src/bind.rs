@@ -1,6 +1,6 @@
 //! Who does what is said: the subject of a deed, and the deed itself.
 
-use socrates_model::{HumanId, PlaceClass, Relation, Trigger};
+use socrates_model::{Action, HumanId, PlaceClass, Relation, Trigger};
 
 use crate::cast::Cast;
 use crate::clause::Found;
@@ -166,6 +166,12 @@ pub(crate) fn people_deed(
             story.cast.people.get(*who).is_some_and(|person| person.doings.iter().any(|doing| doing == "startled"))
         });
     let act = if flees { Act::RunAway } else { act };
+    // `stops when it is near, stays put for 6 s`
+    let stopped = |who: &usize| {
+        let person = story.cast.people.get(*who);
+        person.and_then(|person| person.rules.last()).is_some_and(|last| last.rule.act == Action::StandStill)
+    };
+    let act = if act == Act::Stay && found.lasts_s.is_some() && found.places.is_empty() && people.iter().all(stopped) { Act::Stop } else { act };
     // `steps to the left`
     let aside = act == Act::Walk
         && matches!(stretch.words.get(at).map(|word| word.stem.as_str()), Some("step" | "move" | "shift" | "dodge" | "jump"))

@@ -24,7 +24,7 @@ pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
     second(pieces);
     let mut at = 0;
     while at < pieces.len() {
-        if let Some(found) = several(pieces, at).or_else(|| before(pieces, at)).or_else(|| after(pieces, at)) {
+        if let Some(found) = several(pieces, at).or_else(|| both(pieces, at)).or_else(|| before(pieces, at)).or_else(|| after(pieces, at)) {
             for name in &found.names {
                 if !known.contains(name) {
                     known.push(name.clone());
@@ -273,4 +273,21 @@ fn several(pieces: &[Piece], at: usize) -> Option<Found> {
     let close = usize::from(comma_at(pieces, next));
     let all = usize::try_from(count) == Ok(names.len()) && names.len() > 1;
     all.then(|| Found { noun: at, end: at, whose: None, names, drop: vec![(at + 1, next + close)] })
+}
+
+/// `Mia and Jonas, my two confederates, …`
+fn both(pieces: &[Piece], at: usize) -> Option<Found> {
+    let (first, and) = name(pieces, at).filter(|_| at == 0 || !capital(pieces, at - 1))?;
+    let (second, mark) = name(pieces, and + 1).filter(|_| text_at(pieces, and) == "and")?;
+    let whose = mark + 1;
+    if !comma_at(pieces, mark) || !matches!(text_at(pieces, whose), "my" | "our" | "the" | "her" | "his" | "two") {
+        return None;
+    }
+    let noun = (whose..whose + SPAN).take_while(|k| !ends(pieces, *k)).find(|k| role(pieces, *k))?;
+    let close = usize::from(comma_at(pieces, noun + 1));
+    // What is left begins with the number: `two confederates come …`
+    let begin = whose + usize::from(text_at(pieces, whose) != "two");
+    let drop = vec![(at, begin), (noun + 1, noun + 1 + close)];
+    (word_at(pieces, noun).is_some_and(plural) && ends(pieces, noun + 1))
+        .then(|| Found { noun, end: noun, whose: None, names: vec![first, second], drop })
 }

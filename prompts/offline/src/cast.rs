@@ -171,7 +171,8 @@ impl Cast {
                 })
             }
             Who::More(n) => match self.pick_open(*n, mention) {
-                Some(found) if *n == 1 && self.parted() => found,
+                // `five people chat, plus one doctor`: of those nobody is left of whom nothing was told.
+                Some(found) if *n == 1 && self.parted() && (mention.role.is_none() || self.idle(&found)) => found,
                 Some(_) | None => self.join(*n, &self.alike(mention), declares, quote),
             },
             Who::PartOf(n) => self.part_of(*n, mention, quote),
@@ -429,6 +430,11 @@ impl Cast {
         self.sets.iter().any(|set| {
             set.members.len() > 1 && (set.total || set.members.iter().all(idle) || set.members.iter().any(bound))
         })
+    }
+
+    /// Whether nothing was told of any of these.
+    fn idle(&self, people: &[usize]) -> bool {
+        people.iter().all(|i| self.people.get(*i).is_some_and(|person| person.doings.is_empty()))
     }
 
     /// Some of the open people of the newest set that fit.

@@ -117,8 +117,27 @@ fn states(words: &[Option<Word>]) -> bool {
 /// Words with which people take back a number that they have just given.
 const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
 
+/// `Two porters and a doctor – no, sorry, just one porter and the doctor`: what stands behind, where nothing is told before.
+fn taken_back(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    let corrects = |k: usize| CORRECTS.contains(&text(k));
+    let told = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| lexicon().verbs.contains(&word.stem));
+    let Some(from) = (1..words.len()).find(|k| corrects(*k)) else { return words };
+    let skips = |k: usize| {
+        words.get(k).is_some_and(Option::is_none) || corrects(k) || matches!(text(k), "just" | "only" | "make" | "that")
+    };
+    let to = (from..words.len()).find(|k| !skips(*k)).unwrap_or(words.len());
+    let counts = words.get(to).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
+    let pairs = |range: std::ops::Range<usize>| range.clone().any(|k| text(k) == "and");
+    if counts && pairs(0..from) && pairs(to..words.len()) && !(0..from).any(told) {
+        return words.into_iter().skip(to).collect();
+    }
+    words
+}
+
 /// A sentence with its corrections made (`three, no, two people` are two), and with `left` told from `left`.
 fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let words = taken_back(words);
     let count = |item: &Option<Word>| item.as_ref().is_some_and(|word| word.count().is_some());
     let mut out: Vec<Option<Word>> = Vec::with_capacity(words.len());
     let mut i = 0;
@@ -418,6 +437,24 @@ fn trails(before: &[Option<Word>]) -> bool {
     })
 }
 
+/// Whether the verb of the sentence stands here, behind a relative clause that has its own.
+fn main_verb(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
+    let verbs = &lexicon().verbs;
+    let finite = |word: &Word| word.text != word.stem && word.text.ends_with('s') && verbs.contains(&word.stem);
+    let own = |word: &Word| finite(word) || matches!(word.text.as_str(), "is" | "was" | "has");
+    let before = i.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
+    let joins = before.is_none_or(|word| {
+        verbs.contains(&word.stem) && word.text != word.stem
+            || matches!(word.text.as_str(), "and" | "or" | "nor" | "neither" | "not" | "never" | "the" | "a" | "an" | "its" | "his" | "her" | "their" | "who" | "of" | "to" | "that" | "which" | "also" | "then" | "it")
+            || word.text.ends_with("ly")
+            || word.number().is_some()
+    });
+    words.get(i).and_then(Option::as_ref).is_some_and(finite)
+        && !joins
+        && open.words.len() >= 2
+        && open.words.iter().take(3).any(own)
+}
+
 /// Whether a clause of its own begins at a word without a joint: `as soon as she sees the robot | she signals`.
 fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let lex = lexicon();
@@ -436,6 +473,10 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
         && word(i)
             .is_some_and(|word| word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem))
     {
+        return true;
+    }
+    // `when it blocks her way, a cleaner who is coming along | stops`
+    if open.joint == Joint::Who && main_verb(words, i, open) {
         return true;
     }
     match text(i) {

@@ -297,7 +297,8 @@ impl Lexicon {
         known.extend(self.numbers.keys().chain(self.ordinals.keys()).cloned());
         known.extend(self.forms.values().cloned());
         self.known = known;
-        let mut telling: BTreeSet<String> = self.roles.keys().cloned().collect();
+        let mut telling: BTreeSet<String> =
+            self.roles.keys().flat_map(|role| [role.clone(), format!("{role}s")]).collect();
         for text in actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)) {
             for word in plain_words(text) {
                 // `pace` gives `pacing`, and no `paceing`.

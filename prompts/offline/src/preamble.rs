@@ -52,6 +52,7 @@ const SIGNS: &[&str] = &[
     "whether",
     "how",
     "than",
+    "known",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
@@ -65,6 +66,7 @@ const THERE: &[&str] =
 pub(crate) fn preamble(pieces: &mut [Piece]) {
     trials(pieces);
     wanted(pieces);
+    outside(pieces);
     let mut parts: Vec<(usize, usize)> = Vec::new();
     let mut from = 0;
     for at in 0..=pieces.len() {
@@ -167,6 +169,48 @@ fn wanted(pieces: &mut [Piece]) {
         })
         .collect();
     silence(pieces, places);
+}
+
+/// `the people watching the video`, `this variant of pedestrian overtaking`, `the case from issue 7, the one near rack 3`:
+/// nobody of the scene.
+fn outside(pieces: &mut [Piece]) {
+    let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| word_at(pieces, k).map_or("", |word| word.stem.as_str());
+    let role = |k: usize| lexicon().roles.contains_key(stem(k));
+    let (mut silent, mut nobody, mut case) = (Vec::new(), Vec::new(), false);
+    for k in 1..pieces.len() {
+        let film = (k + 1..k + 5).any(|k| matches!(stem(k), "video" | "clip" | "recording" | "film" | "footage"));
+        let watches = matches!(stem(k), "watch" | "view" | "rate" | "judge" | "annotate" | "see") && film;
+        // `twenty raters will watch the videos`
+        let who = (1..=3).filter_map(|back| k.checked_sub(back)).find(|k| !matches!(text(*k), "will" | "who" | "later"));
+        if let Some(who) = who.filter(|who| watches && *who > 0 && (role(*who) || text(*who).ends_with("ers"))) {
+            silent.extend([who - 1, who, k]);
+        }
+        if text(k - 1) == "of" && role(k) && text(k) == stem(k) && text(k + 1).ends_with("ing") {
+            silent.push(k);
+        }
+        case |= matches!(stem(k), "case" | "scene" | "situation" | "issue" | "bug" | "scenario");
+        if case && text(k - 1) == "the" && text(k) == "one" && matches!(text(k + 1), "near" | "from" | "in" | "at" | "with") {
+            silent.extend([k - 1, k]);
+        }
+        case &= !role(k);
+        // `a doctor who has nothing to do with them`
+        if text(k) == "nothing" && text(k + 1) == "to" && text(k + 2) == "do" && text(k + 3) == "with" {
+            silent.extend(k - 1..k + 5 + usize::from(text(k + 4) == "the"));
+        }
+        // `no member of the group ever …`
+        if text(k) == "member" && text(k - 1) == "no" && text(k + 1) == "of" {
+            silent.extend(k..k + 4);
+            nobody.push(k - 1);
+        }
+    }
+    silence(pieces, silent);
+    for at in nobody {
+        if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+            "nobody".clone_into(&mut word.text);
+            "nobody".clone_into(&mut word.stem);
+        }
+    }
 }
 
 /// Whether a part speaks of people in general.

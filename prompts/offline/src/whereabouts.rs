@@ -218,6 +218,9 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
                 | "get"
         )
     };
+    // `Starting in a room, the robot heads for the exit.`
+    let opens = text(0) == "starting" && !robot && found.mentions.is_empty();
+    let robot = robot || opens;
     let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
     // Who follows the robot to a place goes where it goes.
     let along = people

@@ -305,6 +305,14 @@ const JOINED: &[(&str, &[&str])] = &[
     ("arent", &["are", "not"]),
     ("shouldnt", &["should", "not"]),
     ("cant", &["can", "not"]),
+    ("teh", &["the"]),
+    ("hte", &["the"]),
+    ("adn", &["and"]),
+    ("smae", &["same"]),
+    ("thier", &["their"]),
+    ("wiht", &["with"]),
+    ("whcih", &["which"]),
+    ("nobody's", &["nobody", "is"]),
 ];
 
 /// Words that join clauses, of which slips are common too: `untill`, `befor`.
