@@ -16,7 +16,7 @@ pub(crate) fn supposes(sentence: &[Stretch]) -> bool {
     let condition = sentence.get(1).is_some_and(|stretch| stretch.joint == Joint::When);
     let habit = words.iter().any(|word| matches!(*word, "sometimes" | "often" | "usually" | "normally" | "typically"));
     habit
-        || matches!(words.first(), Some(&"what")) && condition
+        || matches!(words.first(), Some(&"what")) && (condition || words.get(1) == Some(&"if"))
         || matches!(
             words.as_slice(),
             ["you", "know", ..]
@@ -50,6 +50,7 @@ pub(crate) fn excepted(story: &mut Story, thread: &mut Thread, found: &Found) ->
             let who = |i: &usize| role.is_some() && story.cast.people.get(*i).map(|one| &one.role) == role.as_ref();
             doers.iter().position(who).map(|at| doers.get(at..=at).unwrap_or_default())
         }
+        Some(Who::Ordinal(0)) => doers.get(doers.len() - 1..),
         Some(Who::Ordinal(n)) if *n > 0 => usize::try_from(*n).ok().map(|n| doers.get(n - 1..n).unwrap_or_default()),
         _ => None,
     };

@@ -172,6 +172,12 @@ pub(crate) fn people_deed(
         person.and_then(|person| person.rules.last()).is_some_and(|last| last.rule.act == Action::StandStill)
     };
     let act = if act == Act::Stay && found.lasts_s.is_some() && found.places.is_empty() && people.iter().all(stopped) { Act::Stop } else { act };
+    // `is standing against the wall` makes room for nobody, where nothing is waited for.
+    let leans = act == Act::GiveWay
+        && thread.waiting.is_none()
+        && stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "stands" | "standing" | "stand"))
+        && stretch.words.get(to).is_some_and(|word| word.text == "wall");
+    let act = if leans { Act::Stand } else { act };
     // `steps to the left`
     let aside = act == Act::Walk
         && matches!(stretch.words.get(at).map(|word| word.stem.as_str()), Some("step" | "move" | "shift" | "dodge" | "jump"))

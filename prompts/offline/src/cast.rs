@@ -111,7 +111,7 @@ fn usual_mps(role: &str) -> Option<f64> {
 }
 
 /// Words for people that only say that they are there.
-const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant"];
+const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant", "pedestrian"];
 
 impl Cast {
     /// A cast of people of whom was spoken before.

@@ -7,7 +7,7 @@ use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, Who, mentions};
 use crate::negation::negated;
 use crate::topic::drop_topics;
-use crate::words::{find, takes_along};
+use crate::words::{find, pours, takes_along};
 use crate::{measure, message};
 
 /// A deed and where it stands.
@@ -583,7 +583,7 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
             && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");
         let taken = takes_along(&stretch.words, i) || gives;
-        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself {
+        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself || pours(&stretch.words, i) {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
             if matches!(word.stem.as_str(), "sit" | "kneel" | "lie")

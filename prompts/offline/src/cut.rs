@@ -6,7 +6,7 @@ use crate::asker::takes_part;
 use crate::called::called;
 use crate::clock::clock;
 use crate::headings::{described, labels, names, titled, totals};
-use crate::interject::{interjected, notions};
+use crate::interject::{interjected, no_wait, notions};
 use crate::lexicon::lexicon;
 use crate::mention::mentions;
 use crate::notes::notes;
@@ -63,7 +63,9 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     let mut found = Vec::new();
     let mut words: Vec<Option<Word>> = Vec::new();
     let mut colon = false;
-    let mut pieces = notes(text, pieces(text));
+    let mut pieces = pieces(text);
+    no_wait(&mut pieces);
+    let mut pieces = notes(text, pieces);
     totals(&mut pieces);
     clock(&mut pieces);
     interjected(&mut pieces);
@@ -315,6 +317,10 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::Except), 1)
         }
+        // `all but the third step aside`; `all but runs` nearly does.
+        "but" if before == "all" && matches!(text(i + 1), "the" | "a" | "an" | "her" | "his" | "him" | "human" | "for") && !counted(i + 3) => {
+            (Some(Joint::Except), 1 + usize::from(text(i + 1) == "for"))
+        }
         "but" if before == "all" => (None, 1),
         "except" | "apart" if matches!(text(i + 1), "for" | "from") => (Some(Joint::Except), 2),
         "besides" => (Some(Joint::Except), 1),
@@ -443,7 +449,10 @@ fn main_verb(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let finite = |word: &Word| word.text != word.stem && word.text.ends_with('s') && verbs.contains(&word.stem);
     let own = |word: &Word| finite(word) || matches!(word.text.as_str(), "is" | "was" | "has");
     let before = i.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
-    let joins = before.is_none_or(|word| {
+    // `the one who blocks it | gives way`
+    let verb = open.words.len().checked_sub(2).and_then(|k| open.words.get(k)).is_some_and(|word| verbs.contains(&word.stem));
+    let object = before.is_some_and(|word| word.text == "it") && verb;
+    let joins = !object && before.is_none_or(|word| {
         verbs.contains(&word.stem) && word.text != word.stem
             || matches!(word.text.as_str(), "and" | "or" | "nor" | "neither" | "not" | "never" | "the" | "a" | "an" | "its" | "his" | "her" | "their" | "who" | "of" | "to" | "that" | "which" | "also" | "then" | "it")
             || word.text.ends_with("ly")

@@ -41,6 +41,7 @@ const LEFT: &[&str] = &[
     "all",
     "must",
     "thing",
+    "only",
 ];
 
 /// Whether the clause leaves its verb out, and whether its people do what was said before.
@@ -63,7 +64,7 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
     if verb && has(&["not", "never", "neither", "nor"]) {
         Some(false)
     } else if has(&["too", "likewise", "same", "well", "also", "similarly", "equally"])
-        || verb && has(&["so"])
+        || verb && has(&["so", "only"])
         || left == ["do"]
     {
         Some(true)
@@ -147,7 +148,7 @@ pub(crate) fn repeat(
     story: &mut Story,
     thread: &mut Thread,
     meant: &[(usize, usize, Vec<usize>)],
-    does: bool,
+    (does, timed): (bool, bool),
     stretch: &mut Stretch,
     quote: &str,
 ) {
@@ -155,12 +156,20 @@ pub(crate) fn repeat(
         word.used = true;
     }
     let mut acts = thread.acts.clone();
+    // `…; the second does so only when it asks`: the deed, not when the first one does it.
+    let timed = timed && does && !acts.is_empty();
+    if timed {
+        thread.made.clear();
+        for (_, around) in &mut acts {
+            (around.trigger, around.distance_m) = (None, None);
+        }
+    }
     // `the first one does not stop; the other two do`
     if does && acts.is_empty() && thread.made.is_empty() {
         let around = Around { quote: quote.to_owned(), ..Around::default() };
         acts.extend(thread.denied.map(|act| (act, around)));
     }
-    let fresh = thread.acts.is_empty() && !acts.is_empty();
+    let fresh = timed || thread.acts.is_empty() && !acts.is_empty();
     // `each time the robot stops, so does the intern`
     if does && thread.made.is_empty() && thread.waiting == Some(Trigger::RobotStopped) {
         acts.clear();

@@ -104,6 +104,18 @@ const OPENS: &[&[&str]] = &[
     &["look"],
 ];
 
+/// `Two, no wait, three pickers`: nobody waits.
+pub(crate) fn no_wait(pieces: &mut Vec<Piece>) {
+    for at in (1..pieces.len()).rev() {
+        let said = |k: usize, text: &str| word_at(pieces, k).is_some_and(|word| word.text == text);
+        let ends = !matches!(pieces.get(at + 1), Some(Piece::Word(word)) if word.count().is_none());
+        let opens = at < 2 || !matches!(pieces.get(at - 2), Some(Piece::Word(word)) if word.count().is_none());
+        if said(at - 1, "no") && said(at, "wait") && ends && opens {
+            pieces.remove(at);
+        }
+    }
+}
+
 /// Takes such words out of the text, with the marks around them where both are commas.
 pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
     let mut at = 0;

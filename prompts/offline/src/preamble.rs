@@ -53,6 +53,8 @@ const SIGNS: &[&str] = &[
     "how",
     "than",
     "known",
+    "survey",
+    "suites",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];
@@ -174,6 +176,7 @@ fn wanted(pieces: &mut [Piece]) {
 /// `the people watching the video`, `this variant of pedestrian overtaking`, `the case from issue 7, the one near rack 3`:
 /// nobody of the scene.
 fn outside(pieces: &mut [Piece]) {
+    too_many(pieces);
     let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
     let stem = |k: usize| word_at(pieces, k).map_or("", |word| word.stem.as_str());
     let role = |k: usize| lexicon().roles.contains_key(stem(k));
@@ -194,6 +197,14 @@ fn outside(pieces: &mut [Piece]) {
             silent.extend([k - 1, k]);
         }
         case &= !role(k);
+        // `My supervisor wants the student to …`: whoever asks.
+        let asker = matches!(text(k - 1), "my" | "our") && (role(k) || text(k) == "co");
+        let asks = |k: &usize| {
+            matches!(stem(*k), "want" | "insist" | "say" | "think" | "claim" | "suggest" | "believe" | "argue" | "expect" | "wish" | "demand")
+        };
+        if let Some(verb) = (k + 1..k + 4).find(asks).filter(|_| asker) {
+            silent.extend(k - 1..=verb + usize::from(text(verb + 1) == "that"));
+        }
         // `a doctor who has nothing to do with them`
         if text(k) == "nothing" && text(k + 1) == "to" && text(k + 2) == "do" && text(k + 3) == "with" {
             silent.extend(k - 1..k + 5 + usize::from(text(k + 4) == "the"));
@@ -210,6 +221,34 @@ fn outside(pieces: &mut [Piece]) {
             "nobody".clone_into(&mut word.text);
             "nobody".clone_into(&mut word.stem);
         }
+    }
+}
+
+/// `Six agents are too many for CI, take four.`: four of them.
+/// `had four pedestrians, but two are enough`: two of them.
+fn too_many(pieces: &mut [Piece]) {
+    let text = |k: usize| word_at(pieces, k).map_or("", |word| word.text.as_str());
+    let count = |k: usize| word_at(pieces, k).filter(|word| word.count().is_some()).cloned();
+    let role_at = |k: usize| word_at(pieces, k).is_some_and(|word| lexicon().roles.contains_key(&word.stem));
+    for k in 2..pieces.len() {
+        let many = matches!(text(k), "are" | "is") && text(k + 1) == "too" && matches!(text(k + 2), "many" | "much");
+        let enough = text(k) == "enough" && matches!(text(k - 1), "are" | "is" | "be");
+        let number = (k - 2..k).rev().find_map(count).filter(|_| enough);
+        let first = (0..k.saturating_sub(2)).rev().find(|k| count(*k).is_some() && role_at(*k + 1));
+        if let (Some(number), Some(first)) = (number, first) {
+            if let Some(Piece::Word(word)) = pieces.get_mut(first) {
+                (word.text, word.stem) = (number.text, number.stem);
+            }
+            silence(pieces, k.saturating_sub(3)..=k);
+            return;
+        }
+        let end = (k..pieces.len()).find(|k| matches!(pieces.get(*k), Some(Piece::Stop))).unwrap_or(pieces.len());
+        let Some(number) = (k + 3..end).rev().find_map(count).filter(|_| many && count(k - 2).is_some()) else { continue };
+        if let Some(Piece::Word(first)) = pieces.get_mut(k - 2) {
+            (first.text, first.stem) = (number.text, number.stem);
+        }
+        silence(pieces, k..end);
+        return;
     }
 }
 

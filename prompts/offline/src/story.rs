@@ -136,6 +136,9 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
                 clause_of(&mut story, &mut thread, stretch, text, next);
             }
         }
+        if story.cast.supposed {
+            story.cast.forget_idle();
+        }
         // A trigger without a deed is a wish that nothing was made of.
         if let Some(quote) = thread.untaken.take() {
             story.problems.push(Fault::new(
@@ -315,7 +318,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         return;
     }
     if let Some(does) = ellipsis::elided(stretch, &found) {
-        return ellipsis::repeat(story, thread, &meant, does, stretch, &quote);
+        return ellipsis::repeat(story, thread, &meant, (does, next == Some(Joint::When)), stretch, &quote);
     }
     if found.obeys && !found.acts() && ellipsis::obeys(story, thread, &found, &meant, &quote) {
         return;

@@ -79,6 +79,31 @@ impl Cast {
         found.or_else(|| near().find(|i| !else_of(*i))).map_or_else(|| self.last.clone(), |i| vec![i])
     }
 
+    /// `What if a human competes with the robot?`: those of a question of whom nothing is told that could be played are nobody.
+    pub(crate) fn forget_idle(&mut self) {
+        let idle = |person: &crate::cast::Person| {
+            person.doings.is_empty() && person.rules.is_empty() && person.relation.is_none() && !person.bound
+        };
+        while let Some(last) = self.people.len().checked_sub(1).filter(|last| self.supposed_people.contains(last)) {
+            if !self.people.last().is_some_and(idle) {
+                return;
+            }
+            self.drop_last(last);
+        }
+    }
+
+    fn drop_last(&mut self, last: usize) {
+        self.people.pop();
+        self.supposed_people.retain(|i| *i != last);
+        self.last.retain(|i| *i != last);
+        self.before.retain(|i| *i != last);
+        for set in &mut self.sets {
+            set.members.retain(|i| *i != last);
+            set.counted.retain(|i| *i != last);
+        }
+        self.sets.retain(|set| !set.members.is_empty());
+    }
+
     /// Those who were only supposed with somebody of whom it is now said what is wanted, if they are the last ones.
     pub(crate) fn forget(&mut self, wanted: &[usize]) {
         while let Some(last) = self.people.len().checked_sub(1).filter(|last| self.supposed_people.contains(last)) {
@@ -89,15 +114,7 @@ impl Cast {
             if !together {
                 return;
             }
-            self.people.pop();
-            self.supposed_people.retain(|i| *i != last);
-            self.last.retain(|i| *i != last);
-            self.before.retain(|i| *i != last);
-            for set in &mut self.sets {
-                set.members.retain(|i| *i != last);
-                set.counted.retain(|i| *i != last);
-            }
-            self.sets.retain(|set| !set.members.is_empty());
+            self.drop_last(last);
         }
     }
 

@@ -306,6 +306,15 @@ const JOINED: &[(&str, &[&str])] = &[
     ("shouldnt", &["should", "not"]),
     ("cant", &["can", "not"]),
     ("teh", &["the"]),
+    ("dosnt", &["does", "not"]),
+    ("dosent", &["does", "not"]),
+    ("doesnot", &["does", "not"]),
+    ("didn", &["did", "not"]),
+    ("frist", &["first"]),
+    ("fisrt", &["first"]),
+    ("secound", &["second"]),
+    ("asside", &["aside"]),
+    ("infornt", &["in", "front"]),
     ("hte", &["the"]),
     ("adn", &["and"]),
     ("smae", &["same"]),
@@ -383,6 +392,12 @@ pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
         made_of: Vec::new(),
         called: Vec::new(),
     }
+}
+
+/// `pours coffee over it`
+pub(crate) fn pours(words: &[Word], at: usize) -> bool {
+    words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "pour" | "spill"))
+        && words.get(at + 1).is_some_and(|word| lexicon().things.contains(&word.stem))
 }
 
 /// `takes it away`, `took the child aside`.
