@@ -287,7 +287,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             .iter()
             .filter(|rule| !matches!(rule.act, Action::FollowRobot | Action::Approach))
             .flat_map(|rule| &rule.when);
-        let apart = halts || does(&Action::RunAway);
+        // Where only one gets through, making room is going back.
+        let back = place == PlaceClass::NarrowPassage && does(&Action::GiveWay);
+        let apart = halts || back || does(&Action::RunAway);
         let reach = early.filter_map(distance_m).filter(|_| apart).fold(within_m, |most, m| most.max(m + 0.5));
         list.setup(
             must,
@@ -334,6 +336,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         Relation::Static => {
             list.setup(true, source, format!("{id} stands"), Predicate::StandsStill { human: id, for_s: 3.0 });
             meets(list, human.group.is_none(), 3.5);
+            if human.goal.is_some() {
+                list.setup(true, "", format!("{id} goes in"), Predicate::Enters { human: id, door: String::new() });
+            }
         }
         Relation::Leaving => {
             list.setup(true, source, format!("{id} comes out"), Predicate::Leaves { human: id, door: String::new() });

@@ -2,7 +2,9 @@
 
 use socrates_model::{Action, HumanProposal, Location, PlaceClass, Relation};
 
+use crate::boards;
 use crate::card::Ends;
+use crate::chance::walks_later;
 use crate::place;
 use crate::routes::{Net, Route};
 
@@ -55,6 +57,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) meant: &'a [usize],
     /// Where those stand who have been placed there.
     pub(crate) standing: Vec<usize>,
+    /// How many stand before a door at first and go in.
+    pub(crate) boards: usize,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
@@ -100,6 +104,10 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
         Relation::Crossing => crossing(human, route, taken),
         Relation::Behind => behind(human, route, taken, along),
         Relation::Ahead | Relation::Abreast => ahead(human, route, taken),
+        Relation::Static if boards::boards(human) => {
+            boards::way(human, route, taken).or_else(|| standing(route, taken))
+        }
+        Relation::Static if walks_later(human) => standing(route, taken).map(|way| walking_on(way, route, taken)),
         Relation::Static => standing(route, taken),
         Relation::Leaving => leaving(human, route, taken),
         Relation::Staying => staying(human, route, taken),
@@ -350,6 +358,18 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
             nodes.pop();
         }
     }
+    // Nor does it stand in the robot's way there: it goes on past the door.
+    if let (Some(last), Some(previous)) = (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)))
+        && route.nodes.get(start..).is_some_and(|own| nodes.len() < own.len())
+    {
+        let on =
+            net.near(last).iter().map(|(node, _)| *node).filter(|node| {
+                !route.nodes.contains(node) && !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway
+            });
+        let turn = |node: usize| net.straight(*previous, last, node);
+        let on = on.max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
+        nodes.extend(on);
+    }
     let cost = if start == route.meet { 4.0 } else { 0.0 };
     Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
 }
@@ -370,6 +390,27 @@ fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
     let at = places.into_iter().filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
     Some(Way { nodes: vec![at], meet: at, cost: 0.0 })
+}
+
+/// On from where somebody stood: off the robot's way if there is one, else along it, to where it turns off or ends.
+fn walking_on(mut way: Way, route: &Route, taken: &Taken<'_>) -> Way {
+    let net = taken.net;
+    let Some(from) = way.nodes.first().and_then(|at| route.nodes.iter().position(|node| node == at)) else {
+        return way;
+    };
+    for at in route.nodes.get(from..).unwrap_or_default() {
+        if way.nodes.last() != Some(at) {
+            way.nodes.push(*at);
+        }
+        let off =
+            |node: &usize| !route.nodes.contains(node) && !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+        let off = net.near(*at).iter().map(|(node, _)| *node).filter(off);
+        if let Some(off) = off.max_by_key(|node| taken.can_end(*node)) {
+            way.nodes.push(off);
+            break;
+        }
+    }
+    way
 }
 
 /// At the node of a place by name that has the fewest people so far.
@@ -448,7 +489,7 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }
 
-fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
+pub(crate) fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
     let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| door.id.as_str());
     let Some(b) = b else { return false };
     match (door(a), door(b)) {

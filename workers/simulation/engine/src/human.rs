@@ -7,6 +7,9 @@ use crate::make_room::Facing;
 use crate::models::Walks;
 use crate::near::Notice;
 
+/// So far beyond a door line somebody is through, m.
+const THROUGH_M: f64 = 0.7;
+
 /// Where a human meets the robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Meeting {
@@ -146,6 +149,21 @@ impl Human {
         }
         let ahead = self.route.direction(self.s);
         if ahead.norm() > 0.5 && !self.at_goal() { ahead } else { self.heading() }
+    }
+
+    /// Whether it is to come out of a room or car and is not out yet.
+    pub(crate) fn inside_still(&self) -> bool {
+        self.relation == Relation::Leaving
+            && match self.doors.first() {
+                Some(door) => self.s < door.s + THROUGH_M,
+                None => self.s < 2.0_f64.min(self.route.length_m() - 0.5),
+            }
+    }
+
+    /// Whether it waits before a door to go in and is not in yet.
+    pub(crate) fn outside_still(&self) -> bool {
+        let goes_in = self.relation == Relation::Static && !self.at_goal();
+        goes_in && self.doors.first().is_some_and(|door| self.s < door.s + THROUGH_M)
     }
 
     /// Whether it never leaves its place by itself.

@@ -34,6 +34,9 @@ const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 const SWAY_M: f64 = 0.04;
 const SWAY_WALKING: f64 = 2.0;
 
+/// So far before a meeting the robot's way tells from where it comes, m.
+const COMES_M: f64 = 0.5;
+
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
 pub(crate) const HURRY_MPS: f64 = 1.5;
 /// Later than this at the encounter is not made good on the way, s.
@@ -186,9 +189,13 @@ fn human(
     if let Some(meeting) = meetings.first()
         && route.length_m() < 0.05
     {
-        // Somebody who stands in the robot's way looks along it, not at the robot.
-        let along = robot_way.direction(meeting.robot_s);
-        facing = libm::atan2(along.x, -along.y);
+        // Somebody who stands in the robot's way looks across it, not at the robot: where the robot turns, across the way by
+        // which it comes. Who does something at its sight looks half to where it comes from, or it might pass unseen behind.
+        let along = robot_way.direction((meeting.robot_s - COMES_M).max(0.0));
+        let sees = |rule: &socrates_model::Rule| rule.when.iter().any(|when| matches!(when, Trigger::RobotVisible(_)));
+        let across = Vector::new(-along.y, along.x);
+        let looks = if proposal.rules.iter().any(sees) { across - along } else { across };
+        facing = libm::atan2(looks.y, looks.x);
     }
     let state = tree.start_with(&BTreeMap::from([
         ("id".to_owned(), proposal.id.number().to_string()),

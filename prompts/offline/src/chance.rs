@@ -1,0 +1,139 @@
+//! Gives every reaction its chance: what somebody waits for has to come about where it is, and in the order that was told.
+
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{Action, HumanProposal, Relation, Rule, Trigger};
+
+use crate::cast::ReadRule;
+use crate::story::Story;
+
+/// Whoever has the robot behind notices it no farther than this, m.
+const BEHIND_M: f64 = 3.0;
+/// Who has to get past the robot before it can block it does so for so long at least, s.
+const CATCHES_UP_S: f64 = 20.0;
+/// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
+const STOPS: (f64, f64) = (4.0, 6.0);
+
+/// Mends what could not come about as it was read; distances that the text says stay as they are.
+pub(crate) fn settle(story: &mut Story) {
+    for who in 0..story.cast.people.len() {
+        let relation = story.relation_of(who);
+        let Some(person) = story.cast.people.get_mut(who) else { continue };
+        for read in person.rules.iter_mut().filter(|read| !read.exact) {
+            for trigger in &mut read.rule.when {
+                // Who walks ahead of the robot does not see it.
+                if let (Some(Relation::Ahead), Trigger::RobotVisible(m)) = (relation, &trigger) {
+                    *trigger = Trigger::RobotNear(m.min(BEHIND_M));
+                }
+            }
+        }
+        if relation == Some(Relation::Behind) {
+            for read in person.rules.iter_mut().filter(|read| read.rule.act == Action::Block && !read.lasts) {
+                read.rule.for_s = read.rule.for_s.map(|secs| secs.max(CATCHES_UP_S));
+            }
+        }
+        lets_pass_last(&mut person.rules);
+        // `stands still while it moves and walks towards it when it stops`: it stands there, and comes up to it then.
+        if relation == Some(Relation::Frontal) && alternates(person.rules.iter().map(|read| &read.rule)) {
+            if let Some((relation, _)) = &mut person.relation {
+                *relation = Relation::Static;
+            }
+            for read in person.rules.iter_mut().filter(|read| read.rule.when == [Trigger::RobotStopped]) {
+                read.rule.act = Action::Approach;
+            }
+        }
+    }
+}
+
+/// `stops, looks at it for ten seconds and then lets it pass`: at no stated distance the way is free after all that.
+fn lets_pass_last(rules: &mut [ReadRule]) {
+    let near = |read: &ReadRule| match read.rule.when[..] {
+        [Trigger::RobotVisible(m)] if !read.exact => Some(m),
+        _ => None,
+    };
+    for at in 1..rules.len() {
+        let (before, rest) = rules.split_at_mut(at);
+        let Some((read, last)) = rest.first_mut().zip(before.last()) else { return };
+        let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot) && last.rule.for_s.is_some();
+        let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate);
+        if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m) {
+            read.rule.when.clone_from(&last.rule.when);
+        }
+    }
+}
+
+/// Whether somebody stands while the robot moves and does something else only while it stands.
+fn alternates<'a>(rules: impl Iterator<Item = &'a Rule>) -> bool {
+    let (mut stands, mut goes) = (false, false);
+    for rule in rules {
+        stands |= rule.when == [Trigger::RobotMoving] && rule.act == Action::StandStill;
+        goes |= rule.when == [Trigger::RobotStopped] && matches!(rule.act, Action::Navigate | Action::Approach);
+    }
+    stands && goes
+}
+
+/// Whoever waits for the robot to stop, and stands until then, gives it no reason to: it stops of itself.
+pub(crate) fn stops(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
+    let holds = script.iter().any(|line| matches!(line.act, RobotDo::Hold(_)));
+    if !holds && humans.iter().any(|human| alternates(human.rules.iter())) {
+        script.push(RobotRule { when: RobotWhen::HumanNear(STOPS.0), act: RobotDo::Hold(STOPS.1) });
+    }
+}
+
+/// Whether somebody stands at first and walks on at something that comes later.
+pub(crate) fn walks_later(human: &HumanProposal) -> bool {
+    let later =
+        |rule: &Rule| rule.act == Action::Navigate && rule.for_s.is_none() && !rule.when.contains(&Trigger::Always);
+    human.relation == Relation::Static && human.group.is_none() && human.goal.is_none() && human.rules.iter().any(later)
+}
+
+/// Until then it stands there.
+pub(crate) fn until_then(human: &mut HumanProposal) {
+    if walks_later(human) {
+        let when = vec![Trigger::Always];
+        human.rules.push(Rule { when, act: Action::StandStill, gesture: None, for_s: None, latched: false });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{answers, map, request};
+
+    #[test]
+    fn who_walks_ahead_notices_the_robot_behind_it_without_seeing_it() {
+        let rough = "The robot overtakes a worker who walks slowly. The worker turns his head and looks at it.";
+        let (_, proposal, _) = answers(&request("Drive to the packing area", Some(rough)), &map("warehouse"), 1);
+        let rules = &proposal.humans[0].rules;
+        assert!(rules.iter().any(|rule| rule.when == [Trigger::RobotNear(BEHIND_M)]), "{rules:?}");
+    }
+
+    #[test]
+    fn the_robot_stops_where_somebody_waits_for_that() {
+        let rough = "While the robot is moving, the guard stands still. Whenever the robot stops, the guard walks a few \
+                     steps towards it.";
+        let (_, proposal, paths) = answers(&request("Patrol the aisles", Some(rough)), &map("warehouse"), 1);
+        assert!(proposal.robot.script.iter().any(|line| matches!(line.act, RobotDo::Hold(_))));
+        assert_eq!(proposal.humans[0].relation, Relation::Static);
+        assert_eq!(paths.humans.values().next().map(Vec::len), Some(1));
+    }
+
+    #[test]
+    fn who_lets_the_robot_pass_after_all_else_does_so_last() {
+        let rough = "A guard stops in front of the robot, looks at it for ten seconds and then lets it pass.";
+        let (_, proposal, _) = answers(&request("Drive to the exit", Some(rough)), &map("office"), 1);
+        let rules = &proposal.humans[0].rules;
+        let when = |act: Action| rules.iter().find(|rule| rule.act == act).map(|rule| rule.when.clone());
+        assert_eq!(when(Action::GiveWay), when(Action::LookAtRobot), "{rules:?}");
+    }
+
+    #[test]
+    fn who_stands_until_it_is_asked_has_a_way_to_walk_on() {
+        let rough =
+            "One person stands in the doorway of the kitchen. She does not move until the robot says excuse me.";
+        let (_, proposal, paths) = answers(&request("Bring the mail to the kitchen", Some(rough)), &map("office"), 1);
+        let way = paths.humans.values().next().unwrap();
+        assert!(way.len() > 1, "{way:?}");
+        let last = proposal.humans[0].rules.last().unwrap();
+        assert_eq!((&last.act, last.when.as_slice()), (&Action::StandStill, &[Trigger::Always][..]));
+    }
+}

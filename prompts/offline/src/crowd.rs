@@ -1,0 +1,84 @@
+//! Many people on one way of the robot: they meet it one after the other along it, not all at one node.
+
+use socrates_model::{HumanId, HumanProposal, Predicate, Proposal, Relation};
+
+use crate::fit::tight;
+use crate::humans::Way;
+use crate::routes::{Net, Route};
+
+/// So many are met at one node; more are spread along the way.
+const AT_ONE: usize = 4;
+/// The robot has gone so far before the first of them, m.
+const BEFORE_M: f64 = 4.0;
+/// What a doorway or an aisle costs that everybody has to get through.
+const TIGHT: f64 = 3.0;
+
+/// Whether somebody walks by itself, with or against the robot.
+fn passes(human: &HumanProposal) -> bool {
+    matches!(human.relation, Relation::Frontal | Relation::Ahead) && human.group.is_none()
+}
+
+/// Where each of many is met along a way of the robot, as places in its nodes; nobody where a few are met, or where all have to
+/// be at one place.
+pub(crate) fn spread(net: &Net<'_>, proposal: &Proposal, route: &Route) -> Vec<(HumanId, usize)> {
+    let all_at_once = proposal.expected_events.iter().any(|clause| {
+        matches!(
+            clause.predicate,
+            Predicate::Flow { .. } | Predicate::Density { .. } | Predicate::Converges { .. } | Predicate::Before { .. }
+        )
+    });
+    let many: Vec<HumanId> = proposal.humans.iter().filter(|human| passes(human)).map(|human| human.id).collect();
+    if all_at_once || many.len() <= AT_ONE {
+        return Vec::new();
+    }
+    let own = route.nodes.get(route.meet).is_some_and(|node| net.is(*node, proposal.place));
+    let fits = |at: &usize| {
+        let far = net.length_m(route.nodes.get(..=*at).unwrap_or_default()) >= BEFORE_M;
+        let node = route.nodes.get(*at);
+        far && node
+            .is_some_and(|node| !net.inside(*node) && !tight(net, *node) && (!own || net.is(*node, proposal.place)))
+    };
+    let places: Vec<usize> = (1..route.nodes.len().saturating_sub(1)).filter(fits).collect();
+    if places.len() < 2 {
+        return Vec::new();
+    }
+    // Of each kind the first are met first.
+    let mut found = Vec::new();
+    for kind in [Relation::Frontal, Relation::Ahead] {
+        let of_kind: Vec<HumanId> = proposal
+            .humans
+            .iter()
+            .filter(|human| passes(human) && human.relation == kind)
+            .map(|human| human.id)
+            .collect();
+        for (rank, id) in of_kind.iter().enumerate() {
+            found.extend(places.get(rank * places.len() / of_kind.len()).map(|at| (*id, *at)));
+        }
+    }
+    found
+}
+
+/// What it costs that people come through doorways and aisles, on average.
+pub(crate) fn squeezes<'a>(net: &Net<'_>, ways: impl Iterator<Item = &'a Way>) -> f64 {
+    let counts: Vec<f64> = ways.map(|way| way.nodes.iter().filter(|node| tight(net, **node)).count() as f64).collect();
+    if counts.is_empty() { 0.0 } else { TIGHT * counts.iter().sum::<f64>() / counts.len() as f64 }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use crate::tests::{answers, map, request};
+
+    #[test]
+    fn many_are_met_one_after_the_other_along_the_way() {
+        let rough = "Eight people walk along the corridor: four come towards the robot, four walk in the same direction as the robot.";
+        let (_, _, paths) = answers(&request("Drive along the main corridor", Some(rough)), &map("hospital"), 1);
+        let nodes: BTreeSet<_> = paths.encounters.iter().map(|encounter| &encounter.node).collect();
+        assert!(nodes.len() > 1, "{nodes:?}");
+        let (_, _, paths) =
+            answers(&request("Drive", Some("Three people come towards the robot.")), &map("hospital"), 1);
+        let nodes: BTreeSet<_> = paths.encounters.iter().map(|encounter| &encounter.node).collect();
+        assert_eq!(nodes.len(), 1);
+    }
+}
