@@ -7,13 +7,30 @@ use crate::place;
 use crate::routes::{Net, Route};
 use crate::story::Story;
 
+/// A car with more riders than this has no room for the robot.
+const RIDERS: usize = 4;
+const FULL: &str = " full";
 /// Nobody waits for a door farther from the place behind it than this, m.
 const BEFORE_M: f64 = 8.0;
+
+/// `The elevator is full with five people`: they are in it, and ride on.
+fn full(story: &mut Story) -> bool {
+    let quote = story.place.as_ref().filter(|(class, quote)| *class == PlaceClass::Elevator && quote.contains(FULL));
+    let Some(quote) = quote.map(|(_, quote)| quote.clone()) else { return false };
+    let mut any = false;
+    for person in story.cast.people.iter_mut().filter(|person| person.relation.is_none() && person.doings.is_empty()) {
+        person.relation = Some((Relation::Staying, quote.clone()));
+        person.start = Some(PlaceClass::Elevator);
+        person.doings.push("stays in the elevator".to_owned());
+        any = true;
+    }
+    any
+}
 
 /// Has those who wait and go in stand before the door until it is open, as long as the robot does not come out of it.
 pub(crate) fn settle(story: &mut Story, location: &Location) {
     let comes_out = story.robot_leaves.as_ref().map(|(class, _)| *class);
-    let mut any = false;
+    let mut any = full(story) && story.cast.people.len() > RIDERS;
     for person in &mut story.cast.people {
         let Some(goal) = person.goal.filter(|goal| Some(*goal) != comes_out) else { continue };
         let free = person.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
@@ -46,6 +63,13 @@ pub(crate) fn count(proposal: &Proposal) -> usize {
     proposal.humans.iter().filter(|human| boards(human)).count()
 }
 
+/// Whether so many are in a car that the robot takes another.
+pub(crate) fn rides_alone(proposal: &Proposal) -> bool {
+    let rides =
+        |human: &&HumanProposal| human.relation == Relation::Staying && human.start == Some(PlaceClass::Elevator);
+    proposal.humans.iter().filter(rides).count() > RIDERS
+}
+
 /// The places behind the same door as one of them.
 fn behind(net: &Net<'_>, class: Option<PlaceClass>, node: usize) -> Vec<usize> {
     let all = place::inside(net.location, class);
@@ -54,11 +78,11 @@ fn behind(net: &Net<'_>, class: Option<PlaceClass>, node: usize) -> Vec<usize> {
 
 /// Nodes right before the doors of other cars, where those who go in do not fit into the robot's; none where they do.
 pub(crate) fn doors_beside(net: &Net<'_>, proposal: &Proposal, goal: usize) -> Vec<usize> {
-    let Some(class) = proposal.humans.iter().filter(|human| boards(human)).find_map(|human| human.goal) else {
-        return Vec::new();
-    };
+    let ride = rides_alone(proposal);
+    let boards = proposal.humans.iter().filter(|human| boards(human)).find_map(|human| human.goal);
+    let Some(class) = boards.or(ride.then_some(PlaceClass::Elevator)) else { return Vec::new() };
     let own = behind(net, Some(class), goal);
-    if count(proposal) < own.len() || own.is_empty() {
+    if !ride && count(proposal) < own.len() || own.is_empty() {
         return Vec::new();
     }
     let others = place::inside(net.location, Some(class));
@@ -108,7 +132,8 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
                 .position(|node| net.inside(*node))
                 .map_or(0.0, |n| net.length_m(nodes.get(..=n).unwrap_or_default()));
             let deep_m = tree.length_m(end) - before_m;
-            let cost = before_m + 2.0 * there + 6.0 * ends - 0.5 * deep_m;
+            let deep = if ends > 0.0 { deep_m } else { -deep_m };
+            let cost = before_m + 2.0 * there + 6.0 * ends + 0.5 * deep;
             if best.as_ref().is_none_or(|(least, _)| cost < least - 1e-9) {
                 best = Some((cost, nodes));
             }
@@ -142,6 +167,20 @@ mod tests {
             assert!(paths.robot.contains(&way[0]) && map.door_of(way.last().unwrap()).is_some(), "{way:?}");
             assert!(enters(human.id), "{:#?}", proposal.expected_events);
         }
+    }
+
+    #[test]
+    fn the_robot_takes_another_car_than_one_that_is_full() {
+        let rough =
+            "The elevator is full with five people, so the robot does not get in. It waits for the other elevator.";
+        let (request, map) = (request("Take the elevator", Some(rough)), map("hospital"));
+        let (_, proposal, paths) = answers(&request, &map, 1);
+        assert!(proposal.humans.iter().all(|human| human.relation == Relation::Staying));
+        let door = |node: &socrates_model::NodeId| map.door_of(node).map(|door| door.id.clone());
+        let robot = door(paths.robot.last().unwrap());
+        assert!(
+            robot.is_some() && paths.humans.values().all(|way| door(&way[0]).is_some_and(|own| Some(own) != robot))
+        );
     }
 
     #[test]

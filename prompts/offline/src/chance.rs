@@ -1,13 +1,15 @@
 //! Gives every reaction its chance: what somebody waits for has to come about where it is, and in the order that was told.
 
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
-use socrates_model::{Action, HumanProposal, Relation, Rule, Trigger};
+use socrates_model::{Action, HumanProposal, PlaceClass, Relation, Rule, Trigger};
 
 use crate::cast::ReadRule;
 use crate::story::Story;
 
 /// Whoever has the robot behind notices it no farther than this, m.
 const BEHIND_M: f64 = 3.0;
+/// In an aisle that only one gets through the two come so near to each other before one makes room, m.
+const FACES_M: f64 = 2.5;
 /// Who has to get past the robot before it can block it does so for so long at least, s.
 const CATCHES_UP_S: f64 = 20.0;
 /// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
@@ -15,11 +17,16 @@ const STOPS: (f64, f64) = (4.0, 6.0);
 
 /// Mends what could not come about as it was read; distances that the text says stay as they are.
 pub(crate) fn settle(story: &mut Story) {
+    let narrow = matches!(story.place, Some((PlaceClass::NarrowPassage, _)));
     for who in 0..story.cast.people.len() {
         let relation = story.relation_of(who);
         let Some(person) = story.cast.people.get_mut(who) else { continue };
         for read in person.rules.iter_mut().filter(|read| !read.exact) {
             for trigger in &mut read.rule.when {
+                // Where only one gets through they have met before one of them goes back.
+                if let (true, Trigger::RobotVisible(m)) = (narrow && read.rule.act == Action::GiveWay, &mut *trigger) {
+                    *m = m.min(FACES_M);
+                }
                 // Who walks ahead of the robot does not see it.
                 if let (Some(Relation::Ahead), Trigger::RobotVisible(m)) = (relation, &trigger) {
                     *trigger = Trigger::RobotNear(m.min(BEHIND_M));

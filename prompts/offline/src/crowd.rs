@@ -1,6 +1,6 @@
 //! Many people on one way of the robot: they meet it one after the other along it, not all at one node.
 
-use socrates_model::{HumanId, HumanProposal, Predicate, Proposal, Relation};
+use socrates_model::{HumanId, HumanProposal, PlaceClass, Predicate, Proposal, Relation};
 
 use crate::fit::tight;
 use crate::humans::Way;
@@ -10,6 +10,8 @@ use crate::routes::{Net, Route};
 const AT_ONE: usize = 4;
 /// The robot has gone so far before the first of them, m.
 const BEFORE_M: f64 = 4.0;
+/// Cosine of the turn at a place up to which the way leads straight over it.
+const STRAIGHT: f64 = 0.7;
 /// What a doorway or an aisle costs that everybody has to get through.
 const TIGHT: f64 = 3.0;
 
@@ -31,12 +33,18 @@ pub(crate) fn spread(net: &Net<'_>, proposal: &Proposal, route: &Route) -> Vec<(
     if all_at_once || many.len() <= AT_ONE {
         return Vec::new();
     }
-    let own = route.nodes.get(route.meet).is_some_and(|node| net.is(*node, proposal.place));
+    let place = |at: usize| route.nodes.get(at).is_some_and(|node| net.is(*node, proposal.place));
+    if proposal.place != PlaceClass::Plain && !place(route.meet) {
+        return Vec::new();
+    }
     let fits = |at: &usize| {
         let far = net.length_m(route.nodes.get(..=*at).unwrap_or_default()) >= BEFORE_M;
-        let node = route.nodes.get(*at);
-        far && node
-            .is_some_and(|node| !net.inside(*node) && !tight(net, *node) && (!own || net.is(*node, proposal.place)))
+        let around = at.checked_sub(1).and_then(|before| route.nodes.get(before..at + 2));
+        // Round a corner nobody comes straight towards it.
+        let Some([before, node, after]) = around else { return false };
+        let straight = net.straight(*before, *node, *after) > STRAIGHT;
+        let open = !net.inside(*node) && !tight(net, *node);
+        far && straight && open && (proposal.place == PlaceClass::Plain || place(*at))
     };
     let places: Vec<usize> = (1..route.nodes.len().saturating_sub(1)).filter(fits).collect();
     if places.len() < 2 {

@@ -59,6 +59,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) standing: Vec<usize>,
     /// How many stand before a door at first and go in.
     pub(crate) boards: usize,
+    /// Whether those who stay inside fill a car, so that the robot takes another.
+    pub(crate) apart: bool,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
@@ -146,6 +148,17 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         let mut ahead = after.to_vec();
         ahead.extend(tree.way(beyond).into_iter().skip(1));
         starts.push(ahead);
+    }
+    // Where it turns into a room, others come along the passage from beyond the door.
+    let passage = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+    let out: Vec<usize> = after.iter().copied().take_while(|node| passage(node)).collect();
+    if let Some(turn) = out.last().copied().filter(|_| net.inside(last)) {
+        let tree = net.tree(turn, &|node| route.nodes.contains(&node) || !passage(&node));
+        for beyond in (0..net.len()).filter(|node| tree.length_m(*node) > 0.0 && tree.length_m(*node) <= 10.0) {
+            let mut ahead = out.clone();
+            ahead.extend(tree.way(beyond).into_iter().skip(1));
+            starts.push(ahead);
+        }
     }
     let best = starts
         .into_iter()
@@ -507,6 +520,11 @@ fn staying(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let tree = net.tree(*route.nodes.get(route.meet)?, &|_| false);
     let inside = place::inside(net.location, sources(human, net.location));
     let mut all: Vec<usize> = inside.iter().filter_map(|id| net.index(id)).collect();
+    if net.inside(last) && taken.apart {
+        all.retain(|node| !same_door(net, *node, Some(last)));
+        let at = all.into_iter().min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
+        return Some(Way { nodes: vec![at], meet: *route.nodes.get(route.meet.checked_sub(1)?)?, cost: 0.0 });
+    }
     if net.inside(last) {
         all.retain(|node| same_door(net, *node, Some(last)));
         let at = all.into_iter().max_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;

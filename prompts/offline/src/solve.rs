@@ -469,6 +469,7 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         meant: &meant,
         standing: Vec::new(),
         boards: boards::count(proposal),
+        apart: boards::rides_alone(proposal),
     };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
     let spread = crowd::spread(net, proposal, &route);
@@ -523,7 +524,9 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
             cost += EARLY;
         }
         let followed = proposal.robot.script.iter().any(|line| line.act == RobotDo::Follow(human.id));
-        let own = if followed { led_past(own, &taken) } else { own };
+        // Of many who walk ahead nobody ends where the robot does.
+        let ahead = human.relation == Relation::Ahead && spread.iter().any(|(id, _)| *id == human.id);
+        let own = if followed || ahead { led_past(own, &taken) } else { own };
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());

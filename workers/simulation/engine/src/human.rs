@@ -124,7 +124,10 @@ impl Human {
             let reach = if self.route.length_m() > 0.0 { 0.45 + self.lane_m.abs() } else { 1.6 };
             let left = (self.at - end).norm();
             // Where somebody else stands at the end already, next to it is the end.
-            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12;
+            // Who goes in is not there before it is through the door.
+            let through =
+                self.relation != Relation::Static || self.doors.last().is_none_or(|door| self.s > door.s + 0.3);
+            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12 && through;
             self.lined_up
                 || left < reach && self.s > self.route.length_m() - 0.6
                 || beside && self.s > self.route.length_m() - 1.2

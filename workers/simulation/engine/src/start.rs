@@ -187,7 +187,7 @@ fn human(
     let sway = drawn_sway(setup.seed, proposal.id);
     let mut facing = 0.0;
     if let Some(meeting) = meetings.first()
-        && route.length_m() < 0.05
+        && (route.length_m() < 0.05 || proposal.relation == Relation::Static && doors.is_empty())
     {
         // Somebody who stands in the robot's way looks across it, not at the robot: where the robot turns, across the way by
         // which it comes. Who does something at its sight looks half to where it comes from, or it might pass unseen behind.
