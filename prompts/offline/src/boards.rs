@@ -1,36 +1,37 @@
 //! Who waits before an elevator or a room and goes in: it stands there at first, and its way leads on through the door.
 
-use socrates_model::{Action, HumanProposal, Location, PlaceClass, Proposal, Relation};
+use socrates_model::{Action, Fault, FaultCode, HumanProposal, Location, PlaceClass, Proposal, Relation};
 
 use crate::humans::{Taken, Way, same_door};
 use crate::place;
 use crate::routes::{Net, Route};
 use crate::story::Story;
 
-/// A car with more riders than this has no room for the robot.
+/// An elevator holds so many people.
 const RIDERS: usize = 4;
 const FULL: &str = " full";
 /// Nobody waits for a door farther from the place behind it than this, m.
 const BEFORE_M: f64 = 8.0;
 
-/// `The elevator is full with five people`: they are in it, and ride on.
-fn full(story: &mut Story) -> bool {
+/// `The elevator is full with five people`: that many do not fit, and whom the robot does not ride with it does not meet.
+fn full(story: &mut Story) {
     let quote = story.place.as_ref().filter(|(class, quote)| *class == PlaceClass::Elevator && quote.contains(FULL));
-    let Some(quote) = quote.map(|(_, quote)| quote.clone()) else { return false };
-    let mut any = false;
-    for person in story.cast.people.iter_mut().filter(|person| person.relation.is_none() && person.doings.is_empty()) {
-        person.relation = Some((Relation::Staying, quote.clone()));
-        person.start = Some(PlaceClass::Elevator);
-        person.doings.push("stays in the elevator".to_owned());
-        any = true;
+    let Some(quote) = quote.map(|(_, quote)| quote.clone()) else { return };
+    let idle = |person: &crate::cast::Person| person.relation.is_none() && person.doings.is_empty();
+    if story.cast.people.len() > RIDERS && story.cast.people.iter().all(idle) {
+        let message = format!(
+            "`{quote}`: an elevator holds at most {RIDERS} people, and whom the robot does not ride with it does not meet; \
+             say who gets out, or who waits in front and gets in"
+        );
+        story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
     }
-    any
 }
 
 /// Has those who wait and go in stand before the door until it is open, as long as the robot does not come out of it.
 pub(crate) fn settle(story: &mut Story, location: &Location) {
     let comes_out = story.robot_leaves.as_ref().map(|(class, _)| *class);
-    let mut any = full(story) && story.cast.people.len() > RIDERS;
+    full(story);
+    let mut any = false;
     for person in &mut story.cast.people {
         let Some(goal) = person.goal.filter(|goal| Some(*goal) != comes_out) else { continue };
         let free = person.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
@@ -63,13 +64,6 @@ pub(crate) fn count(proposal: &Proposal) -> usize {
     proposal.humans.iter().filter(|human| boards(human)).count()
 }
 
-/// Whether so many are in a car that the robot takes another.
-pub(crate) fn rides_alone(proposal: &Proposal) -> bool {
-    let rides =
-        |human: &&HumanProposal| human.relation == Relation::Staying && human.start == Some(PlaceClass::Elevator);
-    proposal.humans.iter().filter(rides).count() > RIDERS
-}
-
 /// The places behind the same door as one of them.
 fn behind(net: &Net<'_>, class: Option<PlaceClass>, node: usize) -> Vec<usize> {
     let all = place::inside(net.location, class);
@@ -78,11 +72,11 @@ fn behind(net: &Net<'_>, class: Option<PlaceClass>, node: usize) -> Vec<usize> {
 
 /// Nodes right before the doors of other cars, where those who go in do not fit into the robot's; none where they do.
 pub(crate) fn doors_beside(net: &Net<'_>, proposal: &Proposal, goal: usize) -> Vec<usize> {
-    let ride = rides_alone(proposal);
-    let boards = proposal.humans.iter().filter(|human| boards(human)).find_map(|human| human.goal);
-    let Some(class) = boards.or(ride.then_some(PlaceClass::Elevator)) else { return Vec::new() };
+    let Some(class) = proposal.humans.iter().filter(|human| boards(human)).find_map(|human| human.goal) else {
+        return Vec::new();
+    };
     let own = behind(net, Some(class), goal);
-    if !ride && count(proposal) < own.len() || own.is_empty() {
+    if count(proposal) < own.len() || own.is_empty() {
         return Vec::new();
     }
     let others = place::inside(net.location, Some(class));
@@ -145,7 +139,7 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
 
 #[cfg(test)]
 mod tests {
-    use socrates_model::{Predicate, Relation};
+    use socrates_model::{Fault, FaultCode, Predicate, Relation};
 
     use crate::tests::{answers, map, request};
 
@@ -170,24 +164,19 @@ mod tests {
     }
 
     #[test]
-    fn the_robot_takes_another_car_than_one_that_is_full() {
+    fn that_an_elevator_is_too_full_is_said_before_the_run() {
         let rough =
             "The elevator is full with five people, so the robot does not get in. It waits for the other elevator.";
-        let (request, map) = (request("Take the elevator", Some(rough)), map("hospital"));
-        let (_, proposal, paths) = answers(&request, &map, 1);
-        assert!(proposal.humans.iter().all(|human| human.relation == Relation::Staying));
-        let door = |node: &socrates_model::NodeId| map.door_of(node).map(|door| door.id.clone());
-        let robot = door(paths.robot.last().unwrap());
-        assert!(
-            robot.is_some() && paths.humans.values().all(|way| door(&way[0]).is_some_and(|own| Some(own) != robot))
-        );
+        let reading = crate::read(&request("Take the elevator", Some(rough)), &map("hospital"));
+        let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.contains("full with five people");
+        assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
     }
 
     #[test]
     fn more_than_fit_into_the_robots_car_go_into_another_that_it_comes_by() {
         let rough = "Four people wait in front of the elevator. When the door opens, they all get in.";
         let (request, map) = (request("Take the elevator", Some(rough)), map("hospital"));
-        let (_, proposal, paths) = answers(&request, &map, 1);
+        let (_, _, paths) = answers(&request, &map, 1);
         let door = |way: &[socrates_model::NodeId]| map.door_of(way.last().unwrap()).map(|door| door.id.clone());
         let robot = door(&paths.robot);
         assert!(robot.is_some() && paths.humans.values().all(|way| door(way).is_some_and(|own| Some(own) != robot)));

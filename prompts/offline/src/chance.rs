@@ -1,7 +1,7 @@
 //! Gives every reaction its chance: what somebody waits for has to come about where it is, and in the order that was told.
 
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
-use socrates_model::{Action, HumanProposal, PlaceClass, Relation, Rule, Trigger};
+use socrates_model::{Action, Fault, FaultCode, HumanProposal, PlaceClass, Relation, Rule, Trigger};
 
 use crate::cast::ReadRule;
 use crate::story::Story;
@@ -10,14 +10,22 @@ use crate::story::Story;
 const BEHIND_M: f64 = 3.0;
 /// In an aisle that only one gets through the two come so near to each other before one makes room, m.
 const FACES_M: f64 = 2.5;
+/// Who stands at its place and walks on lets the robot come so near first, m.
+const MET_M: f64 = 2.8;
+/// The robot comes no nearer than this to whoever stands in its way, m.
+const STOPS_BEFORE_M: f64 = 1.1;
+/// Words by which people walk with the robot and against it.
+const BOTH_WAYS: &[&str] = &["both directions", "both ways", "either direction", "opposite directions"];
 /// Who has to get past the robot before it can block it does so for so long at least, s.
 const CATCHES_UP_S: f64 = 20.0;
 /// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
 const STOPS: (f64, f64) = (4.0, 6.0);
 
 /// Mends what could not come about as it was read; distances that the text says stay as they are.
-pub(crate) fn settle(story: &mut Story) {
+pub(crate) fn settle(story: &mut Story, rough: &str) {
+    both_ways(story, rough);
     let narrow = matches!(story.place, Some((PlaceClass::NarrowPassage, _)));
+    impossible(story, narrow);
     for who in 0..story.cast.people.len() {
         let relation = story.relation_of(who);
         let Some(person) = story.cast.people.get_mut(who) else { continue };
@@ -26,6 +34,11 @@ pub(crate) fn settle(story: &mut Story) {
                 // Where only one gets through they have met before one of them goes back.
                 if let (true, Trigger::RobotVisible(m)) = (narrow && read.rule.act == Action::GiveWay, &mut *trigger) {
                     *m = m.min(FACES_M);
+                }
+                // Who stands there and walks on has been met by then.
+                let leaves = relation == Some(Relation::Static) && read.rule.act == Action::Navigate;
+                if let (true, Trigger::RobotVisible(m) | Trigger::RobotNear(m)) = (leaves, &mut *trigger) {
+                    *m = m.min(MET_M);
                 }
                 // Who walks ahead of the robot does not see it.
                 if let (Some(Relation::Ahead), Trigger::RobotVisible(m)) = (relation, &trigger) {
@@ -49,6 +62,61 @@ pub(crate) fn settle(story: &mut Story) {
             }
         }
     }
+}
+
+/// `Twelve visitors walk in both directions`: every other one comes towards the robot, the others walk ahead of it.
+fn both_ways(story: &mut Story, rough: &str) {
+    let lower = rough.to_lowercase();
+    let Some(words) = BOTH_WAYS.iter().find(|words| lower.contains(*words)) else { return };
+    let people = &mut story.cast.people;
+    let walks = |person: &&mut crate::cast::Person| {
+        let idle = person.relation.is_none() && person.group.is_none() && person.rules.is_empty();
+        idle && !person.doings.is_empty() && person.doings.iter().all(|doing| doing == "walks")
+    };
+    let walkers: Vec<_> = people.iter_mut().filter(walks).collect();
+    if walkers.len() < 2 {
+        return;
+    }
+    for (person, towards) in walkers.into_iter().zip([true, false].into_iter().cycle()) {
+        let relation = if towards { Relation::Frontal } else { Relation::Ahead };
+        person.relation = Some((relation, (*words).to_owned()));
+        person.doings.push(if towards { "comes towards the robot" } else { "walks ahead of the robot" }.to_owned());
+    }
+    story.ignored.retain(|word| !words.contains(word.as_str()));
+}
+
+/// Says before the run what cannot come about in it.
+fn impossible(story: &mut Story, narrow: bool) {
+    let mut said = Vec::new();
+    let people = &story.cast.people;
+    for person in people {
+        let blocks = person.rules.iter().any(|read| read.rule.act == Action::Block);
+        let touches = |read: &&ReadRule| {
+            let near = |when: &Trigger| matches!(when, Trigger::RobotNear(m) | Trigger::RobotVisible(m) if *m <= STOPS_BEFORE_M);
+            read.exact && read.rule.act != Action::Block && read.rule.when.iter().any(near)
+        };
+        said.extend(person.rules.iter().find(touches).filter(|_| blocks).map(|read| {
+            format!(
+                "`{}`: the robot stops more than a metre before whoever stands in its way; ask for {} m or more",
+                read.quote,
+                STOPS_BEFORE_M + 0.4
+            )
+        }));
+    }
+    let aside = |read: &&ReadRule| read.rule.act == Action::GiveWay;
+    let mut yield_there = people
+        .iter()
+        .filter(|person| matches!(person.relation, Some((Relation::Static, _))))
+        .filter_map(|person| person.rules.iter().find(aside));
+    if let (true, Some(read), Some(_)) = (narrow, yield_there.next(), yield_there.next()) {
+        said.push(format!(
+            "`{}`: in an aisle that only one gets through there is no room for several to make way; ask for one, or for a wider \
+             place",
+            read.quote
+        ));
+    }
+    let faults = said.into_iter().map(|message| Fault::new(FaultCode::PRead, "rough_scenario", message));
+    story.problems.extend(faults);
 }
 
 /// `stops, looks at it for ten seconds and then lets it pass`: at no stated distance the way is free after all that.
@@ -122,6 +190,35 @@ mod tests {
         assert!(proposal.robot.script.iter().any(|line| matches!(line.act, RobotDo::Hold(_))));
         assert_eq!(proposal.humans[0].relation, Relation::Static);
         assert_eq!(paths.humans.values().next().map(Vec::len), Some(1));
+    }
+
+    #[test]
+    fn what_cannot_come_about_is_said_before_the_run() {
+        for (rough, on, words) in [
+            (
+                "A child stops in front of the robot and runs away when the robot comes closer than one metre.",
+                "hospital",
+                "closer than one metre",
+            ),
+            (
+                "A group of three workers stands in the narrow aisle. When the robot says excuse me, they step aside.",
+                "warehouse",
+                "step aside",
+            ),
+        ] {
+            let reading = crate::read(&request("Drive on", Some(rough)), &map(on));
+            let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.contains(words);
+            assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
+        }
+    }
+
+    #[test]
+    fn of_people_who_walk_in_both_directions_every_other_one_comes_towards_the_robot() {
+        let rough = "Twelve visitors walk in both directions along the main corridor.";
+        let reading = crate::read(&request("Drive to the exit", Some(rough)), &map("hospital"));
+        let of = |relation| reading.humans.iter().filter(|human| human.relation == Some(relation)).count();
+        assert_eq!((of(Relation::Frontal), of(Relation::Ahead)), (6, 6));
+        assert!(!reading.ignored.contains(&"directions".to_owned()), "{:?}", reading.ignored);
     }
 
     #[test]

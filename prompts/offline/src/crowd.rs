@@ -1,23 +1,30 @@
 //! Many people on one way of the robot: they meet it one after the other along it, not all at one node.
 
+use std::collections::BTreeMap;
+
 use socrates_model::{HumanId, HumanProposal, PlaceClass, Predicate, Proposal, Relation};
 
 use crate::fit::tight;
-use crate::humans::Way;
+use crate::humans::{Way, follows};
 use crate::routes::{Net, Route};
 
 /// So many are met at one node; more are spread along the way.
-const AT_ONE: usize = 4;
+const AT_ONE: usize = 5;
 /// The robot has gone so far before the first of them, m.
 const BEFORE_M: f64 = 4.0;
 /// Cosine of the turn at a place up to which the way leads straight over it.
 const STRAIGHT: f64 = 0.7;
 /// What a doorway or an aisle costs that everybody has to get through.
 const TIGHT: f64 = 3.0;
+/// More people than this who walk together do not fit through a doorway side by side.
+const ABREAST: usize = 2;
+/// What a corner costs round which many come.
+const CORNER: f64 = 2.0;
 
 /// Whether somebody walks by itself, with or against the robot.
 fn passes(human: &HumanProposal) -> bool {
-    matches!(human.relation, Relation::Frontal | Relation::Ahead) && human.group.is_none()
+    let walks = matches!(human.relation, Relation::Frontal | Relation::Ahead) && human.group.is_none();
+    walks && !follows(human)
 }
 
 /// Where each of many is met along a way of the robot, as places in its nodes; nobody where a few are met, or where all have to
@@ -66,10 +73,16 @@ pub(crate) fn spread(net: &Net<'_>, proposal: &Proposal, route: &Route) -> Vec<(
     found
 }
 
-/// What it costs that people come through doorways and aisles, on average.
-pub(crate) fn squeezes<'a>(net: &Net<'_>, ways: impl Iterator<Item = &'a Way>) -> f64 {
-    let counts: Vec<f64> = ways.map(|way| way.nodes.iter().filter(|node| tight(net, **node)).count() as f64).collect();
-    if counts.is_empty() { 0.0 } else { TIGHT * counts.iter().sum::<f64>() / counts.len() as f64 }
+/// What it costs that people come through doorways and aisles, on average, and that the way of many turns corners.
+pub(crate) fn squeezes(net: &Net<'_>, proposal: &Proposal, route: &Route, ways: &BTreeMap<HumanId, Way>) -> f64 {
+    let tight = |way: &Way| way.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
+    let average = ways.values().map(tight).sum::<f64>() / ways.len().max(1) as f64;
+    let many = proposal.humans.iter().filter(|human| passes(human)).count() > AT_ONE;
+    let turns = |three: &&[usize]| matches!(three, [a, b, c] if net.straight(*a, *b, *c) <= STRAIGHT);
+    let corners = route.nodes.windows(3).filter(turns).count() as f64;
+    let abreast = proposal.groups.iter().any(|group| !group.standing && group.members.len() > ABREAST);
+    let tight = if many || abreast { TIGHT * average } else { 0.0 };
+    tight + if many { CORNER * corners } else { 0.0 }
 }
 
 #[cfg(test)]

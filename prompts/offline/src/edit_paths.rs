@@ -420,7 +420,6 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
         meant: &[],
         standing: Vec::new(),
         boards: 0,
-        apart: false,
     }
 }
 

@@ -59,8 +59,6 @@ pub(crate) struct Taken<'a> {
     pub(crate) standing: Vec<usize>,
     /// How many stand before a door at first and go in.
     pub(crate) boards: usize,
-    /// Whether those who stay inside fill a car, so that the robot takes another.
-    pub(crate) apart: bool,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
@@ -520,11 +518,6 @@ fn staying(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     let tree = net.tree(*route.nodes.get(route.meet)?, &|_| false);
     let inside = place::inside(net.location, sources(human, net.location));
     let mut all: Vec<usize> = inside.iter().filter_map(|id| net.index(id)).collect();
-    if net.inside(last) && taken.apart {
-        all.retain(|node| !same_door(net, *node, Some(last)));
-        let at = all.into_iter().min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
-        return Some(Way { nodes: vec![at], meet: *route.nodes.get(route.meet.checked_sub(1)?)?, cost: 0.0 });
-    }
     if net.inside(last) {
         all.retain(|node| same_door(net, *node, Some(last)));
         let at = all.into_iter().max_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;

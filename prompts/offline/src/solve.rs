@@ -319,7 +319,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
                     .as_ref()
                     .filter(|_| overtaken)
                     .map_or(0.0, |field| squeezed(net, field, &solution.route, overtakers > 1));
-                let tight = 3.0 * tight + crowd::squeezes(net, solution.ways.values());
+                let tight = 3.0 * tight + crowd::squeezes(net, proposal, &solution.route, &solution.ways);
                 solution.score += rank + hidden - if many || wish.roomy { tight } else { 0.0 } - SQUEEZED * squeezed;
                 found.push(solution);
             }
@@ -469,7 +469,6 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         meant: &meant,
         standing: Vec::new(),
         boards: boards::count(proposal),
-        apart: boards::rides_alone(proposal),
     };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
     let spread = crowd::spread(net, proposal, &route);

@@ -54,7 +54,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     expectations(request, &mut story, &mut reading);
     story.finish();
     boards::settle(&mut story, location);
-    chance::settle(&mut story);
+    chance::settle(&mut story, &told.story);
     again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);

@@ -152,7 +152,7 @@ impl Engine {
             let Some((human, after)) = rest.split_first_mut() else { return };
             let left_m = human.route.length_m() - human.s;
             let waits = human.started && human.action == Action::Navigate && human.velocity.norm() < LINED_UP_MPS;
-            if !waits || left_m > LINE_M || human.at_goal() {
+            if !waits || left_m > LINE_M || human.at_goal() || !human.is_through() {
                 continue;
             }
             let ahead = human.route.direction(human.s);

@@ -9,6 +9,8 @@ use crate::near::Notice;
 
 /// So far beyond a door line somebody is through, m.
 const THROUGH_M: f64 = 0.7;
+/// Less far beyond it somebody who goes in still stands in the door, m.
+const AT_DOOR_M: f64 = 0.3;
 
 /// Where a human meets the robot.
 #[derive(Debug, Clone)]
@@ -124,14 +126,16 @@ impl Human {
             let reach = if self.route.length_m() > 0.0 { 0.45 + self.lane_m.abs() } else { 1.6 };
             let left = (self.at - end).norm();
             // Where somebody else stands at the end already, next to it is the end.
-            // Who goes in is not there before it is through the door.
-            let through =
-                self.relation != Relation::Static || self.doors.last().is_none_or(|door| self.s > door.s + 0.3);
-            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12 && through;
+            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12 && self.is_through();
             self.lined_up
                 || left < reach && self.s > self.route.length_m() - 0.6
                 || beside && self.s > self.route.length_m() - 1.2
         })
+    }
+
+    /// Whether it is beyond the door that it waits for to go in; of anybody else it is not asked.
+    pub(crate) fn is_through(&self) -> bool {
+        self.relation != Relation::Static || self.doors.last().is_none_or(|door| self.s > door.s + AT_DOOR_M)
     }
 
     /// Direction it faces.

@@ -128,7 +128,10 @@ pub(crate) fn humans(
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
             .filter_map(|other| other.route.end())
             .collect();
-        human.route = ends::apart(human.route, &taken, floor);
+        // Who goes in through a door does not end short of the others, in the door.
+        if human.relation != Relation::Static || human.doors.is_empty() {
+            human.route = ends::apart(human.route, &taken, floor);
+        }
         let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
         if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
             inside.insert(proposal.id, door.middle());
