@@ -128,7 +128,8 @@ fn lets_pass_last(rules: &mut [ReadRule]) {
     for at in 1..rules.len() {
         let (before, rest) = rules.split_at_mut(at);
         let Some((read, last)) = rest.first_mut().zip(before.last()) else { return };
-        let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot) && last.rule.for_s.is_some();
+        let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot | Action::Block)
+            && last.rule.for_s.is_some();
         let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate);
         if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m) {
             read.rule.when.clone_from(&last.rule.when);
@@ -223,7 +224,7 @@ mod tests {
 
     #[test]
     fn who_lets_the_robot_pass_after_all_else_does_so_last() {
-        let rough = "A guard stops in front of the robot, looks at it for ten seconds and then lets it pass.";
+        let rough = "A security guard stops the robot at the exit with a gesture, looks at it for ten seconds and then lets it pass.";
         let (_, proposal, _) = answers(&request("Drive to the exit", Some(rough)), &map("office"), 1);
         let rules = &proposal.humans[0].rules;
         let when = |act: Action| rules.iter().find(|rule| rule.act == act).map(|rule| rule.when.clone());

@@ -147,28 +147,33 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         ahead.extend(tree.way(beyond).into_iter().skip(1));
         starts.push(ahead);
     }
-    // Where it turns into a room, others come along the passage from beyond the door.
+    // Where it turns into a room, others come along the passage from beyond the door instead of out of the doorway.
     let passage = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
     let out: Vec<usize> = after.iter().copied().take_while(|node| passage(node)).collect();
+    let mut beyond_door = Vec::new();
     if let Some(turn) = out.last().copied().filter(|_| net.inside(last)) {
         let tree = net.tree(turn, &|node| route.nodes.contains(&node) || !passage(&node));
         for beyond in (0..net.len()).filter(|node| tree.length_m(*node) > 0.0 && tree.length_m(*node) <= 10.0) {
             let mut ahead = out.clone();
             ahead.extend(tree.way(beyond).into_iter().skip(1));
-            starts.push(ahead);
+            beyond_door.push(ahead);
         }
     }
-    let best = starts
-        .into_iter()
-        .filter(|ahead| ahead.last().is_some_and(|start| taken.free(*start)))
-        .map(|ahead| {
-            let length = onward_m(net, meet, &ahead);
-            let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
-            // Who could not be in time even in a hurry would have to start in the middle of its way.
-            let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
-            ((length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late, ahead)
-        })
-        .min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))?;
+    let cost = |ahead: &Vec<usize>| {
+        let length = onward_m(net, meet, ahead);
+        let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
+        // Who could not be in time even in a hurry would have to start in the middle of its way.
+        let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
+        (length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late
+    };
+    let free = |ahead: &Vec<usize>| ahead.last().is_some_and(|start| taken.free(*start));
+    let pick = |starts: Vec<Vec<usize>>| {
+        let costed = starts.into_iter().filter(free).map(|ahead| (cost(&ahead), ahead));
+        costed.min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))
+    };
+    let own = pick(starts);
+    let outside = own.as_ref().and_then(|(_, ahead)| ahead.last()).is_some_and(passage);
+    let best = if outside { own } else { pick(beyond_door).or(own) }?;
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
     nodes.extend(back);

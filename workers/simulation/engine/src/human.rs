@@ -173,6 +173,11 @@ impl Human {
         goes_in && self.doors.first().is_some_and(|door| self.s < door.s + THROUGH_M)
     }
 
+    /// Whether it stands at its place, for good or until it sets off.
+    pub(crate) fn keeps_place(&self) -> bool {
+        self.stays() || self.relation == Relation::Static && !self.started
+    }
+
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
         self.route.length_m() < 0.05

@@ -98,7 +98,7 @@ pub(crate) struct Scene<'a> {
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     match human.action.clone() {
         Action::Navigate => navigate(human, scene, pace),
-        Action::StandStill if human.stays() => stay(human, scene),
+        Action::StandStill if human.keeps_place() => stay(human, scene),
         Action::StandStill => match scene.robot {
             // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
             Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s, PATIENCE_S) => {

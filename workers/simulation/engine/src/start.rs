@@ -37,6 +37,9 @@ const SWAY_WALKING: f64 = 2.0;
 /// So far before a meeting the robot's way tells from where it comes, m.
 const COMES_M: f64 = 0.5;
 
+/// Two who go in to one place stand so far to its sides, m.
+const SHARED_M: f64 = 0.4;
+
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
 pub(crate) const HURRY_MPS: f64 = 1.5;
 /// Later than this at the encounter is not made good on the way, s.
@@ -131,6 +134,9 @@ pub(crate) fn humans(
         // Who goes in through a door does not end short of the others, in the door.
         if human.relation != Relation::Static || human.doors.is_empty() {
             human.route = ends::apart(human.route, &taken, floor);
+        } else if let Some(other) = humans.iter_mut().find(|other: &&mut Human| same_end(other, &human)) {
+            other.route = ends::beside(&other.route, SHARED_M, floor);
+            human.route = ends::beside(&human.route, -SHARED_M, floor);
         }
         let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
         if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
@@ -142,6 +148,12 @@ pub(crate) fn humans(
     let lines = lines(&setup.proposal);
     placing::place(&mut humans, &setup.proposal.groups, &lines, floor, robot, &inside);
     humans
+}
+
+/// Whether two who go in have the same place behind the door.
+fn same_end(one: &Human, other: &Human) -> bool {
+    let ends = one.route.end().zip(other.route.end());
+    one.relation == Relation::Static && ends.is_some_and(|(a, b)| (a - b).norm() < SHARED_M)
 }
 
 /// Whether somebody has nothing more to do at the end of its path and may stand beside it: it came out of a room or went
