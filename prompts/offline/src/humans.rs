@@ -172,7 +172,9 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         costed.min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))
     };
     let own = pick(starts);
-    let outside = own.as_ref().and_then(|(_, ahead)| ahead.last()).is_some_and(passage);
+    // One alone may come out of a doorway, several side by side do not.
+    let alone = |node: &usize| human.group.is_none() && !net.inside(*node);
+    let outside = own.as_ref().and_then(|(_, ahead)| ahead.last()).is_some_and(|node| passage(node) || alone(node));
     let best = if outside { own } else { pick(beyond_door).or(own) }?;
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
