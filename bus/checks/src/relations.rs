@@ -1,7 +1,7 @@
 //! Whether the paths make the relation that was proposed: G-REL.
 
 use socrates_model::{
-    Fault, FaultCode, HumanProposal, Location, NodeId, Paths, Proposal, Relation, SceneGraph, Vector,
+    Action, Fault, FaultCode, HumanProposal, Location, NodeId, Paths, Proposal, Relation, SceneGraph, Vector,
 };
 
 use crate::list;
@@ -33,7 +33,8 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
     let robot = paths.robot.as_slice();
     let meeting = paths.encounter_of(human.id);
     match human.relation {
-        Relation::Static => (nodes.len() != 1).then(|| {
+        // Who stands at first and goes on later has a way for that.
+        Relation::Static => (nodes.len() != 1 && !sets_off(human)).then(|| {
             format!("its path has {} nodes; who stands has one, the encounter {}", nodes.len(), list(meeting))
         }),
         Relation::Staying => {
@@ -85,6 +86,11 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
         }
         Relation::Behind | Relation::Ahead | Relation::Abreast => same_way(human.relation, nodes, robot, meeting),
     }
+}
+
+/// Whether somebody who stands goes somewhere later: in through a door, or on by a rule.
+fn sets_off(human: &HumanProposal) -> bool {
+    human.goal.is_some() || human.rules.iter().any(|rule| rule.act == Action::Navigate)
 }
 
 /// Follower, leader and companion share a stretch with the robot in the same direction.
@@ -194,6 +200,11 @@ mod tests {
     fn who_stands_has_one_node() {
         assert!(codes(Relation::Static, &["n_center"]).is_empty());
         assert_eq!(codes(Relation::Static, &["n_center", "n_1"]), ["G-REL"]);
+        let (mut paths, mut proposal) = (crossing_paths(), crossing_proposal());
+        proposal.humans[0].relation = Relation::Static;
+        proposal.humans[0].goal = Some(socrates_model::PlaceClass::Elevator);
+        paths.humans.insert(HumanId::new(1), nodes(&["n_center", "n_1"]));
+        assert!(check(&paths, &proposal, &plus_map()).is_empty(), "who goes in later");
     }
 
     #[test]

@@ -114,7 +114,7 @@ pub struct SeenDoor {
 /// What only an actor may know: the `reference` planner plays a script, planners under test do not look here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Cues {
-    /// Humans who will come out of the place the robot wants to enter or pass, and have not yet.
+    /// Humans who will come out of the place the robot wants to enter or pass, or go in before it, and have not yet.
     pub leavers_inside: u32,
 }
 

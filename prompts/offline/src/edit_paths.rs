@@ -419,6 +419,7 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
         place: class,
         meant: &[],
         standing: Vec::new(),
+        boards: 0,
     }
 }
 

@@ -22,6 +22,10 @@ const CORNER_M: f64 = 5.0;
 /// Largest difference of arrival where ways cross and no card says, s.
 const GAP_S: f64 = 4.0;
 
+/// So many follow the robot within the usual distance, and each one more so much farther behind it, m.
+const FEW_FOLLOW: usize = 3;
+const QUEUE_M: f64 = 0.5;
+
 /// What the pattern has to do with a proposal.
 pub(crate) struct Part<'a> {
     pub(crate) card: Option<&'a Card>,
@@ -109,6 +113,7 @@ pub(crate) fn events(
         list.setup(false, "", text, Predicate::EncounterAt { place: proposal.place, nodes: Vec::new() });
     }
     of_card(&mut list, part, proposal, location);
+    one_behind_the_other(&mut list.0);
     list.add(ClauseRole::Outcome, true, "", "the robot gets to its goal".to_owned(), Predicate::RobotArrives);
     list.add(
         ClauseRole::Outcome,
@@ -272,6 +277,17 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
     }
 }
 
+/// Many who follow the robot do so one behind the other: the last of them is farther behind it.
+fn one_behind_the_other(clauses: &mut [Clause]) {
+    let robots = |clause: &Clause| matches!(clause.predicate, Predicate::Follows { leader: AgentId::Robot, .. });
+    let more = clauses.iter().filter(|clause| robots(clause)).count().saturating_sub(FEW_FOLLOW);
+    for clause in clauses.iter_mut().filter(|clause| robots(clause)) {
+        if let Predicate::Follows { gap_m: [_, most], .. } = &mut clause.predicate {
+            *most += QUEUE_M * more as f64;
+        }
+    }
+}
+
 fn follows(follower: HumanId, leader: AgentId) -> Predicate {
     Predicate::Follows { follower: follower.into(), leader, gap_m: [0.5, 3.5], for_s: 5.0 }
 }
@@ -291,7 +307,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
             .iter()
             .filter(|rule| !matches!(rule.act, Action::FollowRobot | Action::Approach))
             .flat_map(|rule| &rule.when);
-        let apart = halts || does(&Action::RunAway);
+        // Where only one gets through, making room is going back.
+        let back = place == PlaceClass::NarrowPassage && does(&Action::GiveWay);
+        let apart = halts || back || does(&Action::RunAway);
         let reach = early.filter_map(distance_m).filter(|_| apart).fold(within_m, |most, m| most.max(m + 0.5));
         list.setup(
             must,
@@ -338,6 +356,9 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         Relation::Static => {
             list.setup(true, source, format!("{id} stands"), Predicate::StandsStill { human: id, for_s: 3.0 });
             meets(list, human.group.is_none(), 3.5);
+            if human.goal.is_some() {
+                list.setup(true, "", format!("{id} goes in"), Predicate::Enters { human: id, door: String::new() });
+            }
         }
         Relation::Leaving => {
             list.setup(true, source, format!("{id} comes out"), Predicate::Leaves { human: id, door: String::new() });
@@ -389,6 +410,18 @@ fn of_card(list: &mut List, part: &Part<'_>, proposal: &Proposal, location: &Loc
 mod tests {
     use super::*;
     use crate::tests::{map, proposed, request};
+
+    #[test]
+    fn many_followers_are_a_longer_queue() {
+        let gap = |rough: &str| {
+            let events = proposed(&request("Guide the visitors", Some(rough)), &map("office")).expected_events;
+            events.iter().find_map(|clause| {
+                if let Predicate::Follows { gap_m, .. } = clause.predicate { Some(gap_m[1]) } else { None }
+            })
+        };
+        assert_eq!(gap("Two visitors follow the robot."), Some(3.5));
+        assert_eq!(gap("Six visitors follow the robot."), Some(5.0));
+    }
 
     #[test]
     fn a_reaction_asked_for_with_its_reason_is_a_must_with_its_reason() {

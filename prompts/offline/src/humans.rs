@@ -2,7 +2,9 @@
 
 use socrates_model::{Action, HumanProposal, Location, PlaceClass, Relation};
 
+use crate::boards;
 use crate::card::Ends;
+use crate::chance::walks_later;
 use crate::place;
 use crate::routes::{Net, Route};
 
@@ -55,6 +57,8 @@ pub(crate) struct Taken<'a> {
     pub(crate) meant: &'a [usize],
     /// Where those stand who have been placed there.
     pub(crate) standing: Vec<usize>,
+    /// How many stand before a door at first and go in.
+    pub(crate) boards: usize,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
@@ -100,6 +104,10 @@ pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along
         Relation::Crossing => crossing(human, route, taken),
         Relation::Behind => behind(human, route, taken, along),
         Relation::Ahead | Relation::Abreast => ahead(human, route, taken),
+        Relation::Static if boards::boards(human) => {
+            boards::way(human, route, taken).or_else(|| standing(route, taken))
+        }
+        Relation::Static if walks_later(human) => standing(route, taken).map(|way| walking_on(way, route, taken)),
         Relation::Static => standing(route, taken),
         Relation::Leaving => leaving(human, route, taken),
         Relation::Staying => staying(human, route, taken),
@@ -139,17 +147,35 @@ fn frontal(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
         ahead.extend(tree.way(beyond).into_iter().skip(1));
         starts.push(ahead);
     }
-    let best = starts
-        .into_iter()
-        .filter(|ahead| ahead.last().is_some_and(|start| taken.free(*start)))
-        .map(|ahead| {
-            let length = onward_m(net, meet, &ahead);
-            let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
-            // Who could not be in time even in a hurry would have to start in the middle of its way.
-            let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
-            ((length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late, ahead)
-        })
-        .min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))?;
+    // Where it turns into a room, others come along the passage from beyond the door instead of out of the doorway.
+    let passage = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+    let out: Vec<usize> = after.iter().copied().take_while(|node| passage(node)).collect();
+    let mut beyond_door = Vec::new();
+    if let Some(turn) = out.last().copied().filter(|_| net.inside(last)) {
+        let tree = net.tree(turn, &|node| route.nodes.contains(&node) || !passage(&node));
+        for beyond in (0..net.len()).filter(|node| tree.length_m(*node) > 0.0 && tree.length_m(*node) <= 10.0) {
+            let mut ahead = out.clone();
+            ahead.extend(tree.way(beyond).into_iter().skip(1));
+            beyond_door.push(ahead);
+        }
+    }
+    let cost = |ahead: &Vec<usize>| {
+        let length = onward_m(net, meet, ahead);
+        let inside = ahead.iter().filter(|node| net.inside(**node)).count() as f64;
+        // Who could not be in time even in a hurry would have to start in the middle of its way.
+        let late = if length > HURRY_MPS * before_m(net, route) / ROBOT_MPS + LATE_M { 30.0 } else { 0.0 };
+        (length - ideal).abs() + if length < 3.0 { 20.0 } else { 0.0 } + 6.0 * inside + late
+    };
+    let free = |ahead: &Vec<usize>| ahead.last().is_some_and(|start| taken.free(*start));
+    let pick = |starts: Vec<Vec<usize>>| {
+        let costed = starts.into_iter().filter(free).map(|ahead| (cost(&ahead), ahead));
+        costed.min_by(|a, b| a.0.total_cmp(&b.0).then_with(|| a.1.cmp(&b.1)))
+    };
+    let own = pick(starts);
+    // One alone may come out of a doorway, several side by side do not.
+    let alone = |node: &usize| human.group.is_none() && !net.inside(*node);
+    let outside = own.as_ref().and_then(|(_, ahead)| ahead.last()).is_some_and(|node| passage(node) || alone(node));
+    let best = if outside { own } else { pick(beyond_door).or(own) }?;
     let mut nodes: Vec<usize> = best.1.into_iter().rev().collect();
     nodes.push(meet);
     nodes.extend(back);
@@ -350,6 +376,18 @@ fn ahead(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way>
             nodes.pop();
         }
     }
+    // Nor does it stand in the robot's way there: it goes on past the door.
+    if let (Some(last), Some(previous)) = (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)))
+        && route.nodes.get(start..).is_some_and(|own| nodes.len() < own.len())
+    {
+        let on =
+            net.near(last).iter().map(|(node, _)| *node).filter(|node| {
+                !route.nodes.contains(node) && !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway
+            });
+        let turn = |node: usize| net.straight(*previous, last, node);
+        let on = on.max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
+        nodes.extend(on);
+    }
     let cost = if start == route.meet { 4.0 } else { 0.0 };
     Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
 }
@@ -370,6 +408,27 @@ fn standing(route: &Route, taken: &Taken<'_>) -> Option<Way> {
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
     let at = places.into_iter().filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
     Some(Way { nodes: vec![at], meet: at, cost: 0.0 })
+}
+
+/// On from where somebody stood: off the robot's way if there is one, else along it, to where it turns off or ends.
+fn walking_on(mut way: Way, route: &Route, taken: &Taken<'_>) -> Way {
+    let net = taken.net;
+    let Some(from) = way.nodes.first().and_then(|at| route.nodes.iter().position(|node| node == at)) else {
+        return way;
+    };
+    for at in route.nodes.get(from..).unwrap_or_default() {
+        if way.nodes.last() != Some(at) {
+            way.nodes.push(*at);
+        }
+        let off =
+            |node: &usize| !route.nodes.contains(node) && !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+        let off = net.near(*at).iter().map(|(node, _)| *node).filter(off);
+        if let Some(off) = off.max_by_key(|node| taken.can_end(*node)) {
+            way.nodes.push(off);
+            break;
+        }
+    }
+    way
 }
 
 /// At the node of a place by name that has the fewest people so far.
@@ -448,7 +507,7 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }
 
-fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
+pub(crate) fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
     let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| door.id.as_str());
     let Some(b) = b else { return false };
     match (door(a), door(b)) {

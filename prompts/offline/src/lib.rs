@@ -84,7 +84,11 @@ mod edit_settle;
 mod edit_wish;
 
 mod answer;
+mod boards;
+mod chance;
+mod crowd;
 mod draw;
+mod fit;
 mod headings;
 mod humans;
 mod mended;

@@ -12,7 +12,7 @@ use socrates_prompts::Question;
 use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::understand::{Extra, understand};
-use crate::{NAME, default_cast, events, pattern, place, prose, solve, spot};
+use crate::{NAME, chance, default_cast, events, pattern, place, prose, solve, spot};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -44,6 +44,10 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         .iter()
         .zip(&extras)
         .map(|(human, extra)| proposed(human, extra, place, request, location, &mut draw))
+        .map(|mut human| {
+            chance::until_then(&mut human);
+            human
+        })
         .collect();
     let groups = groups(&humans);
     let part = events::Part { card: found, by_card, read: &read };
@@ -173,7 +177,11 @@ fn proposed(
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),
     };
-    let behavior = prose::behavior(&human.role, relation, place, start, &human.rules, human.group.is_some());
+    let mut behavior = prose::behavior(&human.role, relation, place, start, &human.rules, human.group.is_some());
+    let goal = extra.goal.filter(|class| place::has(location, *class));
+    if relation == Relation::Static && goal.is_some() {
+        behavior.push_str(" Once the door is open and everybody is out it goes in.");
+    }
     HumanProposal {
         id: human.id,
         role: human.role.clone(),
@@ -183,7 +191,7 @@ fn proposed(
         group: human.group,
         speed_mps: usual.filter(|_| moves),
         start,
-        goal: extra.goal.filter(|class| place::has(location, *class)),
+        goal,
     }
 }
 
@@ -253,6 +261,7 @@ fn robot(
         script.push(RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers });
     }
     hear(&mut script, humans);
+    chance::stops(&mut script, humans);
     let mut seen: Vec<RobotRule> = Vec::new();
     script.retain(|line| {
         if seen.contains(line) {

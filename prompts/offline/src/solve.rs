@@ -10,10 +10,13 @@ use socrates_model::{
 use socrates_prompts::Question;
 
 use crate::NAME;
-use crate::card::{Card, Ends, card};
+use crate::boards;
+use crate::card::{Ends, card};
+use crate::crowd;
 use crate::draw::Draw;
 use crate::edit_paths;
-use crate::humans::{Taken, Way, follows, led_past, way};
+use crate::fit::{SQUEEZED, hides, layout, overtakes, squeezed, tight};
+use crate::humans::{Taken, Way, led_past, way};
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
 use crate::spot;
@@ -24,12 +27,6 @@ const NODES: usize = 14;
 const ROUTES: usize = 10;
 /// Answers within this much of the best are as good, and the seed picks among them.
 const ALIKE: f64 = 2.5;
-
-/// Free width on each side of the middle of the floor that lets somebody past a robot there, m, the way that takes, m, and what a
-/// node without it costs.
-const BESIDE_M: f64 = 1.15;
-const OVERTAKES_M: f64 = 12.0;
-const SQUEEZED: f64 = 2.0;
 
 /// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
 const SETS_OFF_M: f64 = 1.5;
@@ -175,11 +172,13 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
     }
 }
 
-/// Whether the robot's way ends inside the car or room that people leave.
+/// Whether the robot's way ends inside the car or room that people leave, or go into.
 fn enters(net: &Net<'_>, proposal: &Proposal) -> Option<Vec<usize>> {
-    let indoors =
-        proposal.humans.iter().find(|human| matches!(human.relation, Relation::Leaving | Relation::Staying))?;
-    let class = indoors.start.unwrap_or(PlaceClass::Room);
+    let indoors = |human: &&HumanProposal| matches!(human.relation, Relation::Leaving | Relation::Staying);
+    let class = match proposal.humans.iter().find(indoors) {
+        Some(human) => human.start.unwrap_or(PlaceClass::Room),
+        None => proposal.humans.iter().filter(|human| boards::boards(human)).find_map(|human| human.goal)?,
+    };
     let car = class == PlaceClass::Elevator;
     let goes_in = proposal.robot.goal == Some(class) || car;
     let all: Vec<usize> = place::inside(net.location, Some(class)).iter().filter_map(|id| net.index(id)).collect();
@@ -270,7 +269,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
     let found = card(&proposal.pattern);
     let wide = found.and_then(|card| card.width_m);
-    let overtaken = proposal.humans.iter().any(overtakes);
+    let overtakers = proposal.humans.iter().filter(|human| overtakes(human)).count();
+    let overtaken = overtakers > 0;
     let field = (standing > 0 || wide.is_some() || overtaken).then(|| DistanceField::new(&net.location.grid));
     // People who come out are met near the place that they leave.
     let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
@@ -279,7 +279,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
         let inside = net.rooms_of(human.id, inside.iter().filter_map(|id| net.index(id)).collect());
         inside.into_iter().map(|node| net.tree(node, &|_| false)).collect()
     });
-    let many = proposal.humans.len() > 3;
+    let abreast = proposal.groups.iter().any(|group| !group.standing && group.members.len() > 2);
+    let many = proposal.humans.len() > 3 || abreast;
     let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
@@ -314,47 +315,17 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             if let Some(mut solution) = people(net, proposal, route, crowded) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
-                let squeezed =
-                    field.as_ref().filter(|_| overtaken).map_or(0.0, |field| squeezed(net, field, &solution.route));
-                solution.score +=
-                    rank + hidden - if many || wish.roomy { 3.0 * tight } else { 0.0 } - SQUEEZED * squeezed;
+                let squeezed = field
+                    .as_ref()
+                    .filter(|_| overtaken)
+                    .map_or(0.0, |field| squeezed(net, field, &solution.route, overtakers > 1));
+                let tight = 3.0 * tight + crowd::squeezes(net, proposal, &solution.route, &solution.ways);
+                solution.score += rank + hidden - if many || wish.roomy { tight } else { 0.0 } - SQUEEZED * squeezed;
                 found.push(solution);
             }
         }
     }
     found
-}
-
-/// Whether somebody comes from behind to get past the robot.
-fn overtakes(human: &HumanProposal) -> bool {
-    human.relation == Relation::Behind && !follows(human)
-}
-
-/// How many nodes from the meeting on, as far as it takes to get past the robot, leave no room for that.
-fn squeezed(net: &Net<'_>, field: &DistanceField, route: &Route) -> f64 {
-    let from = route.nodes.get(route.meet.saturating_sub(2)..).unwrap_or_default();
-    let near = (1..=from.len()).take_while(|n| net.length_m(from.get(..*n).unwrap_or_default()) <= OVERTAKES_M);
-    let narrow = near.filter_map(|n| from.get(n - 1)).filter(|node| field.clearance(&net.at(**node)) < BESIDE_M);
-    narrow.count() as f64
-}
-
-fn tight(net: &Net<'_>, node: usize) -> bool {
-    matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
-}
-
-/// How well a node suits the layout that the card asks for: 0 where it does.
-fn layout(card: Option<&Card>, arms: usize, clear_m: f64) -> f64 {
-    let Some(card) = card else { return 0.0 };
-    let few = if card.arms.is_some_and(|least| arms < least) { -8.0 } else { 0.0 };
-    // A node lies in the middle of its floor: the free width is twice the way to the nearest wall.
-    let off = card.width_m.is_some_and(|[least, most]| 2.0 * clear_m < least || 2.0 * clear_m > most);
-    few + if off { -8.0 } else { 0.0 }
-}
-
-/// Whether the nodes before and after the meeting cannot see each other.
-fn hides(net: &Net<'_>, sight: &Sight, route: &Route) -> bool {
-    let around = route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).zip(route.nodes.get(route.meet + 1));
-    around.is_some_and(|(a, b)| !sight.clear(&net.at(*a), &net.at(*b)))
 }
 
 /// The robot's ways into a car or room: met is who leaves at the node before its door.
@@ -367,10 +338,17 @@ fn into(net: &Net<'_>, proposal: &Proposal, wish: &Wish, goal: usize) -> Vec<Sol
     if entry == 0 {
         return Vec::new();
     }
+    // Where those who go in need a car of their own the robot's way leads past its door, which opens for it.
+    let by = boards::doors_beside(net, proposal, goal);
+    let ways = |start: usize| {
+        let direct = Some(tree.way(start)).filter(|_| by.is_empty());
+        let past = by.iter().filter_map(move |door| boards::way_past(net, (goal, *door), start));
+        direct.into_iter().chain(past).collect::<Vec<_>>()
+    };
     let mut found: Vec<Solution> = (0..net.len())
         .filter(|start| !net.inside(*start) && tree.length_m(*start).is_finite())
-        .filter_map(|start| {
-            let mut nodes = tree.way(start);
+        .flat_map(ways)
+        .filter_map(|mut nodes| {
             nodes.reverse();
             let inside = nodes.iter().filter(|node| net.inside(**node)).count();
             if inside != 1 {
@@ -481,9 +459,19 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
     let starts = route.nodes.first().copied().into_iter().collect();
     let goals = route.nodes.last().copied().into_iter().collect();
     let meant = spot::indices(net, proposal);
-    let mut taken =
-        Taken { net, starts, goals, crowded, ends, place: proposal.place, meant: &meant, standing: Vec::new() };
+    let mut taken = Taken {
+        net,
+        starts,
+        goals,
+        crowded,
+        ends,
+        place: proposal.place,
+        meant: &meant,
+        standing: Vec::new(),
+        boards: boards::count(proposal),
+    };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
+    let spread = crowd::spread(net, proposal, &route);
     let beside = |relation: Relation| matches!(relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
     let along = proposal.humans.iter().any(|human| !beside(human.relation));
     let mut cost = 0.0;
@@ -502,11 +490,15 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
         let led = human.rules.iter().find_map(|rule| {
             if let socrates_model::Action::FollowHuman(leader) = rule.act { ways.get(&leader) } else { None }
         });
-        let shared = mate.or_else(|| led.filter(|way| way.nodes.len() > 1 && human.relation == Relation::Frontal));
+        let led = led.filter(|way| way.nodes.len() > 1);
+        let shared = mate.or_else(|| led.filter(|_| matches!(human.relation, Relation::Frontal | Relation::Ahead)));
         let own = match shared {
-            Some(way) if mate.is_some() => way.clone(),
+            Some(way) if mate.is_some() || human.relation == Relation::Ahead => way.clone(),
             Some(leader) => after(net, leader, &taken)?,
-            None => way(human, &route, &taken, along)?,
+            None => match spread.iter().find(|(id, _)| *id == human.id) {
+                Some((_, meet)) => way(human, &Route { meet: *meet, ..route.clone() }, &taken, along)?,
+                None => way(human, &route, &taken, along)?,
+            },
         };
         let own = match twice.iter().find(|(id, _)| *id == human.id) {
             // A member of a group goes the way of the one before it, its second meeting included.
@@ -531,7 +523,9 @@ fn people(net: &Net<'_>, proposal: &Proposal, route: Route, crowded: bool) -> Op
             cost += EARLY;
         }
         let followed = proposal.robot.script.iter().any(|line| line.act == RobotDo::Follow(human.id));
-        let own = if followed { led_past(own, &taken) } else { own };
+        // Of many who walk ahead nobody ends where the robot does.
+        let ahead = human.relation == Relation::Ahead && spread.iter().any(|(id, _)| *id == human.id);
+        let own = if followed || ahead { led_past(own, &taken) } else { own };
         cost += own.cost;
         if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
             taken.starts.extend(own.nodes.first());

@@ -13,7 +13,7 @@ use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, cut, default_cast, place, spot, words};
+use crate::{again, aside, boards, chance, cut, default_cast, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -53,6 +53,8 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     language(request, &mut reading);
     expectations(request, &mut story, &mut reading);
     story.finish();
+    boards::settle(&mut story, location);
+    chance::settle(&mut story, &told.story);
     again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);

@@ -152,7 +152,7 @@ impl Engine {
             let Some((human, after)) = rest.split_first_mut() else { return };
             let left_m = human.route.length_m() - human.s;
             let waits = human.started && human.action == Action::Navigate && human.velocity.norm() < LINED_UP_MPS;
-            if !waits || left_m > LINE_M || human.at_goal() {
+            if !waits || left_m > LINE_M || human.at_goal() || !human.is_through() {
                 continue;
             }
             let ahead = human.route.direction(human.s);
@@ -171,8 +171,15 @@ impl Engine {
         // Whoever meets nobody waits for nobody.
         let meets = self.humans.iter().any(|human| !human.meetings.is_empty());
         let nearest = self.robot.as_ref().filter(|_| meets).and_then(|robot| before(robot, &self.humans));
+        let coming_out: Vec<usize> = self
+            .humans
+            .iter()
+            .filter(|human| human.inside_still())
+            .filter_map(|human| human.doors.first().map(|on_way| on_way.door))
+            .collect();
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
+            let let_out = door.is_none_or(|on_way| !coming_out.contains(&on_way.door));
             let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
             // Sight matters to the controller only while a meeting lies ahead.
             let asked = !human.meetings.is_empty() || human.relation == Relation::Leaving;
@@ -182,7 +189,7 @@ impl Engine {
                 });
             let first =
                 asked && nearest.is_some_and(|(id, group)| id == human.id || group.is_some() && group == human.group);
-            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door };
+            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, let_out };
             // Other actions have their own speed; the rendezvous waits meanwhile.
             let mut pace = if human.action == Action::Navigate {
                 rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps

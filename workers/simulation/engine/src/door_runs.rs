@@ -80,6 +80,23 @@ fn everybody_agrees(recording: &Recording, seen: &[(f64, bool, f64)]) {
 }
 
 #[test]
+fn who_waits_before_a_door_goes_in_once_it_is_open_and_everybody_is_out() {
+    let mut made = corridor(DoorOpens::RobotNear(4.0), vec![]);
+    made.location.doors[0].inside = vec![crate::fixture::id("c"), crate::fixture::id("d")];
+    let place = made.location.clone();
+    let cast = [Cast(Relation::Static, &["b", "c", "d"], vec![]), Cast(Relation::Leaving, &["c", "b", "a"], vec![])];
+    made = Setup { duration_s: Some(40.0), ..setup(place, &["a", "b"], &cast, &[(1, "b")]) };
+    let (recording, _) = run(made);
+    let opened = changes(&recording).first().map(|(at, _)| *at).unwrap();
+    let crosses = |number: u32, inward: bool| {
+        let mut states = recording.track(AgentId::from_number(number));
+        states.find(|state| if inward { state.x > 10.0 } else { state.x < 10.0 }).map(|s| s.tick as f64 * 0.01)
+    };
+    let (into, out) = (crosses(1, true).unwrap(), crosses(2, false).unwrap());
+    assert!(opened < out && out < into, "open at {opened}, out at {out}, in at {into}");
+}
+
+#[test]
 fn a_door_opens_at_its_time_and_closes_when_nobody_is_near() {
     let (recording, seen) = run(corridor(DoorOpens::AtTimes(vec![8.0]), vec![]));
     everybody_agrees(&recording, &seen);

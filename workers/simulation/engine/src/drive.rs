@@ -2,8 +2,7 @@
 
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    AgentId, Cues, EventKind, Gesture, HumanId, Observation, Point, Relation, RobotDriver, SeenDoor, SeenPerson,
-    SimTime,
+    AgentId, Cues, EventKind, Gesture, HumanId, Observation, Point, RobotDriver, SeenDoor, SeenPerson, SimTime,
 };
 
 use crate::human::Human;
@@ -60,7 +59,11 @@ impl Engine {
             let discs: Vec<Disc> = self.humans.iter().filter(|human| human.present()).map(disc).collect();
             let (floor, pose, range) = (&self.floor, robot.pose, robot.model.lidar_range_m);
             let scan = || lidar::scan(floor, &pose, &discs, range);
-            let leavers = self.humans.iter().filter(|human| inside_still(human)).count();
+            // Whoever goes in where the robot does goes before it.
+            let awaited = self.humans.iter().zip(&self.timings);
+            let awaited =
+                awaited.filter(|(human, timing)| human.inside_still() || timing.robot_enters && human.outside_still());
+            let leavers = awaited.count();
             robot.command = driver.drive(&Observation {
                 time: now,
                 pose,
@@ -94,13 +97,4 @@ fn seen(human: &Human) -> SeenPerson {
         radius_m: human.radius_m,
         gesture: human.gesture,
     }
-}
-
-/// Whether somebody who leaves is not out yet.
-fn inside_still(human: &Human) -> bool {
-    human.relation == Relation::Leaving
-        && match human.doors.first() {
-            Some(door) => human.s < door.s + 0.7,
-            None => human.s < 2.0_f64.min(human.route.length_m() - 0.5),
-        }
 }

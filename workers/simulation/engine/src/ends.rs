@@ -77,6 +77,19 @@ pub(crate) fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline
     turned_off(&route, at, 0.9, floor)
 }
 
+/// A route that ends so far to the left of its end, where there is room.
+pub(crate) fn beside(route: &Polyline, left_m: f64, floor: &Floor) -> Polyline {
+    let ahead = route.direction((route.length_m() - 0.1).max(0.0));
+    let mut points = route.points().to_vec();
+    if let Some(end) = points.last_mut() {
+        let at = *end + Vector::new(-ahead.y, ahead.x) * left_m;
+        if floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 {
+            *end = at;
+        }
+    }
+    Polyline::new(&points)
+}
+
 /// Whether a point is in front of a door: so near to it and not beside its frame.
 fn before(door: &Door, at: &Point, near_m: f64) -> bool {
     let along = door.to - door.from;
@@ -147,6 +160,8 @@ mod tests {
         };
         let end = aside(walk(10.0, 2.5), &away, std::slice::from_ref(&door), &floor).end().unwrap();
         assert!(!before(&door, &end, CLEAR_OF_DOOR_M) && (end - Point::new(10.0, 2.5)).norm() > 0.5, "{end}");
+        let short = beside(&walk(10.0, 2.5), 0.4, &floor).end().unwrap();
+        assert!(((short - Point::new(10.0, 2.5)).norm() - 0.4).abs() < 1e-9, "{short}");
         // Who is in nobody's way stays where it is, and so does who has no room.
         assert_eq!(aside(walk(15.0, 2.5), &away, std::slice::from_ref(&door), &floor), walk(15.0, 2.5));
         let narrow = Floor::new(&carve(20.0, 6.0, &[(0.5, 2.0, 19.5, 3.2)]));

@@ -7,6 +7,11 @@ use crate::make_room::Facing;
 use crate::models::Walks;
 use crate::near::Notice;
 
+/// So far beyond a door line somebody is through, m.
+const THROUGH_M: f64 = 0.7;
+/// Less far beyond it somebody who goes in still stands in the door, m.
+const AT_DOOR_M: f64 = 0.3;
+
 /// Where a human meets the robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Meeting {
@@ -121,11 +126,16 @@ impl Human {
             let reach = if self.route.length_m() > 0.0 { 0.45 + self.lane_m.abs() } else { 1.6 };
             let left = (self.at - end).norm();
             // Where somebody else stands at the end already, next to it is the end.
-            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12;
+            let beside = self.started && left < 1.15 && self.velocity.norm() < 0.12 && self.is_through();
             self.lined_up
                 || left < reach && self.s > self.route.length_m() - 0.6
                 || beside && self.s > self.route.length_m() - 1.2
         })
+    }
+
+    /// Whether it is beyond the door that it waits for to go in; of anybody else it is not asked.
+    pub(crate) fn is_through(&self) -> bool {
+        self.relation != Relation::Static || self.doors.last().is_none_or(|door| self.s > door.s + AT_DOOR_M)
     }
 
     /// Direction it faces.
@@ -146,6 +156,26 @@ impl Human {
         }
         let ahead = self.route.direction(self.s);
         if ahead.norm() > 0.5 && !self.at_goal() { ahead } else { self.heading() }
+    }
+
+    /// Whether it is to come out of a room or car and is not out yet.
+    pub(crate) fn inside_still(&self) -> bool {
+        self.relation == Relation::Leaving
+            && match self.doors.first() {
+                Some(door) => self.s < door.s + THROUGH_M,
+                None => self.s < 2.0_f64.min(self.route.length_m() - 0.5),
+            }
+    }
+
+    /// Whether it waits before a door to go in and is not in yet.
+    pub(crate) fn outside_still(&self) -> bool {
+        let goes_in = self.relation == Relation::Static && !self.at_goal();
+        goes_in && self.doors.first().is_some_and(|door| self.s < door.s + THROUGH_M)
+    }
+
+    /// Whether it stands at its place, for good or until it sets off.
+    pub(crate) fn keeps_place(&self) -> bool {
+        self.stays() || self.relation == Relation::Static && !self.started
     }
 
     /// Whether it never leaves its place by itself.

@@ -98,7 +98,7 @@ pub(crate) struct Scene<'a> {
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     match human.action.clone() {
         Action::Navigate => navigate(human, scene, pace),
-        Action::StandStill if human.stays() => stay(human, scene),
+        Action::StandStill if human.keeps_place() => stay(human, scene),
         Action::StandStill => match scene.robot {
             // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
             Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s, PATIENCE_S) => {
@@ -224,7 +224,8 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
         return true;
     }
     let stands = way.norm() < 1.6 && robot.velocity.norm() < 0.1;
-    let in_line = human.at_goal() && -way.dot(&robot.intent()) > 0.5 * way.norm();
+    let stays = human.at_goal() || human.keeps_place();
+    let in_line = stays && -way.dot(&robot.intent()) > 0.5 * way.norm();
     // Whoever shuffles to and fro before the robot turns a little: its way still leads through the robot.
     let ahead = if human.at_goal() { Vector::zeros() } else { human.route.direction(human.s + 0.3) };
     let facing = stands && (in_line || way.dot(&human.travel()).max(way.dot(&ahead)) > 0.5 * way.norm());

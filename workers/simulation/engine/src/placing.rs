@@ -139,7 +139,7 @@ fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
     let ahead = human.route.direction(0.0);
     let toward = match door {
         Some(door) => door - at,
-        None if ahead.norm() > 0.5 => ahead,
+        None if ahead.norm() > 0.5 && (human.relation != Relation::Static || !human.doors.is_empty()) => ahead,
         None => human.meeting().map_or_else(|| Vector::new(1.0, 0.0), |_| human.heading()),
     };
     libm::atan2(toward.y, toward.x)

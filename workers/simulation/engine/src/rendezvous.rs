@@ -94,6 +94,8 @@ pub(crate) struct Moment {
     pub(crate) first: bool,
     /// State of the first door ahead of the human: how far, and whether it is open.
     pub(crate) door: Option<(f64, bool)>,
+    /// Whether nobody is to come out through that door any more.
+    pub(crate) let_out: bool,
 }
 
 /// Speed for one human at one tick.
@@ -106,6 +108,9 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     let Some(robot) = robot else { return free };
     if human.relation == Relation::Leaving && !human.started && timing.robot_enters {
         return leave(human, timing, robot, moment);
+    }
+    if human.relation == Relation::Static && !human.started {
+        return go_in(human, timing, robot, moment);
     }
     let next = timing.meeting + usize::from(timing.over);
     let is_first = next == 0;
@@ -200,6 +205,25 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     Pace { speed_mps: if go { human.speed_mps.max(0.9) } else { 0.0 } }
 }
 
+/// People who wait before a door and go in: once it is open and whoever comes out is out, one after the other.
+fn go_in(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> Pace {
+    let free = Pace { speed_mps: human.speed_mps };
+    let near = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
+    let opens = match moment.door {
+        Some((_, true)) => true,
+        Some((_, false)) => timing.opens_door && near,
+        // Who goes in nowhere is held by its rules alone.
+        None => return free,
+    };
+    if !opens || !moment.let_out {
+        timing.open_since_s = None;
+        return Pace { speed_mps: 0.0 };
+    }
+    let opened = *timing.open_since_s.get_or_insert(moment.now_s);
+    let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
+    if moment.now_s - opened >= AFTER_OPENING_S + pause { free } else { Pace { speed_mps: 0.0 } }
+}
+
 fn near_along(robot: &Robot, at: &Point, reach_m: f64) -> bool {
     let (s, aside) = robot.route.project(at);
     aside < 2.5 && s - robot.s <= reach_m
@@ -241,19 +265,22 @@ pub(crate) fn timings(
             None => robot.route.end().is_some_and(|end| (end - start).norm() < 3.0),
         }
     };
-    let mut out: Vec<(f64, usize)> = Vec::new();
-    for (place, human) in humans.iter().enumerate() {
-        if human.relation == Relation::Leaving {
+    let through = |relation: Relation| {
+        let mut out: Vec<(f64, usize)> = Vec::new();
+        for (place, human) in humans.iter().enumerate().filter(|(_, human)| human.relation == relation) {
             let way = human.doors.first().map_or_else(|| human.route.length_m(), |door| door.s);
             out.push(((human.route.point(way) - human.at).norm(), place));
         }
-    }
-    out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        out
+    };
+    let (out, into) = (through(Relation::Leaving), through(Relation::Static));
     humans
         .iter()
         .enumerate()
         .map(|(place, human)| {
-            let order = out
+            let order = if human.relation == Relation::Static { &into } else { &out };
+            let order = order
                 .iter()
                 .position(|(_, other)| *other == place)
                 .and_then(|order| u32::try_from(order).ok())

@@ -34,6 +34,12 @@ const SPEED: (f64, f64, f64, f64) = (1.2, 0.2, 0.6, 1.8);
 const SWAY_M: f64 = 0.04;
 const SWAY_WALKING: f64 = 2.0;
 
+/// So far before a meeting the robot's way tells from where it comes, m.
+const COMES_M: f64 = 0.5;
+
+/// Two who go in to one place stand so far to its sides, m.
+const SHARED_M: f64 = 0.4;
+
 /// Speed at which somebody late comes to an encounter, m/s: below the fastest that the rendezvous asks for.
 pub(crate) const HURRY_MPS: f64 = 1.5;
 /// Later than this at the encounter is not made good on the way, s.
@@ -125,7 +131,13 @@ pub(crate) fn humans(
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
             .filter_map(|other| other.route.end())
             .collect();
-        human.route = ends::apart(human.route, &taken, floor);
+        // Who goes in through a door does not end short of the others, in the door.
+        if human.relation != Relation::Static || human.doors.is_empty() {
+            human.route = ends::apart(human.route, &taken, floor);
+        } else if let Some(other) = humans.iter_mut().find(|other: &&mut Human| same_end(other, &human)) {
+            other.route = ends::beside(&other.route, SHARED_M, floor);
+            human.route = ends::beside(&human.route, -SHARED_M, floor);
+        }
         let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
         if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
             inside.insert(proposal.id, door.middle());
@@ -136,6 +148,12 @@ pub(crate) fn humans(
     let lines = lines(&setup.proposal);
     placing::place(&mut humans, &setup.proposal.groups, &lines, floor, robot, &inside);
     humans
+}
+
+/// Whether two who go in have the same place behind the door.
+fn same_end(one: &Human, other: &Human) -> bool {
+    let ends = one.route.end().zip(other.route.end());
+    one.relation == Relation::Static && ends.is_some_and(|(a, b)| (a - b).norm() < SHARED_M)
 }
 
 /// Whether somebody has nothing more to do at the end of its path and may stand beside it: it came out of a room or went
@@ -184,11 +202,15 @@ fn human(
     let sway = drawn_sway(setup.seed, proposal.id);
     let mut facing = 0.0;
     if let Some(meeting) = meetings.first()
-        && route.length_m() < 0.05
+        && (route.length_m() < 0.05 || proposal.relation == Relation::Static && doors.is_empty())
     {
-        // Somebody who stands in the robot's way looks along it, not at the robot.
-        let along = robot_way.direction(meeting.robot_s);
-        facing = libm::atan2(along.x, -along.y);
+        // Somebody who stands in the robot's way looks across it, not at the robot: where the robot turns, across the way by
+        // which it comes. Who does something at its sight looks half to where it comes from, or it might pass unseen behind.
+        let along = robot_way.direction((meeting.robot_s - COMES_M).max(0.0));
+        let sees = |rule: &socrates_model::Rule| rule.when.iter().any(|when| matches!(when, Trigger::RobotVisible(_)));
+        let across = Vector::new(-along.y, along.x);
+        let looks = if proposal.rules.iter().any(sees) { across - along } else { across };
+        facing = libm::atan2(looks.y, looks.x);
     }
     let state = tree.start_with(&BTreeMap::from([
         ("id".to_owned(), proposal.id.number().to_string()),

@@ -22,6 +22,9 @@ const WANTED_GAP_M: f64 = 0.45;
 const FARTHEST: f64 = 1.6;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;
+/// A plan leads back to the way at most so far on, m, and so far before a door that is shut, m.
+const WINDOW_M: f64 = 4.4;
+const SHUT_M: f64 = 0.4;
 /// After so long behind somebody it asks to be let through, s.
 const ASK_AFTER_S: f64 = 3.0;
 /// It asks again after so long, s.
@@ -114,7 +117,10 @@ impl Reference {
             return None;
         }
         // Back on the route behind the last person ahead, or as far as the window goes.
-        let farthest = (self.s + 4.4).min(self.route.length_m());
+        // Behind a shut door there is nothing to plan for yet.
+        let door_m = closed_door_ahead(seen, &self.route, self.s, WINDOW_M);
+        let window_m = door_m.map_or(WINDOW_M, |left| (left - self.robot.radius_m - SHUT_M).max(SHUT_M));
+        let farthest = (self.s + window_m).min(self.route.length_m());
         let mut goals: Vec<f64> =
             (0..8).map(|step| farthest - 0.4 * f64::from(step)).filter(|s| *s > self.s + 0.3).collect();
         goals.sort_by(|a, b| near(*a).cmp(&near(*b)).then(b.total_cmp(a)));

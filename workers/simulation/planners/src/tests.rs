@@ -6,8 +6,8 @@ use std::sync::Arc;
 use socrates_maps::DistanceField;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    Cell, Command, Cues, Gesture, Grid, HumanId, Observation, Point, Pose, RobotDriver, RobotModel, SeenPerson,
-    SimTime, Vector,
+    Cell, Command, Cues, Gesture, Grid, HumanId, Observation, Point, Pose, RobotDriver, RobotModel, SeenDoor,
+    SeenPerson, SimTime, Vector,
 };
 
 use crate::{Mission, make, names};
@@ -58,6 +58,16 @@ fn drive_among(
     people: &mut dyn FnMut(f64, &Pose) -> Vec<SeenPerson>,
     secs: f64,
 ) -> Vec<(Pose, Command)> {
+    drive_through(driver, people, &[], secs)
+}
+
+/// The same with doors.
+fn drive_through(
+    driver: &mut dyn RobotDriver,
+    people: &mut dyn FnMut(f64, &Pose) -> Vec<SeenPerson>,
+    doors: &[SeenDoor],
+    secs: f64,
+) -> Vec<(Pose, Command)> {
     let mut pose = Pose::new(2.0, 3.0, 0.0);
     let dt = 1.0 / driver.rate_hz();
     let mut v = 0.0;
@@ -69,7 +79,7 @@ fn drive_among(
         let lidar = || vec![12.0; 360];
         let time = SimTime::from_nanos((now * 1e9).round() as u64);
         let observation =
-            Observation { time, pose, v, omega: 0.0, people: &seen, doors: &[], lidar: &lidar, cues: Cues::default() };
+            Observation { time, pose, v, omega: 0.0, people: &seen, doors, lidar: &lidar, cues: Cues::default() };
         let command = driver.drive(&observation);
         v += (command.v - v).clamp(-2.0 * dt, dt);
         pose.yaw += command.omega * dt;
@@ -114,6 +124,15 @@ fn every_planner_goes_round_somebody_who_stands_in_the_way() {
         }
         assert!((way.last().unwrap().0.x - 18.0).abs() < 0.4, "{name} ends at {:?}", way.last().unwrap().0);
     }
+}
+
+#[test]
+fn the_reference_goes_round_somebody_who_stands_before_a_shut_door() {
+    let mut driver = make("reference", &mission(vec![])).unwrap().unwrap();
+    let door = SeenDoor { id: "gate".into(), from: Point::new(11.5, 0.0), to: Point::new(11.5, 6.0), open: false };
+    let way = drive_through(driver.as_mut(), &mut |_, _| vec![person(9.0, 3.05, 0.0, 0.0)], &[door], 40.0);
+    let end = way.last().unwrap().0;
+    assert!(end.x > 10.0 && end.x < 11.5, "it waits before the door: {end:?}");
 }
 
 #[test]

@@ -1,0 +1,244 @@
+//! Gives every reaction its chance: what somebody waits for has to come about where it is, and in the order that was told.
+
+use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::{Action, Fault, FaultCode, HumanProposal, PlaceClass, Relation, Rule, Trigger};
+
+use crate::cast::ReadRule;
+use crate::story::Story;
+
+/// Whoever has the robot behind notices it no farther than this, m.
+const BEHIND_M: f64 = 3.0;
+/// In an aisle that only one gets through the two come so near to each other before one makes room, m.
+const FACES_M: f64 = 2.5;
+/// Who stands at its place and walks on lets the robot come so near first, m.
+const MET_M: f64 = 2.8;
+/// The robot comes no nearer than this to whoever stands in its way, m.
+const STOPS_BEFORE_M: f64 = 1.1;
+/// Words by which people walk with the robot and against it.
+const BOTH_WAYS: &[&str] = &["both directions", "both ways", "either direction", "opposite directions"];
+/// Who has to get past the robot before it can block it does so for so long at least, s.
+const CATCHES_UP_S: f64 = 20.0;
+/// Where somebody waits for the robot to stop it stops before somebody this near, m, for so long, s.
+const STOPS: (f64, f64) = (4.0, 6.0);
+
+/// Mends what could not come about as it was read; distances that the text says stay as they are.
+pub(crate) fn settle(story: &mut Story, rough: &str) {
+    both_ways(story, rough);
+    let narrow = matches!(story.place, Some((PlaceClass::NarrowPassage, _)));
+    impossible(story, narrow);
+    for who in 0..story.cast.people.len() {
+        let relation = story.relation_of(who);
+        let Some(person) = story.cast.people.get_mut(who) else { continue };
+        for read in person.rules.iter_mut().filter(|read| !read.exact) {
+            for trigger in &mut read.rule.when {
+                // Where only one gets through they have met before one of them goes back.
+                if let (true, Trigger::RobotVisible(m)) = (narrow && read.rule.act == Action::GiveWay, &mut *trigger) {
+                    *m = m.min(FACES_M);
+                }
+                // Who stands there and walks on has been met by then.
+                let leaves = relation == Some(Relation::Static) && read.rule.act == Action::Navigate;
+                if let (true, Trigger::RobotVisible(m) | Trigger::RobotNear(m)) = (leaves, &mut *trigger) {
+                    *m = m.min(MET_M);
+                }
+                // Who walks ahead of the robot does not see it.
+                if let (Some(Relation::Ahead), Trigger::RobotVisible(m)) = (relation, &trigger) {
+                    *trigger = Trigger::RobotNear(m.min(BEHIND_M));
+                }
+            }
+        }
+        if relation == Some(Relation::Behind) {
+            for read in person.rules.iter_mut().filter(|read| read.rule.act == Action::Block && !read.lasts) {
+                read.rule.for_s = read.rule.for_s.map(|secs| secs.max(CATCHES_UP_S));
+            }
+        }
+        lets_pass_last(&mut person.rules);
+        // `stands still while it moves and walks towards it when it stops`: it stands there, and comes up to it then.
+        if relation == Some(Relation::Frontal) && alternates(person.rules.iter().map(|read| &read.rule)) {
+            if let Some((relation, _)) = &mut person.relation {
+                *relation = Relation::Static;
+            }
+            for read in person.rules.iter_mut().filter(|read| read.rule.when == [Trigger::RobotStopped]) {
+                read.rule.act = Action::Approach;
+            }
+        }
+    }
+}
+
+/// `Twelve visitors walk in both directions`: every other one comes towards the robot, the others walk ahead of it.
+fn both_ways(story: &mut Story, rough: &str) {
+    let lower = rough.to_lowercase();
+    let Some(words) = BOTH_WAYS.iter().find(|words| lower.contains(*words)) else { return };
+    let people = &mut story.cast.people;
+    let walks = |person: &&mut crate::cast::Person| {
+        let idle = person.relation.is_none() && person.group.is_none() && person.rules.is_empty();
+        idle && !person.doings.is_empty() && person.doings.iter().all(|doing| doing == "walks")
+    };
+    let walkers: Vec<_> = people.iter_mut().filter(walks).collect();
+    if walkers.len() < 2 {
+        return;
+    }
+    for (person, towards) in walkers.into_iter().zip([true, false].into_iter().cycle()) {
+        let relation = if towards { Relation::Frontal } else { Relation::Ahead };
+        person.relation = Some((relation, (*words).to_owned()));
+        person.doings.push(if towards { "comes towards the robot" } else { "walks ahead of the robot" }.to_owned());
+    }
+    story.ignored.retain(|word| !words.contains(word.as_str()));
+}
+
+/// Says before the run what cannot come about in it.
+fn impossible(story: &mut Story, narrow: bool) {
+    let mut said = Vec::new();
+    let people = &story.cast.people;
+    for person in people {
+        let blocks = person.rules.iter().any(|read| read.rule.act == Action::Block);
+        let touches = |read: &&ReadRule| {
+            let near = |when: &Trigger| matches!(when, Trigger::RobotNear(m) | Trigger::RobotVisible(m) if *m <= STOPS_BEFORE_M);
+            read.exact && read.rule.act != Action::Block && read.rule.when.iter().any(near)
+        };
+        said.extend(person.rules.iter().find(touches).filter(|_| blocks).map(|read| {
+            format!(
+                "`{}`: the robot stops more than a metre before whoever stands in its way; ask for {} m or more",
+                read.quote,
+                STOPS_BEFORE_M + 0.4
+            )
+        }));
+    }
+    let aside = |read: &&ReadRule| read.rule.act == Action::GiveWay;
+    let mut yield_there = people
+        .iter()
+        .filter(|person| matches!(person.relation, Some((Relation::Static, _))))
+        .filter_map(|person| person.rules.iter().find(aside));
+    if let (true, Some(read), Some(_)) = (narrow, yield_there.next(), yield_there.next()) {
+        said.push(format!(
+            "`{}`: in an aisle that only one gets through there is no room for several to make way; ask for one, or for a wider \
+             place",
+            read.quote
+        ));
+    }
+    let faults = said.into_iter().map(|message| Fault::new(FaultCode::PRead, "rough_scenario", message));
+    story.problems.extend(faults);
+}
+
+/// `stops, looks at it for ten seconds and then lets it pass`: at no stated distance the way is free after all that.
+fn lets_pass_last(rules: &mut [ReadRule]) {
+    let near = |read: &ReadRule| match read.rule.when[..] {
+        [Trigger::RobotVisible(m)] if !read.exact => Some(m),
+        _ => None,
+    };
+    for at in 1..rules.len() {
+        let (before, rest) = rules.split_at_mut(at);
+        let Some((read, last)) = rest.first_mut().zip(before.last()) else { return };
+        let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot | Action::Block)
+            && last.rule.for_s.is_some();
+        let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate);
+        if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m) {
+            read.rule.when.clone_from(&last.rule.when);
+        }
+    }
+}
+
+/// Whether somebody stands while the robot moves and does something else only while it stands.
+fn alternates<'a>(rules: impl Iterator<Item = &'a Rule>) -> bool {
+    let (mut stands, mut goes) = (false, false);
+    for rule in rules {
+        stands |= rule.when == [Trigger::RobotMoving] && rule.act == Action::StandStill;
+        goes |= rule.when == [Trigger::RobotStopped] && matches!(rule.act, Action::Navigate | Action::Approach);
+    }
+    stands && goes
+}
+
+/// Whoever waits for the robot to stop, and stands until then, gives it no reason to: it stops of itself.
+pub(crate) fn stops(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
+    let holds = script.iter().any(|line| matches!(line.act, RobotDo::Hold(_)));
+    if !holds && humans.iter().any(|human| alternates(human.rules.iter())) {
+        script.push(RobotRule { when: RobotWhen::HumanNear(STOPS.0), act: RobotDo::Hold(STOPS.1) });
+    }
+}
+
+/// Whether somebody stands at first and walks on at something that comes later.
+pub(crate) fn walks_later(human: &HumanProposal) -> bool {
+    let later =
+        |rule: &Rule| rule.act == Action::Navigate && rule.for_s.is_none() && !rule.when.contains(&Trigger::Always);
+    human.relation == Relation::Static && human.group.is_none() && human.goal.is_none() && human.rules.iter().any(later)
+}
+
+/// Until then it stands there.
+pub(crate) fn until_then(human: &mut HumanProposal) {
+    if walks_later(human) {
+        let when = vec![Trigger::Always];
+        human.rules.push(Rule { when, act: Action::StandStill, gesture: None, for_s: None, latched: false });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::{answers, map, request};
+
+    #[test]
+    fn who_walks_ahead_notices_the_robot_behind_it_without_seeing_it() {
+        let rough = "The robot overtakes a worker who walks slowly. The worker turns his head and looks at it.";
+        let (_, proposal, _) = answers(&request("Drive to the packing area", Some(rough)), &map("warehouse"), 1);
+        let rules = &proposal.humans[0].rules;
+        assert!(rules.iter().any(|rule| rule.when == [Trigger::RobotNear(BEHIND_M)]), "{rules:?}");
+    }
+
+    #[test]
+    fn the_robot_stops_where_somebody_waits_for_that() {
+        let rough = "While the robot is moving, the guard stands still. Whenever the robot stops, the guard walks a few \
+                     steps towards it.";
+        let (_, proposal, paths) = answers(&request("Patrol the aisles", Some(rough)), &map("warehouse"), 1);
+        assert!(proposal.robot.script.iter().any(|line| matches!(line.act, RobotDo::Hold(_))));
+        assert_eq!(proposal.humans[0].relation, Relation::Static);
+        assert_eq!(paths.humans.values().next().map(Vec::len), Some(1));
+    }
+
+    #[test]
+    fn what_cannot_come_about_is_said_before_the_run() {
+        for (rough, on, words) in [
+            (
+                "A child stops in front of the robot and runs away when the robot comes closer than one metre.",
+                "hospital",
+                "closer than one metre",
+            ),
+            (
+                "A group of three workers stands in the narrow aisle. When the robot says excuse me, they step aside.",
+                "warehouse",
+                "step aside",
+            ),
+        ] {
+            let reading = crate::read(&request("Drive on", Some(rough)), &map(on));
+            let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.contains(words);
+            assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
+        }
+    }
+
+    #[test]
+    fn of_people_who_walk_in_both_directions_every_other_one_comes_towards_the_robot() {
+        let rough = "Twelve visitors walk in both directions along the main corridor.";
+        let reading = crate::read(&request("Drive to the exit", Some(rough)), &map("hospital"));
+        let of = |relation| reading.humans.iter().filter(|human| human.relation == Some(relation)).count();
+        assert_eq!((of(Relation::Frontal), of(Relation::Ahead)), (6, 6));
+        assert!(!reading.ignored.contains(&"directions".to_owned()), "{:?}", reading.ignored);
+    }
+
+    #[test]
+    fn who_lets_the_robot_pass_after_all_else_does_so_last() {
+        let rough = "A security guard stops the robot at the exit with a gesture, looks at it for ten seconds and then lets it pass.";
+        let (_, proposal, _) = answers(&request("Drive to the exit", Some(rough)), &map("office"), 1);
+        let rules = &proposal.humans[0].rules;
+        let when = |act: Action| rules.iter().find(|rule| rule.act == act).map(|rule| rule.when.clone());
+        assert_eq!(when(Action::GiveWay), when(Action::LookAtRobot), "{rules:?}");
+    }
+
+    #[test]
+    fn who_stands_until_it_is_asked_has_a_way_to_walk_on() {
+        let rough =
+            "One person stands in the doorway of the kitchen. She does not move until the robot says excuse me.";
+        let (_, proposal, paths) = answers(&request("Bring the mail to the kitchen", Some(rough)), &map("office"), 1);
+        let way = paths.humans.values().next().unwrap();
+        assert!(way.len() > 1, "{way:?}");
+        let last = proposal.humans[0].rules.last().unwrap();
+        assert_eq!((&last.act, last.when.as_slice()), (&Action::StandStill, &[Trigger::Always][..]));
+    }
+}

@@ -1,0 +1,49 @@
+//! How well a place suits what people do there: room to get past, a layout, a corner that hides, doors that stop a crowd.
+
+use socrates_maps::{DistanceField, Sight};
+use socrates_model::{HumanProposal, PlaceClass, Relation};
+
+use crate::card::Card;
+use crate::humans::follows;
+use crate::routes::{Net, Route};
+
+/// Free width on each side of the middle of the floor that lets somebody past a robot there, and several at a time, m, and the
+/// way that takes, m.
+const BESIDE_M: f64 = 1.15;
+const SEVERAL_M: f64 = 1.6;
+const OVERTAKES_M: f64 = 12.0;
+/// What a node without that width costs.
+pub(crate) const SQUEEZED: f64 = 2.0;
+
+/// Whether somebody comes from behind to get past the robot.
+pub(crate) fn overtakes(human: &HumanProposal) -> bool {
+    human.relation == Relation::Behind && !follows(human)
+}
+
+/// How many nodes from the meeting on, as far as it takes to get past the robot, leave no room for that.
+pub(crate) fn squeezed(net: &Net<'_>, field: &DistanceField, route: &Route, several: bool) -> f64 {
+    let beside_m = if several { SEVERAL_M } else { BESIDE_M };
+    let from = route.nodes.get(route.meet.saturating_sub(2)..).unwrap_or_default();
+    let near = (1..=from.len()).take_while(|n| net.length_m(from.get(..*n).unwrap_or_default()) <= OVERTAKES_M);
+    let narrow = near.filter_map(|n| from.get(n - 1)).filter(|node| field.clearance(&net.at(**node)) < beside_m);
+    narrow.count() as f64
+}
+
+pub(crate) fn tight(net: &Net<'_>, node: usize) -> bool {
+    matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
+}
+
+/// How well a node suits the layout that the card asks for: 0 where it does.
+pub(crate) fn layout(card: Option<&Card>, arms: usize, clear_m: f64) -> f64 {
+    let Some(card) = card else { return 0.0 };
+    let few = if card.arms.is_some_and(|least| arms < least) { -8.0 } else { 0.0 };
+    // A node lies in the middle of its floor: the free width is twice the way to the nearest wall.
+    let off = card.width_m.is_some_and(|[least, most]| 2.0 * clear_m < least || 2.0 * clear_m > most);
+    few + if off { -8.0 } else { 0.0 }
+}
+
+/// Whether the nodes before and after the meeting cannot see each other.
+pub(crate) fn hides(net: &Net<'_>, sight: &Sight, route: &Route) -> bool {
+    let around = route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).zip(route.nodes.get(route.meet + 1));
+    around.is_some_and(|(a, b)| !sight.clear(&net.at(*a), &net.at(*b)))
+}
