@@ -7,6 +7,7 @@ use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
 use crate::clause::{self, mark_each};
+use crate::contra;
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
@@ -34,6 +35,7 @@ pub(crate) struct Story {
     pub(crate) headed: Option<(PlaceClass, String)>,
     pub(crate) ignored: Vec<String>,
     pub(crate) order: Order,
+    pub(crate) held: contra::Held,
     pub(crate) problems: Vec<Fault>,
 }
 
@@ -125,6 +127,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         story.cast.excepting = excepts(&sentence);
         thread.made.clear();
         thread.pending.clear();
+        story.held.sentence();
         let count = sentence.len();
         for i in 0..count {
             let next = sentence.get(i + 1).map(|next| next.joint);
@@ -295,7 +298,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         }
         found.deeds.clear();
     }
+    contra::nobody(story, &found, stretch, next, &quote);
+    contra::members(story, &mut found, stretch, text);
     let meant = meant(story, thread, stretch, &found, text, next);
+    contra::place(story, thread, stretch, &found, &meant, &quote);
     let one = found.mentions.iter().any(|mention| mention.who == Who::ToldApart && !found.acts());
     thread.apart = match meant.as_slice() {
         [(_, _, people)] if one && next == Some(Joint::Who) => people.first().copied(),
@@ -559,6 +565,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             thread.subject = subject;
         }
     }
+    contra::condition(story, thread, stretch, &found, &quote);
     if let Some(mps) = found.pace_mps {
         let object = meant.first().map(|(_, _, some)| some.clone()).unwrap_or_default();
         let paced = if let Subject::People(people) = &thread.subject { people.clone() } else { object };

@@ -130,7 +130,7 @@ pub(crate) fn in_car(quote: &str) -> bool {
 }
 
 /// Whether one of these words stands before a place, with at most two words between.
-fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
+pub(crate) fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
     let between = |k: usize| {
         !matches!(
