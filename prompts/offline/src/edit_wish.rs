@@ -105,7 +105,9 @@ pub(crate) fn wishes(text: &str) -> Vec<Wish> {
         }
     }
     // `slower and longer`: a clause of courtesy alone asks for nothing.
-    found.retain(|wish| !wish.quote.trim().is_empty() && !polite(wish));
+    // `let`, where the cut has put those whom it speaks of into a clause of their own.
+    let asks = |wish: &Wish| !matches!(wish.quote.trim().to_lowercase().as_str(), "" | "let");
+    found.retain(|wish| asks(wish) && !polite(wish));
     found
 }
 

@@ -5,7 +5,7 @@ use socrates_model::{
     Action, AgentId, AgentState, Clause, ClauseRole, EventKind, HumanId, Point, Predicate, Recording,
 };
 
-use super::edit::{ahead_of_time, delayed, states, ticks_of};
+use super::edit::{ahead_of_time, delayed, stands_at, states, ticks_of};
 use crate::evidence::Evidence;
 use crate::fidelity::does;
 
@@ -82,7 +82,9 @@ fn seen_ahead(evidence: &Evidence<'_>, id: HumanId, add: &mut Add<'_>) {
     let waits = old.iter().take_while(|state| (state.point() - start).norm() <= SET_OFF_M).count();
     let long = ticks_of(run, LONG_SECS);
     let step = ticks_of(run, 0.2).max(1);
-    for upto in (waits..old.len()).step_by(step) {
+    let apart = old.iter().zip(&robot).map(|(a, b)| (a.point() - b.point()).norm()).enumerate();
+    let meets = apart.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| k);
+    for upto in (waits..meets).step_by(step) {
         let Some(at) = old.get(upto).map(AgentState::point) else { break };
         let Some(k) = (0..upto.saturating_sub(long)).rev().step_by(step).find(|k| clear(*k, &at)) else { continue };
         if upto - k <= waits {
@@ -90,5 +92,12 @@ fn seen_ahead(evidence: &Evidence<'_>, id: HumanId, add: &mut Add<'_>) {
             add("N: seen from 6 m ahead and more", about, ahead_of_time(run, AgentId::Human(id), upto, upto - k));
             return;
         }
+    }
+    // Where its own way has no such place: at its encounter node, waiting for the robot.
+    let node = evidence.paths.and_then(|paths| paths.encounter_of(id)).and_then(|node| location.graph.node(node));
+    if let Some(node) = node.filter(|node| (0..meets).step_by(step).any(|k| clear(k, &node.at))) {
+        let yaw = old.get(meets).map_or(0.0, |state| state.yaw);
+        let about = format!("{id} at `{}`", node.id);
+        add("N: seen from 6 m ahead and more", about, stands_at(run, AgentId::Human(id), &node.at, yaw));
     }
 }
