@@ -16,6 +16,7 @@ mod encounters;
 mod free;
 mod groups;
 mod lexicon;
+mod limits;
 mod nearest;
 mod people;
 mod places;

@@ -10,7 +10,7 @@ use crate::lexicon::{ABILITIES, humans_named, impossible};
 use crate::list;
 
 /// Smallest and largest distance a trigger may name, m.
-const DISTANCE_M: (f64, f64) = (0.3, 15.0);
+pub(crate) const DISTANCE_M: (f64, f64) = (0.3, 15.0);
 /// Smallest and largest desired speed, m/s.
 const SPEED_MPS: (f64, f64) = (0.2, 1.8);
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use socrates_model::{Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading};
 
-use crate::list;
+use crate::{limits, list};
 
 /// Every human needs a setup clause that must hold and speaks of it, or of its group.
 pub(crate) fn humans(proposal: &Proposal) -> Vec<Fault> {
@@ -73,10 +73,8 @@ pub(crate) fn clauses(proposal: &Proposal) -> Vec<Fault> {
         if clause.role == ClauseRole::Setup && clause.predicate.judges_robot() {
             bad("judges what the robot does and cannot be part of the setup; use the role `outcome`".to_owned());
         }
-        for (name, value) in numbers(&clause.predicate) {
-            if !value.is_finite() || value < 0.0 {
-                bad(format!("`{name}` is {value}; a number of 0 or more is expected"));
-            }
+        for message in limits::faults(&clause.predicate, proposal) {
+            bad(message);
         }
     }
     faults
@@ -131,78 +129,6 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
     }
 }
 
-/// The numbers of a predicate by name.
-fn numbers(predicate: &Predicate) -> Vec<(&'static str, f64)> {
-    match predicate {
-        Predicate::Meets { within_m, .. }
-        | Predicate::HiddenUntil { within_m, .. }
-        | Predicate::StartsAt { within_m, .. }
-        | Predicate::Reaches { within_m, .. } => {
-            vec![("within_m", *within_m)]
-        }
-        Predicate::MeetsAgain { nth, within_m, .. } => {
-            vec![("nth, less two", f64::from(*nth) - 2.0), ("within_m", *within_m)]
-        }
-        Predicate::Crosses { gap_s, .. } | Predicate::OnTime { gap_s, .. } => vec![("gap_s", *gap_s)],
-        Predicate::Ahead { within_m, for_s, .. } => vec![("within_m", *within_m), ("for_s", *for_s)],
-        Predicate::Follows { gap_m: [least, most], for_s, .. } => {
-            vec![("gap_m", *least), ("gap_m", *most), ("gap_m, largest less smallest", most - least), ("for_s", *for_s)]
-        }
-        Predicate::Abreast { for_s, .. }
-        | Predicate::Parallel { for_s, .. }
-        | Predicate::Blocks { for_s, .. }
-        | Predicate::Looks { for_s, .. }
-        | Predicate::StandsStill { for_s, .. } => vec![("for_s", *for_s)],
-        Predicate::Flow { count, within_m, angle_deg: [least, most] } => vec![
-            ("count, less one", f64::from(*count) - 1.0),
-            ("within_m", *within_m),
-            ("angle_deg", *least),
-            ("angle_deg, largest less smallest", most - least),
-            ("angle_deg, 180 less largest", 180.0 - most),
-        ],
-        Predicate::Density { per_m2: [least, most], radius_m, for_s } => vec![
-            ("per_m2", *least),
-            ("per_m2, largest less smallest", most - least),
-            ("radius_m, less 0.5", radius_m - 0.5),
-            ("for_s", *for_s),
-        ],
-        Predicate::Surrounds { count, within_m, for_s } => {
-            vec![("count, less one", f64::from(*count) - 1.0), ("within_m", *within_m), ("for_s", *for_s)]
-        }
-        Predicate::Converges { within_m, within_s } => vec![("within_m", *within_m), ("within_s", *within_s)],
-        Predicate::Queues { gap_m: [least, most], .. } => {
-            vec![("gap_m", *least), ("gap_m, largest less smallest", most - least)]
-        }
-        Predicate::RunsAway { by_m, .. } => vec![("by_m", *by_m)],
-        Predicate::Reacts { within_s, .. } | Predicate::RobotObeys { within_s, .. } => vec![("within_s", *within_s)],
-        Predicate::DoorOpens { robot_m: [least, most], .. } => {
-            vec![("robot_m", *least), ("robot_m", *most), ("robot_m, largest less smallest", most - least)]
-        }
-        Predicate::Formation { spread_m, .. } | Predicate::WalksTogether { spread_m, .. } => {
-            vec![("spread_m", *spread_m)]
-        }
-        Predicate::RobotKeeps { min_m } => vec![("min_m", *min_m)],
-        Predicate::Humans { .. }
-        | Predicate::HeadOn { .. }
-        | Predicate::Overtakes { .. }
-        | Predicate::RobotPasses { .. }
-        | Predicate::GivesWay { .. }
-        | Predicate::Gestures { .. }
-        | Predicate::Leaves { .. }
-        | Predicate::StaysInside { .. }
-        | Predicate::Enters { .. }
-        | Predicate::Order { .. }
-        | Predicate::Before { .. }
-        | Predicate::EncounterAt { .. }
-        | Predicate::Plausible
-        | Predicate::RobotArrives
-        | Predicate::RobotEntersLast
-        | Predicate::RobotLeavesFirst
-        | Predicate::RobotJoins { .. }
-        | Predicate::RobotLeavesGroup { .. } => Vec::new(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -215,7 +141,7 @@ mod tests {
         let faults = clauses(&proposal);
         assert_eq!(faults.len(), 2, "{faults:?}");
         assert!(faults[0].message.contains("asks for 3 humans where the proposal has 2"), "{faults:?}");
-        assert!(faults[1].message.contains("angle_deg, largest less smallest"), "{faults:?}");
+        assert!(faults[1].message.contains("`angle_deg`, largest less smallest, is -30"), "{faults:?}");
         // Two of two are everybody: nobody needs a clause of its own then.
         proposal.expected_events[0].predicate = Predicate::Flow { count: 2, within_m: 4.0, angle_deg: [0.0, 30.0] };
         proposal.expected_events.truncate(1);

@@ -48,7 +48,8 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
         FactKind::Relates { human, relation } => {
             let found = proposal.human(*human)?.relation;
             // Who comes out and crosses the robot's way does both.
-            let crosses = |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if who == human);
+            let crosses =
+                |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if who == human);
             let both = (found, *relation) == (socrates_model::Relation::Leaving, socrates_model::Relation::Crossing)
                 && proposal.expected_events.iter().any(crosses);
             if found == *relation || both {

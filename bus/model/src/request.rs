@@ -145,6 +145,43 @@ pub struct Expect {
     pub pattern: Option<String>,
 }
 
+impl Expect {
+    /// How many humans the request expects at least: so many as it says, or as its groups name.
+    #[must_use]
+    pub fn headcount(&self) -> Option<u32> {
+        self.humans.or_else(|| self.groups.iter().flatten().copied().max())
+    }
+
+    /// What is wrong with the groups: members that are nobody, or somebody twice.
+    fn group_problems(&self) -> Vec<BadRequest> {
+        let most = self.humans.unwrap_or(MAX_HUMANS).min(MAX_HUMANS);
+        let mut problems = Vec::new();
+        let mut bad = |found: String, hint: String| problems.push(BadRequest { key: "expect.groups", found, hint });
+        let mut seen: Vec<u32> = Vec::new();
+        for group in &self.groups {
+            if !GROUP_SIZES.contains(&group.len()) {
+                let hint = format!("{} to {} members", GROUP_SIZES.start(), GROUP_SIZES.end());
+                bad(format!("{group:?} has {} members", group.len()), hint);
+            }
+            for member in group {
+                if *member == 0 || *member > most {
+                    bad(format!("{group:?} names human_{member}"), format!("numbers of humans, 1 to {most}"));
+                }
+                if seen.contains(member) {
+                    bad(
+                        format!("{group:?} names human_{member} again"),
+                        "each human is in one group at most".to_owned(),
+                    );
+                }
+                seen.push(*member);
+            }
+        }
+        problems
+    }
+}
+
+/// How many members a group has.
+const GROUP_SIZES: std::ops::RangeInclusive<usize> = 2..=8;
 /// Largest number of humans a request may ask for.
 pub const MAX_HUMANS: u32 = 40;
 /// Longest text of one field, characters.
@@ -216,6 +253,7 @@ impl Request {
         if let Some(Err(bad)) = self.expect.place.as_ref().map(|place| place.parse::<crate::PlaceClass>()) {
             problems.push(BadRequest { key: "expect.place", found: bad.to_string(), hint: bad.allowed.to_owned() });
         }
+        problems.extend(self.expect.group_problems());
         problems
     }
 
@@ -299,6 +337,20 @@ mod tests {
         let problems = request("None").problems();
         assert_eq!(problems[0].key, "rough_scenario");
         assert!(problems[0].hint.contains("leave the key out"));
+    }
+
+    #[test]
+    fn groups_of_people_who_are_not_expected_are_refused() {
+        let mut request = request("two people");
+        let keys = |request: &Request| request.problems().iter().map(|bad| bad.found.clone()).collect::<Vec<_>>();
+        (request.expect.humans, request.expect.groups) = (Some(3), vec![vec![1, 2]]);
+        assert_eq!(keys(&request), Vec::<String>::new());
+        request.expect.groups = vec![vec![1, 2], vec![2, 3]];
+        assert_eq!(keys(&request), ["[2, 3] names human_2 again"]);
+        request.expect.groups = vec![vec![0, 4], vec![1]];
+        assert_eq!(keys(&request), ["[0, 4] names human_0", "[0, 4] names human_4", "[1] has 1 members"]);
+        (request.expect.humans, request.expect.groups) = (None, vec![vec![1, 5]]);
+        assert_eq!(request.expect.headcount(), Some(5));
     }
 
     #[test]

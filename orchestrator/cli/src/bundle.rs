@@ -480,5 +480,6 @@ fn provenance(
                     "said": said(&job.artifacts) })
         })
         .collect();
-    json!({ "version": env!("CARGO_PKG_VERSION"), "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
+    let program = crate::files::program_hash();
+    json!({ "version": env!("CARGO_PKG_VERSION"), "program": program, "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
 }

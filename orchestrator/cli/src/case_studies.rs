@@ -16,6 +16,7 @@ use socrates_model::{AgentId, AgentState, EventKind, HumanId, Point, Relation, V
 
 use crate::config::Config;
 use crate::mutations::{Scenario, Tally, realised, shipped, try_all};
+use crate::prepare::Prepared;
 
 /// Seeds that are looked at.
 const SEEDS: u64 = 20;
@@ -32,6 +33,13 @@ type Wrong = Vec<String>;
 async fn study(name: &str, items: fn(&Case<'_>) -> Wrong, kinds: &[&str]) {
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
     let prepared = shipped(&config).unwrap().into_iter().find(|prepared| prepared.name.ends_with(name)).unwrap();
+    study_of(prepared, items, kinds).await;
+}
+
+/// The same of a request that is not shipped.
+async fn study_of(prepared: Prepared, items: fn(&Case<'_>) -> Wrong, kinds: &[&str]) {
+    let name = prepared.name.clone();
+    let name = name.as_str();
     let mut wrong: Vec<String> = Vec::new();
     for seed in 1..=SEEDS {
         let scenario = realised(prepared.clone(), seed).await.unwrap();

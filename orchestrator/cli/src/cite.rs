@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::json;
 use socrates_model::report::Standing;
-use socrates_model::{AgentId, ClauseRole, Verdict};
+use socrates_model::{AgentId, Clause, ClauseRole, Verdict};
 
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
@@ -23,7 +23,8 @@ pub(crate) fn cite(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
         .filter(|row| ["proposal", "paths", "behaviors"].iter().any(|stage| row.stage.starts_with(stage)))
         .map(|row| row.attempts)
         .sum();
-    let methods = paragraph(&bundle, asked);
+    let program = program(dir);
+    let methods = paragraph(&bundle, asked, program.as_deref());
     let hashes = hashes(&bundle);
     let bibtex = bibtex(&bundle);
     talk.line(&methods);
@@ -36,17 +37,26 @@ pub(crate) fn cite(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     let planners: BTreeSet<&str> = bundle.manifest.runs.iter().map(|run| run.planner.as_str()).collect();
     let seeds: BTreeSet<u64> = bundle.manifest.runs.iter().map(|run| run.seed).collect();
     talk.result(&json!({
-        "methods": methods, "bibtex": bibtex, "version": VERSION, "author": bundle.proposal.author,
+        "methods": methods, "bibtex": bibtex, "version": VERSION, "program": program, "author": bundle.proposal.author,
         "location": bundle.location.name, "base_seed": bundle.manifest.seed, "seeds": seeds, "planners": planners,
         "hashes": hashes.into_iter().collect::<BTreeMap<_, _>>(),
     }));
     Ok(())
 }
 
-fn paragraph(bundle: &Bundle, asked: u32) -> String {
+/// The hash of the program that made the bundle, as its provenance tells it.
+fn program(dir: &Path) -> Option<String> {
+    let text = std::fs::read_to_string(dir.join("details/provenance.json")).ok()?;
+    let provenance: serde_json::Value = serde_json::from_str(&text).ok()?;
+    provenance.get("program")?.as_str().map(str::to_owned)
+}
+
+fn paragraph(bundle: &Bundle, asked: u32, program: Option<&str>) -> String {
     let (manifest, proposal) = (&bundle.manifest, &bundle.proposal);
+    let build = program
+        .map_or_else(String::new, |hash| format!(" (program BLAKE3 {})", hash.chars().take(12).collect::<String>()));
     let mut out = format!(
-        "The scenario \"{}\" was generated with SocRATES {VERSION} from the social context \"{}\" and the robot task \"{}\"",
+        "The scenario \"{}\" was generated with SocRATES {VERSION}{build} from the social context \"{}\" and the robot task \"{}\"",
         proposal.title,
         sentence(&bundle.request.social_context),
         sentence(&bundle.request.task)
@@ -115,11 +125,17 @@ fn simulated(bundle: &Bundle) -> String {
         let agents = header.into_iter().flat_map(|header| &header.agents);
         agents.into_iter().find(|info| (info.agent == AgentId::Robot) == robot).map(|info| info.radius_m)
     };
-    let radius = |robot: bool| body(robot).map_or(String::new(), |m| format!(" (radius {m:.2} m)"));
+    let speeds = |robot: bool| -> Vec<f64> {
+        let agents = header.into_iter().flat_map(|header| &header.agents);
+        agents.into_iter().filter(|info| (info.agent == AgentId::Robot) == robot).map(|info| info.speed_mps).collect()
+    };
+    let fastest = speeds(true).first().map_or_else(String::new, |mps| format!(", at most {mps:.2} m/s"));
+    let radius = |robot: bool| body(robot).map_or(String::new(), |m| format!(" (radius {m:.2} m{fastest})"));
     format!(
-        " It was simulated {} ({span} each) at a fixed step of {step} s with the semantics `{profile}`, people of radius {:.2} m and the robot model `{}`{}, way points `{}`, planners: {}.",
+        " It was simulated {} ({span} each) at a fixed step of {step} s with the semantics `{profile}`, people of radius {:.2} m{} and the robot model `{}`{}, way points `{}`, planners: {}.",
         times(bundle.runs.len()),
         body(false).unwrap_or(0.28),
+        desired(&speeds(false)),
         request.robot.model,
         radius(true),
         serde_json::to_value(request.robot.waypoints)
@@ -130,6 +146,39 @@ fn simulated(bundle: &Bundle) -> String {
     )
 }
 
+/// ` and desired speeds of 0.90 to 1.30 m/s`
+fn desired(mps: &[f64]) -> String {
+    let least = mps.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = mps.iter().copied().fold(0.0, f64::max);
+    match mps.len() {
+        0 => String::new(),
+        _ if most - least < 0.005 => format!(", desired speed {most:.2} m/s,"),
+        _ => format!(", desired speeds {least:.2} to {most:.2} m/s,"),
+    }
+}
+
+/// The numbers of the clauses that had to hold, each once: `meets within_m 2.5`.
+fn limits(clauses: &[Clause]) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for clause in clauses.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup) {
+        let Some(members) = json!(clause.predicate).as_object().cloned() else { continue };
+        for (name, value) in &members {
+            let numbers = value.as_object().into_iter().flatten().filter(|(_, value)| is_limit(value));
+            let numbers: Vec<String> = numbers.map(|(key, value)| format!("{key} {value}")).collect();
+            let line = format!("{name} {}", numbers.join(" "));
+            if !numbers.is_empty() && !found.contains(&line) {
+                found.push(line);
+            }
+        }
+    }
+    found
+}
+
+/// A number with a fraction, or a range of two: distances and times, no counts.
+fn is_limit(value: &serde_json::Value) -> bool {
+    value.is_f64() || value.as_array().is_some_and(|both| both.len() == 2 && both.iter().all(serde_json::Value::is_f64))
+}
+
 fn judged(bundle: &Bundle) -> String {
     let Some((_, report)) = bundle.runs.first() else { return String::new() };
     let setup = report.clauses.iter().filter(|clause| clause.role == ClauseRole::Setup);
@@ -138,9 +187,11 @@ fn judged(bundle: &Bundle) -> String {
     let robots: Vec<_> = bundle.runs.iter().filter(|(_, report)| report.planner != "none").collect();
     let realised = robots.iter().filter(|(_, report)| report.verdict == Verdict::Realised).count();
     let succeeded = robots.iter().filter(|(_, report)| report.success).count();
+    let limits = limits(&bundle.proposal.expected_events);
+    let limits = if limits.is_empty() { String::new() } else { format!(" with the limits {}", limits.join("; ")) };
     let values = report.metrics.iter().filter(|metric| metric.value.is_some()).count();
     format!(
-        " Whether it happened as proposed was judged by {} that had to hold ({} of {} runs realised; verdict of the reference run: {}); apart from that, the robot was judged by {} and {} (it reached its goal without a collision in {} of {} runs).",
+        " Whether it happened as proposed was judged by {} that had to hold{limits} ({} of {} runs realised; verdict of the reference run: {}); apart from that, the robot was judged by {} and {} (it reached its goal without a collision in {} of {} runs), thresholds `{}`; nobody may overlap by more than 2 cm or be faster than 2 m/s.",
         count(needed, "setup clause"),
         realised,
         robots.len(),
@@ -148,7 +199,8 @@ fn judged(bundle: &Bundle) -> String {
         count(outcome, "outcome clause"),
         count(values, "metric"),
         succeeded,
-        robots.len()
+        robots.len(),
+        report.thresholds
     )
 }
 
@@ -208,6 +260,30 @@ fn times(n: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use socrates_model::{HumanId, Predicate};
+
+    #[test]
+    fn the_limits_of_the_judge_and_the_speeds_are_named() {
+        let clause = |must: bool, predicate: Predicate| Clause {
+            id: "c1".into(),
+            text: String::new(),
+            role: ClauseRole::Setup,
+            must,
+            source: String::new(),
+            predicate,
+        };
+        let human = HumanId::new(1);
+        let clauses = [
+            clause(true, Predicate::Meets { human, within_m: 2.5 }),
+            clause(true, Predicate::Meets { human: HumanId::new(2), within_m: 2.5 }),
+            clause(true, Predicate::Humans { count: 2 }),
+            clause(false, Predicate::OnTime { human, gap_s: 4.0 }),
+            clause(true, Predicate::DoorOpens { door: "d".into(), robot_m: [1.0, 4.5] }),
+        ];
+        assert_eq!(limits(&clauses), ["meets within_m 2.5", "door_opens robot_m [1.0,4.5]"]);
+        assert_eq!(desired(&[0.9, 1.3]), ", desired speeds 0.90 to 1.30 m/s,");
+        assert_eq!(desired(&[]), "");
+    }
 
     #[test]
     fn words_of_a_request_become_part_of_a_sentence() {

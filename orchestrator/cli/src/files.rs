@@ -65,3 +65,13 @@ pub(crate) fn cells(line: &str) -> Vec<String> {
     }
     cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
 }
+
+/// The hash of the running program, which tells two builds of one version apart; `None` where it cannot be read.
+pub(crate) fn program_hash() -> Option<String> {
+    static HASH: std::sync::OnceLock<Option<String>> = std::sync::OnceLock::new();
+    let read = || {
+        let bytes = std::fs::read(std::env::current_exe().ok()?).ok()?;
+        Some(socrates_model::Digest::of(&bytes).to_string())
+    };
+    HASH.get_or_init(read).clone()
+}

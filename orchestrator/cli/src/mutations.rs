@@ -9,7 +9,7 @@ use socrates_author::offline::Offline;
 use socrates_model::job::Stage;
 use socrates_model::{
     Action, AgentId, Behaviors, Clause, ClauseRole, Encounter, Fault, GroupId, HumanBehavior, HumanId, NodeId, Paths,
-    Predicate, Proposal, Recording, Relation, Report, RunId, Verdict,
+    Predicate, Proposal, Recording, Relation, Report, RunId, Trigger, Verdict,
 };
 use socrates_scoring::mutants::{harmless, spoiled, time_margin};
 use socrates_scoring::{Evidence, REFERENCE};
@@ -29,6 +29,13 @@ const MOVED_M: f64 = 6.0;
 const ONCE: &str = "N: second encounter left out";
 /// The change that puts an encounter elsewhere.
 const MOVED: &str = "encounter moved";
+/// The change that makes somebody react long before the robot is as near as was asked.
+const FAR: &str = "N: reaction at 8 m";
+/// Where it reacts then, m; it was asked to at most at half of that.
+const FAR_M: f64 = 8.0;
+const NEAR_M: f64 = 4.0;
+/// A reaction from so little farther than asked is none from afar, m.
+const FARTHER_M: f64 = 1.0;
 /// Two meetings nearer to each other than this are one, m.
 const SAME_M: f64 = 3.0;
 /// The same for their times, s.
@@ -237,6 +244,7 @@ pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
         // Played from other artifacts, judged by those that were asked for.
         match simulate(prepared, &other, *seed) {
             Ok(recording) if kind == MOVED && same_meeting(run, &recording, &about) => tally.equal += 1,
+            Ok(recording) if kind == FAR && !parts_from_afar(run, &recording, &about) => tally.equal += 1,
             Ok(recording) => {
                 let report = judge(prepared, made, &recording);
                 tally.enter(false, kind, &about, name, report.verdict.name(), &report.verdict_text);
@@ -244,6 +252,53 @@ pub(crate) fn try_all(scenario: &Scenario, name: &str, tally: &mut Tally) {
             Err(why) => tally.enter(false, kind, &about, name, "refused before the run", &why),
         }
     }
+}
+
+/// Whether the two runs differ for a human with the robot still farther off than was asked. `about` is `human_1 at 8 m, asked for
+/// 2 m`.
+fn parts_from_afar(first: &Recording, second: &Recording, about: &str) -> bool {
+    let human = first.header.agents.iter().map(|info| info.agent);
+    let mut words = about.split_whitespace();
+    let name = words.next().unwrap_or_default();
+    let asked = words.filter_map(|word| word.parse::<f64>().ok()).next_back().unwrap_or(NEAR_M);
+    let Some(human) = human.into_iter().find(|agent| agent.to_string() == name) else { return false };
+    let both = first.track(human).zip(second.track(human)).zip(second.track(AgentId::Robot));
+    let mut parted = both.filter(|((a, b), _)| (a.point() - b.point()).norm() > 0.05 || a.leaf() != b.leaf());
+    parted.next().is_some_and(|((_, b), robot)| (b.point() - robot.point()).norm() > asked + FARTHER_M)
+}
+
+/// A rule that is to be done near the robot, done from afar; `None` where it is not.
+fn from_afar(rule: &socrates_model::Rule) -> Option<(f64, socrates_model::Rule)> {
+    let near = rule.when.iter().find_map(|trigger| match trigger {
+        Trigger::RobotVisible(m) | Trigger::RobotNear(m) if *m <= NEAR_M => Some(*m),
+        Trigger::RobotVisible(_)
+        | Trigger::RobotNear(_)
+        | Trigger::Always
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotPassed
+        | Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::GoalReached
+        | Trigger::AtEncounter
+        | Trigger::AfterSecs(_) => None,
+    })?;
+    let when = rule.when.iter().map(|trigger| match trigger {
+        Trigger::RobotVisible(_) => Trigger::RobotVisible(FAR_M),
+        Trigger::RobotNear(_) => Trigger::RobotNear(FAR_M),
+        Trigger::Always
+        | Trigger::RobotBlocking(_)
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotPassed
+        | Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::GoalReached
+        | Trigger::AtEncounter
+        | Trigger::AfterSecs(_) => trigger.clone(),
+    });
+    Some((near, socrates_model::Rule { when: when.collect(), ..rule.clone() }))
 }
 
 /// Whether a human and the robot are once both where they were when they were nearest in the first run, at about that
@@ -301,6 +356,7 @@ fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, Strin
             found.extend(with_rules(made, id, short).map(|other| ("N: obstruction of 0.5 s", id.to_string(), other)));
         }
     }
+    found.extend(reactions_from_afar(made));
     let mut groups: Vec<(Option<GroupId>, u32)> = Vec::new();
     let mut met: BTreeMap<HumanId, u32> = BTreeMap::new();
     for encounter in &made.paths.encounters {
@@ -331,6 +387,26 @@ fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static str, Strin
                 .and_then(|leaver| leaving(made, human.id, leaver))
                 .map(|other| ("N: who should stay leaves", human.id.to_string(), other)),
         );
+    }
+    found
+}
+
+/// Every reaction that was asked for near the robot, done from afar.
+fn reactions_from_afar(made: &Made) -> Vec<(&'static str, String, Made)> {
+    let mut found = Vec::new();
+    for clause in musts(&made.proposal) {
+        let Predicate::Reacts { human, when, act, .. } = &clause.predicate else { continue };
+        let rules = made.proposal.human(*human).map(|human| human.rules.clone()).unwrap_or_default();
+        let asked = rules.iter().find(|rule| rule.when == *when && rule.act == *act && *act != Action::Navigate);
+        let Some((near, far)) = asked.and_then(from_afar) else { continue };
+        // What is done first is done from afar; a rule that comes later waits for those before it.
+        if rules.first().is_none_or(|first| first.when != *when || first.act != *act) {
+            continue;
+        }
+        let change =
+            |rule: socrates_model::Rule| Some(if rule.when == *when && rule.act == *act { far.clone() } else { rule });
+        let about = format!("{human} at {FAR_M} m, asked for {near} m");
+        found.extend(with_rules(made, *human, change).map(|other| (FAR, about, other)));
     }
     found
 }

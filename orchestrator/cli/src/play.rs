@@ -51,6 +51,20 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
     Ok(Played { proposal: made.proposal, report })
 }
 
+/// The proposal alone, of the offline author.
+///
+/// # Errors
+/// The faults of the last answer that was refused.
+pub(crate) async fn propose(request: &Request, location: &Location, seed: u64) -> Result<Proposal, Vec<Fault>> {
+    let reading = socrates_offline::read(request, location);
+    let settings = [("author".to_owned(), "offline".to_owned())].into();
+    let papers = Papers { settings, ..Papers::first(request.clone(), reading, location.clone(), seed) };
+    match ask(&Desk::default(), Papers { stage: Stage::Proposal, ..papers }).await? {
+        Written::Proposal(proposal) => Ok(proposal),
+        Written::Paths(_) | Written::Behaviors(_) => wrong(),
+    }
+}
+
 /// One stage, asked again with what was wrong until it is right.
 async fn ask(desk: &Desk, mut papers: Papers) -> Result<Written, Vec<Fault>> {
     let mut faults = Vec::new();

@@ -103,6 +103,10 @@ pub(crate) fn prepare_text(
     if let Some(options) = options {
         apply(&mut request, options);
     }
+    // The reference robot always runs, whoever asks.
+    if !request.robot.planners.iter().any(|planner| planner == "reference") {
+        request.robot.planners.insert(0, "reference".to_owned());
+    }
     let problems = request.problems();
     if !problems.is_empty() {
         let mut complaint =
@@ -210,9 +214,6 @@ fn apply(request: &mut Request, options: &RunOptions) {
     }
     if let Some(author) = &options.author {
         request.run.author.clone_from(author);
-    }
-    if !request.robot.planners.iter().any(|planner| planner == "reference") {
-        request.robot.planners.insert(0, "reference".to_owned());
     }
 }
 

@@ -274,6 +274,7 @@ async fn batch(
 /// Prints how a request is read.
 pub(crate) fn print_reading(talk: &Talk, prepared: &Prepared) {
     talk.line(&format!("reading    {}", socrates_offline::summary(&prepared.reading)));
+    talk.line(&format!("planners   {}", prepared.request.robot.planners.join(", ")));
     for problem in &prepared.reading.problems {
         talk.line(&format!("problem    {problem}"));
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use socrates_model::report::Standing;
-use socrates_model::{ClauseRole, Location, Report, Request, Verdict};
+use socrates_model::{Clause, ClauseRole, Location, Report, Request, Verdict};
 use socrates_offline::{Card, catalog};
 
 use crate::args::ScenariosVerb;
@@ -20,7 +20,7 @@ pub(crate) async fn scenarios(talk: &Talk, verb: &ScenariosVerb) -> Result<(), C
             list(talk);
             Ok(())
         }
-        ScenariosVerb::Show { id } => show(talk, id),
+        ScenariosVerb::Show { id } => show(talk, id).await,
         ScenariosVerb::Rate { ids, seeds, location, out } => {
             rate(talk, ids, *seeds, location.as_deref(), out.as_deref()).await
         }
@@ -77,8 +77,27 @@ fn find(id: &str) -> Result<&'static Card, Complaint> {
         })
 }
 
-fn show(talk: &Talk, id: &str) -> Result<(), Complaint> {
+/// Every clause of the card played with seed 1 where it fits first: what is asked of the people by their parts, too.
+async fn played(card: &'static Card) -> Option<(String, Vec<Clause>)> {
+    let place = places(card, None).ok()?.into_iter().next()?;
+    let asked = request(card, &place.name).ok()?;
+    let clauses = crate::play::propose(&asked, &place, 1).await.ok()?.expected_events;
+    Some((place.name, clauses))
+}
+
+/// `must`, `should` and `robot` before a clause.
+const fn weight(role: ClauseRole, must: bool) -> &'static str {
+    match (role, must) {
+        (ClauseRole::Setup, true) => "must",
+        (ClauseRole::Setup, false) => "should",
+        (ClauseRole::Outcome, true) => "robot must",
+        (ClauseRole::Outcome, false) => "robot",
+    }
+}
+
+async fn show(talk: &Talk, id: &str) -> Result<(), Complaint> {
     let card = find(id)?;
+    let sample = played(card).await;
     let words = |classes: &[socrates_model::PlaceClass]| {
         classes.iter().map(|class| class.name().replace('_', " ")).collect::<Vec<_>>().join(", ")
     };
@@ -123,13 +142,21 @@ fn show(talk: &Talk, id: &str) -> Result<(), Complaint> {
         talk.line(&format!("script     {}: {}", plain(&json!(line.when)), plain(&json!(line.act))));
     }
     talk.line(&format!("expected   {}", card.expected));
-    for clause in &card.clauses {
-        let what = match (clause.role, clause.must) {
-            (ClauseRole::Setup, true) => "must be",
-            (ClauseRole::Setup, false) => "should be",
-            (ClauseRole::Outcome, _) => "the robot",
-        };
-        talk.line(&format!("{what:<10} {}", clause.text.replace("{human}", "each").replace("{group}", "the group")));
+    talk.line(&format!("timing     robot and people at most {} s apart where their ways cross", card.gap_s));
+    match &sample {
+        Some((place, clauses)) => {
+            talk.line(&format!("clauses    as played in {place} with seed 1"));
+            for clause in clauses {
+                let limits = plain(&json!(clause.predicate));
+                talk.line(&format!("  {:<10} {} [{limits}]", weight(clause.role, clause.must), clause.text));
+            }
+        }
+        None => {
+            for clause in &card.clauses {
+                let text = clause.text.replace("{human}", "each").replace("{group}", "the group");
+                talk.line(&format!("  {:<10} {text}", weight(clause.role, clause.must)));
+            }
+        }
     }
     talk.line(&format!("probes     {}", card.principles.join(", ")));
     talk.line(&format!("fits       {}", fitting(card).join(", ")));
@@ -141,6 +168,7 @@ fn show(talk: &Talk, id: &str) -> Result<(), Complaint> {
         "roles": card.roles.iter().map(role_object).collect::<Vec<_>>(),
         "clauses": card.clauses.iter().map(|clause| json!({ "each": clause.each, "role": clause.role, "must": clause.must,
             "text": clause.text, "predicate": clause.predicate })).collect::<Vec<_>>(),
+        "played": sample.map(|(place, clauses)| json!({ "location": place, "seed": 1, "clauses": clauses })),
         "locations": fitting(card),
     }));
     Ok(())
@@ -173,6 +201,7 @@ fn plain(value: &Value) -> String {
         Value::String(text) => text.replace('_', " "),
         Value::Object(members) => members
             .iter()
+            .filter(|(_, value)| value.as_str() != Some(""))
             .map(|(key, value)| format!("{} {}", key.replace('_', " "), plain(value)))
             .collect::<Vec<_>>()
             .join(", "),

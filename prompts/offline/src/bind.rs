@@ -171,7 +171,11 @@ pub(crate) fn people_deed(
         let person = story.cast.people.get(*who);
         person.and_then(|person| person.rules.last()).is_some_and(|last| last.rule.act == Action::StandStill)
     };
-    let act = if act == Act::Stay && found.lasts_s.is_some() && found.places.is_empty() && people.iter().all(stopped) { Act::Stop } else { act };
+    let act = if act == Act::Stay && found.lasts_s.is_some() && found.places.is_empty() && people.iter().all(stopped) {
+        Act::Stop
+    } else {
+        act
+    };
     // `is standing against the wall` makes room for nobody, where nothing is waited for.
     let leans = act == Act::GiveWay
         && thread.waiting.is_none()
@@ -180,17 +184,26 @@ pub(crate) fn people_deed(
     let act = if leans { Act::Stand } else { act };
     // `steps to the left`
     let aside = act == Act::Walk
-        && matches!(stretch.words.get(at).map(|word| word.stem.as_str()), Some("step" | "move" | "shift" | "dodge" | "jump"))
+        && matches!(
+            stretch.words.get(at).map(|word| word.stem.as_str()),
+            Some("step" | "move" | "shift" | "dodge" | "jump")
+        )
         && (to + 1..to + 4).any(|k| {
             stretch.words.get(k).is_some_and(|word| matches!(word.text.as_str(), "left" | "right"))
-                && (to + 1..k).all(|k| stretch.words.get(k).is_some_and(|word| word.label || matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her")))
+                && (to + 1..k).all(|k| {
+                    stretch.words.get(k).is_some_and(|word| {
+                        word.label || matches!(word.text.as_str(), "to" | "the" | "its" | "his" | "her")
+                    })
+                })
         });
     let act = if aside { Act::GiveWay } else { act };
     // `walks 2 m behind participant 1`
     let trails = act == Act::Walk
         && (to + 1..to + 5).any(|k| {
             stretch.words.get(k).is_some_and(|word| word.text == "behind")
-                && meant.iter().any(|(from, _, some)| *from == k + 1 && !some.is_empty() && some.iter().all(|i| !people.contains(i)))
+                && meant.iter().any(|(from, _, some)| {
+                    *from == k + 1 && !some.is_empty() && some.iter().all(|i| !people.contains(i))
+                })
         });
     let act = if trails { Act::Follow } else { act };
     // `is accompanied by a technician`
@@ -287,7 +300,9 @@ pub(crate) fn people_deed(
         .filter(|_| !matches!(act, Act::Follow | Act::Ahead | Act::Behind | Act::Abreast))
         .map(Trigger::RobotNear);
     // `At 1.5 m he looks up and jumps aside`: both then.
-    if near.is_some() && stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from")) {
+    if near.is_some()
+        && stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from"))
+    {
         thread.waiting.clone_from(&near);
         thread.vague = false;
     }

@@ -24,7 +24,11 @@ pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
     second(pieces);
     let mut at = 0;
     while at < pieces.len() {
-        if let Some(found) = several(pieces, at).or_else(|| both(pieces, at)).or_else(|| before(pieces, at)).or_else(|| after(pieces, at)) {
+        if let Some(found) = several(pieces, at)
+            .or_else(|| both(pieces, at))
+            .or_else(|| before(pieces, at))
+            .or_else(|| after(pieces, at))
+        {
             for name in &found.names {
                 if !known.contains(name) {
                     known.push(name.clone());
@@ -288,6 +292,11 @@ fn both(pieces: &[Piece], at: usize) -> Option<Found> {
     // What is left begins with the number: `two confederates come …`
     let begin = whose + usize::from(text_at(pieces, whose) != "two");
     let drop = vec![(at, begin), (noun + 1, noun + 1 + close)];
-    (word_at(pieces, noun).is_some_and(plural) && ends(pieces, noun + 1))
-        .then(|| Found { noun, end: noun, whose: None, names: vec![first, second], drop })
+    (word_at(pieces, noun).is_some_and(plural) && ends(pieces, noun + 1)).then(|| Found {
+        noun,
+        end: noun,
+        whose: None,
+        names: vec![first, second],
+        drop,
+    })
 }

@@ -29,21 +29,30 @@ pub(crate) fn settle(story: &mut Story, rough: &str) {
     for who in 0..story.cast.people.len() {
         let relation = story.relation_of(who);
         let Some(person) = story.cast.people.get_mut(who) else { continue };
-        for read in person.rules.iter_mut().filter(|read| !read.exact) {
-            for trigger in &mut read.rule.when {
-                // Where only one gets through they have met before one of them goes back.
-                if let (true, Trigger::RobotVisible(m)) = (narrow && read.rule.act == Action::GiveWay, &mut *trigger) {
-                    *m = m.min(FACES_M);
-                }
-                // Who stands there and walks on has been met by then.
-                let leaves = relation == Some(Relation::Static) && read.rule.act == Action::Navigate;
-                if let (true, Trigger::RobotVisible(m) | Trigger::RobotNear(m)) = (leaves, &mut *trigger) {
-                    *m = m.min(MET_M);
-                }
-                // Who walks ahead of the robot does not see it.
-                if let (Some(Relation::Ahead), Trigger::RobotVisible(m)) = (relation, &trigger) {
-                    *trigger = Trigger::RobotNear(m.min(BEHIND_M));
-                }
+        for at in 0..person.rules.len() {
+            let Some(read) = person.rules.get(at).filter(|read| !read.exact) else { continue };
+            let before = read.rule.when.clone();
+            // What comes after something else at the same moment comes when that is over.
+            let later =
+                person.rules.iter().take(at).any(|other| other.rule.when == before && other.rule.for_s.is_some());
+            let gives = narrow && read.rule.act == Action::GiveWay && !later;
+            let leaves = relation == Some(Relation::Static) && read.rule.act == Action::Navigate && !later;
+            let after: Vec<Trigger> = before
+                .iter()
+                .map(|trigger| match (trigger, relation) {
+                    // Who walks ahead of the robot does not see it.
+                    (Trigger::RobotVisible(m), Some(Relation::Ahead)) => Trigger::RobotNear(m.min(BEHIND_M)),
+                    // Where only one gets through they have met before one of them goes back.
+                    (Trigger::RobotVisible(m), _) if gives => Trigger::RobotVisible(m.min(FACES_M)),
+                    // Who stands there and walks on has been met by then.
+                    (Trigger::RobotVisible(m), _) if leaves => Trigger::RobotVisible(m.min(MET_M)),
+                    (Trigger::RobotNear(m), _) if leaves => Trigger::RobotNear(m.min(MET_M)),
+                    (other, _) => other.clone(),
+                })
+                .collect();
+            // What waits for the same moment goes on doing so.
+            for read in person.rules.iter_mut().skip(at).filter(|read| read.rule.when == before) {
+                read.rule.when.clone_from(&after);
             }
         }
         if relation == Some(Relation::Behind) {
@@ -53,7 +62,16 @@ pub(crate) fn settle(story: &mut Story, rough: &str) {
         }
         lets_pass_last(&mut person.rules);
         // `stands still while it moves and walks towards it when it stops`: it stands there, and comes up to it then.
-        if relation == Some(Relation::Frontal) && alternates(person.rules.iter().map(|read| &read.rule)) {
+        let towards = |read: &ReadRule| {
+            let quote = read.quote.to_lowercase();
+            read.rule.when == [Trigger::RobotStopped]
+                && (read.rule.act == Action::Approach
+                    || ["toward", "up to", "closer", "nearer"].iter().any(|words| quote.contains(words)))
+        };
+        if relation == Some(Relation::Frontal)
+            && person.rules.iter().any(towards)
+            && alternates(person.rules.iter().map(|read| &read.rule))
+        {
             if let Some((relation, _)) = &mut person.relation {
                 *relation = Relation::Static;
             }
@@ -130,7 +148,7 @@ fn lets_pass_last(rules: &mut [ReadRule]) {
         let Some((read, last)) = rest.first_mut().zip(before.last()) else { return };
         let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot | Action::Block)
             && last.rule.for_s.is_some();
-        let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate);
+        let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate) && read.rule.gesture.is_none();
         if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m) {
             read.rule.when.clone_from(&last.rule.when);
         }

@@ -123,7 +123,8 @@ const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
 fn taken_back(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
     let corrects = |k: usize| CORRECTS.contains(&text(k));
-    let told = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| lexicon().verbs.contains(&word.stem));
+    let told =
+        |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| lexicon().verbs.contains(&word.stem));
     let Some(from) = (1..words.len()).find(|k| corrects(*k)) else { return words };
     let skips = |k: usize| {
         words.get(k).is_some_and(Option::is_none) || corrects(k) || matches!(text(k), "just" | "only" | "make" | "that")
@@ -318,7 +319,11 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
             (Some(Joint::Except), 1)
         }
         // `all but the third step aside`; `all but runs` nearly does.
-        "but" if before == "all" && matches!(text(i + 1), "the" | "a" | "an" | "her" | "his" | "him" | "human" | "for") && !counted(i + 3) => {
+        "but"
+            if before == "all"
+                && matches!(text(i + 1), "the" | "a" | "an" | "her" | "his" | "him" | "human" | "for")
+                && !counted(i + 3) =>
+        {
             (Some(Joint::Except), 1 + usize::from(text(i + 1) == "for"))
         }
         "but" if before == "all" => (None, 1),
@@ -450,14 +455,39 @@ fn main_verb(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     let own = |word: &Word| finite(word) || matches!(word.text.as_str(), "is" | "was" | "has");
     let before = i.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
     // `the one who blocks it | gives way`
-    let verb = open.words.len().checked_sub(2).and_then(|k| open.words.get(k)).is_some_and(|word| verbs.contains(&word.stem));
+    let verb =
+        open.words.len().checked_sub(2).and_then(|k| open.words.get(k)).is_some_and(|word| verbs.contains(&word.stem));
     let object = before.is_some_and(|word| word.text == "it") && verb;
-    let joins = !object && before.is_none_or(|word| {
-        verbs.contains(&word.stem) && word.text != word.stem
-            || matches!(word.text.as_str(), "and" | "or" | "nor" | "neither" | "not" | "never" | "the" | "a" | "an" | "its" | "his" | "her" | "their" | "who" | "of" | "to" | "that" | "which" | "also" | "then" | "it")
-            || word.text.ends_with("ly")
-            || word.number().is_some()
-    });
+    let joins = !object
+        && before.is_none_or(|word| {
+            verbs.contains(&word.stem) && word.text != word.stem
+                || matches!(
+                    word.text.as_str(),
+                    "and"
+                        | "or"
+                        | "nor"
+                        | "neither"
+                        | "not"
+                        | "never"
+                        | "the"
+                        | "a"
+                        | "an"
+                        | "its"
+                        | "his"
+                        | "her"
+                        | "their"
+                        | "who"
+                        | "of"
+                        | "to"
+                        | "that"
+                        | "which"
+                        | "also"
+                        | "then"
+                        | "it"
+                )
+                || word.text.ends_with("ly")
+                || word.number().is_some()
+        });
     words.get(i).and_then(Option::as_ref).is_some_and(finite)
         && !joins
         && open.words.len() >= 2

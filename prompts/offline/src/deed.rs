@@ -111,11 +111,16 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
 /// `He blocks it. After ten seconds he steps aside.`: so long after that began, not after the start of the run.
 fn since_last(cast: &mut Cast, who: usize, act: Act, around: &Around) -> Option<(Act, Around)> {
     let Some(Trigger::AfterSecs(secs)) = around.trigger else { return None };
-    let last = cast.people.get_mut(who)?.rules.last_mut()?;
+    let person = cast.people.get_mut(who)?;
+    let stands = matches!(person.relation, Some((Relation::Static, _)));
+    let last = person.rules.last_mut()?;
     let [when] = last.rule.when.as_slice() else { return None };
     let waits = !matches!(when, Trigger::Always | Trigger::AfterSecs(_))
         && (last.rule.act != Action::Navigate || last.rule.gesture.is_some())
         && (!last.lasts || last.rule.for_s == Some(secs));
+    // `is waiting at a doorway; after ten seconds he walks on`: it waits from the start of the run on.
+    let from_start = last.rule.act == Action::StandStill && !last.stated && stands;
+    let waits = waits && !from_start;
     // `after 15 s she stops and stands still`: both then.
     let again = last.quote == around.quote || manner(act).is_some_and(|(action, ..)| action == last.rule.act);
     if !waits && !again || around.gives_up {
@@ -227,7 +232,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         }
     }
     // `overtakes it, comes back and follows it`: who has overtaken is no longer behind.
-    let overtook = cast.people.get(who).is_some_and(|person| person.doings.iter().any(|doing| doing == "overtakes the robot"));
+    let overtook =
+        cast.people.get(who).is_some_and(|person| person.doings.iter().any(|doing| doing == "overtakes the robot"));
     if act == Act::Follow && overtook && around.object.is_none() {
         let what = format!("human_{} overtakes the robot; that it follows it afterwards", who + 1);
         short::unplayed(&mut cast.problems, &around.quote, &what);

@@ -15,7 +15,7 @@ pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, loca
     let Some(card) = found.or_else(|| catalog().iter().find(|card| card.fits(location))) else { return Vec::new() };
     reading.pattern = Some(card.id.clone());
     reading.notes.push(format!("the text names no people; the pattern `{}` says who is there", card.id));
-    let (humans, extras) = people(card, request.expect.humans, &mut Draw::new(0, "reading"), request);
+    let (humans, extras) = people(card, &mut Draw::new(0, "reading"), request);
     reading.humans = humans;
     if story.cast.groups.is_empty() && card.roles.iter().any(|role| role.group) && reading.humans.len() > 1 {
         reading.notes.push("they form a group".to_owned());
@@ -23,13 +23,9 @@ pub(crate) fn fill(reading: &mut Reading, story: &Story, request: &Request, loca
     extras
 }
 
-/// The people of a card: `total` of them if given, else a number drawn from the card's ranges.
-pub(crate) fn people(
-    card: &Card,
-    total: Option<u32>,
-    draw: &mut Draw,
-    request: &Request,
-) -> (Vec<ReadHuman>, Vec<Extra>) {
+/// The people of a card: as many as are expected, else a number drawn from the card's ranges.
+pub(crate) fn people(card: &Card, draw: &mut Draw, request: &Request) -> (Vec<ReadHuman>, Vec<Extra>) {
+    let total = request.expect.headcount();
     let context = crate::pattern::role_of(&request.social_context);
     let mut counts: Vec<u32> = card
         .roles
@@ -72,7 +68,34 @@ pub(crate) fn people(
             });
         }
     }
+    expected_groups(&request.expect.groups, &mut humans, &mut extras);
     (humans, extras)
+}
+
+/// The groups that the request expects instead of the card's: who is in one stands to the robot as its first member does.
+fn expected_groups(groups: &[Vec<u32>], humans: &mut [ReadHuman], extras: &mut [Extra]) {
+    if groups.is_empty() {
+        return;
+    }
+    for human in humans.iter_mut() {
+        human.group = None;
+    }
+    for (id, members) in (1..).map(GroupId).zip(groups) {
+        let members: Vec<usize> = members.iter().filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1)).collect();
+        let first = members.first().and_then(|first| Some((humans.get(*first)?.clone(), extras.get(*first)?.clone())));
+        let Some((first, with)) = first else { continue };
+        for member in members {
+            if let (Some(human), Some(extra)) = (humans.get_mut(member), extras.get_mut(member)) {
+                if human.relation != first.relation {
+                    (human.relation, human.summary) = (first.relation, first.summary.clone());
+                    human.rules.clone_from(&first.rules);
+                    extra.stated.clone_from(&with.stated);
+                }
+                human.group = Some(id);
+                (extra.start, extra.goal, extra.speed_mps) = (with.start, with.goal, with.speed_mps);
+            }
+        }
+    }
 }
 
 /// A pattern for a request without a rough scenario: one that the map can hold, drawn by the seed. A task that says what the

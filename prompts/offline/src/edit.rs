@@ -10,12 +10,13 @@ use socrates_prompts::Question;
 
 use crate::edit_people::Crowd;
 use crate::edit_wish::{Kind, Wish, wishes};
-use crate::{edit_paths, edit_people, edit_settle};
+use crate::{edit_paths, edit_people, edit_settle, edit_together};
 
 /// What can be said, for those whose words were not understood.
 const SAYABLE: &str = "what can be said: make a path longer or shorter, reverse it, start or end it somewhere, avoid a place, move \
-                       the meeting to another place; add, remove, slow down or speed up somebody; what somebody does, when, \
-                       how long and how near; no gestures";
+                       the meeting to another place; add, remove, slow down or speed up somebody; let two swap places; \
+                       make some a group or break it up; what somebody does, when, how long and how near; add, change or \
+                       remove a gesture";
 
 /// What there is to edit.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +92,9 @@ impl Desk {
             Kind::Pace(factor) => edit_people::pace(self, wish, crowd, factor),
             Kind::NoGestures => edit_people::no_gestures(self, wish, crowd),
             Kind::Ungroup => edit_people::ungroup(self, wish),
+            Kind::Group => edit_together::group(self, wish, crowd),
+            Kind::Swap => edit_together::swap(self, wish, crowd),
+            Kind::Gesture => edit_together::gesture(self, wish, crowd),
             Kind::Story => edit_people::story(self, wish, crowd),
         }
     }

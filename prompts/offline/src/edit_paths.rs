@@ -11,7 +11,7 @@ use crate::edit_people::{Crowd, Whom};
 use crate::edit_wish::{Kind, Wish};
 use crate::humans::{Taken, Way, way};
 use crate::routes::{Net, Route};
-use crate::{place, solve};
+use crate::{place, solve, spot};
 
 /// A path gets longer or shorter by so much where the edit does not say, m.
 const STEP_M: f64 = 3.0;
@@ -104,7 +104,7 @@ fn listed(net: &Net<'_>, nodes: &[usize]) -> String {
 }
 
 /// Encounters in the order in which the robot comes to them.
-fn sort(paths: &mut Paths) {
+pub(crate) fn sort(paths: &mut Paths) {
     let mut all: Vec<(usize, Encounter)> = Vec::new();
     for human in paths.humans.keys() {
         all.extend(paths.visits(*human).into_iter().map(|visit| {
@@ -143,6 +143,9 @@ impl Trip<'_> {
             | Kind::Pace(_)
             | Kind::NoGestures
             | Kind::Ungroup
+            | Kind::Group
+            | Kind::Swap
+            | Kind::Gesture
             | Kind::Story => Err("it is no change of one way".to_owned()),
         }
     }
@@ -158,6 +161,15 @@ impl Trip<'_> {
             return Ok(named);
         }
         let Some(class) = wish.place else { return Err("it does not say where".to_owned()) };
+        // `at the kitchen` is the kitchen, not any room.
+        if let Some(meant) = spot::named_in(self.net.location, &wish.quote, class) {
+            let nodes: Vec<usize> = meant.nodes.iter().filter_map(|node| self.net.index(node)).collect();
+            if nodes.is_empty() {
+                let has = place::listed(self.net.location);
+                return Err(format!("the map has no place called `{}`; it has: {has}", meant.name));
+            }
+            return Ok(nodes);
+        }
         let found: Vec<usize> = (0..self.net.len()).filter(|node| self.net.is(*node, class)).collect();
         if found.is_empty() {
             return Err(format!(
@@ -343,13 +355,20 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     let net = Net::new(&location);
     let node = |paths: &Paths| paths.encounters.first().map(|encounter| encounter.node.clone());
     let before = node(paths);
-    let named: Vec<NodeId> = location
+    let mut named: Vec<NodeId> = location
         .graph
         .nodes
         .iter()
         .filter(|node| wish.names.iter().any(|name| *name == node.id.as_str()))
         .map(|node| node.id.clone())
         .collect();
+    if let Some(meant) = spot::named_in(&location, &wish.quote, class).filter(|_| named.is_empty()) {
+        if meant.nodes.is_empty() {
+            return desk.no_place(&wish.quote, &format!("asks for `{}`, which the map does not have", meant.name));
+        }
+        // Nobody walks on beyond a dead end: they meet before it.
+        named = spot::nodes(&location, &wish.quote, class, &desk.draft.proposal.humans);
+    }
     let same = class == desk.draft.proposal.place && named.is_empty();
     if same && !wish.other && wish.place.is_some() {
         return desk.refuse(&wish.quote, "is so already; say `the other …` for another place of this kind");

@@ -315,7 +315,7 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
     true
 }
 
-fn group(desk: &mut Desk, members: &[usize]) -> bool {
+pub(crate) fn group(desk: &mut Desk, members: &[usize]) -> bool {
     let proposal = &mut desk.draft.proposal;
     let ids: Vec<HumanId> = members.iter().filter_map(|i| proposal.humans.get(*i)).map(|human| human.id).collect();
     if ids.len() < 2 || proposal.groups.iter().any(|group| group.members == ids) {
@@ -341,6 +341,24 @@ fn group(desk: &mut Desk, members: &[usize]) -> bool {
     edit_paths::together(desk, members);
     desk.done.push(format!("{} form {id}", listed.join(" and ")));
     true
+}
+
+/// Takes people out of the groups they are in; a group of one is none.
+pub(crate) fn leave_groups(desk: &mut Desk, members: &[usize]) {
+    let proposal = &mut desk.draft.proposal;
+    let ids: Vec<HumanId> = members.iter().filter_map(|i| proposal.humans.get(*i)).map(|human| human.id).collect();
+    if proposal.groups.iter().any(|group| group.members == ids) {
+        return;
+    }
+    for group in &mut proposal.groups {
+        group.members.retain(|id| !ids.contains(id));
+    }
+    proposal.groups.retain(|group| group.members.len() > 1);
+    let left: Vec<GroupId> = proposal.groups.iter().map(|group| group.id).collect();
+    for human in &mut proposal.humans {
+        human.group = human.group.filter(|id| left.contains(id) && !ids.contains(&human.id));
+    }
+    proposal.expected_events.retain(|clause| clause.predicate.group().is_none_or(|id| left.contains(&id)));
 }
 
 fn clause(proposal: &mut Proposal, text: String, predicate: Predicate) {

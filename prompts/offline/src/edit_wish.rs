@@ -4,7 +4,7 @@ use socrates_model::PlaceClass;
 
 use crate::clause;
 use crate::cut::{Joint, Stretch, sentences};
-use crate::mention::mentions;
+use crate::mention::{Mention, Who, mentions};
 
 /// What an edit wants.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +31,12 @@ pub(crate) enum Kind {
     NoGestures,
     /// A group is no group any more.
     Ungroup,
+    /// Some of those who are there form a group.
+    Group,
+    /// Two people change places.
+    Swap,
+    /// A gesture more, or another one instead.
+    Gesture,
     /// What the grammar of requests reads: somebody new, what somebody does.
     Story,
 }
@@ -58,7 +64,22 @@ pub(crate) fn wishes(text: &str) -> Vec<Wish> {
     let mut found: Vec<Wish> = Vec::new();
     for sentence in sentences(text) {
         let mut open = false;
-        for stretch in sentence {
+        let mut rest = sentence.as_slice();
+        while let [stretch, more @ ..] = rest {
+            // `make the nurse and the visitor a group`, `swap the nurse and the visitor`
+            if let Some((kind, more)) = of_several(rest) {
+                let mut next = wish(kind, stretch.clone(), text);
+                next.clauses.extend(rest.iter().skip(1).take(more).cloned());
+                let to = next.clauses.last().and_then(|last| last.words.last()).map_or(0, |word| word.to);
+                let from = stretch.words.first().map_or(0, |word| word.from);
+                text.get(from..to).unwrap_or_default().clone_into(&mut next.quote);
+                found.push(next);
+                rest = rest.get(1 + more..).unwrap_or_default();
+                open = true;
+                continue;
+            }
+            rest = more;
+            let stretch = stretch.clone();
             let kind = kind(&stretch);
             let goes_on = open && kind == Kind::Story && stretch.joint != Joint::Opens;
             // `human 2: slower` names whom the next clause means.
@@ -84,8 +105,46 @@ pub(crate) fn wishes(text: &str) -> Vec<Wish> {
         }
     }
     // `slower and longer`: a clause of courtesy alone asks for nothing.
-    found.retain(|wish| !wish.quote.trim().is_empty() && !polite(wish));
+    // `let`, where the cut has put those whom it speaks of into a clause of their own.
+    let asks = |wish: &Wish| !matches!(wish.quote.trim().to_lowercase().as_str(), "" | "let");
+    found.retain(|wish| asks(wish) && !polite(wish));
     found
+}
+
+/// What is asked of people who are listed in clauses of their own, and how many clauses go on the list.
+fn of_several(rest: &[Stretch]) -> Option<(Kind, usize)> {
+    let (first, others) = rest.split_first()?;
+    let lists = |stretch: &&Stretch| {
+        let named = mentions(&stretch.words);
+        let said = |i: usize| named.iter().any(|mention| (mention.from..=mention.to).contains(&i));
+        let fills = |text: &str| {
+            matches!(
+                text,
+                "a" | "an"
+                    | "one"
+                    | "the"
+                    | "group"
+                    | "into"
+                    | "in"
+                    | "to"
+                    | "form"
+                    | "their"
+                    | "places"
+                    | "positions"
+                    | "paths"
+                    | "ways"
+                    | "together"
+                    | "please"
+                    | "single"
+            )
+        };
+        matches!(stretch.joint, Joint::And | Joint::Comma)
+            && stretch.words.iter().enumerate().all(|(i, word)| said(i) || fills(&word.text))
+    };
+    let more = others.iter().take_while(lists).count();
+    let words = rest.iter().take(1 + more).flat_map(|stretch| stretch.words.clone()).collect();
+    let kind = kind(&Stretch { words, ..first.clone() });
+    matches!(kind, Kind::Group | Kind::Swap).then_some((kind, more))
 }
 
 fn names_only(wish: &Wish) -> bool {
@@ -102,7 +161,7 @@ fn polite(wish: &Wish) -> bool {
         && words.into_iter().all(|word| {
             matches!(
                 word.text.as_str(),
-                "please" | "thanks" | "thank" | "you" | "ok" | "okay" | "now" | "also" | "just"
+                "please" | "thanks" | "thank" | "you" | "ok" | "okay" | "now" | "also" | "just" | "let"
             )
         })
 }
@@ -135,6 +194,20 @@ fn kind(stretch: &Stretch) -> Kind {
     }
     if has(&["ungroup", "dissolve"]) || has(&["break", "split", "separate"]) && has(&["group"]) {
         return Kind::Ungroup;
+    }
+    if has(&["swap", "exchange", "trade"])
+        || has(&["switch"]) && has(&["place", "position", "path", "way", "with", "and"])
+    {
+        return Kind::Swap;
+    }
+    let makes = &["form", "make", "put", "join", "turn", "merge", "gather", "together", "into", "let"];
+    let first = stretch.words.first().is_some_and(|word| word.text == "group");
+    if has(&["group"]) && (has(makes) || first) && !has(&["add", "new", "another", "of", "remove", "delete", "drop"]) {
+        return Kind::Group;
+    }
+    let changes = &["add", "change", "replace", "give", "set", "additional", "another", "instead", "turn", "switch"];
+    if has(&["gesture", "gestures", "signal", "sign"]) && has(changes) && mentions(&stretch.words).iter().all(known) {
+        return Kind::Gesture;
     }
     if has(&["remove", "delete", "drop", "kick", "omit", "erase"])
         || has(&["without"]) && !has(&["gesture"]) && stretch.words.first().is_some_and(|word| word.text == "without")
@@ -180,6 +253,11 @@ fn kind(stretch: &Stretch) -> Kind {
     Kind::Story
 }
 
+/// Whether a mention is of somebody who may be there, and of nobody new.
+fn known(mention: &Mention) -> bool {
+    !matches!(mention.who, Who::New { article: true, .. } | Who::Further(_) | Who::More(_))
+}
+
 /// `move aside at the door` is a deed, no edit of the place.
 fn says_who_acts(stretch: &Stretch) -> bool {
     let found = clause::read(&mut stretch.clone());
@@ -218,6 +296,11 @@ mod tests {
             ("the robot should avoid the doorway", Kind::Avoid),
             ("start the nurse at the door", Kind::Start),
             ("the nurse should move aside", Kind::Story),
+            ("swap the nurse and the visitor", Kind::Swap),
+            ("make the nurse and the visitor a group", Kind::Group),
+            ("break up the group", Kind::Ungroup),
+            ("change the nurse's gesture to PROCEED", Kind::Gesture),
+            ("the nurse gestures WAIT to the robot", Kind::Story),
         ] {
             assert_eq!(wishes(text)[0].kind, kind, "{text}");
         }

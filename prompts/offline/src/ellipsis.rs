@@ -65,7 +65,7 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
         Some(false)
     } else if has(&["too", "likewise", "same", "well", "also", "similarly", "equally"])
         || verb && has(&["so", "only"])
-        || left == ["do"]
+        || has(&["do"]) && left.iter().all(|word| matches!(*word, "do" | "only" | "just"))
     {
         Some(true)
     } else {
@@ -226,6 +226,7 @@ mod tests {
             ("the nurse will not either", Some(false)),
             ("the second one does the same", Some(true)),
             ("so does the intern", Some(true)),
+            ("only one does", Some(true)),
             ("one is there", None),
             ("the nurse does not move", None),
         ] {

@@ -48,6 +48,7 @@ mod preamble;
 
 mod again;
 mod clause;
+mod contra;
 mod measure;
 mod message;
 
@@ -81,6 +82,7 @@ mod edit;
 mod edit_paths;
 mod edit_people;
 mod edit_settle;
+mod edit_together;
 mod edit_wish;
 
 mod answer;

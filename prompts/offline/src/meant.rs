@@ -3,7 +3,7 @@
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
 use crate::lexicon::lexicon;
-use crate::mention::Who;
+use crate::mention::{Mention, Who};
 use crate::story::{Story, Subject, Thread};
 
 /// Whom the mentions of a clause mean, in order, with their first and last words.
@@ -42,7 +42,10 @@ pub(crate) fn meant(
             || !found.acts() && mention.who != Who::Nobody && thread.pending.is_empty() && next != Some(Joint::And);
         let known = story.cast.people.len();
         let made_of: Vec<String> = words.iter().flat_map(|word| word.made_of.clone()).collect();
-        let mut people = if made_of.is_empty() {
+        let asked = asked(story, found, mention);
+        let mut people = if let Some(asked) = asked {
+            asked
+        } else if made_of.is_empty() {
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)
         } else {
             story.cast.made_of(mention, declares, said, &made_of)
@@ -92,4 +95,13 @@ pub(crate) fn meant(
         meant.push((mention.from, mention.to, people));
     }
     meant
+}
+
+/// `Two people block it. The robot asks two people to step aside`: those two.
+fn asked(story: &Story, found: &Found, mention: &Mention) -> Option<Vec<usize>> {
+    let robot = found.robots.first().is_some_and(|robot| *robot < mention.from);
+    let (Who::New { count: Some(n), article: false } | Who::Bare(n)) = mention.who else { return None };
+    let them = story.cast.latest();
+    let same = them.len() > 1 && usize::try_from(n) == Ok(them.len()) && mention.role.is_none();
+    (robot && same && found.gesture.is_some()).then_some(them)
 }

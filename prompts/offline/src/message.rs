@@ -34,7 +34,9 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         return;
     }
     // `stops the robot with a gesture`
-    let stops = stems.windows(2).position(|pair| matches!(pair, ["stop" | "halt", "robot"]))
+    let stops = stems
+        .windows(2)
+        .position(|pair| matches!(pair, ["stop" | "halt", "robot"]))
         .or_else(|| stems.windows(3).position(|three| matches!(three, ["stop" | "halt", "the", "robot"])));
     let with = stops.and_then(|stops| (stops..stems.len()).find(|k| stems.get(*k) == Some(&"with")));
     if let (Some(stops), Some(with)) = (stops, with)

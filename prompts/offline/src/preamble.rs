@@ -185,7 +185,8 @@ fn outside(pieces: &mut [Piece]) {
         let film = (k + 1..k + 5).any(|k| matches!(stem(k), "video" | "clip" | "recording" | "film" | "footage"));
         let watches = matches!(stem(k), "watch" | "view" | "rate" | "judge" | "annotate" | "see") && film;
         // `twenty raters will watch the videos`
-        let who = (1..=3).filter_map(|back| k.checked_sub(back)).find(|k| !matches!(text(*k), "will" | "who" | "later"));
+        let who =
+            (1..=3).filter_map(|back| k.checked_sub(back)).find(|k| !matches!(text(*k), "will" | "who" | "later"));
         if let Some(who) = who.filter(|who| watches && *who > 0 && (role(*who) || text(*who).ends_with("ers"))) {
             silent.extend([who - 1, who, k]);
         }
@@ -193,14 +194,31 @@ fn outside(pieces: &mut [Piece]) {
             silent.push(k);
         }
         case |= matches!(stem(k), "case" | "scene" | "situation" | "issue" | "bug" | "scenario");
-        if case && text(k - 1) == "the" && text(k) == "one" && matches!(text(k + 1), "near" | "from" | "in" | "at" | "with") {
+        if case
+            && text(k - 1) == "the"
+            && text(k) == "one"
+            && matches!(text(k + 1), "near" | "from" | "in" | "at" | "with")
+        {
             silent.extend([k - 1, k]);
         }
         case &= !role(k);
         // `My supervisor wants the student to …`: whoever asks.
         let asker = matches!(text(k - 1), "my" | "our") && (role(k) || text(k) == "co");
         let asks = |k: &usize| {
-            matches!(stem(*k), "want" | "insist" | "say" | "think" | "claim" | "suggest" | "believe" | "argue" | "expect" | "wish" | "demand")
+            matches!(
+                stem(*k),
+                "want"
+                    | "insist"
+                    | "say"
+                    | "think"
+                    | "claim"
+                    | "suggest"
+                    | "believe"
+                    | "argue"
+                    | "expect"
+                    | "wish"
+                    | "demand"
+            )
         };
         if let Some(verb) = (k + 1..k + 4).find(asks).filter(|_| asker) {
             silent.extend(k - 1..=verb + usize::from(text(verb + 1) == "that"));
@@ -243,7 +261,9 @@ fn too_many(pieces: &mut [Piece]) {
             return;
         }
         let end = (k..pieces.len()).find(|k| matches!(pieces.get(*k), Some(Piece::Stop))).unwrap_or(pieces.len());
-        let Some(number) = (k + 3..end).rev().find_map(count).filter(|_| many && count(k - 2).is_some()) else { continue };
+        let Some(number) = (k + 3..end).rev().find_map(count).filter(|_| many && count(k - 2).is_some()) else {
+            continue;
+        };
         if let Some(Piece::Word(first)) = pieces.get_mut(k - 2) {
             (first.text, first.stem) = (number.text, number.stem);
         }

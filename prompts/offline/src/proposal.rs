@@ -29,8 +29,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         found = found
             .filter(|card| card.fits(location))
             .or_else(|| default_cast::unguided(&request.task, location, &mut draw));
-        let (people, extras) =
-            found.map(|card| default_cast::people(card, request.expect.humans, &mut draw, request)).unwrap_or_default();
+        let (people, extras) = found.map(|card| default_cast::people(card, &mut draw, request)).unwrap_or_default();
         (people, extras, true)
     } else {
         let understood = understand(request, location);

@@ -27,7 +27,11 @@ pub(crate) fn note(
 ) {
     for deed in found.deeds.iter().filter(|deed| !deed.negated) {
         if let Some(words) = to_somebody(stretch, *deed, meant) {
-            unplayed(&mut story.problems, quote, &format!("`{words}`: people come up to the robot alone; to whom else somebody goes"));
+            unplayed(
+                &mut story.problems,
+                quote,
+                &format!("`{words}`: people come up to the robot alone; to whom else somebody goes"),
+            );
         }
         if matches!(deed.act, Act::Follow | Act::Abreast)
             && !timed
@@ -48,7 +52,11 @@ pub(crate) fn note(
         }
         let words: Vec<&str> = at.iter().map(|k| text(*k)).collect();
         let words = words.join(" ");
-        unplayed(&mut story.problems, quote, &format!("`{words}`: people walk their way once, from its start to its end; that"));
+        unplayed(
+            &mut story.problems,
+            quote,
+            &format!("`{words}`: people walk their way once, from its start to its end; that"),
+        );
         mark_each(stretch, &at);
     }
 }
@@ -79,7 +87,8 @@ pub(crate) fn unplayed(problems: &mut Vec<Fault>, quote: &str, what: &str) {
 /// `keeps at least three metres away`, where nobody does anything else.
 pub(crate) fn keeps(story: &mut Story, stretch: &Stretch, found: &Found, quote: &str) {
     let has = |words: &[&str]| stretch.words.iter().any(|word| words.contains(&word.stem.as_str()));
-    let keeps = has(&["keep", "stay", "remain", "maintain"]) && has(&["away", "distance", "apart", "behind", "off", "clear"]);
+    let keeps =
+        has(&["keep", "stay", "remain", "maintain"]) && has(&["away", "distance", "apart", "behind", "off", "clear"]);
     if let Some(m) = found.distance_m.filter(|_| keeps && !found.acts()) {
         unplayed(&mut story.problems, quote, &format!("`{m} m`: how far from each other they keep"));
     }

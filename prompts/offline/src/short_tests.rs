@@ -74,8 +74,12 @@ fn seconds_count_from_what_was_told_before() {
     assert_eq!(rule(&stopped, &Action::Block).for_s, Some(10.0));
     assert_eq!(rule(&stopped, &Action::Navigate).when, rule(&stopped, &Action::Block).when);
     let signals = told("A guest says wait. After five seconds he says proceed.");
-    let said: Vec<(Gesture, Option<f64>)> =
-        signals.humans.iter().flat_map(|human| &human.rules).filter_map(|rule| Some((rule.gesture?, rule.for_s))).collect();
+    let said: Vec<(Gesture, Option<f64>)> = signals
+        .humans
+        .iter()
+        .flat_map(|human| &human.rules)
+        .filter_map(|rule| Some((rule.gesture?, rule.for_s)))
+        .collect();
     assert_eq!(said.first(), Some(&(Gesture::Wait, Some(5.0))), "{signals:#?}");
     assert_eq!(said.last().map(|(gesture, _)| *gesture), Some(Gesture::Proceed));
     // Whoever only stands there has done nothing yet: the clock starts with the run.
@@ -91,7 +95,9 @@ fn who_answers_the_robot_answers_its_word_and_who_runs_to_it_comes_up_to_it() {
     let runs = told("A mother and her child walk in the corridor. When the child sees the robot, it runs to it.");
     assert_eq!(rule(&runs, &Action::Approach).gesture, None);
     assert!(runs.humans.first().unwrap().rules.is_empty(), "{runs:#?}");
-    let away = told("A worker stands in the corridor until the robot has passed, then he walks away in the opposite direction.");
+    let away = told(
+        "A worker stands in the corridor until the robot has passed, then he walks away in the opposite direction.",
+    );
     assert!(away.humans.iter().all(|human| human.rules.iter().all(|rule| rule.act != Action::Approach)), "{away:#?}");
     let trails = told("Participant 1 walks towards the robot. Participant 2 walks 2 m behind participant 1.");
     assert!(trails.humans.iter().flat_map(|human| &human.rules).any(|rule| matches!(rule.act, Action::FollowHuman(_))));
@@ -100,7 +106,8 @@ fn who_answers_the_robot_answers_its_word_and_who_runs_to_it_comes_up_to_it() {
 #[test]
 fn those_who_meet_the_robot_one_after_the_other_are_ordered() {
     let reading = told("Two pickers cross the robot's path, one after the other.");
-    let order = |kind: &FactKind| matches!(kind, FactKind::Before { first: AgentId::Human(_), then: AgentId::Human(_) });
+    let order =
+        |kind: &FactKind| matches!(kind, FactKind::Before { first: AgentId::Human(_), then: AgentId::Human(_) });
     assert_eq!(reading.facts.iter().filter(|fact| order(&fact.kind)).count(), 1, "{reading:#?}");
 }
 

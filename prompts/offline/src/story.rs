@@ -7,14 +7,15 @@ use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only
 use crate::bind::{people_deed, subject_of};
 use crate::cast::Cast;
 use crate::clause::{self, mark_each};
+use crate::contra;
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed::{self, Around};
 use crate::ellipsis;
 use crate::lexicon::{Act, Cue, lexicon};
-use crate::relation;
 use crate::meant::meant;
 use crate::mention::Who;
 use crate::order::{self, Joiner, Order};
+use crate::relation;
 use crate::robot_deed::robot_deed;
 use crate::short;
 use crate::timing::{quiet, robot_first, timing, trigger};
@@ -36,6 +37,7 @@ pub(crate) struct Story {
     pub(crate) headed: Option<(PlaceClass, String)>,
     pub(crate) ignored: Vec<String>,
     pub(crate) order: Order,
+    pub(crate) held: contra::Held,
     pub(crate) problems: Vec<Fault>,
 }
 
@@ -129,6 +131,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         story.cast.excepting = excepts(&sentence);
         thread.made.clear();
         thread.pending.clear();
+        story.held.sentence();
         let count = sentence.len();
         for i in 0..count {
             let next = sentence.get(i + 1).map(|next| next.joint);
@@ -283,18 +286,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if namely || stretch.words.first().is_some_and(|word| word.after_colon) {
         story.cast.lists();
     }
-    let nobody = found.mentions.iter().any(|mention| mention.who == Who::Nobody && mention.role.is_none());
-    if nobody && found.declares && next != Some(Joint::Except) && !story.cast.people.is_empty() {
-        let first = story.cast.count_quote.clone().unwrap_or_default();
-        story.problems.push(Fault::new(
-            FaultCode::PContra,
-            "rough_scenario",
-            format!(
-                "`{first}` speaks of {}, but `{quote}` says that nobody is there; correct one of the two",
-                story.cast.people.len()
-            ),
-        ));
-    }
+    contra::emptied(story, &found, next, &quote);
     if let Some(apart) = thread.apart.take().filter(|_| stretch.joint == Joint::Who)
         && let Some(who) = ellipsis::told_before(story, &found, apart)
     {
@@ -305,7 +297,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         }
         found.deeds.clear();
     }
+    contra::nobody(story, &found, stretch, next, &quote);
+    contra::members(story, &mut found, stretch, text);
     let meant = meant(story, thread, stretch, &found, text, next);
+    contra::place(story, thread, stretch, &found, &meant, &quote);
     let one = found.mentions.iter().any(|mention| mention.who == Who::ToldApart && !found.acts());
     thread.apart = match meant.as_slice() {
         [(_, _, people)] if one && next == Some(Joint::Who) => people.first().copied(),
@@ -573,6 +568,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     if matches!(thread.subject, Subject::People(_)) {
         short::note(story, stretch, &found, &meant, (&quote, thread.waiting.is_some()));
     }
+    contra::condition(story, thread, stretch, &found, &quote);
     if let Some(mps) = found.pace_mps {
         let object = meant.first().map(|(_, _, some)| some.clone()).unwrap_or_default();
         let paced = if let Subject::People(people) = &thread.subject { people.clone() } else { object };

@@ -32,6 +32,8 @@ pub(crate) struct Task {
     pub(crate) goals: Vec<End>,
     /// Words that ask for the way back.
     pub(crate) back: Option<String>,
+    /// Words that say where the robot is not to go.
+    pub(crate) denied: Vec<String>,
     pub(crate) ignored: Vec<String>,
 }
 
@@ -45,6 +47,12 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
     let mut task = Task::default();
     for mut stretch in sentences(text).into_iter().flatten() {
         let quote = stretch.quote(text).to_owned();
+        if let Some(denied) = denied(&mut stretch, text, location) {
+            task.denied.push(denied);
+            if stretch.words.is_empty() {
+                continue;
+            }
+        }
         let found = clause::read(&mut stretch);
         // `deliver mail and return (to the desk)`: the second errand; `return the cup to the kitchen` is the first.
         let comes_back = |i: usize| {
@@ -116,6 +124,25 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
         }
     }
     task
+}
+
+/// Takes the words off a clause that say where the robot is not to go: `do not go to the kitchen`, `without entering the elevator`.
+fn denied(stretch: &mut Stretch, text: &str, location: &Location) -> Option<String> {
+    let word = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let denies = |k: &usize| matches!(word(*k), "not" | "never" | "avoid" | "avoids" | "avoiding" | "without");
+    let at = (0..stretch.words.len()).find(denies)?;
+    let from = at.checked_sub(1).filter(|k| matches!(word(*k), "do" | "does" | "must" | "should" | "may" | "can"));
+    let tail = Stretch { words: stretch.words.get(at..)?.to_vec(), ..stretch.clone() };
+    let (first, last) = (stretch.words.get(from.unwrap_or(at))?, stretch.words.last()?);
+    let quote = text.get(first.from..last.to)?.to_owned();
+    let place = !clause::read(&mut tail.clone()).places.is_empty()
+        || (at + 1..stretch.words.len())
+            .filter_map(|k| stretch.words.get(k))
+            .any(|word| text.get(word.from..last.to).is_some_and(|name| named::find(location, name).is_some()));
+    if place {
+        stretch.words.truncate(from.unwrap_or(at));
+    }
+    place.then_some(quote)
 }
 
 /// Words before the beginning of a way, before its end, and before where the work is.
@@ -271,6 +298,26 @@ mod tests {
         assert_eq!(of("Return the cup to the kitchen").back, None);
         let task = of("Deliver coffee from one corner of the warehouse to another.");
         assert_eq!(task.start, None);
+    }
+
+    #[test]
+    fn where_the_robot_is_not_to_go_is_no_goal() {
+        for (text, denied, goal) in [
+            ("Do not go to the kitchen", "Do not go to the kitchen", None),
+            ("Never enter the meeting room.", "Never enter the meeting room", None),
+            (
+                "Bring mail to the exit without entering the kitchen",
+                "without entering the kitchen",
+                Some(PlaceClass::Exit),
+            ),
+            ("Bring mail to the exit and avoid the corridor", "avoid the corridor", Some(PlaceClass::Exit)),
+        ] {
+            let task = of(text);
+            assert_eq!(task.denied, [denied], "{text}");
+            assert_eq!(task.goal.map(|(class, _)| class), goal, "{text}");
+            assert_eq!((task.via, task.ignored), (None, Vec::<String>::new()), "{text}");
+        }
+        assert_eq!(of("Bring coffee to the kitchen and do not spill it").denied, [""; 0]);
     }
 
     type Said = (String, usize);

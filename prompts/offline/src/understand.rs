@@ -2,18 +2,18 @@
 
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
-    Action, FORMAT, Fact, FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, Reading, Relation, Request, Rule,
-    Trigger,
+    Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, Reading, Relation,
+    Request, Rule, Trigger,
 };
 
 use crate::card::Ends;
-use crate::cast::{Person, ReadRule};
+use crate::cast::{Cast, Person, ReadRule};
 use crate::lexicon::lexicon;
 use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, boards, chance, cut, default_cast, place, spot, words};
+use crate::{again, aside, boards, chance, contra, cut, default_cast, numbered, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -53,8 +53,10 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     language(request, &mut reading);
     expectations(request, &mut story, &mut reading);
     story.finish();
+    contra::finish(&mut story, &told.story);
     boards::settle(&mut story, location);
     chance::settle(&mut story, &told.story);
+    story.cast.notes.extend(numbered::ranges(&told.story));
     again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);
@@ -62,7 +64,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     if let Some(id) = request.expect.pattern.as_ref().filter(|id| crate::card::card(id).is_none()) {
         let known: Vec<&str> = crate::card::catalog().iter().map(|card| card.id.as_str()).collect();
         reading.problems.push(Fault::new(
-            FaultCode::PRead,
+            FaultCode::PLimit,
             "expect.pattern",
             format!("`{id}` is no pattern; patterns: {}", known.join(", ")),
         ));
@@ -91,7 +93,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         extras = default_cast::fill(&mut reading, &story, request, location);
     }
     unfitting(request, location, &mut reading);
-    facts(&story, &task, location, &mut reading);
+    facts(&story, &task, request, location, &mut reading);
     if request.expect.pattern.is_some()
         && let Some(id) = &reading.pattern
     {
@@ -149,7 +151,7 @@ fn language(request: &Request, reading: &mut Reading) {
             .count();
         // English texts of a few words still have half of theirs in the tables; other languages share single words only.
         let script = known == 0 && letters.len() < 4 && aside::language(text).is_some();
-        if script || letters.len() >= 4 && known * 10 < letters.len() * 3 {
+        if script || letters.len() >= 4 && known * 10 < letters.len() * 3 || aside::foreign(text).is_some() {
             let named = aside::language(text).map_or_else(String::new, |name| format!(" (this looks like {name})"));
             let message = format!(
                 "{known} of {} words are known{named}; the offline author reads plain English only",
@@ -182,14 +184,54 @@ fn expectations(request: &Request, story: &mut Story, reading: &mut Reading) {
     if let Some(Ok(class)) = request.expect.place.as_ref().map(|text| text.parse::<PlaceClass>()) {
         story.place = Some((class, format!("expect.place = \"{class}\"")));
     }
+    let read = story.cast.people.len();
     for numbers in &request.expect.groups {
-        let members: Vec<usize> = numbers
-            .iter()
-            .filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1))
-            .filter(|i| *i < story.cast.people.len())
-            .collect();
-        story.cast.group(&members, "expect.groups");
+        let members: Vec<usize> = numbers.iter().filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1)).collect();
+        // Where the text names nobody, the pattern's people are grouped so.
+        if read == 0 {
+            continue;
+        }
+        if let Some(nobody) = members.iter().find(|i| **i >= read) {
+            reading.problems.push(Fault::new(
+                FaultCode::PContra,
+                "expect.groups",
+                format!(
+                    "{numbers:?} names human_{}, but the text speaks of {read}; correct one of the two",
+                    nobody + 1
+                ),
+            ));
+            continue;
+        }
+        regroup(&mut story.cast, &members);
     }
+}
+
+/// A group that wins over those of the text: its members are in no other.
+fn regroup(cast: &mut Cast, members: &[usize]) {
+    if cast.groups.iter().any(|(_, known, _)| known.len() == members.len() && members.iter().all(|i| known.contains(i)))
+    {
+        return;
+    }
+    for (_, known, _) in &mut cast.groups {
+        known.retain(|i| !members.contains(i));
+    }
+    for (_, alone, _) in cast.groups.extract_if(.., |(_, known, _)| known.len() < 2) {
+        for i in alone {
+            if let Some(person) = cast.people.get_mut(i) {
+                person.group = None;
+            }
+        }
+    }
+    // Ids stay one to n.
+    for (id, (own, members, _)) in (1..).map(GroupId).zip(&mut cast.groups) {
+        *own = id;
+        for i in members.iter() {
+            if let Some(person) = cast.people.get_mut(*i) {
+                person.group = Some(id);
+            }
+        }
+    }
+    cast.group(members, "expect.groups");
 }
 
 /// Places by name that this map does not have: a fault, and the next best place.
@@ -265,13 +307,28 @@ fn people(request: &Request, story: &Story, reading: &mut Reading) {
     }
 }
 
-fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading) {
+fn facts(story: &Story, task: &Task, request: &Request, location: &Location, reading: &mut Reading) {
     let mut facts: Vec<(String, FactKind)> = Vec::new();
-    let count = u32::try_from(reading.humans.len()).unwrap_or(u32::MAX);
-    if count > 0 {
-        facts.push((story.cast.count_quote.clone().unwrap_or_default(), FactKind::Humans(count)));
+    let read = Some(u32::try_from(reading.humans.len()).unwrap_or(u32::MAX)).filter(|count| *count > 0);
+    // An unguided request may still say how many there are.
+    let expected = request.expect.headcount().filter(|_| story.cast.nobody.is_none());
+    if let Some(count) = read.or(expected) {
+        let quote = match (&story.cast.count_quote, request.expect.humans) {
+            (Some(quote), _) => quote.clone(),
+            (None, Some(humans)) => format!("expect.humans = {humans}"),
+            (None, None) if read.is_none() => "expect.groups".to_owned(),
+            (None, None) => String::new(),
+        };
+        facts.push((quote, FactKind::Humans(count)));
     }
     let id = |i: usize| HumanId::new(u32::try_from(i + 1).unwrap_or(u32::MAX));
+    if story.cast.people.is_empty() && (read.is_some() || expected.is_some()) {
+        let groups = (1..).map(GroupId).zip(&request.expect.groups);
+        facts.extend(groups.map(|(group, members)| {
+            let members = members.iter().copied().map(HumanId::new).collect();
+            ("expect.groups".to_owned(), FactKind::Group { group, members })
+        }));
+    }
     for (group, members, quote) in &story.cast.groups {
         facts.push((
             quote.clone(),
@@ -282,7 +339,8 @@ fn facts(story: &Story, task: &Task, location: &Location, reading: &mut Reading)
         if let Some((relation, quote)) = person.relation.clone() {
             facts.push((quote, FactKind::Relates { human: id(i), relation }));
             let crosses = person.crosses.clone().filter(|_| relation == Relation::Leaving);
-            facts.extend(crosses.map(|quote| (quote, FactKind::Relates { human: id(i), relation: Relation::Crossing })));
+            facts
+                .extend(crosses.map(|quote| (quote, FactKind::Relates { human: id(i), relation: Relation::Crossing })));
         }
         let twice = person.again.as_ref();
         let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
@@ -337,6 +395,11 @@ fn errand(task: &Task, reading: &mut Reading) {
             .notes
             .push(format!("`{quote}`: the robot's way leads past {} where the map has such a way", place::an(*class)));
     }
+    reading.problems.extend(task.denied.iter().map(|quote| {
+        let message =
+            format!("`{quote}`: where the robot may not go is up to its planner and is not judged; say where it goes");
+        Fault::new(FaultCode::PRead, "task", message)
+    }));
     if let Some(quote) = &task.back {
         reading.problems.push(Fault::new(
             FaultCode::PRead,

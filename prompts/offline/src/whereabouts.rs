@@ -104,7 +104,8 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && found.robots.is_empty()
             && comes_out.is_none()
             && !transit;
-        let trip = walks && matches!(found.places.as_slice(), [(_, from), (_, to)]
+        let trip = walks
+            && matches!(found.places.as_slice(), [(_, from), (_, to)]
             if before(*from, stretch, &["from"]) && before(*to, stretch, &["to", "into"]));
         if trip && before(*at, stretch, &["from"]) {
             story.cast.notes.push(format!(
@@ -145,7 +146,7 @@ pub(crate) fn in_car(quote: &str) -> bool {
 }
 
 /// Whether one of these words stands before a place, with at most two words between.
-fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
+pub(crate) fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
     let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
     let between = |k: usize| {
         !matches!(

@@ -201,7 +201,7 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
             i += 1;
         }
     }
-    crate::again::joined(out)
+    crate::numbered::settled(text, crate::again::joined(out))
 }
 
 /// `i.e.`, `e.g.`, `viz.`, `sc.`, `etc.`: where that ends.

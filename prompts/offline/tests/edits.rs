@@ -286,3 +286,87 @@ fn the_same_edit_gives_the_same_bytes_and_any_text_is_answered() {
         assert_eq!(bytes(), bytes(), "{words}");
     }
 }
+
+#[test]
+fn a_way_starts_at_the_place_that_was_named() {
+    let place = socrates_maps::shipped::load("office").unwrap();
+    let mut done = 0;
+    for rough in ["A nurse comes towards the robot.", "A visitor crosses at the intersection.", "A visitor crosses."] {
+        for (words, starts) in [("start human_1 at the kitchen", true), ("human_1 should end at the kitchen", false)] {
+            let (ask, before) = draft("office", rough);
+            let after = edit(&ask, &before, words);
+            // Where no way keeps the meeting, that is said.
+            if after.draft == before {
+                assert!(!after.not_done.is_empty(), "{rough} {words}");
+                continue;
+            }
+            let way = &after.draft.paths.unwrap().humans[&id(1)];
+            let end = if starts { way.first() } else { way.last() };
+            let kind = place.graph.node(end.unwrap()).unwrap().kind.to_lowercase();
+            assert!(kind.contains("kitchen"), "{rough} {words}: {kind}");
+            done += 1;
+        }
+    }
+    assert!(done > 0);
+    let (ask, before) = draft("office", "A nurse comes towards the robot.");
+    let after = edit(&ask, &before, "start human_1 at the cafeteria");
+    assert_eq!(after.draft, before);
+    assert!(after.not_done[0].message.contains("no place called"), "{:?}", after.not_done);
+}
+
+#[test]
+fn two_change_places() {
+    for words in ["swap the nurse and the visitor", "let human_1 and human_2 exchange their paths", "swap them"] {
+        let (before, after) = edited("office", TWO, words);
+        let (old, new) = (before.paths.unwrap(), after.draft.paths.unwrap());
+        assert_eq!((&new.humans[&id(1)], &new.humans[&id(2)]), (&old.humans[&id(2)], &old.humans[&id(1)]), "{words}");
+        let (was, is) = (&before.proposal.humans, &after.draft.proposal.humans);
+        assert_eq!((is[0].relation, is[1].relation), (was[1].relation, was[0].relation), "{words}");
+        assert_eq!((&is[0].rules, &is[0].role), (&was[0].rules, &was[0].role), "{words}");
+    }
+}
+
+#[test]
+fn a_group_is_made_and_a_group_joins() {
+    for words in ["make the nurse and the visitor a group", "group human_1 and human_2", "put both into one group"] {
+        let (_, after) = edited("office", "A nurse comes towards the robot. A visitor crosses.", words);
+        let proposal = &after.draft.proposal;
+        assert_eq!(proposal.groups.len(), 1, "{words}");
+        assert_eq!(proposal.groups[0].members, [id(1), id(2)], "{words}");
+        assert!(proposal.humans.iter().all(|human| human.group == Some(proposal.groups[0].id)), "{words}");
+        let told = |clause: &socrates_model::Clause| clause.predicate.group() == Some(proposal.groups[0].id);
+        assert!(proposal.expected_events.iter().any(told), "{words}");
+    }
+    let (before, after) =
+        edited("office", "A nurse comes towards the robot.", "add a group of three visitors who talk");
+    let proposal = &after.draft.proposal;
+    assert_eq!((proposal.humans.len(), before.proposal.humans.len()), (4, 1));
+    assert_eq!(proposal.groups.iter().map(|group| group.members.len()).collect::<Vec<_>>(), [3]);
+}
+
+#[test]
+fn gestures_come_and_change() {
+    let said = |edited: &Edited, who: usize| -> Vec<Gesture> {
+        edited.draft.proposal.humans[who].rules.iter().filter_map(|rule| rule.gesture).collect()
+    };
+    let (_, after) = edited("office", TWO, "add a WAIT gesture to the nurse");
+    assert_eq!(said(&after, 0), [Gesture::Wait]);
+    let asks = |clause: &socrates_model::Clause| {
+        matches!(clause.predicate, Predicate::Gestures { gesture: Gesture::Wait, .. })
+    };
+    assert!(after.draft.proposal.expected_events.iter().any(asks));
+    let one = "A nurse crosses at the intersection and gestures WAIT.";
+    for words in ["change the nurse's gesture to PROCEED", "replace the gesture WAIT by PROCEED"] {
+        let (_, after) = edited("hospital", one, words);
+        assert_eq!(said(&after, 0), [Gesture::Proceed], "{words}");
+        assert!(!after.draft.proposal.expected_events.iter().any(asks), "{words}");
+    }
+    let (_, after) = edited("hospital", one, "remove the nurse's gesture");
+    assert_eq!(said(&after, 0), []);
+    let (ask, before) = draft("office", TWO);
+    for words in ["change the nurse's gesture to PROCEED", "add a gesture to the nurse", "swap the nurse"] {
+        let after = edit(&ask, &before, words);
+        assert_eq!(after.draft, before, "{words}");
+        assert!(!after.not_done.is_empty(), "{words}");
+    }
+}

@@ -91,25 +91,25 @@ fn items(case: &Case<'_>) -> Wrong {
         let (gap, off, turned) = gaps[k];
         (0.6..=3.0).contains(&gap) && off <= 1.0 && turned <= 45.0_f64.to_radians()
     };
-    // Who stands behind one that dodges looks about for a moment.
-    let about = |k: usize| (k.saturating_sub(50)..(k + 50).min(track.len())).filter(|k| follows(*k)).count() >= 50;
-    let (from, length) = longest((0..track.len()).map(about));
+    let (from, length) = longest((0..track.len()).map(follows));
     check(&mut wrong, secs(length) >= 8.0, || {
         format!("S2: follows for {:.1} s from {:.1} s", secs(length), secs(from))
     });
     let moving: Vec<usize> = (0..robot.len()).filter(|k| robot[*k].speed() > STOPPED_MPS).collect();
     let share = moving.iter().filter(|k| follows(**k)).count() as f64 / moving.len().max(1) as f64;
     check(&mut wrong, share >= 0.6, || format!("S2: follows for {:.0} % of the robot's motion", share * 100.0));
-    // S3: it stops behind a robot that stops.
+    // S3: it stops behind a robot that stops: slow within 2 s of it, and never too near as long as it stands.
     let mut still = 0;
-    for k in 0..robot.len() {
-        still = if robot[k].speed() < STOPPED_MPS && k > from { still + 1 } else { 0 };
-        if still == 400 && k < from + length {
-            let gap = (track[k].point() - robot[k].point()).norm();
+    for k in from..(from + length).min(robot.len()) {
+        still = if robot[k].speed() < STOPPED_MPS { still + 1 } else { 0 };
+        if still == tick(2.0) {
             check(&mut wrong, track[k].speed() < 0.3, || {
                 format!("S3: at {:.1} m/s behind a robot that stands", track[k].speed())
             });
-            check(&mut wrong, gap >= 0.5, || format!("S3: {gap:.2} m behind a robot that stands"));
+        }
+        if still >= tick(2.0) {
+            let gap = (track[k].point() - robot[k].point()).norm();
+            check(&mut wrong, gap >= 0.5, || format!("S3: {gap:.2} m behind a robot that stands at {:.1} s", secs(k)));
         }
     }
     // S4: somebody else ahead in the way for three seconds. Nearer than 0.6 m to the line, a person leaves less than the
@@ -149,11 +149,11 @@ fn items(case: &Case<'_>) -> Wrong {
         format!("S5: {id} goes along with none of the robot's shifts: {shifts:?}")
     });
     // S6: following for three seconds before, and both together for two.
-    let (_, before) = longest((0..first).map(about));
+    let (_, before) = longest((0..first).map(follows));
     check(&mut wrong, secs(before) >= 3.0, || {
         format!("S6: follows for {:.1} s before {id} is in the way", secs(before))
     });
-    let together = (first..last).filter(|k| about(*k)).count();
+    let together = (first..last).filter(|k| follows(*k)).count();
     check(&mut wrong, secs(together) >= 2.0, || format!("S6: both together for {:.1} s", secs(together)));
     // S7: the way opens within 30 s, and the robot arrives.
     check(&mut wrong, *lasts <= 30.0, || format!("S7: in the way for {lasts:.1} s"));

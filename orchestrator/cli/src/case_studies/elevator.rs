@@ -119,6 +119,7 @@ async fn in_the_elevator_two_leave_one_stays_startled() {
         "N: leavers 15 s late",
         "N: one leaver fewer",
         "N: who should stay leaves",
+        "N: startle before the door opens",
         "reaction muted",
         "a person is missing",
     ];

@@ -1,8 +1,27 @@
 //! G: the robot passes people who stand and talk.
 
-use socrates_model::{AgentState, Point, Vector};
+use std::path::Path;
 
-use super::{Case, STOPPED_MPS, Wrong, check, off_heading, secs, study};
+use socrates_model::{AgentState, EventKind, Point, Trigger, Vector};
+
+use crate::config::Config;
+use crate::prepare::prepare_text;
+
+use super::{Case, STOPPED_MPS, Wrong, check, off_heading, secs, study, study_of, tick};
+
+/// Leaves of reactions.
+const REACTS: &[&str] = &["RunAway", "LookAt", "GiveWay", "Block", "Approach", "Follow"];
+
+/// Whether a trigger waits to see the robot, and how near.
+const fn distance(trigger: &Trigger) -> Option<(bool, f64)> {
+    if let Trigger::RobotVisible(m) = trigger {
+        Some((true, *m))
+    } else if let Trigger::RobotNear(m) = trigger {
+        Some((false, *m))
+    } else {
+        None
+    }
+}
 
 fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
@@ -81,11 +100,37 @@ fn items(case: &Case<'_>) -> Wrong {
     // S6: nobody who is not named reacts.
     for (id, track) in &case.people {
         let rules = &case.scenario.made.proposal.human(*id).unwrap().rules;
-        let runs = case.scenario.run.events.iter().any(|event| matches!(&event.kind, socrates_model::EventKind::Leaf { human, leaf } if human == id && ["RunAway", "LookAt", "GiveWay", "Block", "Approach", "Follow"].iter().any(|word| leaf.contains(word))));
+        let runs = case.scenario.run.events.iter().any(|event| matches!(&event.kind, EventKind::Leaf { human, leaf } if human == id && REACTS.iter().any(|word| leaf.contains(word))));
         check(&mut wrong, !rules.is_empty() || !runs, || format!("S6: {id} reacts, unasked"));
         check(&mut wrong, !track.is_empty(), || format!("{id} has no track"));
+        // Who is named reacts as near to the robot as it is told, give or take 0.3 m, or once it sees it.
+        let Some((seen, asked)) = rules.first().and_then(|rule| rule.when.iter().find_map(distance)) else { continue };
+        let begins = case.scenario.run.events.iter().find_map(|event| {
+            let EventKind::Leaf { human, leaf } = &event.kind else { return None };
+            let reacts = human == id && REACTS.iter().any(|word| leaf.contains(word));
+            reacts.then(|| tick(event.time.secs()))
+        });
+        let Some(at) = begins.filter(|at| *at < track.len()) else {
+            wrong.push(format!("S6: {id} never reacts"));
+            continue;
+        };
+        let apart = (track[at].point() - case.robot[at].point()).norm();
+        let late = !seen || case.first_sight(*id).is_some_and(|sight| sight + 30 < at);
+        check(&mut wrong, apart <= asked + 0.3 && (!late || apart >= asked - 0.3), || {
+            format!("S6: {id} reacts at {apart:.2} m, asked for {asked} m")
+        });
     }
     wrong
+}
+
+#[tokio::test]
+async fn who_is_named_of_the_group_reacts_alone_and_where_it_was_told() {
+    let text = "location = \"warehouse\"\nsocial_context = \"A morning shift\"\ntask = \"Carry a box through the packing area\"\n\
+                rough_scenario = \"A group of 4 employees stands in the packing area and talks. One of them looks at the \
+                robot when it is within 3 m.\"\n";
+    let config = Config::load(None, std::iter::empty(), &[]).unwrap();
+    let prepared = prepare_text("named", text, "named", Path::new("."), None, &config).unwrap();
+    study_of(prepared, items, &["N: reaction at 8 m", "reaction muted"]).await;
 }
 
 #[tokio::test]

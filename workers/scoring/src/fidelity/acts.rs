@@ -18,6 +18,8 @@ const LOOK_RAD: f64 = 0.349_065_850_398_866;
 const BLOCK_M: f64 = 2.5;
 /// Nearer to the robot's line than this is in its way, m.
 const IN_WAY_M: f64 = 0.6;
+/// How much sooner than the first sight a look may begin, s.
+const EARLY_SECS: f64 = 0.5;
 /// A look counts from this near where there is no map to tell lines of sight, m.
 const LOOK_REACH_M: f64 = 10.0;
 /// Distance within which a gesture can be noticed, m.
@@ -82,9 +84,12 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
             .proposal
             .and_then(|proposal| proposal.human(human))
             .is_some_and(|human| human.rules.iter().any(|rule| rule.act == Action::LookAtRobot));
+    // Who looks before it could see anything was not startled by the robot.
+    let seen_s = signals.of(human).iter().find(|moment| moment.sight != Some(false)).map_or(f64::INFINITY, |m| m.t);
     let runs = |t: f64| {
         let spans = signals.leaves_of(human).iter();
-        spans.filter(|span| does(&span.name, &Action::LookAtRobot)).any(|span| t >= span.from_s && t <= span.to_s)
+        let caused = spans.filter(|span| does(&span.name, &Action::LookAtRobot) && span.from_s >= seen_s - EARLY_SECS);
+        caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
     let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
     lasting(signals, human, marks, for_s, GESTURE_M, &format!("stopped and looking at the robot for {for_s:.1} s"))

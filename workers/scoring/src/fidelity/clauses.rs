@@ -5,7 +5,8 @@ use std::convert::identity;
 
 use socrates_model::report::Standing;
 use socrates_model::{
-    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, ordinal, rule::RobotDo,
+    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, Rule, Trigger, ordinal,
+    rule::RobotDo,
 };
 
 use crate::fidelity::finding::Finding;
@@ -233,7 +234,7 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
                 Relation::Behind | Relation::Ahead | Relation::Static | Relation::Staying | Relation::Abreast => false,
             };
             // A crowd is timed by the clause that tells of it; a reaction may keep somebody from the node: then its own clauses tell.
-            if timed && !crowd && human.rules.is_empty() && signals.encounter(id).is_some() {
+            if timed && !crowd && human.rules.iter().all(keeps_walk) && signals.encounter(id).is_some() {
                 let given = has(
                     &|predicate| matches!(predicate, Predicate::OnTime { human: who, .. } | Predicate::Crosses { human: who, .. } if *who == id),
                 );
@@ -262,6 +263,25 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         more.push(setup("auto-plausible".into(), text, Predicate::Plausible));
     }
     more
+}
+
+/// Nearer than this to the robot somebody is at its encounter, where the time of arrival has been taken, m.
+const THERE_M: f64 = 1.5;
+
+/// Whether a rule leaves the way to the first encounter as it is: its human walks on all the while, or it is done only once the
+/// two have met.
+fn keeps_walk(rule: &Rule) -> bool {
+    let met = |trigger: &Trigger| match trigger {
+        Trigger::RobotPassed | Trigger::GoalReached | Trigger::AtEncounter => true,
+        Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) => *m <= THERE_M,
+        Trigger::Always
+        | Trigger::RobotMoving
+        | Trigger::RobotStopped
+        | Trigger::RobotSays(_)
+        | Trigger::HumanSays(..)
+        | Trigger::AfterSecs(_) => false,
+    };
+    rule.act == Action::Navigate || rule.when.iter().any(met)
 }
 
 /// The monitor of a predicate.
@@ -352,6 +372,22 @@ fn order(found: &BTreeMap<String, Finding>, first: &str, then: &str) -> Finding 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn only_what_is_done_before_the_meeting_keeps_somebody_from_being_on_time() {
+        let rule = |when, act| Rule { when: vec![when], act, gesture: None, for_s: Some(3.0), latched: true };
+        for (when, act, keeps) in [
+            (Trigger::RobotNear(4.0), Action::StandStill, false),
+            (Trigger::RobotVisible(3.0), Action::LookAtRobot, false),
+            (Trigger::RobotSays(socrates_model::Gesture::Wait), Action::StandStill, false),
+            (Trigger::RobotNear(4.0), Action::Navigate, true),
+            (Trigger::RobotNear(1.2), Action::StandStill, true),
+            (Trigger::RobotPassed, Action::LookAtRobot, true),
+            (Trigger::AtEncounter, Action::StandStill, true),
+        ] {
+            assert_eq!(keeps_walk(&rule(when.clone(), act.clone())), keeps, "{when:?} {act:?}");
+        }
+    }
 
     #[test]
     fn the_margin_of_an_order_is_the_time_between_the_two() {

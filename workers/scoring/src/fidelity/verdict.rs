@@ -102,22 +102,14 @@ fn unplayed(evidence: &Evidence<'_>) -> String {
     let Some(reading) = evidence.reading else { return String::new() };
     let more = |count: usize| if count > 0 { format!(" and {count} more") } else { String::new() };
     let wish = |fault: &&Fault| fault.at == "rough_scenario" && fault.code == FaultCode::PRead;
-    let wishes: Vec<&str> = reading
-        .problems
-        .iter()
-        .filter(wish)
-        .map(|fault| fault.message.split('`').nth(1).unwrap_or_default())
-        .collect();
+    let wishes: Vec<&str> =
+        reading.problems.iter().filter(wish).map(|fault| fault.message.split('`').nth(1).unwrap_or_default()).collect();
     let mut text = wishes
         .split_first()
         .map_or_else(String::new, |(first, rest)| format!(" · not played: `{first}`{}", more(rest.len())));
     let named: Vec<String> = reading.ignored.iter().take(WORDS_NAMED).map(|word| format!("`{word}`")).collect();
     if !named.is_empty() {
-        text.push_str(&format!(
-            " · words not read: {}{}",
-            named.join(", "),
-            more(reading.ignored.len() - named.len())
-        ));
+        text.push_str(&format!(" · words not read: {}{}", named.join(", "), more(reading.ignored.len() - named.len())));
     }
     text
 }

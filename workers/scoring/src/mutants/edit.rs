@@ -117,6 +117,22 @@ pub(super) fn delayed(run: &Recording, agent: AgentId, seconds: f64) -> Recordin
     with_states(run, agent, &new, |t| Some(t + seconds).filter(|t| *t <= end))
 }
 
+/// The agent goes its way up to a sample so many samples sooner, and stands there until it is its time.
+pub(super) fn ahead_of_time(run: &Recording, agent: AgentId, upto: usize, by: usize) -> Recording {
+    let old = states(run, agent);
+    let Some(stand) = old.get(upto).copied() else { return run.clone() };
+    let new: Vec<AgentState> = (0..old.len())
+        .filter_map(|k| {
+            let stands = k + by > upto && k < upto;
+            if stands { Some(still(&stand)) } else { old.get(if k < upto { k + by } else { k }).copied() }
+        })
+        .collect();
+    let at = time_of(run, &stand);
+    let sooner =
+        old.get(by).map_or(0.0, |state| time_of(run, state)) - old.first().map_or(0.0, |state| time_of(run, state));
+    with_states(run, agent, &new, |t| Some(if t < at { t - sooner } else { t }))
+}
+
 /// The agent stays where it starts, doing nothing.
 pub(super) fn frozen(run: &Recording, agent: AgentId) -> Recording {
     let old = states(run, agent);

@@ -4,6 +4,7 @@
 //! the lists N of the case studies); each must lose the verdict. [`harmless`] changes it so that a person would see
 //! the same scenario; each must keep it. `socrates dev mutations` prints the share of both over real runs.
 
+mod early;
 mod edit;
 mod harmless;
 mod spoil;
