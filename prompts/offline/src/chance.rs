@@ -149,7 +149,7 @@ fn lets_pass_last(rules: &mut [ReadRule]) {
         let waits = matches!(last.rule.act, Action::StandStill | Action::LookAtRobot | Action::Block)
             && last.rule.for_s.is_some();
         let gives = matches!(read.rule.act, Action::GiveWay | Action::Navigate) && read.rule.gesture.is_none();
-        if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m) {
+        if waits && gives && near(last).zip(near(read)).is_some_and(|(last_m, m)| m > last_m || read.then) {
             read.rule.when.clone_from(&last.rule.when);
         }
     }

@@ -45,6 +45,7 @@ mod clock;
 mod cut;
 mod interject;
 mod preamble;
+mod retract;
 
 mod again;
 mod clause;

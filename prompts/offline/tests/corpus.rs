@@ -10,7 +10,7 @@ mod common;
 
 /// What the grammar is worked on with: name, text, and how many in a hundred facts have to hold. How many held at the first
 /// look stands in `corpus/README.md`.
-const OPEN: [(&str, &str, usize); 29] = [
+const OPEN: [(&str, &str, usize); 31] = [
     ("open", include_str!("../corpus/open.toml"), 95),
     // Written before the grammar was mended for them.
     ("open, second", include_str!("../corpus/open-2.toml"), 95),
@@ -47,10 +47,13 @@ const OPEN: [(&str, &str, usize); 29] = [
     ("three hands, eighth", include_str!("../corpus/open-28.toml"), 98),
     // Notes in a hurry, tales of last week, conditions of studies, test cases.
     ("four hands, in a hurry", include_str!("../corpus/open-29.toml"), 88),
+    // A student, an engineer, a coordinator and an author of a benchmark, each set read only when all of it had been judged.
+    ("four hands", include_str!("../corpus/open-30.toml"), 97),
+    ("four hands, second", include_str!("../corpus/open-31.toml"), 93),
 ];
 
 /// Facts of the sets kept aside that were right when the test saw them first.
-const FIRST_LOOKS: [usize; 5] = [107, 120, 127, 220, 199];
+const FIRST_LOOKS: [usize; 6] = [107, 120, 127, 220, 199, 208];
 
 #[derive(Deserialize)]
 struct Corpus {
@@ -111,7 +114,7 @@ fn holds(fact: &str, reading: &Reading) -> bool {
             human(who, reading).is_some_and(|human| human.relation == Some(relation))
         }
         [who, ..] => human(who.trim_end_matches(':'), reading)
-            .is_some_and(|human| (0..human.rules.len()).any(|at| does(&words[1..], &timed(&human.rules, at)))),
+            .is_some_and(|human| (0..human.rules.len()).any(|at| does(&words[1..], &timed(human, at)))),
         [] => false,
     }
 }
@@ -124,11 +127,17 @@ fn human<'a>(number: &str, reading: &'a Reading) -> Option<&'a socrates_model::r
     reading.humans.iter().find(|human| human.id == id(number))
 }
 
-/// The rule; where one with the same trigger lasts so long before it, it also waits for that time.
-fn timed(rules: &[Rule], at: usize) -> Rule {
-    let mut rule = rules[at].clone();
+/// The rule; where one with the same trigger lasts so long before it, it also waits for that time, and who walks ahead of the
+/// robot notices it where others would see it.
+fn timed(human: &socrates_model::reading::ReadHuman, at: usize) -> Rule {
+    let (rules, mut rule) = (&human.rules, human.rules[at].clone());
     let before = at.checked_sub(1).map(|before| &rules[before]).filter(|before| before.when == rule.when);
     rule.when.extend(before.and_then(|before| before.for_s).map(Trigger::AfterSecs));
+    let ahead = human.relation == Some(Relation::Ahead);
+    let near =
+        |trigger: &Trigger| if let Trigger::RobotNear(m) = trigger { Some(Trigger::RobotVisible(*m)) } else { None };
+    let noticed: Vec<Trigger> = rule.when.iter().filter(|_| ahead).filter_map(near).collect();
+    rule.when.extend(noticed);
     rule
 }
 
@@ -257,7 +266,7 @@ fn what_was_kept_aside_last_is_read() {
 }
 
 /// Written by people who did not know the grammar, and unread by whoever works on it: only the figures are told. 95 in 100
-/// are aimed at: at the only time they were run, the sixth got 127 of 129, the eighth 220 of 231, the ninth 199 of 233.
+/// are aimed at: at the only time they were run, the sixth got 127 of 129, the eighth 220 of 231, the ninth 199 of 233, the tenth 208 of 262.
 #[test]
 #[expect(clippy::print_stdout, reason = "the figure is what the test is for")]
 fn what_is_kept_aside_is_read_no_worse_than_at_first() {
@@ -267,6 +276,7 @@ fn what_is_kept_aside_is_read_no_worse_than_at_first() {
         ("sixth", include_str!("../corpus/sealed-6.toml"), FIRST_LOOKS[2]),
         ("eighth", include_str!("../corpus/sealed-8.toml"), FIRST_LOOKS[3]),
         ("ninth", include_str!("../corpus/sealed-9.toml"), FIRST_LOOKS[4]),
+        ("tenth", include_str!("../corpus/sealed-10.toml"), FIRST_LOOKS[5]),
     ] {
         let (right, all, _unread) = judge(corpus);
         println!("kept aside, {name}: {right} of {all} facts");

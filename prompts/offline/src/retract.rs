@@ -1,0 +1,130 @@
+//! What people take back: `three, no, two people`, `two porters and a doctor – no, sorry, just one porter and the doctor`.
+
+use crate::headings::described;
+use crate::lexicon::lexicon;
+use crate::words::Word;
+
+/// Words with which people take back a number that they have just given.
+const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
+
+/// `Two porters and a doctor – no, sorry, just one porter and the doctor`: what stands behind, where nothing is told before.
+fn taken_back(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    let corrects = |k: usize| CORRECTS.contains(&text(k));
+    let told =
+        |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| lexicon().verbs.contains(&word.stem));
+    let Some(from) = (1..words.len()).find(|k| corrects(*k)) else { return words };
+    let skips = |k: usize| {
+        words.get(k).is_some_and(Option::is_none) || corrects(k) || matches!(text(k), "just" | "only" | "make" | "that")
+    };
+    let to = (from..words.len()).find(|k| !skips(*k)).unwrap_or(words.len());
+    let counts = words.get(to).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
+    let pairs = |range: std::ops::Range<usize>| range.clone().any(|k| text(k) == "and");
+    if counts && pairs(0..from) && pairs(to..words.len()) && !(0..from).any(told) {
+        return words.into_iter().skip(to).collect();
+    }
+    words
+}
+
+/// A sentence with its corrections made (`three, no, two people` are two), and with `left` told from `left`.
+pub(crate) fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let words = taken_back(words);
+    let count = |item: &Option<Word>| item.as_ref().is_some_and(|word| word.count().is_some());
+    let mut out: Vec<Option<Word>> = Vec::with_capacity(words.len());
+    let mut i = 0;
+    while let Some(item) = words.get(i) {
+        // A number, at most two words, then a correction and another number.
+        let taken_back = count(item).then(|| {
+            let corrects = |k: &usize| {
+                words.get(*k).and_then(Option::as_ref).is_some_and(|word| CORRECTS.contains(&word.text.as_str()))
+            };
+            let at = (i + 2..i + 6).find(corrects)?;
+            let paused = words.get(i + 1..at)?.iter().any(|item| item.as_ref().is_none_or(|word| word.text == "or"));
+            (at + 1..at + 7).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
+        });
+        if let Some(next) = taken_back.flatten() {
+            i = next;
+            // `two — no, three — visitors`: the dash after the number goes with what was taken back.
+            let noun = words.get(next + 2).and_then(Option::as_ref);
+            if words.get(next + 1).is_some_and(Option::is_none)
+                && noun.is_some_and(|word| lexicon().roles.contains_key(&word.stem))
+            {
+                out.extend(words.get(next).cloned());
+                i = next + 2;
+            }
+            continue;
+        }
+        // `three people stand there - no, make that four`
+        let word = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        let made = word(i) == "make" && matches!(word(i + 1), "that" | "it") && words.get(i + 2).is_some_and(count);
+        if let Some(at) = out.iter().rposition(count).filter(|_| made) {
+            if let (Some(place), Some(number)) = (out.get_mut(at), words.get(i + 2)) {
+                place.clone_from(number);
+            }
+            let idle = |item: &Option<Word>| item.as_ref().is_none_or(|word| CORRECTS.contains(&word.text.as_str()));
+            while out.last().is_some_and(idle) {
+                out.pop();
+            }
+            i += 3;
+            continue;
+        }
+        // `three people stand there, plus two people …`
+        if word(i) == "plus" && words.get(i + 1).is_some_and(count) {
+            out.extend(words.get(i + 1).cloned());
+            let more = words.get(i).cloned().flatten().map(|word| Word {
+                text: "more".to_owned(),
+                stem: "more".to_owned(),
+                ..word
+            });
+            out.push(more);
+            i += 2;
+            continue;
+        }
+        // `towards the robot, which asks him to wait`
+        let robot =
+            out.len().checked_sub(2).and_then(|k| out.get(k)).cloned().flatten().filter(|word| word.stem == "robot");
+        if let (Some(robot), "which", true) = (robot, word(i), out.last().is_some_and(Option::is_none)) {
+            out.push(Some(robot));
+            i += 1;
+            continue;
+        }
+        let mut item = item.clone();
+        let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        if let Some(word) = &mut item
+            && word.text == "left"
+            && (words
+                .get(i + 1)
+                .and_then(Option::as_ref)
+                .is_some_and(|next| matches!(next.text.as_str(), "one" | "hand" | "side"))
+                || matches!(
+                    before,
+                    "the"
+                        | "on"
+                        | "to"
+                        | "its"
+                        | "his"
+                        | "her"
+                        | "their"
+                        | "from"
+                        | "far"
+                        | "turn"
+                        | "turns"
+                        | "turned"
+                        | "turning"
+                        | "keep"
+                        | "keeps"
+                        | "look"
+                        | "looks"
+                        | "bear"
+                        | "veers"
+                ))
+        {
+            // The side, nobody who leaves.
+            word.stem = "left".to_owned();
+        }
+        out.push(item);
+        i += 1;
+    }
+    described(&mut out);
+    out
+}
