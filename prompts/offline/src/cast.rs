@@ -344,6 +344,15 @@ impl Cast {
         }
     }
 
+    /// `a confederate …, a bystander …; the confederate`: who was called so, where the word tells nothing else of who it is.
+    pub(crate) fn called_so(&self, mention: &Mention, words: &[crate::words::Word]) -> Option<Vec<usize>> {
+        let one = matches!(mention.who, Who::Definite { plural: false, .. }) && mention.role.is_none();
+        let word = words.last().filter(|word| one && CALLED.contains(&word.stem.as_str()))?;
+        let of = |i: &usize| self.people.get(*i).is_some_and(|person| person.called.as_ref() == Some(&word.stem));
+        let mut known = (0..self.people.len()).filter(of);
+        known.next().filter(|_| known.next().is_none()).map(|who| vec![who])
+    }
+
     /// Gives people the names that stand beside who they are.
     pub(crate) fn name(&mut self, people: &[usize], names: &[&String]) {
         if people.len() != names.len() {

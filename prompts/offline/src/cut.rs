@@ -133,7 +133,11 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
         if let Some(joint) = joint {
             let done =
                 std::mem::replace(&mut open, Stretch { joint, after_and: false, words: Vec::new(), also: Vec::new() });
-            if done.words.is_empty() {
+            // `…, and only once it has stopped does she look at it`
+            let only = done.joint == Joint::And
+                && joint == Joint::When
+                && matches!(done.words.as_slice(), [word] if matches!(word.text.as_str(), "only" | "just"));
+            if done.words.is_empty() || only {
                 open.after_and = done.after_and || done.joint == Joint::And && joint != Joint::And;
                 // `, and when`: the stronger joint stays; a sentence that opens with `when` is known by its index.
                 if matches!(joint, Joint::Comma | Joint::And)
@@ -198,7 +202,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "but"
             if before == "all"
                 && matches!(text(i + 1), "the" | "a" | "an" | "her" | "his" | "him" | "human" | "for")
-                && !counted(i + 3) =>
+                && (!counted(i + 3) || text(i + 3) == "one") =>
         {
             (Some(Joint::Except), 1 + usize::from(text(i + 1) == "for"))
         }

@@ -187,6 +187,11 @@ pub(crate) fn repeat(
         return;
     }
     let mut people: Vec<usize> = meant.iter().flat_map(|(_, _, some)| some.iter().copied()).collect();
+    // `the second and the third do so`
+    let listed = if stretch.joint == crate::cut::Joint::And { std::mem::take(&mut thread.pending) } else { Vec::new() };
+    if !people.is_empty() {
+        people.splice(0..0, listed.into_iter().filter(|who| !meant.iter().any(|(_, _, some)| some.contains(who))));
+    }
     if let (true, Subject::People(some)) = (people.is_empty(), &thread.subject) {
         people.clone_from(some);
     }

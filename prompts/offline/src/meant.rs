@@ -43,7 +43,7 @@ pub(crate) fn meant(
         let known = story.cast.people.len();
         let made_of: Vec<String> = words.iter().flat_map(|word| word.made_of.clone()).collect();
         let asked = asked(story, found, mention);
-        let mut people = if let Some(asked) = asked {
+        let mut people = if let Some(asked) = asked.or_else(|| story.cast.called_so(mention, words)) {
             asked
         } else if made_of.is_empty() {
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)

@@ -310,6 +310,11 @@ fn weak(words: &[Word], mention: &Mention) -> bool {
         Who::New { count: Some(1), .. } if mention.role.is_none() => signs() && !words.iter().any(wishes),
         // `this one is about …`, `the human guides`
         Who::Definite { .. } if mention.role.is_none() => !mention.group,
+        // `Retail is well covered in the literature`
+        Who::Definite { .. } if mention.from == 0 && signs() => {
+            let known = mention.role.as_ref().is_some_and(|role| lexicon().roles.contains_key(role));
+            !known || opines(words, mention) || owned(words, mention)
+        }
         Who::Definite { .. } => opines(words, mention) || owned(words, mention),
         Who::All | Who::Ordinal(_) | Who::ToldApart | Who::Bare(1) | Who::Same | Who::Object => true,
         Who::New { .. }

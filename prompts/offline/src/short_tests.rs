@@ -116,3 +116,52 @@ fn a_guard_who_stops_the_robot_with_a_gesture_says_so() {
     let reading = told("A security guard stops the robot with a gesture.");
     assert!(reading.humans.iter().flat_map(|human| &human.rules).any(|rule| rule.gesture == Some(Gesture::Wait)));
 }
+
+#[test]
+fn what_is_done_only_then_waits_for_that_alone() {
+    let only =
+        told("A nurse gestures to the robot to wait, and only once the robot has stopped does the doctor look at it.");
+    assert_eq!(rule(&only, &Action::LookAtRobot).when, [Trigger::RobotStopped]);
+    assert_ne!(rule(&only, &Action::Navigate).when, [Trigger::RobotStopped]);
+    let so =
+        told("Two workers come towards the robot. The first steps aside; the second does so only when the robot asks.");
+    let second = so.humans.get(1).and_then(|human| human.rules.first()).unwrap();
+    assert_eq!((&second.act, second.when.as_slice()), (&Action::GiveWay, &[Trigger::RobotSays(Gesture::ExcuseMe)][..]));
+}
+
+#[test]
+fn who_is_excepted_does_not_do_it() {
+    let doing = |rough: &str, act: &Action| -> Vec<u32> {
+        let humans = told(rough).humans;
+        let does = humans.iter().filter(|human| human.rules.iter().any(|rule| rule.act == *act));
+        does.map(|human| human.id.number()).collect()
+    };
+    for rough in [
+        "Four workers come towards the robot. All but the third step aside.",
+        "Four workers come towards the robot. All but the third one step aside; the third blocks it.",
+        "Six agents are too many for CI, take four. All come towards the robot. All but the third step aside.",
+    ] {
+        assert_eq!(doing(rough, &Action::GiveWay), [1, 2, 4], "{rough}");
+    }
+    assert_eq!(doing("Four workers come towards the robot. All but the last step aside.", &Action::GiveWay), [1, 2, 3]);
+}
+
+#[test]
+fn who_is_nobody_of_the_scene_is_not_counted() {
+    for (rough, count) in [
+        ("Two, no wait, three visitors come towards the robot.", 3),
+        ("Two porters and a doctor – no, sorry, just one porter and the doctor. The porter crosses.", 2),
+        ("An earlier draft had four pedestrians in it, but two are enough. They cross the robot's path.", 2),
+        ("A visitor walks towards the robot. Twenty raters will watch the videos.", 1),
+        ("Children are known to block robots. One child blocks the robot.", 1),
+        ("What if a human competes with the robot? A doctor crosses its path.", 1),
+        ("Five people stand in a circle, plus one doctor who has nothing to do with them and crosses.", 6),
+        ("Mia and Jonas, my two confederates, come towards the robot. Mia steps aside; Jonas blocks it.", 2),
+        ("My supervisor wants the student to give way to the robot.", 1),
+    ] {
+        assert_eq!(told(rough).humans.len(), count, "{rough}");
+    }
+    let called =
+        told("A confederate crosses the robot's path, a bystander stands at the wall. The confederate says wait.");
+    assert!(called.humans.first().unwrap().rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait)), "{called:#?}");
+}
