@@ -117,10 +117,9 @@ fn since_last(cast: &mut Cast, who: usize, act: Act, around: &Around) -> Option<
     let [when] = last.rule.when.as_slice() else { return None };
     let waits = !matches!(when, Trigger::Always | Trigger::AfterSecs(_))
         && (last.rule.act != Action::Navigate || last.rule.gesture.is_some())
-        && (!last.lasts || last.rule.for_s == Some(secs));
-    // `is waiting at a doorway; after ten seconds he walks on`: it waits from the start of the run on.
-    let from_start = last.rule.act == Action::StandStill && !last.stated && stands;
-    let waits = waits && !from_start;
+        && (!last.lasts || last.rule.for_s == Some(secs))
+        // `is waiting at a doorway; after ten seconds he walks on`: it waits from the start of the run on.
+        && !(last.rule.act == Action::StandStill && !last.stated && stands);
     // `after 15 s she stops and stands still`: both then.
     let again = last.quote == around.quote || manner(act).is_some_and(|(action, ..)| action == last.rule.act);
     if !waits && !again || around.gives_up {

@@ -4,6 +4,7 @@ use socrates_model::{Fault, FaultCode, PlaceClass, Relation};
 
 use crate::cast::Cast;
 use crate::lexicon::Act;
+use crate::short;
 
 /// How an act sets somebody to the robot's way.
 pub(crate) fn relation(act: Act) -> Option<Relation> {
@@ -62,8 +63,7 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
             && person.group.is_some()
             && person.doings.iter().all(|doing| !matches!(doing.as_str(), "stands" | "stops"));
     // Who comes out right before the robot meets it where it crosses.
-    let at_door = pair(Relation::Leaving, Relation::Crossing)
-        && new == Relation::Crossing
+    let at_door = (old, new) == (Relation::Leaving, Relation::Crossing)
         && person.start != Some(PlaceClass::Elevator)
         && before_robot(quote);
     let ends = matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
@@ -76,7 +76,7 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
         if new == Relation::Leaving {
             person.relation = Some((new, quote.to_owned()));
         }
-    } else if excludes && !in_turn(quote) {
+    } else if excludes && !afterwards(quote) {
         cast.problems.push(contradiction(who, &first, quote));
     } else if closer || at_door || ends {
         person.relation = Some((new, quote.to_owned()));
@@ -98,7 +98,7 @@ pub(crate) fn contradiction(who: usize, first: &str, second: &str) -> Fault {
 }
 
 /// `turns around and walks back towards it`: after what it did before.
-fn in_turn(quote: &str) -> bool {
+fn afterwards(quote: &str) -> bool {
     quote.split(|c: char| !c.is_alphabetic()).any(|word| matches!(word, "back" | "then" | "finally" | "afterwards"))
 }
 
@@ -124,8 +124,5 @@ fn lost(cast: &mut Cast, who: usize, (relation, quote): (Relation, &str), played
         "`{quote}` is not played: each human stands to the robot's way in one way, and human_{} does so in another",
         who + 1
     );
-    let known = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.starts_with(&format!("`{quote}`"));
-    if !cast.problems.iter().any(known) {
-        cast.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
-    }
+    short::once(&mut cast.problems, quote, message);
 }

@@ -77,9 +77,13 @@ fn to_somebody(stretch: &Stretch, deed: Deed, meant: &[(usize, usize, Vec<usize>
 
 /// Says that something is not played.
 pub(crate) fn unplayed(problems: &mut Vec<Fault>, quote: &str, what: &str) {
-    let message = format!("`{quote}` is not played in full: {what} is not played");
-    let known = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.starts_with(&format!("`{quote}`"));
-    if !problems.iter().any(known) {
+    once(problems, quote, format!("`{quote}` is not played in full: {what} is not played"));
+}
+
+/// Says what is not played of these words, unless that was said of them already. The message begins with them.
+pub(crate) fn once(problems: &mut Vec<Fault>, quote: &str, message: String) {
+    let words = format!("`{quote}`");
+    if !problems.iter().any(|fault| fault.code == FaultCode::PRead && fault.message.starts_with(&words)) {
         problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
     }
 }
