@@ -74,22 +74,7 @@ fn round(value: f64) -> f64 {
 /// Largest distance of any trigger of a human, m.
 fn reach_m(human: HumanId, proposal: &Proposal) -> f64 {
     let rules = proposal.human(human).into_iter().flat_map(|human| &human.rules);
-    rules.flat_map(|rule| &rule.when).filter_map(distance_m).fold(0.0, f64::max).min(DISTANCE_M.1)
-}
-
-const fn distance_m(trigger: &Trigger) -> Option<f64> {
-    match trigger {
-        Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) => Some(*m),
-        Trigger::Always
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_) => None,
-    }
+    rules.flat_map(|rule| &rule.when).filter_map(Trigger::distance_m).fold(0.0, f64::max).min(DISTANCE_M.1)
 }
 
 /// What a human does by its rules altogether, s.

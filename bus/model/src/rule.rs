@@ -109,6 +109,42 @@ impl Trigger {
         }
     }
 
+    /// The distance from the robot at which it holds, m; `None` for triggers without one.
+    #[must_use]
+    pub const fn distance_m(&self) -> Option<f64> {
+        match self {
+            Self::RobotVisible(m) | Self::RobotNear(m) | Self::RobotBlocking(m) => Some(*m),
+            Self::Always
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::RobotPassed
+            | Self::RobotSays(_)
+            | Self::HumanSays(..)
+            | Self::GoalReached
+            | Self::AtEncounter
+            | Self::AfterSecs(_) => None,
+        }
+    }
+
+    /// The same trigger at another distance from the robot, m; one without a distance stays as it is.
+    #[must_use]
+    pub const fn at_distance(self, distance_m: f64) -> Self {
+        match self {
+            Self::RobotVisible(_) => Self::RobotVisible(distance_m),
+            Self::RobotNear(_) => Self::RobotNear(distance_m),
+            Self::RobotBlocking(_) => Self::RobotBlocking(distance_m),
+            Self::Always
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::RobotPassed
+            | Self::RobotSays(_)
+            | Self::HumanSays(..)
+            | Self::GoalReached
+            | Self::AtEncounter
+            | Self::AfterSecs(_) => self,
+        }
+    }
+
     /// The trigger in words: `when it sees the robot within 5 m`.
     #[must_use]
     pub fn phrase(&self) -> String {

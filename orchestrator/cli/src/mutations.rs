@@ -269,35 +269,11 @@ fn parts_from_afar(first: &Recording, second: &Recording, about: &str) -> bool {
 
 /// A rule that is to be done near the robot, done from afar; `None` where it is not.
 fn from_afar(rule: &socrates_model::Rule) -> Option<(f64, socrates_model::Rule)> {
-    let near = rule.when.iter().find_map(|trigger| match trigger {
-        Trigger::RobotVisible(m) | Trigger::RobotNear(m) if *m <= NEAR_M => Some(*m),
-        Trigger::RobotVisible(_)
-        | Trigger::RobotNear(_)
-        | Trigger::Always
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_) => None,
-    })?;
-    let when = rule.when.iter().map(|trigger| match trigger {
-        Trigger::RobotVisible(_) => Trigger::RobotVisible(FAR_M),
-        Trigger::RobotNear(_) => Trigger::RobotNear(FAR_M),
-        Trigger::Always
-        | Trigger::RobotBlocking(_)
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter
-        | Trigger::AfterSecs(_) => trigger.clone(),
-    });
+    let nears = |trigger: &Trigger| matches!(trigger, Trigger::RobotVisible(_) | Trigger::RobotNear(_));
+    let near =
+        rule.when.iter().filter(|trigger| nears(trigger)).filter_map(Trigger::distance_m).find(|m| *m <= NEAR_M)?;
+    let afar = |trigger: &Trigger| if nears(trigger) { trigger.clone().at_distance(FAR_M) } else { trigger.clone() };
+    let when = rule.when.iter().map(afar);
     Some((near, socrates_model::Rule { when: when.collect(), ..rule.clone() }))
 }
 

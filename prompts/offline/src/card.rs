@@ -219,7 +219,11 @@ impl RoleRule {
     /// The rule with values drawn from its ranges, in steps of 0.1.
     pub(crate) fn drawn(&self, draw: &mut Draw) -> Rule {
         let distance = self.within_m.map(|range| draw.tenths(range));
-        let when = self.when.iter().map(|trigger| crate::deed::with_distance(trigger.clone(), distance)).collect();
+        let when = self.when.iter().cloned().map(|trigger| match distance {
+            Some(m) => trigger.at_distance(m),
+            None => trigger,
+        });
+        let when = when.collect();
         Rule {
             when,
             act: self.act.clone(),

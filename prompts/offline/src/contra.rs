@@ -6,7 +6,7 @@ use socrates_model::{Action, Fault, FaultCode, PlaceClass, Relation, Trigger};
 
 use crate::clause::{self, Found};
 use crate::cut::{Joint, Stretch, sentences};
-use crate::deed::{self, distance_m};
+use crate::deed;
 use crate::lexicon::{Act, lexicon};
 use crate::mention::Who;
 use crate::story::{Story, Subject, Thread};
@@ -229,7 +229,7 @@ fn times_said(when: &Trigger, rough: &str) -> usize {
     let says = |mut stretch: Stretch| {
         let found = clause::read(&mut stretch);
         let cue = found.cue.and_then(|(cue, _)| trigger(cue, &found, &Thread::default()));
-        let near = distance_m(when).is_some() && found.distance_m == distance_m(when);
+        let near = when.distance_m().is_some() && found.distance_m == when.distance_m();
         near || cue.as_ref() == Some(when)
     };
     sentences(rough).into_iter().flatten().filter(|stretch| says(stretch.clone())).count()

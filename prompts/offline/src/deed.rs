@@ -320,7 +320,10 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         }
         // `follows at 2 m` says how far behind, not when.
         (None, _) if act == Act::Follow => usual,
-        (None, _) => with_distance(usual, around.distance_m),
+        (None, _) => match around.distance_m {
+            Some(m) => usual.at_distance(m),
+            None => usual,
+        },
     };
     let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
     let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
@@ -528,7 +531,7 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
         // Whoever acknowledges the robot looks at it.
         Gesture::Acknowledged => (Action::LookAtRobot, 4.0),
     };
-    let when = around.trigger.clone().unwrap_or_else(|| with_distance(Trigger::RobotVisible(5.0), around.distance_m));
+    let when = around.trigger.clone().unwrap_or_else(|| Trigger::RobotVisible(around.distance_m.unwrap_or(5.0)));
     let rule = Rule {
         when: vec![when],
         act,
@@ -545,25 +548,6 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
         lasts: around.lasts_s.is_some(),
     });
     Some(person.rules.len() - 1)
-}
-
-/// The trigger at another distance.
-pub(crate) fn with_distance(trigger: Trigger, distance_m: Option<f64>) -> Trigger {
-    match (trigger, distance_m) {
-        (Trigger::RobotVisible(_), Some(m)) => Trigger::RobotVisible(m),
-        (Trigger::RobotNear(_), Some(m)) => Trigger::RobotNear(m),
-        (Trigger::RobotBlocking(_), Some(m)) => Trigger::RobotBlocking(m),
-        (other, _) => other,
-    }
-}
-
-/// The distance of a trigger that has one.
-pub(crate) const fn distance_m(trigger: &Trigger) -> Option<f64> {
-    if let Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) = trigger {
-        Some(*m)
-    } else {
-        None
-    }
 }
 
 fn leaves(person: &Person) -> bool {

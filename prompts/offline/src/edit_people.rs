@@ -10,7 +10,7 @@ use socrates_model::{
 };
 
 use crate::cast::{Cast, Person, ReadRule};
-use crate::deed::{distance_m, manner};
+use crate::deed::manner;
 use crate::edit::Desk;
 use crate::edit_paths;
 use crate::edit_wish::Wish;
@@ -253,7 +253,7 @@ fn put(rules: &mut Vec<Rule>, read: &ReadRule) {
     old.act.clone_from(&read.rule.act);
     if read.stated {
         // A distance without a trigger of its own is that of the trigger that is there.
-        let meters = read.rule.when.first().and_then(distance_m);
+        let meters = read.rule.when.first().and_then(Trigger::distance_m);
         let keeps = !read.exact || matches!(read.rule.when.as_slice(), [Trigger::RobotVisible(_)]);
         match (old.when.as_slice(), meters) {
             ([Trigger::RobotNear(_)], Some(m)) if keeps => old.when = vec![Trigger::RobotNear(m)],

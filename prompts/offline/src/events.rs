@@ -7,7 +7,6 @@ use socrates_model::{
 };
 
 use crate::card::Card;
-use crate::deed::distance_m;
 use crate::place;
 use crate::prose::done;
 use crate::spot;
@@ -310,7 +309,7 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         // Where only one gets through, making room is going back.
         let back = place == PlaceClass::NarrowPassage && does(&Action::GiveWay);
         let apart = halts || back || does(&Action::RunAway);
-        let reach = early.filter_map(distance_m).filter(|_| apart).fold(within_m, |most, m| most.max(m + 0.5));
+        let reach = early.filter_map(Trigger::distance_m).filter(|_| apart).fold(within_m, |most, m| most.max(m + 0.5));
         list.setup(
             must,
             "",

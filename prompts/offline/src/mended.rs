@@ -3,8 +3,6 @@
 use socrates_model::rule::RobotDo;
 use socrates_model::{Action, AgentId, Fault, FaultCode, HumanProposal, Proposal, Rule, Trigger};
 
-use crate::deed::{distance_m, with_distance};
-
 /// A trigger that never fired gets so much more reach, one that fired too early so much less.
 const MORE: f64 = 1.5;
 const LESS: f64 = 0.7;
@@ -82,7 +80,10 @@ fn is_made(trigger: &Trigger, proposal: &Proposal) -> bool {
 
 fn scaled(rule: &Rule, scale: f64) -> Rule {
     let reach = |m: f64| (libm::round(m * scale * 10.0) / 10.0).clamp(REACH_M.0, REACH_M.1);
-    let when = rule.when.iter().map(|trigger| with_distance(trigger.clone(), distance_m(trigger).map(reach)));
+    let when = rule.when.iter().cloned().map(|trigger| match trigger.distance_m() {
+        Some(m) => trigger.at_distance(reach(m)),
+        None => trigger,
+    });
     // Running away from afar would end the meeting before it began.
     let flees = rule.act == Action::RunAway && scale > 1.0;
     if flees { rule.clone() } else { Rule { when: when.collect(), ..rule.clone() } }

@@ -339,7 +339,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         && let (Some(waiting), Some(m)) = (&thread.waiting, found.distance_m)
     {
         // `When it sees the robot …, and at 1.5 m it stops`: the nearer distance is that of this deed.
-        thread.waiting = Some(deed::with_distance(waiting.clone(), Some(m)));
+        thread.waiting = Some(waiting.clone().at_distance(m));
         thread.vague = false;
     }
     let previous = thread.subject.clone();

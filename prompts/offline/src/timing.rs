@@ -26,9 +26,9 @@ pub(crate) fn robot_first(found: &Found) -> bool {
 /// What a cue waits for.
 pub(crate) fn trigger(cue: Cue, found: &Found, thread: &Thread) -> Option<Trigger> {
     Some(match cue {
-        Cue::Visible => deed::with_distance(Trigger::RobotVisible(5.0), found.distance_m),
-        Cue::Near => deed::with_distance(Trigger::RobotNear(3.0), found.distance_m),
-        Cue::Blocking => deed::with_distance(Trigger::RobotBlocking(2.0), found.distance_m),
+        Cue::Visible => Trigger::RobotVisible(found.distance_m.unwrap_or(5.0)),
+        Cue::Near => Trigger::RobotNear(found.distance_m.unwrap_or(3.0)),
+        Cue::Blocking => Trigger::RobotBlocking(found.distance_m.unwrap_or(2.0)),
         Cue::Stopped => Trigger::RobotStopped,
         Cue::Moving => Trigger::RobotMoving,
         Cue::Passed => Trigger::RobotPassed,

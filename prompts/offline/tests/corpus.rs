@@ -159,19 +159,7 @@ fn does(words: &[&str], rule: &Rule) -> bool {
 }
 
 fn amount(trigger: &Trigger) -> Option<f64> {
-    match trigger {
-        Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) | Trigger::AfterSecs(m) => {
-            Some(*m)
-        }
-        Trigger::Always
-        | Trigger::RobotMoving
-        | Trigger::RobotStopped
-        | Trigger::RobotPassed
-        | Trigger::RobotSays(_)
-        | Trigger::HumanSays(..)
-        | Trigger::GoalReached
-        | Trigger::AtEncounter => None,
-    }
+    if let Trigger::AfterSecs(secs) = trigger { Some(*secs) } else { trigger.distance_m() }
 }
 
 fn is(trigger: &Trigger, kind: &str, more: &[&str]) -> bool {
