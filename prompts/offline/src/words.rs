@@ -336,20 +336,13 @@ fn mended(text: &str) -> Option<&'static str> {
     if letters == 5 && text != "robot" && strsim::osa_distance("robot", text) == 1 && text.starts_with('r') {
         return Some("robot");
     }
-    if letters < 4
+    let long = letters >= 5;
+    if !long
         || lex.telling.contains(text)
         || lex.known.contains(text)
         || lex.known.contains(&lex.stem(text))
         || lex.adjectives.contains(text)
-        || lex.stop.contains(text)
-        || lex.things.contains(text)
     {
-        return None;
-    }
-    if let Some(meant) = swapped(text) {
-        return Some(meant);
-    }
-    if letters < 5 {
         return None;
     }
     let joins = JOINTS.iter().find(|word| {
@@ -376,34 +369,6 @@ fn mended(text: &str) -> Option<&'static str> {
     let mut found = lex.telling.iter().filter(near);
     let only = found.next()?;
     if found.next().is_some() { None } else { Some(only) }
-}
-
-/// English words that are others with two letters swapped.
-const NO_SLIPS: &[&str] = &[
-    "form", "forms", "dose", "nerve", "angel", "sacred", "casual", "board", "clam", "blot", "bets", "lien", "dairy",
-    "loin", "snag", "brat", "pros", "gaol", "tires", "tiers",
-];
-
-/// The only word of the tables that has the same letters, two neighbours swapped: `whne`, `corsses`.
-fn swapped(text: &str) -> Option<&'static str> {
-    if NO_SLIPS.contains(&text) || !text.bytes().all(|b| b.is_ascii_lowercase()) {
-        return None;
-    }
-    let lex = lexicon();
-    let mut found: Option<&'static str> = None;
-    for at in 1..text.len() {
-        let mut letters = text.as_bytes().to_vec();
-        letters.swap(at - 1, at);
-        let Ok(other) = String::from_utf8(letters) else { continue };
-        let Some(meant) = lex.telling.get(&other).or_else(|| lex.stop.get(&other)).filter(|_| other != text) else {
-            continue;
-        };
-        if found.is_some_and(|known| known != meant) {
-            return None;
-        }
-        found = Some(meant);
-    }
-    found
 }
 
 /// A word by its letters, with its place in the text.
