@@ -195,12 +195,31 @@ fn measured(found: &mut Vec<Stretch>) {
     let unit = |word: &Word| matches!(word.stem.as_str(), "meter" | "centimeter" | "second");
     let number = |word: &Word| word.is_digits() || word.count().is_some();
     let about = |word: &Word| {
-        matches!(word.text.as_str(), "about" | "approx" | "roughly" | "ca" | "around" | "circa" | "for" | "away")
+        matches!(
+            word.text.as_str(),
+            "about"
+                | "approx"
+                | "roughly"
+                | "ca"
+                | "around"
+                | "circa"
+                | "for"
+                | "away"
+                | "at"
+                | "within"
+                | "from"
+                | "distance"
+                | "of"
+                | "a"
+                | "already"
+                | "only"
+                | "namely"
+        )
     };
     for at in (1..found.len()).rev() {
         let alone = found.get(at).is_some_and(|measure| {
             measure.joint == Joint::Comma
-                && measure.words.len() <= 4
+                && measure.words.len() <= 6
                 && measure.words.iter().any(unit)
                 && measure.words.iter().any(number)
                 && measure.words.iter().all(|word| unit(word) || number(word) || about(word))

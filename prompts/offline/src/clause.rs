@@ -7,7 +7,7 @@ use crate::lexicon::{Act, Cue, Item, lexicon};
 use crate::mention::{Mention, Who, mentions};
 use crate::negation::negated;
 use crate::topic::drop_topics;
-use crate::words::{find, pours, takes_along};
+use crate::words::{find, handles, mounts, pours, takes_along};
 use crate::{measure, message};
 
 /// A deed and where it stands.
@@ -166,7 +166,7 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
                 && end.checked_sub(1).and_then(|i| stretch.words.get(i)).is_some_and(|word| {
                     matches!(word.text.as_str(), "not" | "to" | "never" | "will" | "would" | "can" | "could")
                 });
-            if lifts {
+            if lifts || raises(stretch, end) {
                 continue;
             }
             // `makes room` is no room.
@@ -214,6 +214,16 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
     taken
 }
 
+/// `lifts the robot off the floor`: no elevator.
+fn raises(stretch: &Stretch, at: usize) -> bool {
+    text_of(stretch, at) == "lifts"
+        && matches!(text_of(stretch, at + 1), "the" | "a" | "an" | "his" | "her" | "its" | "it" | "him" | "them" | "up")
+        && !at.checked_sub(1).is_some_and(|k| {
+            matches!(text_of(stretch, k), "the" | "these" | "those" | "our" | "of" | "both")
+                || stretch.words.get(k).is_some_and(|word| word.count().is_some())
+        })
+}
+
 fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
     let temporal = matches!(stretch.joint, Joint::When | Joint::Until | Joint::While);
     let robot = stretch.words.iter().position(|word| word.stem == "robot");
@@ -254,6 +264,20 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         let free = |i: usize| !taken.get(i).copied().unwrap_or(true);
         let Some(at) = find(&stretch.words, phrase, 0, false, &free) else { continue };
         let first = at.first().copied().unwrap_or(0);
+        // `walks up to it to see what it is`
+        let why = !temporal
+            && phrase.means == Cue::Visible
+            && first > 0
+            && text_of(stretch, first - 1) == "to"
+            && stretch.words.get(first).is_some_and(|word| word.text == "see" || word.text == "look")
+            && !first.checked_sub(2).is_some_and(|k| {
+                stretch.words.get(k).is_some_and(|word| {
+                    matches!(word.stem.as_str(), "surprise" | "startle" | "happen" | "shock" | "amaze")
+                })
+            });
+        if why {
+            continue;
+        }
         // `I'd like to see it ask them`
         let word = |back: usize| {
             first.checked_sub(back).and_then(|k| stretch.words.get(k)).map_or("", |word| word.text.as_str())
@@ -583,7 +607,11 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
             && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");
         let taken = takes_along(&stretch.words, i) || gives;
-        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself || pours(&stretch.words, i) {
+        let handles = handles(&stretch.words, i) || mounts(&stretch.words, i);
+        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself
+            || pours(&stretch.words, i)
+            || handles
+        {
             found.impossible.push(i);
             // Who sits is at least somewhere: it stands there.
             if matches!(word.stem.as_str(), "sit" | "kneel" | "lie")

@@ -187,6 +187,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "having" if opens && matches!(stem(i + 1), "reach" | "arrive") => (Some(Joint::When), 1),
         // `up and down`, `back and forth` is one way of walking.
         "and" if matches!((before, text(i + 1)), ("up", "down") | ("back", "forth") | ("round", "round")) => (None, 1),
+        "and" if meeting(words, i) => (None, 1),
         "and" => (Some(Joint::And), 1),
         // `all but two`, `all except one`, `everyone save two`
         "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),
@@ -300,6 +301,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "after" if matches!(before, "second" | "minute") && matches!(text(i + 2), "start" | "beginning" | "outset") => {
             (None, 1)
         }
+        // `does not walk on before it has passed`
+        "before" if denies(words.get(..i).unwrap_or_default()) && !digit => (Some(Joint::Until), 1),
         "after" | "before"
             if !digit
                 && !matches!(text(i + 1), "a" | "half" | "you" | "some")
@@ -317,6 +320,28 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 1),
         _ => (None, 1),
     }
+}
+
+/// `when the inspector and the robot meet`: of two who meet, one clause tells.
+fn meeting(words: &[Option<Word>], and: usize) -> bool {
+    let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+    let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
+    let robot = and + 1 + usize::from(text(and + 1) == "the");
+    let meets = stem(robot) == "robot" && stem(robot + 1) == "meet";
+    let before =
+        (1..=4).filter_map(|back| and.checked_sub(back)).find(|k| matches!(text(*k), "when" | "once" | "as" | "until"));
+    meets
+        && before.is_some_and(|k| {
+            (k + 1..and).all(|k| !lexicon().verbs.contains(stem(k)) || lexicon().roles.contains_key(stem(k)))
+        })
+}
+
+/// Whether the clause that ends here rules something out: `does not resume her walk before …`.
+fn denies(before: &[Option<Word>]) -> bool {
+    let own: Vec<&Word> = before.iter().rev().map_while(Option::as_ref).collect();
+    let said = own.iter().take_while(|word| !matches!(word.text.as_str(), "and" | "but" | "when" | "who"));
+    let verbs = said.clone().any(|word| lexicon().verbs.contains(&word.stem));
+    verbs && said.clone().any(|word| matches!(word.text.as_str(), "not" | "never"))
 }
 
 /// `runs after the robot`: `after` belongs to the verb.
@@ -479,7 +504,44 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                     | "open"
             );
             let next = mentions(&following(words, i)).into_iter().next();
-            closes
+            // `when the robot comes into sight one of them goes up to it`: whoever a verb stands behind does it.
+            let finite = next.as_ref().is_some_and(|mention| {
+                word(i + mention.to + 1).is_some_and(|word| {
+                    word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem)
+                })
+            });
+            let governed = matches!(
+                before,
+                "of" | "to"
+                    | "at"
+                    | "by"
+                    | "with"
+                    | "near"
+                    | "from"
+                    | "for"
+                    | "behind"
+                    | "beside"
+                    | "before"
+                    | "and"
+                    | "or"
+                    | "in"
+                    | "on"
+                    | "than"
+                    | "between"
+                    | "past"
+                    | "towards"
+                    | "as"
+                    | "that"
+                    | "both"
+                    | "is"
+                    | "are"
+                    | "when"
+                    | "the"
+                    | "a"
+                    | "not"
+                    | "only"
+            );
+            (closes || finite && !governed)
                 && next.is_some_and(|mention| {
                     mention.from == 0
                         && word(i + mention.to + 1).is_some_and(|word| {

@@ -65,7 +65,7 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
         Some(false)
     } else if has(&["too", "likewise", "same", "well", "also", "similarly", "equally"])
         || verb && has(&["so", "only"])
-        || has(&["do"]) && left.iter().all(|word| matches!(*word, "do" | "only" | "just"))
+        || has(&["do"]) && left.iter().all(|word| matches!(*word, "do" | "only" | "just" | "all" | "both"))
     {
         Some(true)
     } else {
@@ -165,7 +165,8 @@ pub(crate) fn repeat(
         }
     }
     // `the first one does not stop; the other two do`
-    if does && acts.is_empty() && thread.made.is_empty() {
+    let asks = matches!(thread.said, Some(Trigger::RobotSays(gesture)) if asked_for(gesture) == thread.denied);
+    if does && acts.is_empty() && thread.made.is_empty() && !asks {
         let around = Around { quote: quote.to_owned(), ..Around::default() };
         acts.extend(thread.denied.map(|act| (act, around)));
     }

@@ -127,6 +127,8 @@ pub(crate) struct Lexicon {
     pub(crate) known: BTreeSet<String>,
     /// Words that carry a wish, in the forms in which people write them: what a slip of the pen may have meant.
     pub(crate) telling: BTreeSet<String>,
+    /// Things that people take from a robot or put on it.
+    pub(crate) goods: BTreeSet<String>,
     forms: BTreeMap<String, String>,
     /// Verbs by kind, for phrases.
     classes: BTreeMap<String, Arc<BTreeSet<String>>>,
@@ -141,6 +143,7 @@ struct File {
     impossible: String,
     task: String,
     verbs: String,
+    goods: String,
     things: String,
     classes: BTreeMap<String, String>,
     numbers: BTreeMap<String, u32>,
@@ -237,6 +240,7 @@ impl Lexicon {
             adjectives: set(&file.adjectives.words),
             verbs: set(&file.verbs),
             things: set(&file.things),
+            goods: set(&file.goods),
             classes: file.classes.iter().map(|(name, text)| (name.clone(), Arc::new(set(text)))).collect(),
             numbers: file.numbers,
             ordinals: file.ordinals,

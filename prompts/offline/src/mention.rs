@@ -121,7 +121,16 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         return others(words, at + 2, lex, &role).map(|mention| Mention { who: Who::Other(None), from: at, ..mention });
     }
     match text(at) {
-        "not" if matches!(text(at + 1), "a" | "one") && text(at + 2) == "single" => {
+        "not"
+            if matches!(text(at + 1), "a" | "one") && text(at + 2) == "single"
+                || text(at + 1) == "one" && matches!(text(at + 2), "of" | "person" | "human") =>
+        {
+            // `not a single one of them`
+            let one = at + 2 + usize::from(text(at + 2) == "single");
+            let of = one + usize::from(text(one) == "one");
+            if let Some(them) = of_them(of) {
+                return made(Who::Nobody, None, them.end);
+            }
             let end = noun(words, at + 3, lex).unwrap_or(at + 2);
             return made(Who::Nobody, None, end);
         }
@@ -252,6 +261,15 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
                         | "like"
                         | "wherever"
                         | "everywhere"
+                        | "throughout"
+                        | "around"
+                        | "all"
+                        | "there"
+                        | "after"
+                        | "again"
+                        | "if"
+                        | "as"
+                        | "or"
                         | "closely"
                         | "when"
                         | "while"

@@ -136,10 +136,12 @@ pub(crate) fn group(
 ) -> Option<Mention> {
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
     // `in a group` says how people stand; it is not a mention of its own.
-    let lead = (1..=3)
-        .filter_map(|back| group.checked_sub(back))
-        .map(&text)
-        .find(|word| !matches!(*word, "a" | "the" | "one" | "same" | "small" | "large"));
+    let lead = (1..=3).filter_map(|back| group.checked_sub(back)).map(&text).find(|word| {
+        !matches!(
+            *word,
+            "a" | "the" | "one" | "same" | "small" | "large" | "big" | "tight" | "loose" | "single" | "close"
+        )
+    });
     let in_a = matches!(lead, Some("in" | "as" | "form" | "forms" | "are" | "make" | "be" | "forming" | "into"))
         && text(group + 1) != "of";
     if in_a || words.get(group).is_some_and(|word| word.stem == "circle") {

@@ -7,6 +7,65 @@ use crate::words::Word;
 /// Words with which people take back a number that they have just given.
 const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
 
+/// Words that stand between a number that is taken back and the one that holds; some of them take it back.
+const BETWEEN: &[&str] = &[
+    "wait", "or", "better", "make", "that", "it", "just", "only", "i", "mean", "meant", "hang", "on", "hmm", "well",
+    "say", "should", "be", "strike", "scratch", "hold", "oops", "in", "fact", "now", "not",
+];
+
+/// `Three nurses, no sorry, two, are standing there`, `six people, scratch that, three, stand`: the number that holds, where the
+/// other one stood; `four packers and not three` are four.
+fn recounted(mut words: Vec<Option<Word>>) -> Vec<Option<Word>> {
+    let mut at = 1;
+    while at < words.len() {
+        let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+        let count = |k: usize| words.get(k).and_then(Option::as_ref).is_some_and(|word| word.count().is_some());
+        let mark = |k: usize| words.get(k).is_some_and(Option::is_none);
+        // `four packers and not three`
+        let not = at + usize::from(text(at) == "and");
+        let denied = (mark(at) || text(at) == "and") && text(not + usize::from(mark(at))) == "not";
+        let number = not + 1 + usize::from(mark(at));
+        let ends = |k: usize| k >= words.len() || mark(k);
+        if denied && count(number) && ends(number + 1) && (0..at).any(count) {
+            words.drain(at..=number);
+            continue;
+        }
+        let takes_back = |k: usize| {
+            CORRECTS.contains(&text(k))
+                || matches!(text(k), "scratch" | "strike" | "better" | "oops" | "meant")
+                || text(k) == "make" && matches!(text(k + 1), "that" | "it")
+        };
+        let opens = mark(at) || text(at) == "or";
+        let skips = |k: usize| mark(k) || CORRECTS.contains(&text(k)) || BETWEEN.contains(&text(k));
+        let next =
+            (at..words.len()).find(|k| !skips(*k)).filter(|next| opens && count(*next) && (at..*next).any(takes_back));
+        // `two take part, no one else`
+        let next = next.filter(|next| !(text(*next) == "one" && text(next - 1) == "no"));
+        let old = (at.saturating_sub(9)..at).rev().find(|k| count(*k));
+        if let Some((next, old)) = next.zip(old) {
+            let noun = |k: usize| {
+                words.get(k).and_then(Option::as_ref).is_some_and(|word| {
+                    lexicon().roles.contains_key(&word.stem) || lexicon().adjectives.contains(&word.text)
+                })
+            };
+            // `three, no, two people`: what comes after says of whom.
+            let bare = old + 1 == at;
+            if !noun(next + 1) && !(bare && !ends(next + 1)) {
+                let number = words.get(next).cloned().flatten();
+                // `people, maybe three, no, four, stand`: the mark parts what stood between marks before.
+                let close = usize::from((!bare || noun(next + 2)) && words.get(next + 1).is_some_and(Option::is_none));
+                if let Some(place) = words.get_mut(old) {
+                    *place = number;
+                }
+                words.drain(at..next + 1 + close);
+                continue;
+            }
+        }
+        at += 1;
+    }
+    words
+}
+
 /// `Two porters and a doctor – no, sorry, just one porter and the doctor`: what stands behind, where nothing is told before.
 fn taken_back(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
     let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
@@ -28,7 +87,7 @@ fn taken_back(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
 
 /// A sentence with its corrections made (`three, no, two people` are two), and with `left` told from `left`.
 pub(crate) fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
-    let words = taken_back(words);
+    let words = taken_back(recounted(words));
     let count = |item: &Option<Word>| item.as_ref().is_some_and(|word| word.count().is_some());
     let mut out: Vec<Option<Word>> = Vec::with_capacity(words.len());
     let mut i = 0;

@@ -3,7 +3,7 @@
 use socrates_model::{PlaceClass, Relation};
 
 use crate::clause::Found;
-use crate::cut::Stretch;
+use crate::cut::{Joint, Stretch};
 use crate::lexicon::{Act, lexicon};
 use crate::mention::Who;
 use crate::story::{Story, Subject};
@@ -26,6 +26,8 @@ enum Part {
     Start,
     /// It only tells who somebody is: `a nurse from ward 4`.
     Origin,
+    /// The robot passes it on its way: `via the pharmacy`.
+    Via,
 }
 
 /// Takes the places of a clause.
@@ -40,6 +42,7 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
         deed.act == Act::Lead && robot
     });
     let leads = leads.map(|deed| deed.at);
+    referred(story, found, stretch, quote);
     for (class, at) in &found.places {
         let class = beside_elevator(story, *class, *at, found, stretch);
         if leads.is_some_and(|deed| *at > deed) {
@@ -57,11 +60,12 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
         );
         let named = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "goal" | "destination" | "target"));
         // `from the corridor to a room`
-        let both = found.places.len() == 2
+        let both = found.places.len() >= 2
             && before(*at, stretch, &["from"])
             && found.places.iter().any(|(_, other)| other > at && before(*other, stretch, &["to", "into"]));
         match part(*at, found, stretch, subject) {
             Part::Goal | Part::Start if transit && !named && !both => {}
+            Part::Via if transit => {}
             Part::Goal => {
                 // Who gets into an elevator meets people there.
                 if class == PlaceClass::Elevator {
@@ -75,6 +79,10 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
                 continue;
             }
             Part::Origin => continue,
+            Part::Via => {
+                story.weak_place.get_or_insert_with(|| (class, quote.to_owned()));
+                continue;
+            }
             Part::There => {}
         }
         let heading = stretch.words.get(*at).is_some_and(|word| word.label);
@@ -131,6 +139,35 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
     }
 }
 
+/// `in the lobby, where it starts`, `drives from there to the dock`, `a guard is posted there`: places that were named before.
+fn referred(story: &mut Story, found: &Found, stretch: &Stretch, quote: &str) {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let robot = stretch.words.iter().position(|word| word.stem == "robot");
+    let starts = |k: usize| {
+        stretch.words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "start" | "begin" | "leave" | "depart"))
+    };
+    let there = (1..stretch.words.len()).find(|k| text(*k) == "there");
+    let from_there = there.is_some_and(|k| text(k - 1) == "from");
+    let begins = robot.is_some_and(|robot| robot <= 2 && text(0) == "where" && starts(robot + 1));
+    if robot.is_some() && story.robot_leaves.is_none() && (begins || from_there) {
+        let last = story.place.clone().or_else(|| story.weak_place.clone());
+        if from_there {
+            story.place = None;
+        }
+        story.robot_leaves = last;
+        return;
+    }
+    let stands = found.deeds.iter().any(|deed| matches!(deed.act, Act::Stand | Act::Stop | Act::Block | Act::Talk));
+    let at_goal = found.places.is_empty() && !found.mentions.is_empty() && story.place.is_none();
+    let where_it_goes = there.is_some_and(|k| k + 1 == stretch.words.len() && !from_there) && stands;
+    if at_goal
+        && where_it_goes
+        && let Some((class, _)) = &story.robot_enters
+    {
+        story.weak_place.get_or_insert((*class, quote.to_owned()));
+    }
+}
+
 /// `in the elevator`, and not in the lobby before it.
 pub(crate) fn in_car(quote: &str) -> bool {
     let quote = quote.to_lowercase();
@@ -170,6 +207,39 @@ pub(crate) fn before(at: usize, stretch: &Stretch, words: &[&str]) -> bool {
     let near = (1..=4).filter_map(|back| at.checked_sub(back)).find(|k| between(*k) && !describes(*k));
     near.is_some_and(|k| words.contains(&text(k)))
         || at.checked_sub(1).is_some_and(|k| words.contains(&"of") && text(k) == "of" && k > 0 && text(k - 1) == "out")
+}
+
+/// Words before a place that the robot's way leads past.
+const VIA: &[&str] = &["via", "past"];
+
+/// `Meds run from the pharmacy to the ward`, `Task: lobby to pharmacy via the waiting area`: a way that nobody walks is the robot's.
+fn errand(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Option<Part> {
+    let own = stretch.joint == Joint::Opens || !matches!(subject, Subject::People(_));
+    if !own || !found.mentions.is_empty() || found.places.len() < 2 {
+        return None;
+    }
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let filler = |k: usize| {
+        stretch
+            .words
+            .get(k)
+            .is_some_and(|word| word.label || matches!(word.text.as_str(), "the" | "a" | "an" | "route" | "task"))
+    };
+    let goal = found.places.iter().map(|(_, at)| *at).find(|at| before(*at, stretch, &["to", "into"]))?;
+    let start = found
+        .places
+        .iter()
+        .map(|(_, at)| *at)
+        .find(|at| *at < goal && (before(*at, stretch, &["from"]) || (0..*at).all(filler)))?;
+    if at == start {
+        Some(Part::Start)
+    } else if at == goal {
+        Some(Part::Goal)
+    } else if before(at, stretch, VIA) || text(at.wrapping_sub(2)) == "way" && text(at.wrapping_sub(1)) == "of" {
+        Some(Part::Via)
+    } else {
+        None
+    }
 }
 
 fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part {
@@ -217,10 +287,14 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
                 | "proceed"
                 | "begin"
                 | "get"
+                | "send"
+                | "dispatch"
+                | "want"
+                | "route"
         )
     };
     // `Starting in a room, the robot heads for the exit.`
-    let opens = text(0) == "starting" && !robot && found.mentions.is_empty();
+    let opens = matches!(text(0), "starting" | "start" | "starts") && !robot && found.mentions.is_empty();
     let robot = robot || opens;
     let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
     // Who follows the robot to a place goes where it goes.
@@ -229,11 +303,28 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
         && found.deeds.iter().any(|deed| matches!(deed.act, Act::Follow | Act::Abreast | Act::Behind) && deed.at < at);
     // `starts in a room`
     let starts = (0..at).rev().find(|k| moves(*k)).is_some_and(|k| matches!(stem(k), "start" | "begin" | "set"));
+    if let Some(part) = errand(at, found, stretch, subject) {
+        return part;
+    }
+    if (own || robot && !people) && before(at, stretch, VIA) {
+        return Part::Via;
+    }
+    // `to take him to the meeting room`: where the robot takes somebody is where it goes.
+    let takes = |k: usize| matches!(stem(k), "take" | "bring" | "lead" | "guide" | "escort" | "show" | "accompany");
+    let led = robot
+        && before(at, stretch, TO)
+        && (0..at).rev().find(|k| takes(*k)).is_some_and(|verb| {
+            stretch.words.iter().take(verb).any(|word| word.stem == "robot")
+                && found.mentions.iter().all(|mention| mention.from > verb)
+        });
+    if led {
+        return Part::Goal;
+    }
     if own && starts && before(at, stretch, IN) {
         Part::Start
     } else if (own || along) && before(at, stretch, TO) {
         Part::Goal
-    } else if own && before(at, stretch, FROM) {
+    } else if (own || along) && before(at, stretch, FROM) {
         Part::Start
     } else {
         Part::There

@@ -317,6 +317,10 @@ const JOINED: &[(&str, &[&str])] = &[
     ("infornt", &["in", "front"]),
     ("hte", &["the"]),
     ("adn", &["and"]),
+    ("docter", &["doctor"]),
+    ("docters", &["doctors"]),
+    ("visiter", &["visitor"]),
+    ("visiters", &["visitors"]),
     ("smae", &["same"]),
     ("thier", &["their"]),
     ("wiht", &["with"]),
@@ -336,13 +340,20 @@ fn mended(text: &str) -> Option<&'static str> {
     if letters == 5 && text != "robot" && strsim::osa_distance("robot", text) == 1 && text.starts_with('r') {
         return Some("robot");
     }
-    let long = letters >= 5;
-    if !long
+    if letters < 4
         || lex.telling.contains(text)
         || lex.known.contains(text)
         || lex.known.contains(&lex.stem(text))
         || lex.adjectives.contains(text)
+        || lex.stop.contains(text)
+        || lex.things.contains(text)
     {
+        return None;
+    }
+    if let Some(meant) = swapped(text) {
+        return Some(meant);
+    }
+    if letters < 5 {
         return None;
     }
     let joins = JOINTS.iter().find(|word| {
@@ -366,9 +377,42 @@ fn mended(text: &str) -> Option<&'static str> {
             && strsim::osa_distance(word, text) == 1
             && !doer(word)
     };
-    let mut found = lex.telling.iter().filter(near);
-    let only = found.next()?;
-    if found.next().is_some() { None } else { Some(only) }
+    let found: Vec<&'static String> = lex.telling.iter().filter(near).collect();
+    if let [only] = found.as_slice() { Some(only) } else { None }
+}
+
+/// English words that are others with two letters swapped.
+const NO_SLIPS: &[&str] = &[
+    "form", "forms", "dose", "nerve", "angel", "sacred", "casual", "board", "clam", "blot", "bets", "lien", "dairy",
+    "loin", "snag", "brat", "pros", "gaol", "tires", "tiers",
+];
+
+/// The only word of the tables that has the same letters, two neighbours swapped: `whne`, `corsses`. Of words as short as
+/// names are, only those that every text has: `Lena` is no `lean`.
+fn swapped(text: &str) -> Option<&'static str> {
+    if NO_SLIPS.contains(&text) || !text.bytes().all(|b| b.is_ascii_lowercase()) {
+        return None;
+    }
+    let lex = lexicon();
+    let mut found: Option<&'static str> = None;
+    for at in 1..text.len() {
+        let mut letters = text.as_bytes().to_vec();
+        letters.swap(at - 1, at);
+        let Ok(other) = String::from_utf8(letters) else { continue };
+        let Some(meant) = lex
+            .stop
+            .get(&other)
+            .or_else(|| lex.telling.get(&other).filter(|_| text.len() > 4))
+            .filter(|_| other != text)
+        else {
+            continue;
+        };
+        if found.is_some_and(|known| known != meant) {
+            return None;
+        }
+        found = Some(meant);
+    }
+    found
 }
 
 /// A word by its letters, with its place in the text.
@@ -398,6 +442,54 @@ pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
 pub(crate) fn pours(words: &[Word], at: usize) -> bool {
     words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "pour" | "spill"))
         && words.get(at + 1).is_some_and(|word| lexicon().things.contains(&word.stem))
+}
+
+/// `takes a box from its tray`, `puts her cup down on its lid`
+pub(crate) fn handles(words: &[Word], at: usize) -> bool {
+    let lex = lexicon();
+    let handles = words.get(at).is_some_and(|word| {
+        matches!(
+            word.stem.as_str(),
+            "take"
+                | "put"
+                | "place"
+                | "set"
+                | "lay"
+                | "load"
+                | "drop"
+                | "stick"
+                | "balance"
+                | "dump"
+                | "stuff"
+                | "hand"
+        )
+    });
+    let object =
+        |k: &usize| words.get(*k).is_some_and(|word| lex.goods.contains(&word.stem) || lex.goods.contains(&word.text));
+    let open = |k: &usize| {
+        words.get(*k).is_some_and(|word| {
+            !matches!(word.text.as_str(), "to" | "from" | "on" | "in" | "at" | "and") && word.stem != "robot"
+        })
+    };
+    // `takes a coffee break`
+    let compound = |k: usize| words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "break" | "note" | "order"));
+    handles && (at + 1..at + 6).take_while(open).find(object).is_some_and(|k| !compound(k + 1))
+}
+
+/// `hops onto the robot`, `gets on top of it`
+pub(crate) fn mounts(words: &[Word], at: usize) -> bool {
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let jumps = words.get(at).is_some_and(|word| {
+        matches!(
+            word.stem.as_str(),
+            "hop" | "jump" | "leap" | "step" | "get" | "climb" | "sit" | "stand" | "lean" | "ride"
+        )
+    });
+    let onto = matches!(text(at + 1), "onto" | "on" | "upon" | "atop");
+    let top = usize::from(matches!(text(at + 2), "top")) * 2;
+    let to = at + 2 + top + usize::from(text(at + 2 + top) == "the");
+    // `on its left` is beside it.
+    jumps && onto && words.get(to).is_some_and(|word| word.stem == "robot" && word.text != "its")
 }
 
 /// `takes it away`, `took the child aside`.
