@@ -45,7 +45,7 @@ pub(crate) fn called(pieces: &mut Vec<Piece>) -> Vec<String> {
             for at in found.noun..found.end {
                 if let Some(Piece::Word(word)) = pieces.get_mut(at) {
                     // `our foreman on shift 2`
-                    word.label |= word.is_digits();
+                    word.label |= word.is_digits() || at > found.noun;
                 }
             }
             for (from, to) in found.drop.into_iter().rev() {

@@ -45,6 +45,8 @@ pub(crate) struct Person {
     pub(crate) pronoun: Option<String>,
     /// `participant`, `bystander`: a word that says no more than that somebody is there.
     pub(crate) called: Option<String>,
+    /// Words that say that it stays where it is, which may be inside.
+    pub(crate) stays: Option<String>,
     /// Words that say that it walks on after all it did.
     pub(crate) goes_on: Option<String>,
     /// Words by which whoever comes out crosses the robot's way then.

@@ -12,6 +12,7 @@ use crate::mention::mentions;
 use crate::notes::notes;
 use crate::preamble::preamble;
 use crate::retract::settled;
+use crate::wording::reworded;
 use crate::words::{Piece, Word, pieces, word};
 
 /// How a clause is joined to the one before it.
@@ -70,6 +71,7 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     totals(&mut pieces);
     clock(&mut pieces);
     interjected(&mut pieces);
+    reworded(text, &mut pieces);
     notions(&mut pieces);
     let known = called(&mut pieces);
     names(&mut pieces, known);
@@ -183,7 +185,12 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         |verb: &str| matches!(verb, "signal" | "tell" | "indicate" | "show" | "gesture" | "announce" | "inform");
     match text(i) {
         "and" if text(i + 1) == "a" && text(i + 2) == "half" => (None, 1),
-        "at" if text(i + 1) == "that" && matches!(text(i + 2), "he" | "she" | "they" | "it") => (Some(Joint::Said), 2),
+        "at" | "with" | "on"
+            if matches!(text(i + 1), "that" | "this")
+                && matches!(text(i + 2), "he" | "she" | "they" | "it" | "both") =>
+        {
+            (Some(Joint::Said), 2)
+        }
         "having" if opens && matches!(stem(i + 1), "reach" | "arrive") => (Some(Joint::When), 1),
         // `up and down`, `back and forth` is one way of walking.
         "and" if matches!((before, text(i + 1)), ("up", "down") | ("back", "forth") | ("round", "round")) => (None, 1),
@@ -284,6 +291,8 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         // `one after another`, `one after the other` is a manner.
         "after" if before == "one" && (text(i + 1) == "another" || text(i + 2) == "other") => (None, 1),
         "after" if text(i + 1) == "which" => (Some(Joint::Then), 2),
+        // `she continues only after that`
+        "after" if text(i + 1) == "that" && i + 2 == words.len() && before == "only" => (Some(Joint::When), 1),
         "after"
             if text(i + 1) == "that"
                 && words.get(i + 2).is_none_or(|next| {
@@ -340,7 +349,8 @@ fn meeting(words: &[Option<Word>], and: usize) -> bool {
 fn denies(before: &[Option<Word>]) -> bool {
     let own: Vec<&Word> = before.iter().rev().map_while(Option::as_ref).collect();
     let said = own.iter().take_while(|word| !matches!(word.text.as_str(), "and" | "but" | "when" | "who"));
-    let verbs = said.clone().any(|word| lexicon().verbs.contains(&word.stem));
+    let asked = said.clone().any(|word| matches!(word.text.as_str(), "should" | "must" | "may" | "shall"));
+    let verbs = !asked && said.clone().any(|word| lexicon().verbs.contains(&word.stem));
     verbs && said.clone().any(|word| matches!(word.text.as_str(), "not" | "never"))
 }
 

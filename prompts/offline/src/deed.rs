@@ -155,6 +155,9 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         if cast.people.get(who).is_some_and(|p| p.relation.is_none()) {
             relate(cast, who, Relation::Static, &around.quote);
         }
+        if let Some(person) = cast.people.get_mut(who) {
+            person.stays = Some(around.quote.clone());
+        }
         Act::Stop
     } else {
         act

@@ -98,6 +98,21 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     Some(who)
 }
 
+/// `He says wait, so both packers stop`: because of what was said just before.
+pub(crate) fn consequence(thread: &Thread, text: &str, stretch: &Stretch, found: &Found) -> bool {
+    let before = stretch.words.first().and_then(|first| text.get(..first.from)).unwrap_or_default();
+    let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+    let spoken = thread.acts.last().is_some_and(|(act, _)| *act == Act::Gesture)
+        && matches!(thread.said, Some(Trigger::HumanSays(..)));
+    matches!(word, "so" | "hence" | "thus" | "therefore")
+        && spoken
+        && thread.waiting.is_none()
+        && found
+            .deeds
+            .first()
+            .is_some_and(|deed| !deed.negated && deed::manner(deed.act).is_some() || deed.act == Act::GoOn)
+}
+
 /// What a gesture asks somebody to do.
 const fn asked_for(gesture: Gesture) -> Option<Act> {
     match gesture {

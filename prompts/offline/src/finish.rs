@@ -4,6 +4,7 @@ use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Rel
 
 use crate::cast::{Person, ReadRule};
 use crate::deed;
+use crate::inside;
 use crate::relation;
 use crate::robot_deed::up_to_planner;
 use crate::rules;
@@ -17,6 +18,7 @@ const FIRST_SIGHT_M: f64 = 5.0;
 impl Story {
     /// Fills relations that follow from the deeds, and finds wishes that exclude each other.
     pub(crate) fn finish(&mut self) {
+        inside::settle(self);
         let inside = self.cast.people.iter().any(|p| is(p, Relation::Leaving) || is(p, Relation::Staying));
         match self.weak_place.take() {
             Some(weak) if self.place.is_none() || inside && weak.0 == PlaceClass::Elevator => self.place = Some(weak),

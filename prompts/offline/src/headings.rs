@@ -343,8 +343,23 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     let does = |k: usize| {
         word(k).is_some_and(|word| {
             lex.verbs.contains(&word.stem) && !word.capital && word.text != word.stem
-                || matches!(word.text.as_str(), "who" | "both" | "then" | "just" | "only" | "never" | "also" | "always")
-        })
+                || matches!(
+                    word.text.as_str(),
+                    "who"
+                        | "both"
+                        | "then"
+                        | "just"
+                        | "only"
+                        | "never"
+                        | "also"
+                        | "always"
+                        | "will"
+                        | "would"
+                        | "does"
+                        | "can"
+                        | "neither"
+                )
+        }) || matches!(pieces.get(k), Some(Piece::Comma)) && word(k + 1).is_some_and(|word| word.text == "who")
     };
     let title =
         |k: usize| word(k).is_some_and(|word| matches!(word.text.as_str(), "mr" | "mrs" | "ms" | "miss" | "prof"));
@@ -365,7 +380,10 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
         // `Anna and Ben both cross`
         let pair = word(k + 1).is_some_and(|word| word.text == "and")
             && word(k + 2).is_some_and(strange)
-            && (does(k + 3) || verb(k + 3));
+            && (does(k + 3)
+                || verb(k + 3)
+                || matches!(pieces.get(k + 3), Some(Piece::Comma))
+                    && word(k + 4).is_some_and(|word| word.text == "both" || word.text.ends_with("ing")));
         if begins(k) && (does(k + 1) || pair) {
             found.push(name.text.clone());
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));

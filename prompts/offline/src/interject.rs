@@ -85,6 +85,17 @@ const SAID: &[&[&str]] = &[
     &["therefore"],
     &["unsurprisingly"],
     &["sic"],
+    &["and", "not", "earlier"],
+    &["and", "not", "before"],
+    &["but", "not", "before"],
+    &["but", "not", "earlier"],
+    &["not", "earlier"],
+    &["not", "before"],
+    &["and", "only", "then"],
+    &["and", "no", "sooner"],
+    &["honestly"],
+    &["seriously"],
+    &["literally"],
 ];
 /// Words with which a text, or a sentence of it, speaks to whoever reads it: `Folks, …`.
 const OPENS: &[&[&str]] = &[

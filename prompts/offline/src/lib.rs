@@ -18,6 +18,7 @@ pub mod card;
 
 mod aside;
 mod lexicon;
+mod wording;
 mod words;
 
 mod named;
@@ -58,6 +59,7 @@ mod cast;
 mod deed;
 mod ellipsis;
 mod finish;
+mod inside;
 mod relation;
 mod robot_deed;
 mod short;

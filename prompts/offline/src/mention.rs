@@ -493,6 +493,8 @@ fn counted(
     if next == at
         && count.is_none()
         && words.get(at).is_some_and(|word| word.capital)
+        // `Sarah from HR walks`
+        && !at.checked_sub(1).is_some_and(|k| matches!(text(k), "from" | "in" | "of" | "at" | "by"))
         && noun(words, at, lex).is_none()
         && stranger(words, at, true, lex).is_some_and(|end| {
             // `Blood samples are urgent` names nobody.
@@ -506,7 +508,10 @@ fn counted(
         return made(Who::Definite { plural: false, count: None }, role(at), false, at);
     }
     if let Some(end) = noun(words, next, lex).or_else(|| stranger(words, next, article || count.is_some(), lex)) {
-        let many = words.get(end).is_some_and(plural);
+        // `Dr. Haas` is one.
+        let named =
+            end > next && words.get(end).is_some_and(|word| word.capital && !lex.roles.contains_key(&word.stem));
+        let many = words.get(if named { end - 1 } else { end }).is_some_and(plural);
         // `the new guy` is somebody else than who was spoken of.
         let the = the && (many || text(next) != "new");
         let article = article || text(next) == "new" && !many;

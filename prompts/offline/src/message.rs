@@ -205,6 +205,21 @@ pub(crate) fn echoes(stretch: &mut Stretch) -> Option<usize> {
     let count = stretch.words.len();
     let noun =
         |k: usize| matches!(stem(k), "signal" | "gesture" | "sign" | "request" | "command" | "call" | "cue" | "order");
+    // `Unless it says excuse me, he stays; if it does (say so), he …`
+    let does = stretch.joint == Joint::When
+        && (1..count.min(4)).any(|k| {
+            matches!(text(k), "does" | "do" | "did")
+                && (k + 1..count).all(|k| {
+                    matches!(
+                        text(k),
+                        "so" | "that" | "it" | "get" | "close" | "say" | "ask" | "come" | "near" | "this" | "indeed"
+                    )
+                })
+        });
+    if does || matches!((count, text(0)), (1, "that" | "this")) {
+        mark(stretch, 0, count.saturating_sub(1));
+        return Some(0);
+    }
     let at = (0..count).find(|k| {
         matches!(text(*k), "this" | "that" | "the" | "his" | "her" | "its" | "such") && noun(k + 1)
             // `once it has said that`, `as soon as she does so`, `if it does ask`

@@ -46,7 +46,8 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
             let there = || {
                 let left = story.cast.last.iter().find_map(|who| story.cast.people.get(*who)?.start);
                 let inside = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
-                left.or_else(|| story.place.as_ref().map(|(class, _)| *class)).filter(inside)
+                let named = story.place.as_ref().or(story.weak_place.as_ref());
+                left.or_else(|| named.map(|(class, _)| *class)).filter(inside)
             };
             story.robot_enters = class
                 .or_else(|| if story.robot_enters.is_none() { there() } else { None })

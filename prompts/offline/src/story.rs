@@ -208,7 +208,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         return only_says(story, thread, stretch, gesture, &quote);
     }
     thread.speaks = found.gesture.is_some() || !found.acts() && !found.robots.is_empty() && found.mentions.is_empty();
-    if stretch.joint == Joint::Said {
+    if stretch.joint == Joint::Said || ellipsis::consequence(thread, text, stretch, &found) {
         (thread.waiting, thread.vague) = (thread.said.clone(), false);
     } else if answers(&found, thread.fresh.as_ref())
         && thread.waiting.is_none()
@@ -247,7 +247,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         && (found.deeds.is_empty() || matches!(stretch.joint, Joint::When | Joint::Until) && robot_first(&found));
     let temporal = matches!(stretch.joint, Joint::Until | Joint::When | Joint::While);
     if cue_only && (temporal || found.gesture.is_none()) {
-        return timing(story, thread, stretch, &found, &quote);
+        return timing(story, thread, stretch, &found, (&quote, next));
     }
     // `while it is cleaning` is the robot's errand.
     found.impossible.retain(|at| {
@@ -499,7 +499,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 }
                 robot_deed(story, act, &found, &object, quote);
                 // `The robot asks to be let through and the first one gives way`: what comes next answers it.
-                if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture && thread.waiting.is_none()) {
+                if let Some(gesture) = found
+                    .gesture
+                    .filter(|_| act == Act::Gesture && matches!(thread.waiting, None | Some(Trigger::RobotSays(_))))
+                {
                     (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
                 }
                 if let Some(gesture) = found.gesture.filter(|_| act == Act::Gesture) {

@@ -79,7 +79,13 @@ fn asked(thread: &Thread, stretch: &Stretch, found: &Found) -> Option<Found> {
 }
 
 /// A clause that only says when: it times the deeds before it, or those still to come.
-pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, found: &Found, quote: &str) {
+pub(crate) fn timing(
+    story: &mut Story,
+    thread: &mut Thread,
+    stretch: &Stretch,
+    found: &Found,
+    (quote, next): (&str, Option<Joint>),
+) {
     let asked = asked(thread, stretch, found);
     let found = asked.as_ref().unwrap_or(found);
     let Some((cue, _)) = found.cue else { return };
@@ -141,7 +147,12 @@ pub(crate) fn timing(story: &mut Story, thread: &mut Thread, stretch: &Stretch, 
             read.stated && matches!(read.rule.when[..], [Trigger::RobotMoving | Trigger::RobotStopped])
         })
     });
-    let fronted = matches!(cue, Cue::Stopped | Cue::Moving) && timed;
+    // `When it says wait both stop, when it says proceed both go on.`
+    let again = stretch.joint == Joint::When
+        && next == Some(Joint::Comma)
+        && !thread.made.is_empty()
+        && already_timed(story, thread);
+    let fronted = matches!(cue, Cue::Stopped | Cue::Moving) && timed || again;
     let back = matches!(stretch.joint, Joint::When | Joint::While | Joint::Until)
         && !thread.made.is_empty()
         && !stretch.after_and

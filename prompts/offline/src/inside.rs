@@ -1,0 +1,28 @@
+//! Who stays inside a room or an elevator that the robot enters, wherever in the text that is said.
+
+use socrates_model::{Action, PlaceClass, Relation};
+
+use crate::story::Story;
+
+/// `A trainee is inside and remains there when the robot comes in`: said to stay before the robot was said to come in.
+pub(crate) fn settle(story: &mut Story) {
+    let inside = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
+    let Some((class, quote)) = story.robot_enters.clone().filter(|(class, _)| inside(class)) else { return };
+    let elsewhere = |found: &Option<(PlaceClass, String)>| found.as_ref().is_some_and(|(other, _)| *other != class);
+    if elsewhere(&story.place) {
+        return;
+    }
+    let mut any = false;
+    for person in &mut story.cast.people {
+        let stands = person.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
+        let Some(said) = person.stays.take().filter(|_| stands) else { continue };
+        person.relation = Some((Relation::Staying, said.clone()));
+        person.start = Some(class);
+        // To stay is to stand there, which needs no rule of its own.
+        person.rules.retain(|read| read.rule.act != Action::StandStill || read.stated || read.quote != said);
+        any = true;
+    }
+    if any && story.place.is_none() {
+        story.place = Some((class, quote));
+    }
+}

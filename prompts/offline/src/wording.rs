@@ -1,0 +1,240 @@
+//! Words that stand for others, and people of whom only is told what does not happen: `wants out`, `she thinks that people …`,
+//! `we had a complaint about a patient …`, `the only person left is a guard`.
+
+use crate::lexicon::lexicon;
+use crate::words::{Piece, Word, comma_at, silence, text_at, word_at};
+
+/// Verbs of minds: what is thought happens to nobody.
+const THINKS: &[&str] = &[
+    "thinks", "think", "believes", "believe", "assumes", "assume", "supposes", "reckons", "reckon", "hopes", "fears",
+    "wonders", "doubts", "imagines", "guesses", "knows", "finds",
+];
+/// Words of reports of what happened before, which a scene then shows anew.
+const REPORTS: &[&str] = &[
+    "complaint",
+    "complaints",
+    "complained",
+    "incident",
+    "incidents",
+    "accident",
+    "reported",
+    "miss",
+    "clipped",
+    "injured",
+];
+/// Who stands for somebody of whom it is then said who it is.
+const ANYBODY: &[&str] = &["somebody", "someone"];
+
+/// Rewrites such words, and makes nobody's those of whom only is told what happened before.
+pub(crate) fn reworded(text: &str, pieces: &mut Vec<Piece>) {
+    wishes(pieces);
+    cars(pieces);
+    this_one(pieces);
+    only_one(pieces);
+    placeholders(pieces);
+    let told: Vec<usize> = thoughts(pieces).into_iter().chain(reports(text, pieces)).collect();
+    silence(pieces, told);
+}
+
+fn set(pieces: &mut [Piece], at: usize, text: &str, stem: &str) {
+    if let Some(Piece::Word(word)) = pieces.get_mut(at) {
+        text.clone_into(&mut word.text);
+        stem.clone_into(&mut word.stem);
+    }
+}
+
+fn role(pieces: &[Piece], at: usize) -> Option<&Word> {
+    word_at(pieces, at).filter(|word| lexicon().roles.contains_key(&word.stem) && !word.label)
+}
+
+fn generic(pieces: &[Piece], at: usize) -> bool {
+    role(pieces, at).and_then(|word| lexicon().roles.get(&word.stem)).is_some_and(|role| role.generic)
+}
+
+/// First and last place of every sentence.
+fn sentences(pieces: &[Piece]) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut from = 0;
+    for at in 0..=pieces.len() {
+        if matches!(pieces.get(at), Some(Piece::Stop) | None) {
+            if at > from {
+                found.push((from, at));
+            }
+            from = at + 1;
+        }
+    }
+    found
+}
+
+/// `the robot wants into the room, an employee wants out`, `the robot asks, then he clears it`.
+fn wishes(pieces: &mut [Piece]) {
+    for at in 0..pieces.len() {
+        let wants = word_at(pieces, at).is_some_and(|word| word.stem == "want");
+        if wants && matches!(text_at(pieces, at + 1), "out" | "into" | "in" | "inside") {
+            set(pieces, at, "goes", "go");
+        }
+        let clears = matches!(text_at(pieces, at), "clears" | "clear") && text_at(pieces, at + 1) == "it";
+        if clears && text_at(pieces, at + 2) != "of" {
+            set(pieces, at + 1, "way", "way");
+        }
+    }
+}
+
+/// `the car` of a text about an elevator is that of the elevator.
+fn cars(pieces: &mut [Piece]) {
+    let lift = |k: usize| matches!(text_at(pieces, k), "elevator" | "lift" | "elevators" | "lifts");
+    if !(0..pieces.len()).any(lift) {
+        return;
+    }
+    for at in 0..pieces.len() {
+        let car = matches!(text_at(pieces, at), "car" | "cabin");
+        let named = at > 0 && matches!(text_at(pieces, at - 1), "elevator" | "lift" | "a");
+        if car && !named {
+            set(pieces, at, "elevator", "elevator");
+        }
+    }
+}
+
+/// `Nobody stops in this one`, `keep it to one person`, `a night shift of 12`: words that count nobody.
+fn this_one(pieces: &mut [Piece]) {
+    let mut told = Vec::new();
+    for at in 0..pieces.len() {
+        let text = |k: usize| text_at(pieces, k);
+        if matches!(text(at), "in" | "for")
+            && text(at + 1) == "this"
+            && text(at + 2) == "one"
+            && word_at(pieces, at + 3).is_none()
+        {
+            told.extend([at + 1, at + 2]);
+        }
+        let counted = word_at(pieces, at + 3).is_some_and(|word| word.count().is_some());
+        if text(at) == "keep" && text(at + 1) == "it" && matches!(text(at + 2), "to" | "at") && counted {
+            told.extend(at..at + 4 + usize::from(role(pieces, at + 4).is_some()));
+        }
+        let shift = matches!(text(at), "shift" | "crew" | "staff") && text(at + 1) == "of";
+        if shift && word_at(pieces, at + 2).is_some_and(Word::is_digits) && role(pieces, at + 3).is_none() {
+            told.extend(at..at + 3);
+        }
+    }
+    silence(pieces, told);
+}
+
+/// `the only person left is a guard`: a guard.
+fn only_one(pieces: &mut Vec<Piece>) {
+    let mut at = 0;
+    while at + 3 < pieces.len() {
+        let only = text_at(pieces, at) == "the"
+            && matches!(text_at(pieces, at + 1), "only" | "one")
+            && (generic(pieces, at + 2) || matches!(text_at(pieces, at + 2), "one" | "soul"));
+        let is = (at + 3..at + 6).find(|k| matches!(text_at(pieces, *k), "is" | "are"));
+        if let Some(is) = is.filter(|is| only && matches!(text_at(pieces, is + 1), "a" | "an")) {
+            pieces.drain(at..=is);
+            // Whatever came before told of others.
+            if at > 0 && comma_at(pieces, at - 1) {
+                if let Some(mark) = pieces.get_mut(at - 1) {
+                    *mark = Piece::Stop;
+                }
+            }
+        }
+        at += 1;
+    }
+}
+
+/// `it is the human, a welder, who …`, `somebody from the service, let's say a gardener, stands`: who it is then said to be.
+fn placeholders(pieces: &mut Vec<Piece>) {
+    let mut at = 0;
+    while at + 3 < pieces.len() {
+        let human =
+            matches!(text_at(pieces, at), "the" | "a" | "one") && generic(pieces, at + 1) && comma_at(pieces, at + 2);
+        let somebody = ANYBODY.contains(&text_at(pieces, at));
+        let mark =
+            if human { Some(at + 2) } else { (at + 1..at + 8).find(|k| comma_at(pieces, *k)).filter(|_| somebody) };
+        let Some(mark) = mark else {
+            at += 1;
+            continue;
+        };
+        let says = (mark + 1..mark + 4)
+            .take_while(|k| {
+                matches!(
+                    text_at(pieces, *k),
+                    "let" | "let's" | "lets" | "say" | "maybe" | "perhaps" | "probably" | "us"
+                )
+            })
+            .count();
+        let article = mark + 1 + says;
+        let noun = (article + 1..article + 4).find(|k| role(pieces, *k).is_some());
+        let who = matches!(text_at(pieces, article), "a" | "an") && noun.is_some_and(|noun| !generic(pieces, noun));
+        // Behind a bare `somebody, a nurse` the list of who is there may go on.
+        if who && (human || says > 0) {
+            pieces.drain(at..article);
+            let close =
+                (at..at + 12).take_while(|k| !matches!(pieces.get(*k), Some(Piece::Stop | Piece::Colon) | None));
+            let close = close.into_iter().find(|k| comma_at(pieces, *k)).filter(|k| {
+                word_at(pieces, k + 1).is_some_and(|word| lexicon().verbs.contains(&word.stem) || word.text == "who")
+            });
+            if let Some(close) = close {
+                pieces.remove(close);
+            }
+        }
+        at += 1;
+    }
+}
+
+/// `she thinks that robots should go around people`: what nobody does.
+fn thoughts(pieces: &[Piece]) -> Vec<usize> {
+    let mut told = Vec::new();
+    for at in 1..pieces.len() {
+        let subject = matches!(text_at(pieces, at - 1), "he" | "she" | "they" | "who" | "because" | "that")
+            || role(pieces, at - 1).is_some();
+        // `finds it exciting`, and not `finds the robot in his way`
+        let finds = text_at(pieces, at) != "finds" || matches!(text_at(pieces, at + 1), "it" | "that" | "this");
+        if !subject || !THINKS.contains(&text_at(pieces, at)) || !finds || text_at(pieces, at + 1) == "twice" {
+            continue;
+        }
+        let ends = |k: &usize| {
+            word_at(pieces, *k).is_none()
+                || matches!(text_at(pieces, *k), "and" | "but" | "so" | "when" | "until") && *k > at + 1
+        };
+        let end = (at + 1..=pieces.len()).find(ends).unwrap_or(pieces.len());
+        told.extend(at..end);
+    }
+    told
+}
+
+/// `We had a complaint about a patient near room 214. So: … an elderly patient …`, `Could we have a person beside it for once? An
+/// assistant …`: of whom a later sentence tells anew.
+fn reports(text: &str, pieces: &[Piece]) -> Vec<usize> {
+    let spans = sentences(pieces);
+    let mut told = Vec::new();
+    for (n, (from, to)) in spans.iter().enumerate() {
+        let words = || (*from..*to).filter_map(|k| word_at(pieces, k));
+        let anew = |stem: &str| {
+            spans.iter().skip(n + 1).any(|(from, to)| {
+                (*from..*to).any(|k| {
+                    role(pieces, k).is_some_and(|word| stem.is_empty() && !generic(pieces, k) || word.stem == stem)
+                        && (1..=3).filter_map(|back| k.checked_sub(back)).any(|k| {
+                            matches!(text_at(pieces, k), "a" | "an")
+                                || word_at(pieces, k).is_some_and(|word| word.count().is_some())
+                        })
+                })
+            })
+        };
+        let roles: Vec<&Word> = (*from..*to).filter_map(|k| role(pieces, k)).collect();
+        let reported =
+            words().any(|word| REPORTS.contains(&word.text.as_str())) && roles.iter().all(|word| anew(&word.stem));
+        let background = text_at(pieces, *from) == "background" && anew("");
+        let asked = words()
+            .last()
+            .is_some_and(|word| text.get(word.to..).is_some_and(|rest| rest.trim_start().starts_with('?')))
+            && roles.len() == 1
+            && (*from..*to).any(|k| generic(pieces, k))
+            && words()
+                .next()
+                .is_some_and(|word| matches!(word.text.as_str(), "could" | "can" | "what" | "how" | "would" | "may"))
+            && anew("");
+        if (reported || asked || background) && !roles.is_empty() {
+            told.extend(*from..*to);
+        }
+    }
+    told
+}
