@@ -357,7 +357,7 @@ fn is_manner(words: &[Word]) -> bool {
         Some(first) if first.text.ends_with("ing") => lex.verbs.contains(&first.stem),
         Some(first) if text(1) == "by" && first.text.ends_with("ed") => robot,
         Some(_) => {
-            text(0) == "from" && matches!(text(1), "behind" | "the")
+            text(0) == "from" && matches!(text(1), "behind" | "the") && words.iter().all(|word| word.text != "to")
                 || matches!(text(0), "beside" | "alongside" | "behind" | "ahead" | "next" | "in")
                     && robot
                     && words.len() <= 5

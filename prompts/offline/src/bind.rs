@@ -227,6 +227,21 @@ pub(crate) fn people_deed(
                 })
         });
     let act = if joins { Act::WalkTogether } else { act };
+    // `is standing in the packing area in the robot's way`
+    let stands_there = act == Act::Block
+        && thread.waiting.is_none()
+        && found.lasts_s.is_none()
+        && (0..=at).any(|k| {
+            stretch.words.get(k).is_some_and(|word| {
+                matches!(word.stem.as_str(), "stand" | "wait" | "sit" | "linger" | "loiter")
+                    && (k > at.saturating_sub(8))
+            })
+        });
+    for who in people.iter().filter(|_| stands_there) {
+        if story.cast.people.get(*who).is_some_and(|person| person.relation.is_none() && person.rules.is_empty()) {
+            crate::relation::relate(&mut story.cast, *who, Relation::Static, quote);
+        }
+    }
     // `waits 5 seconds and then goes in`: whatever it did, it goes on.
     let after = matches!(stretch.joint, Joint::Then | Joint::And) && thread.doer.as_deref() == Some(people);
     // `follow it and want to pass`: as yet they only want to.
@@ -287,10 +302,10 @@ pub(crate) fn people_deed(
             .or_else(|| found.places.iter().find(|(class, _)| inside(class)))
             .map(|(class, _)| *class)
             .or_else(|| people.iter().find_map(|i| story.cast.people.get(*i).and_then(|p| p.start)))
-            .or_else(|| at_elevator(story))
+            .or_else(|| at_elevator(story, act))
     } else if act == Act::Enter {
         // `the door opens and they all get in`, before an elevator
-        inside.or_else(|| at_elevator(story))
+        inside.or_else(|| at_elevator(story, act))
     } else {
         inside
     };
@@ -340,7 +355,16 @@ pub(crate) fn people_deed(
             && found.lasts_s.is_none()
             && (at..=to).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "stand"))
             || stretch.words.get(at).is_some_and(|word| matches!(word.text.as_str(), "standing" | "waiting"))
-                && stretch.words.get(at + 1).is_none_or(|word| word.text != "still"),
+                && stretch.words.get(at + 1).is_none_or(|word| word.text != "still")
+            // `both labourers wait at the intersection`
+            || act == Act::Stop
+                && thread.waiting.is_none()
+                && found.lasts_s.is_none()
+                && stretch.words.get(at).is_some_and(|word| word.stem == "wait")
+                && !stretch.words.iter().any(|word| matches!(word.text.as_str(), "until" | "then"))
+                && stretch.words.get(at + 1).is_some_and(|word| {
+                    matches!(word.text.as_str(), "at" | "in" | "by" | "near" | "outside" | "there" | "beside")
+                }),
         gives_up: act == Act::GoOn
             && stretch.words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "give" | "lose" | "get")),
         then: stretch.joint == Joint::Then,
@@ -396,8 +420,11 @@ pub(crate) fn people_deed(
 }
 
 /// The elevator, where the text tells of one or of the place before it.
-fn at_elevator(story: &Story) -> Option<PlaceClass> {
-    let near = |class: PlaceClass| matches!(class, PlaceClass::Elevator | PlaceClass::ElevatorLobby);
+fn at_elevator(story: &Story, act: Act) -> Option<PlaceClass> {
+    // Who stays in the lobby stands there, unless somebody comes out of the elevator.
+    let left = || story.cast.people.iter().any(|person| matches!(person.relation, Some((Relation::Leaving, _))));
+    let lobby = act != Act::Stay || left();
+    let near = |class: PlaceClass| class == PlaceClass::Elevator || lobby && class == PlaceClass::ElevatorLobby;
     story.place.as_ref().filter(|(class, _)| near(*class)).map(|_| PlaceClass::Elevator)
 }
 

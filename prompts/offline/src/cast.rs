@@ -211,11 +211,33 @@ impl Cast {
                     ));
                     return members;
                 }
+                // `neither of the two is in a hurry`: neither of it and the robot
+                if self.people.len() == 1 && wanted == 2 && mention.role.is_none() {
+                    return vec![0];
+                }
+                // `neither of the two professionals`: a word for some of those who are there.
+                if let Some(role) = mention.role.as_ref().filter(|role| !lexicon().roles.contains_key(*role)) {
+                    let set = self.latest();
+                    if set.len() > wanted
+                        && set.iter().all(|i| self.people.get(*i).is_some_and(|person| person.role != *role))
+                    {
+                        return set.into_iter().take(wanted).collect();
+                    }
+                }
                 let sets = [self.last.clone(), self.latest()];
                 let everybody: Vec<usize> = (0..self.people.len()).collect();
                 let alike: Vec<usize> = (0..self.people.len())
                     .filter(|i| mention.role.is_some() && self.people.get(*i).map(|p| &p.role) == mention.role.as_ref())
                     .collect();
+                // `two secretaries …; all three secretaries`
+                if mention.role.is_some() && alike.len() > 1 && alike.len() != wanted {
+                    let message = format!(
+                        "the text speaks of {} of them, but `{quote}` of {n}; correct one of the two",
+                        alike.len()
+                    );
+                    self.problems.push(Fault::new(FaultCode::PContra, "rough_scenario", message));
+                    return alike;
+                }
                 sets.into_iter()
                     .chain([alike, everybody])
                     .find(|set| fitting(set))
@@ -260,7 +282,12 @@ impl Cast {
             }
             Who::Definite { plural, count } => self.definite(*plural, *count, mention, declares, quote),
             Who::All => {
-                if self.last.len() > 1 {
+                let whole = self.sets.iter().map(|set| &set.members).filter(|members| {
+                    members.len() > self.last.len() && self.last.iter().all(|who| members.contains(who))
+                });
+                if let Some(members) = whole.max_by_key(|members| members.len()).filter(|_| mention.word == "all") {
+                    members.clone()
+                } else if self.last.len() > 1 {
                     self.last.clone()
                 } else {
                     self.latest()

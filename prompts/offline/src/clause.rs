@@ -166,7 +166,11 @@ fn places(stretch: &mut Stretch, found: &mut Found) -> Vec<bool> {
                 && end.checked_sub(1).and_then(|i| stretch.words.get(i)).is_some_and(|word| {
                     matches!(word.text.as_str(), "not" | "to" | "never" | "will" | "would" | "can" | "could")
                 });
-            if lifts || raises(stretch, end) {
+            // `on her way out`
+            let goes_out = phrase.means == PlaceClass::Exit
+                && text_of(stretch, end) == "out"
+                && (1..=3).filter_map(|back| end.checked_sub(back)).any(|k| text_of(stretch, k) == "on");
+            if lifts || goes_out || raises(stretch, end) {
                 continue;
             }
             // `makes room` is no room.
@@ -344,7 +348,18 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
                 );
             // `arms crossed`
             let limbs = phrase.means == Act::Cross && matches!(named, "arms" | "legs" | "fingers");
-            if trip || limbs {
+            // `the remaining two`, `the last visitor to leave`, `leaves the detour to the robot`
+            let told = matches!(phrase.means, Act::Stay | Act::ComeOut)
+                && (found.mentions.iter().any(|mention| (mention.from..=mention.to).contains(&first))
+                    || named == "to" && first > 1 && found.mentions.iter().any(|mention| mention.to + 2 == first)
+                    || at.len() == 1
+                        && text(first).starts_with("leave")
+                        && (first + 2..first + 6).any(|k| {
+                            text(k) == "to"
+                                && (k + 1..k + 3).any(|k| stretch.words.get(k).is_some_and(|word| word.stem == "robot"))
+                        })
+                        && !placed.get(first + 1..first + 4).is_some_and(|words| words.contains(&true)));
+            if trip || limbs || told {
                 continue;
             }
             // `the guide signals`: a noun here.
@@ -507,6 +522,21 @@ fn aside(stretch: &Stretch, last: usize) -> bool {
                     | "list"
                     | "chart"
                     | "charts"
+                    | "skyline"
+                    | "window"
+                    | "wall"
+                    | "view"
+                    | "sky"
+                    | "door"
+                    | "board"
+                    | "sign"
+                    | "noticeboard"
+                    | "clock"
+                    | "menu"
+                    | "shelf"
+                    | "shelves"
+                    | "rack"
+                    | "racks"
             )
         })
 }
@@ -580,7 +610,20 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
             used.push(i);
         }
         if matches!(text, "group" | "dyad" | "crowd" | "cluster")
-            && matches!(before, "a" | "the" | "one" | "same" | "small" | "large" | "loose" | "dense" | "tight")
+            && matches!(
+                before,
+                "a" | "the"
+                    | "one"
+                    | "same"
+                    | "small"
+                    | "large"
+                    | "big"
+                    | "loose"
+                    | "dense"
+                    | "tight"
+                    | "single"
+                    | "close"
+            )
         {
             found.in_group = true;
             used.push(i);
@@ -602,7 +645,8 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         let exactly = text == "exactly" && stretch.words.get(i + 2).is_none_or(|next| next.text != "of");
         found.declares |= exists || text == "scenario" || exactly;
         // `the lift opens`: of itself, and nobody does it.
-        let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors");
+        let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors")
+            || text == "open" && matches!(before, "an" | "the" | "its");
         // `hands the robot a letter`, `joins the queue`
         let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
             && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");

@@ -149,7 +149,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     {
         person.doings.push(doing);
     }
-    let left_inside = around.place.is_some() || cast.people.iter().any(leaves);
+    let inside = matches!(around.place, Some(PlaceClass::Room | PlaceClass::Elevator));
+    let left_inside = inside || cast.people.iter().any(leaves);
     let act = if act == Act::Stay && !left_inside {
         // `stays where she is` without anybody leaving is standing still.
         if cast.people.get(who).is_some_and(|p| p.relation.is_none()) {
@@ -256,16 +257,22 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     });
     let person = cast.people.get_mut(who)?;
     // `stands there for the whole run`, and moves all the same
-    let still = person
-        .still
-        .clone()
-        .filter(|_| !excepting && (goes(act) || matches!(act, Act::Follow | Act::GoOn | Act::Walk | Act::Approach)));
+    let still = person.still.clone().filter(|_| {
+        let moves = matches!(
+            act,
+            Act::Follow | Act::GoOn | Act::Walk | Act::Approach | Act::GiveWay | Act::RunAway | Act::Overtake
+        );
+        !excepting && (goes(act) || moves)
+    });
     let never_walks = person.never.iter().find(|(never, quote)| {
         matches!(never, Act::Walk | Act::GoOn) && matches!(act, Act::Walk | Act::GoOn) && !excepting && always(quote)
     });
     if let Some(first) = still.or_else(|| never_walks.map(|(_, quote)| quote.clone())) {
         cast.problems.push(contradiction(who, &first, &around.quote));
         return None;
+    }
+    if act == Act::Ignore && always(&around.quote) {
+        person.never.push((Act::Look, around.quote.clone()));
     }
     if matches!(act, Act::Stop | Act::Stand) && whole(&around.quote) {
         person.still = Some(around.quote.clone());
@@ -479,6 +486,14 @@ pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
         return;
     }
     let Some((action, ..)) = manner(act) else { return };
+    // `tells it to go ahead and does not stop`: it says so as it walks.
+    if act == Act::Stop {
+        let says =
+            |read: &&mut ReadRule| read.rule.act == Action::StandStill && read.rule.gesture == Some(Gesture::Proceed);
+        for read in person.rules.iter_mut().filter(says) {
+            read.rule.act = Action::Navigate;
+        }
+    }
     if let Some(read) = person.rules.iter().find(|read| read.rule.act == action) {
         let said = read.quote.clone();
         cast.problems.push(contradiction(who, &said, quote));

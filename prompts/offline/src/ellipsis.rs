@@ -98,6 +98,27 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     Some(who)
 }
 
+/// `The robot, which must not crowd him, asks …`, `The robot is to fetch a client, say "follow me" and bring her …`: what comes then is
+/// the robot's.
+pub(crate) fn of_robot(thread: &mut Thread, stretch: &Stretch) -> bool {
+    use crate::cut::Joint;
+    use crate::lexicon::lexicon;
+    let first = stretch.words.first();
+    let base = first.is_some_and(|word| word.text == word.stem && lexicon().verbs.contains(&word.stem));
+    if thread.robot_to && base && matches!(stretch.joint, Joint::Comma | Joint::And) {
+        thread.subject = Subject::Robot;
+    }
+    if matches!(stretch.joint, Joint::Opens) {
+        let robot = stretch.words.iter().take(3).any(|word| word.stem == "robot");
+        let to = stretch.words.windows(2).any(|two| {
+            matches!(two, [to, verb] if to.text == "to" && verb.text == verb.stem && lexicon().verbs.contains(&verb.stem))
+        });
+        thread.robot_to = robot && to;
+    }
+    let relative = stretch.joint == Joint::Who || first.is_some_and(|word| word.text == "whose");
+    relative && thread.subject == Subject::Robot
+}
+
 /// `He says wait, so both packers stop`: because of what was said just before.
 pub(crate) fn consequence(thread: &Thread, text: &str, stretch: &Stretch, found: &Found) -> bool {
     let before = stretch.words.first().and_then(|first| text.get(..first.from)).unwrap_or_default();
@@ -169,6 +190,10 @@ pub(crate) fn repeat(
 ) {
     for word in &mut stretch.words {
         word.used = true;
+    }
+    let waits = matches!(thread.waiting, Some(Trigger::RobotSays(_) | Trigger::HumanSays(..)));
+    if does && waits && thread.made.is_empty() && obeys(story, thread, &Found::default(), meant, quote) {
+        return;
     }
     let mut acts = thread.acts.clone();
     // `…; the second does so only when it asks`: the deed, not when the first one does it.

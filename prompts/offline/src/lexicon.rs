@@ -271,6 +271,10 @@ impl Lexicon {
             let kind = word.strip_prefix('<').and_then(|word| word.strip_suffix('>'));
             match kind.and_then(|kind| lex.classes.get(kind)) {
                 Some(kind) => Item::OneOf(Arc::clone(kind)),
+                // The side has its own base form, and so has who leaves.
+                None if word == "left" => {
+                    Item::OneOf(Arc::new(BTreeSet::from(["left".to_owned(), "leave".to_owned()])))
+                }
                 None => Item::Word(lex.stem(word)),
             }
         };

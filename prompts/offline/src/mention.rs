@@ -201,6 +201,10 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let end = of_them(at + 1).map_or(at, |of| of.end);
             return made(Who::All, None, end);
         }
+        // `all but the first …`, where the last ones spoken of are some of them
+        "all" if words.len() == 1 => {
+            return made(Who::All, None, at).map(|mention| Mention { word: "all".to_owned(), ..mention });
+        }
         "all" | "each" => {
             if let Some(of) = of_them(at + 1) {
                 return made(Who::All, None, of.end);

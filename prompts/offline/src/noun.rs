@@ -26,6 +26,7 @@ const THINGS: &[&str] = &[
 pub(crate) fn thing(words: &[Word], at: usize) -> bool {
     words.get(at).is_some_and(|word| {
         THINGS.contains(&word.text.as_str())
+            || lexicon().places.iter().any(|place| place.items == [Item::Word(word.stem.clone())])
             || lexicon().labels.contains(&word.text) && !lexicon().verbs.contains(&word.stem)
             || lexicon().things.contains(&word.stem) && !lexicon().verbs.contains(&word.stem)
     })
@@ -125,6 +126,11 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
                     | "entrance"
                     | "council"
                     | "canteen"
+                    | "clinic"
+                    | "university"
+                    | "company"
+                    | "site"
+                    | "agency"
                     | "satisfaction"
             ) || !generic && lex.places.iter().any(place)
         })
@@ -179,7 +185,9 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
     let variant = text(at) == "different"
         && back(1).is_some_and(|word| word.text == "a")
         && back(2).is_some_and(|word| word.text == "with");
-    if !introduced || has || variant {
+    // `two people with two temperaments`
+    let had = back(1).is_some_and(|word| word.count().is_some()) && back(2).is_some_and(|word| word.text == "with");
+    if !introduced || has || variant || had {
         return None;
     }
     let unknown = |k: usize| {

@@ -16,10 +16,12 @@ pub(crate) fn others(
     let made = |who: Who, role: Option<String>, to: usize| {
         Some(Mention { who, role, word: String::new(), group: false, parts: 1, from: at, to })
     };
-    let the = usize::from(matches!(text(at), "the" | "each"));
+    let that = text(at) == "that" && matches!(text(at + 1), "last" | "first" | "second" | "third");
+    let the = usize::from(that || matches!(text(at), "the" | "each"));
     // `each other` and `one after the other` are nobody new.
     let before = if at == 0 { "" } else { text(at - 1) };
-    let manner = text(at) == "each" && text(at + 1) == "other"
+    let manner = text(at) == "other" && before == "no"
+        || text(at) == "each" && text(at + 1) == "other"
         || text(at) == "other"
             && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind" | "to"))
         || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind")

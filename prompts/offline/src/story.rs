@@ -102,6 +102,10 @@ pub(crate) struct Thread {
     pub(crate) after: Option<Vec<usize>>,
     /// `One after another, four people …`
     pub(crate) in_turn: bool,
+    /// The clause before only names some of those whose deeds were told: `the first when …`.
+    pub(crate) renamed: bool,
+    /// The robot is to do several things: `is to fetch a client, say …`.
+    pub(crate) robot_to: bool,
     /// Who walked on in the clause before, which a later `when` may still time.
     pub(crate) went_on: Vec<usize>,
 }
@@ -164,11 +168,15 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
 }
 
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
+    let of_robot = ellipsis::of_robot(thread, stretch);
     // Who somebody is, is no answer to what happens then; the clause after it may be.
     let suspended = (stretch.joint == Joint::Who).then(|| thread.waiting.take()).flatten();
     read_clause(story, thread, stretch, text, next);
     if thread.waiting.is_none() && suspended.is_some() {
         thread.waiting = suspended;
+    }
+    if of_robot && next == Some(Joint::Comma) {
+        thread.subject = Subject::Robot;
     }
 }
 

@@ -92,7 +92,11 @@ pub(crate) fn timing(
     thread.paused = false;
     place_of(story, found, stretch, &thread.subject, quote);
     // `just as the robot wants to get in`
-    if found.deeds.iter().any(|deed| deed.act == Act::Enter) && robot_first(found) && !found.robots.is_empty() {
+    let comes_in = stretch.words.last().is_some_and(|word| word.text == "in")
+        && stretch.words.iter().any(|word| matches!(word.stem.as_str(), "come" | "drive" | "roll" | "go" | "get"))
+        || stretch.words.iter().any(|word| word.stem == "enter");
+    let enters = found.deeds.iter().any(|deed| deed.act == Act::Enter) && !found.robots.is_empty() || comes_in;
+    if enters && robot_first(found) && found.mentions.is_empty() {
         robot_deed(story, Act::Enter, found, &[], quote);
     }
     if let (Cue::Says, Some(gesture)) = (cue, found.gesture) {
@@ -204,10 +208,26 @@ pub(crate) fn timing(
     }
     // `runs away upon seeing it` looks back; `When the robot comes near, …` looks ahead.
     if back {
-        for (who, rule) in std::mem::take(&mut thread.made) {
+        // `the first when it is 4 m away, the second only at 1 m`
+        let named = match &thread.subject {
+            Subject::People(people) if named_again(thread, people) => people.clone(),
+            Subject::People(_) | Subject::Robot | Subject::Nobody => Vec::new(),
+        };
+        let (now, later): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut thread.made).into_iter().partition(|(who, _)| named.is_empty() || named.contains(who));
+        thread.made = later;
+        for (who, rule) in now {
             if let Some(read) = story.cast.people.get_mut(who).and_then(|p| p.rules.get_mut(rule)) {
                 // A run away must still be a meeting; without a distance in the text the usual one stays.
                 let usual = read.rule.when.first().cloned();
+                // `5 s after the start he looks at it as it comes through`: a time that was told stays.
+                if read.stated
+                    && matches!(usual, Some(Trigger::AfterSecs(_)))
+                    && found.distance_m.is_none()
+                    && matches!(cue, Cue::Near | Cue::Visible)
+                {
+                    continue;
+                }
                 read.rule.when = vec![match (usual, &when, found.distance_m) {
                     (Some(Trigger::RobotVisible(m)), Trigger::RobotVisible(_), None) => Trigger::RobotVisible(m),
                     _ => when.clone(),
@@ -224,6 +244,13 @@ pub(crate) fn timing(
         thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open") && !met);
         thread.vague = found.distance_m.is_none();
     }
+}
+
+/// Whether the clause before only names some of those whose deeds were told.
+fn named_again(thread: &Thread, people: &[usize]) -> bool {
+    thread.renamed
+        && people.iter().all(|who| thread.made.iter().any(|(of, _)| of == who))
+        && thread.made.iter().any(|(who, _)| !people.contains(who))
 }
 
 /// Whether the text said before when the last deeds are done.
@@ -340,6 +367,17 @@ pub(crate) fn quiet(
         return;
     }
     thread.paused = true;
+    thread.renamed = people.iter().all(|who| thread.made.iter().any(|(of, _)| of == who));
+    // `the second only at 1 m`
+    if let Some(m) = found.distance_m.filter(|_| found.distance_is_when && thread.renamed) {
+        for (who, rule) in thread.made.iter().filter(|(who, _)| people.contains(who)) {
+            let read = story.cast.people.get_mut(*who).and_then(|person| person.rules.get_mut(*rule));
+            if let Some(read) = read {
+                (read.rule.when, read.stated, read.exact) = (vec![Trigger::RobotNear(m)], true, true);
+            }
+        }
+        return;
+    }
     if found.in_group {
         story.cast.group(&people, quote);
     }
