@@ -46,13 +46,18 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
     let head = mentions(&spoken).into_iter().rev().find(|mention| matches!(mention.who, Who::New { .. }))?;
     let Who::New { count, .. } = head.who else { return None };
     // `a family`: as many as the list names.
-    let count = count.map_or(head.group, |n| usize::try_from(n) == Ok(list.roles.len()));
+    // `exactly three people: a nurse, two visitors and a cleaner`: said to be wrong, once it is known whose they are.
+    let colon = words.get(at + 1).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
+    let whole = words.get(list.end..)?.iter().all(Option::is_none);
+    let listed = |n: u32| {
+        let wanted = usize::try_from(n).unwrap_or(usize::MAX);
+        wanted == list.roles.len() || colon && whole && head.role.is_none() && wanted > 1 && wanted < list.roles.len()
+    };
+    let count = count.map_or(head.group, listed);
     let noun = *places.get(head.to)?;
     let adjacent = noun + 1 == at;
     // Farther on it is a list of them only if nothing comes after it: `two people come in: a nurse and a visitor`.
-    let ends = words.get(list.end..)?.iter().all(Option::is_none);
-    let colon = words.get(at + 1).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
-    let listed = adjacent || mark && ends && (colon || head.role.is_none());
+    let listed = adjacent || mark && whole && (colon || head.role.is_none());
     (count && listed).then_some((noun, list))
 }
 
@@ -68,6 +73,13 @@ fn list(words: &[Option<Word>], from: usize) -> Option<List> {
         next = end + usize::from(words.get(end).is_some_and(Option::is_none));
         joined |= and(next);
         next += usize::from(and(next));
+        // `a physio and after him a dietician`
+        let after = |k: usize, texts: &[&str]| {
+            words.get(k).and_then(Option::as_ref).is_some_and(|word| texts.contains(&word.text.as_str()))
+        };
+        if after(next, &["after", "then", "behind"]) && after(next + 1, &["him", "her", "them"]) {
+            next += 2;
+        }
         if next == end {
             break;
         }
@@ -82,7 +94,14 @@ fn item(run: &[Word]) -> Option<(u32, String, usize)> {
     let bare = !run.first().is_some_and(|word| {
         matches!(word.text.as_str(), "the" | "this" | "that" | "her" | "his" | "their" | "our" | "my" | "its")
     });
-    let count = if let Who::New { count: Some(count), .. } = mention.who {
+    // `a patient and the patient's wife`
+    let whose = run.get(..=mention.to).is_some_and(|words| {
+        words.iter().filter(|word| lexicon().roles.contains_key(&word.stem)).count() > 1
+            && words.first().is_some_and(|word| word.text == "the")
+    });
+    let count = if whose && mention.who == (Who::Definite { plural: false, count: None }) {
+        1
+    } else if let Who::New { count: Some(count), .. } = mention.who {
         count
     } else if bare && mention.who == (Who::Definite { plural: false, count: None }) {
         1

@@ -21,6 +21,9 @@ pub(crate) fn arranged(mut found: Vec<Stretch>) -> Vec<Stretch> {
     of_them(&mut found);
     excepting(&mut found);
     denied(&mut found);
+    spoken_first(&mut found);
+    out_of(&mut found);
+    headed(&mut found);
     measured(&mut found);
     bracketed(&mut found);
     pair(&mut found);
@@ -190,6 +193,75 @@ fn resumed(found: &mut Vec<Stretch>) {
     }
 }
 
+/// `"Follow me", the robot signals to a visitor`: what is said stands behind who says it.
+fn spoken_first(found: &mut Vec<Stretch>) {
+    let says = |word: &Word| matches!(word.stem.as_str(), "say" | "signal" | "tell" | "ask" | "call" | "gesture");
+    let robot = |stretch: &Stretch| {
+        stretch.words.iter().take(2).any(|word| word.stem == "robot") && stretch.words.iter().take(4).any(says)
+    };
+    let message = |stretch: &Stretch| {
+        stretch.words.len() <= 3
+            && lexicon().gestures.iter().any(|phrase| {
+                crate::words::find(&stretch.words, phrase, 0, false, &|_| true)
+                    .is_some_and(|at| at.first() == Some(&0) && at.last() == Some(&(stretch.words.len() - 1)))
+            })
+    };
+    let first = found.first().is_some_and(message)
+        && found.get(1).is_some_and(|next| next.joint == Joint::Comma && robot(next));
+    if first {
+        let message = found.remove(0);
+        if let Some(says) = found.first_mut() {
+            says.joint = message.joint;
+            says.words.extend(message.words);
+        }
+    }
+}
+
+/// `Out of the break room, on its left, comes a mechanic`: what comes stands behind where it comes from.
+fn out_of(found: &mut Vec<Stretch>) {
+    let starts = found.first().is_some_and(|first| {
+        matches!(first.words.as_slice(), [out, of, ..] if out.text == "out" && of.text == "of")
+            && mentions(&first.words).is_empty()
+    });
+    let comes = |stretch: &Stretch| {
+        stretch.joint == Joint::Comma
+            && stretch
+                .words
+                .first()
+                .is_some_and(|word| matches!(word.stem.as_str(), "come" | "step" | "walk" | "emerge" | "run"))
+    };
+    let at = (1..found.len().min(4)).find(|k| found.get(*k).is_some_and(comes));
+    if let Some(at) = at.filter(|_| starts) {
+        let comes = found.remove(at);
+        if let Some(first) = found.first_mut() {
+            first.words.extend(comes.words);
+        }
+    }
+}
+
+/// `when his foreman, who comes up behind it, says "go ahead"`: of the verb of a clause, and the relative clause behind it.
+fn headed(found: &mut Vec<Stretch>) {
+    for at in 0..found.len() {
+        let head = found.get(at).is_some_and(|head| {
+            matches!(head.joint, Joint::When | Joint::While | Joint::Until)
+                && matches!(mentions(&head.words).as_slice(), [only] if only.from == 0 && only.to + 1 == head.words.len())
+        });
+        let relative = found.get(at + 1).is_some_and(|who| who.joint == Joint::Who);
+        let verb = found.get(at + 2).is_some_and(|verb| {
+            verb.joint == Joint::Comma
+                && verb.words.first().is_some_and(|word| {
+                    word.text != word.stem && word.text.ends_with('s') && lexicon().verbs.contains(&word.stem)
+                })
+        });
+        if head && relative && verb {
+            let rest = found.remove(at + 2);
+            if let Some(head) = found.get_mut(at) {
+                head.words.extend(rest.words);
+            }
+        }
+    }
+}
+
 /// `when it is close (1 m)`: a measure alone belongs to the clause before it.
 fn measured(found: &mut Vec<Stretch>) {
     let unit = |word: &Word| matches!(word.stem.as_str(), "meter" | "centimeter" | "second");
@@ -227,7 +299,16 @@ fn measured(found: &mut Vec<Stretch>) {
         let free = found.get(at - 1).is_some_and(|before| {
             !before.words.iter().any(unit) && before.words.iter().any(|word| lexicon().verbs.contains(&word.stem))
         });
-        if alone && free {
+        // `and, at a distance of 2.5 m, moves out of its way`: of what comes then.
+        let fronted = found.get(at).is_some_and(|measure| {
+            measure
+                .words
+                .first()
+                .is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from" | "already" | "only"))
+        }) && found.get(at + 1).is_some_and(|next| {
+            next.joint == Joint::Comma && next.words.first().is_some_and(|word| lexicon().verbs.contains(&word.stem))
+        });
+        if alone && free && !fronted {
             let measure = found.remove(at);
             if let Some(before) = found.get_mut(at - 1) {
                 before.words.extend(measure.words);

@@ -83,6 +83,7 @@ pub(crate) fn subject_of(
             | Act::Overtake
             | Act::ComeOut
             | Act::GiveWay
+            | Act::GoOn
             | Act::Abreast
             | Act::Stay
             | Act::Stand

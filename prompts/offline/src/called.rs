@@ -67,7 +67,12 @@ fn second(pieces: &mut Vec<Piece>) {
             || text_at(pieces, at + 1) == "another";
         let other = comma_at(pieces, at + 3) && matches!(text_at(pieces, at + 4), "a" | "an");
         let noun = (at + 5..at + 8).take_while(|k| word_at(pieces, *k).is_some()).find(|k| role(pieces, *k));
-        if one && generic(pieces, at + 2) && other && noun.is_some() && !comma_at(pieces, noun.unwrap_or(at) + 1) {
+        if one
+            && generic(pieces, at + 2)
+            && other
+            && noun.is_some()
+            && (!comma_at(pieces, noun.unwrap_or(at) + 1) || text_at(pieces, noun.unwrap_or(at) + 2) == "who")
+        {
             pieces.drain(at + 2..at + 5);
         }
         // `1 ped, clerk, oncoming`

@@ -60,13 +60,20 @@ pub(crate) struct Found {
     pub(crate) declares: bool,
     /// Amounts that cannot be played, with what is played instead.
     pub(crate) limited: Vec<String>,
+    /// Amounts beyond reason: `35 m/s`.
+    pub(crate) absurd: Vec<String>,
 }
+
+/// So many times more than can be played is a slip or a joke, and nothing is played instead.
+const BEYOND_REASON: f64 = 4.0;
 
 impl Found {
     /// An amount within its limits; says so where it is not.
     pub(crate) fn within(&mut self, amount: f64, (least, most): (f64, f64), unit: &str) -> f64 {
         let kept = amount.clamp(least, most);
-        if amount < least || amount > most {
+        if amount > most * BEYOND_REASON {
+            self.absurd.push(format!("`{amount} {unit}` is beyond what people do; say {least} to {most} {unit}"));
+        } else if amount < least || amount > most {
             self.limited
                 .push(format!("`{amount} {unit}` is outside {least} to {most} {unit}; {kept} {unit} is played"));
         }

@@ -54,8 +54,8 @@ pub(crate) struct Stretch {
 impl Stretch {
     /// The words of the text that it spans.
     pub(crate) fn quote<'a>(&self, text: &'a str) -> &'a str {
-        let from = self.words.first().map_or(0, |word| word.from);
-        let to = self.words.last().map_or(0, |word| word.to);
+        let from = self.words.iter().map(|word| word.from).min().unwrap_or(0);
+        let to = self.words.iter().map(|word| word.to).max().unwrap_or(0);
         text.get(from..to).unwrap_or_default()
     }
 }
@@ -124,6 +124,7 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
     let mut found: Vec<Stretch> = Vec::new();
     let mut open = Stretch { joint: Joint::Opens, after_and: false, words: Vec::new(), also: Vec::new() };
     let mut i = 0;
+    let mut inner: Vec<usize> = Vec::new();
     while let Some(item) = words.get(i) {
         let (joint, took) = match item {
             None => (Some(Joint::Comma), 1),
@@ -139,6 +140,10 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
             let only = done.joint == Joint::And
                 && joint == Joint::When
                 && matches!(done.words.as_slice(), [word] if matches!(word.text.as_str(), "only" | "just"));
+            // `a carer who, while the patient stands there, gestures …`
+            if done.words.is_empty() && done.joint == Joint::Who && matches!(joint, Joint::While | Joint::When) {
+                inner.push(found.len());
+            }
             if done.words.is_empty() || only {
                 open.after_and = done.after_and || done.joint == Joint::And && joint != Joint::And;
                 // `, and when`: the stronger joint stays; a sentence that opens with `when` is known by its index.
@@ -161,6 +166,12 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
     }
     if !open.words.is_empty() {
         found.push(open);
+    }
+    for at in inner {
+        if let Some(rest) = found.get_mut(at + 1).filter(|rest| rest.joint == Joint::Comma) {
+            rest.joint = Joint::Who;
+            found.swap(at, at + 1);
+        }
     }
     found
 }
@@ -253,7 +264,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "finally" | "lastly" if opens => (Some(Joint::Then), 1),
         "then" | "afterwards" | "afterward" | "subsequently" | "thereafter" => (Some(Joint::Then), 1),
-        "while" | "whereas" if before != "a" && before != "short" && before != "long" => (Some(Joint::While), 1),
+        "while" | "whilst" | "whereas" if before != "a" && before != "short" && before != "long" => {
+            (Some(Joint::While), 1)
+        }
         "as" if text(i + 1) == "soon" => (Some(Joint::When), 3),
         "as" if matches!(text(i + 1), "they" | "he" | "she" | "it")
             || stem(i + 1) == "robot"
@@ -289,8 +302,28 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
             (Some(Joint::When), 1)
         }
         // `one after another`, `one after the other` is a manner.
+        "after"
+            if matches!(
+                text(i + 1),
+                "hours" | "work" | "lunch" | "dark" | "closing" | "dinner" | "school" | "breakfast"
+            ) =>
+        {
+            (None, 1)
+        }
         "after" if before == "one" && (text(i + 1) == "another" || text(i + 2) == "other") => (None, 1),
         "after" if text(i + 1) == "which" => (Some(Joint::Then), 2),
+        // `two clients come out, and after them an intern`
+        "after"
+            if matches!(text(i + 1), "him" | "her" | "them")
+                && matches!(text(i + 2), "a" | "an" | "the" | "another" | "two" | "three")
+                && words
+                    .iter()
+                    .skip(i + 2)
+                    .map_while(Option::as_ref)
+                    .all(|word| !lexicon().verbs.contains(&word.stem) || lexicon().roles.contains_key(&word.stem)) =>
+        {
+            (Some(Joint::Then), 2)
+        }
         // `she continues only after that`
         "after" if text(i + 1) == "that" && i + 2 == words.len() && before == "only" => (Some(Joint::When), 1),
         "after"
@@ -326,7 +359,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "who" | "whom" | "which" if before != "of" => (Some(Joint::Who), 1),
         // `signals to the visitors that they may go first`
         "that" if person && !(i.saturating_sub(5)..i).any(|k| message(stem(k))) => (Some(Joint::Who), 1),
-        "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 1),
+        "where" if !matches!(text(i + 1), "he" | "she" | "they" | "it") && i > 0 => (Some(Joint::Comma), 0),
         _ => (None, 1),
     }
 }
@@ -431,6 +464,14 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
     }
     // `when it blocks her way, a cleaner who is coming along | stops`
     if open.joint == Joint::Who && main_verb(words, i, open) {
+        return true;
+    }
+    // `when it is two metres away Marta tells Tom to wait`
+    let named = temporal
+        && word(i).is_some_and(|word| word.name)
+        && word(i + 1)
+            .is_some_and(|word| word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem));
+    if named && !matches!(before, "and" | "or" | "of" | "to" | "with" | "by" | "mr" | "mrs" | "dr" | "that") {
         return true;
     }
     match text(i) {
@@ -551,7 +592,11 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                     | "not"
                     | "only"
             );
-            (closes || finite && !governed)
+            // `a second one does so`: the rest of a mention is none of its own.
+            let goes_on = lex.ordinals.contains_key(before)
+                || lex.adjectives.contains(before)
+                || matches!(before, "other" | "last");
+            (closes || finite && !governed && !goes_on)
                 && next.is_some_and(|mention| {
                     mention.from == 0
                         && word(i + mention.to + 1).is_some_and(|word| {

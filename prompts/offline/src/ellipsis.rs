@@ -98,6 +98,22 @@ pub(crate) fn told_before(story: &mut Story, found: &Found, guessed: usize) -> O
     Some(who)
 }
 
+/// `his colleague stops for 6 s because of it`: because of what was said.
+pub(crate) fn because_of_it(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch) -> bool {
+    let of_it = matches!(stretch.words.as_slice(), [of, it] if of.text == "of" && matches!(it.text.as_str(), "it" | "that" | "this"));
+    let Some(said) = thread.said.clone().filter(|_| of_it) else { return false };
+    for (who, rule) in &thread.made {
+        let read = story.cast.people.get_mut(*who).and_then(|person| person.rules.get_mut(*rule));
+        if let Some(read) = read.filter(|read| !read.stated) {
+            (read.rule.when, read.stated) = (vec![said.clone()], true);
+        }
+    }
+    for word in &mut stretch.words {
+        word.used = true;
+    }
+    true
+}
+
 /// `The robot, which must not crowd him, asks …`, `The robot is to fetch a client, say "follow me" and bring her …`: what comes then is
 /// the robot's.
 pub(crate) fn of_robot(thread: &mut Thread, stretch: &Stretch) -> bool {

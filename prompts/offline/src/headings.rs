@@ -341,8 +341,17 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     };
     let verb = |k: usize| word(k).is_some_and(|word| lex.verbs.contains(&word.stem) && !word.capital);
     let does = |k: usize| {
+        // `Privacy is the question` names nobody.
+        let copula = word(k).is_some_and(|word| matches!(word.text.as_str(), "is" | "was" | "has"));
+        let goes_on = word(k + 1).is_some_and(|word| {
+            word.text.ends_with("ing")
+                || matches!(
+                    word.text.as_str(),
+                    "in" | "at" | "on" | "a" | "an" | "not" | "our" | "my" | "standing" | "also"
+                )
+        });
         word(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !word.capital && word.text != word.stem
+            lex.verbs.contains(&word.stem) && !word.capital && word.text != word.stem && (!copula || goes_on)
                 || matches!(
                     word.text.as_str(),
                     "who"

@@ -19,7 +19,9 @@ pub(crate) fn settle(story: &mut Story) {
         person.relation = Some((Relation::Staying, said.clone()));
         person.start = Some(class);
         // To stay is to stand there, which needs no rule of its own.
-        person.rules.retain(|read| read.rule.act != Action::StandStill || read.stated || read.quote != said);
+        person.rules.retain(|read| {
+            read.rule.act != Action::StandStill || read.stated || read.rule.gesture.is_some() || read.quote != said
+        });
         any = true;
     }
     if any && story.place.is_none() {

@@ -48,8 +48,27 @@ pub(crate) fn meant(
         } else if made_of.is_empty() {
             story.cast.resolve(mention, declares && matches!(mention.who, Who::New { .. } | Who::Bare(_)), said)
         } else {
+            told_otherwise(story, mention, said, made_of.len());
             story.cast.made_of(mention, declares, said, &made_of)
         };
+        // `he tells his colleague to wait; she herself walks on`: whoever spoke.
+        let itself = stretch
+            .words
+            .get(mention.to + 1)
+            .is_some_and(|word| matches!(word.text.as_str(), "herself" | "himself" | "themselves"));
+        if mention.who == Who::Same && itself {
+            let speaker = match thread.said {
+                Some(socrates_model::Trigger::HumanSays(id, _)) => {
+                    usize::try_from(id.number()).ok().and_then(|n| n.checked_sub(1))
+                }
+                _ => None,
+            };
+            let other =
+                speaker.map(|who| vec![who]).or_else(|| Some(story.cast.before.clone()).filter(|some| some.len() == 1));
+            if let Some(other) = other.filter(|other| story.cast.last.len() == 1 && *other != story.cast.last) {
+                people = other;
+            }
+        }
         story.cast.call(mention, words, &people);
         let names: Vec<&String> = words.iter().flat_map(|word| &word.called).collect();
         story.cast.name(&people, &names);
@@ -95,6 +114,18 @@ pub(crate) fn meant(
         meant.push((mention.from, mention.to, people));
     }
     meant
+}
+
+/// `exactly three people: a nurse, two visitors and a cleaner`
+fn told_otherwise(story: &mut Story, mention: &Mention, said: &str, listed: usize) {
+    let Who::New { count: Some(n), .. } = mention.who else { return };
+    if usize::try_from(n) != Ok(listed) && !mention.group {
+        story.problems.push(socrates_model::Fault::new(
+            socrates_model::FaultCode::PContra,
+            "rough_scenario",
+            format!("`{said}` counts {n}, but {listed} are listed; correct one of the two"),
+        ));
+    }
 }
 
 /// `Two people block it. The robot asks two people to step aside`: those two.

@@ -505,7 +505,9 @@ fn counted(
             words.get(at..=end).is_some_and(|name| name.iter().all(|word| word.capital))
                 // `Earlier work suggests …` names nobody.
                 && words.get(end + 1).is_some_and(|word| {
-                    lex.verbs.contains(&word.stem) && word.text != word.stem || word.text == "who"
+                    let copula = matches!(word.text.as_str(), "is" | "was" | "has")
+                        && matches!(text(end + 2), "the" | "what" | "why" | "how" | "one" | "that");
+                    lex.verbs.contains(&word.stem) && word.text != word.stem && !copula || word.text == "who"
                 })
         })
     {

@@ -77,6 +77,16 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         return;
     }
     let noun = matches!(stem(last), "gesture" | "signal" | "sign");
+    // `without asking it for space`, `the robot is not supposed to say excuse me`
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let denied = first.checked_sub(1).is_some_and(|k| text(k) == "without")
+        || text(first.wrapping_sub(1)) == "to"
+            && matches!(text(first.wrapping_sub(2)), "supposed" | "meant" | "allowed" | "expected")
+            && text(first.wrapping_sub(3)) == "not";
+    if denied {
+        mark_each(stretch, &verb);
+        return;
+    }
     // `was asked to follow somebody` is an errand, nothing that is said now.
     let told = matches!(stem(first), "ask" | "tell" | "order" | "instruct" | "request")
         && first.checked_sub(1).is_some_and(|k| stem(k) == "be")

@@ -55,6 +55,10 @@ const SIGNS: &[&str] = &[
     "known",
     "survey",
     "suites",
+    "reproduce",
+    "replicate",
+    "recreate",
+    "represented",
 ];
 /// How questions begin that ask for no scene: `Does the tracker cope with somebody who …?`
 const ASKS: &[&str] = &["does", "do", "is", "are", "how", "why", "will", "did", "has"];

@@ -46,7 +46,7 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
             let there = || {
                 let left = story.cast.last.iter().find_map(|who| story.cast.people.get(*who)?.start);
                 let inside = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
-                let named = story.place.as_ref().or(story.weak_place.as_ref());
+                let named = story.place.as_ref().or(story.weak_place.as_ref()).or(story.robot_leaves.as_ref());
                 left.or_else(|| named.map(|(class, _)| *class)).filter(inside)
             };
             story.robot_enters = class

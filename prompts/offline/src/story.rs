@@ -203,6 +203,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             story.cast.notes.push(limited);
         }
     }
+    let absurd = std::mem::take(&mut found.absurd).into_iter();
+    story.problems.extend(absurd.map(|message| Fault::new(FaultCode::PLimit, "rough_scenario", message)));
     for i in &found.nowhere {
         let word = stretch.words.get(*i).map_or("", |word| word.text.as_str());
         story.problems.push(Fault::new(
@@ -235,6 +237,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
         // `blocks its way until it asks; then he steps aside`
         (thread.waiting, thread.vague) = (thread.ended.take(), false);
+    }
+    if ellipsis::because_of_it(story, thread, stretch) {
+        return;
     }
     // Who somebody is, is no answer.
     if found.acts() && stretch.joint != Joint::Who {
@@ -495,6 +500,16 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 // `robot stops, worker stops`
                 if thread.waiting.is_none() && next == Some(Joint::Comma) && act == Act::Stop && !negated {
                     (thread.waiting, thread.vague) = (Some(Trigger::RobotStopped), false);
+                }
+                // `robot starts moving, the cleaner runs away`; `The robot stops. Then, and only then, she walks on.`
+                let starts = matches!(act, Act::GoOn | Act::Walk)
+                    && text(at) != "goes"
+                    && stretch.words.iter().any(|word| word.stem == "start");
+                if thread.waiting.is_none() && next == Some(Joint::Comma) && starts && !negated {
+                    (thread.waiting, thread.vague) = (Some(Trigger::RobotMoving), false);
+                }
+                if act == Act::Stop && !negated && thread.waiting.is_none() {
+                    thread.ended = Some(Trigger::RobotStopped);
                 }
                 // `a nurse with a trolley and the robot meet head-on`
                 if act == Act::Toward

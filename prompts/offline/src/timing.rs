@@ -113,6 +113,19 @@ pub(crate) fn timing(
         && let Some(when) = trigger(cue, found, thread)
     {
         let people: std::collections::BTreeSet<usize> = thread.made.iter().map(|(who, _)| *who).collect();
+        // `does not let it through unless it says excuse me`: then it does.
+        let lets = |who: usize| {
+            thread.made.iter().filter(|(of, _)| *of == who).any(|(_, rule)| {
+                let read = story.cast.people.get(who).and_then(|person| person.rules.get(*rule));
+                read.is_some_and(|read| read.rule.act == socrates_model::Action::Block && read.quote.contains(" let "))
+            })
+        };
+        let lets: Vec<usize> = people.iter().copied().filter(|who| lets(*who)).collect();
+        for who in lets {
+            let around =
+                deed::Around { trigger: Some(when.clone()), quote: quote.to_owned(), ..deed::Around::default() };
+            let _rule = deed::apply(&mut story.cast, who, Act::GiveWay, &around);
+        }
         for who in people {
             deed::walk_on(&mut story.cast, who, when.clone(), quote);
         }
@@ -224,7 +237,7 @@ pub(crate) fn timing(
                 if read.stated
                     && matches!(usual, Some(Trigger::AfterSecs(_)))
                     && found.distance_m.is_none()
-                    && matches!(cue, Cue::Near | Cue::Visible)
+                    && cue == Cue::Near
                 {
                     continue;
                 }

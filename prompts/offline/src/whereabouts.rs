@@ -85,6 +85,10 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             }
             Part::There => {}
         }
+        // `Not in the corridor this time, use the blind corner.`
+        if text(0) == "not" && *at <= 3 && found.mentions.is_empty() {
+            continue;
+        }
         let heading = stretch.words.get(*at).is_some_and(|word| word.label);
         let idle = found.mentions.is_empty() && !found.acts() && class == PlaceClass::Room;
         if heading || idle {
@@ -159,7 +163,8 @@ fn referred(story: &mut Story, found: &Found, stretch: &Stretch, quote: &str) {
     }
     let stands = found.deeds.iter().any(|deed| matches!(deed.act, Act::Stand | Act::Stop | Act::Block | Act::Talk));
     let at_goal = found.places.is_empty() && !found.mentions.is_empty() && story.place.is_none();
-    let where_it_goes = there.is_some_and(|k| k + 1 == stretch.words.len() && !from_there) && stands;
+    let where_it_goes =
+        (there.is_some_and(|k| k + 1 == stretch.words.len() && !from_there) || text(0) == "where") && stands;
     if at_goal
         && where_it_goes
         && let Some((class, _)) = &story.robot_enters

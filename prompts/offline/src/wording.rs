@@ -210,7 +210,9 @@ fn reports(text: &str, pieces: &[Piece]) -> Vec<usize> {
         let words = || (*from..*to).filter_map(|k| word_at(pieces, k));
         let anew = |stem: &str| {
             spans.iter().skip(n + 1).any(|(from, to)| {
-                (*from..*to).any(|k| {
+                let acts =
+                    (*from..*to).any(|k| word_at(pieces, k).is_some_and(|word| lexicon().verbs.contains(&word.stem)));
+                acts && (*from..*to).any(|k| {
                     role(pieces, k).is_some_and(|word| stem.is_empty() && !generic(pieces, k) || word.stem == stem)
                         && (1..=3).filter_map(|back| k.checked_sub(back)).any(|k| {
                             matches!(text_at(pieces, k), "a" | "an")
