@@ -40,6 +40,9 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
         return None;
     }
     let from = (at + usize::from(mark)..).find(|k| !opens(*k))?;
+    // `two people come out, first a nurse and then a porter`
+    let ordered = words.get(from).and_then(Option::as_ref).is_some_and(|word| word.text == "first");
+    let from = from + usize::from(ordered);
     let list = list(words, from)?;
     let (places, spoken): (Vec<usize>, Vec<Word>) =
         words.get(..at)?.iter().enumerate().filter_map(|(k, word)| Some((k, word.clone()?))).unzip();
@@ -48,7 +51,8 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
     // `a family`: as many as the list names.
     // `exactly three people: a nurse, two visitors and a cleaner`: said to be wrong, once it is known whose they are.
     let colon = words.get(at + 1).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
-    let whole = words.get(list.end..)?.iter().all(Option::is_none);
+    // `three people get out, a cleaner, a doctor and a visitor, in that order`
+    let whole = words.get(list.end).is_none_or(Option::is_none);
     let listed = |n: u32| {
         let wanted = usize::try_from(n).unwrap_or(usize::MAX);
         wanted == list.roles.len() || colon && whole && head.role.is_none() && wanted > 1 && wanted < list.roles.len()
@@ -80,6 +84,7 @@ fn list(words: &[Option<Word>], from: usize) -> Option<List> {
         if after(next, &["after", "then", "behind"]) && after(next + 1, &["him", "her", "them"]) {
             next += 2;
         }
+        next += usize::from(after(next, &["then"]));
         if next == end {
             break;
         }

@@ -362,6 +362,13 @@ impl Cast {
         found
     }
 
+    /// In a new sentence, `one` is one of those who were counted before: `Two oncoming. One stops.`
+    pub(crate) fn sentence(&mut self) {
+        for set in self.sets.iter_mut().filter(|set| set.counted == set.members) {
+            set.counted.clear();
+        }
+    }
+
     /// Remembers `participant` and its like, which say no more than that somebody is there.
     pub(crate) fn call(&mut self, mention: &Mention, words: &[crate::words::Word], people: &[usize]) {
         let weak = words.iter().find(|word| CALLED.contains(&word.stem.as_str())).filter(|_| mention.role.is_none());

@@ -465,6 +465,10 @@ fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool], placed: &
         }
         Act::Approach if follows => !directed && deed.at != deed.to,
         Act::Approach => !directed,
+        // `walks ahead of the robot on the way out`
+        Act::ComeOut if text_of(stretch, deed.at) == "on" => {
+            !has(&[Act::Ahead, Act::Toward, Act::Cross, Act::Follow, Act::Overtake])
+        }
         Act::Walk | Act::Pass => !telling || deed.negated,
         Act::GoOn => !directs,
         Act::Stop => !stands,

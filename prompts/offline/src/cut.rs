@@ -233,6 +233,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         }
         "except" => (Some(Joint::Except), 1),
         "at" if text(i + 1) == "which" && matches!(text(i + 2), "point" | "moment") => (Some(Joint::Said), 3),
+        "at" | "upon" if text(i + 1) == "which" && matches!(text(i + 2), "he" | "she" | "they" | "it") => {
+            (Some(Joint::Said), 2)
+        }
         "whereupon" | "thereupon" => (Some(Joint::Said), 1),
         "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
         "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
@@ -340,7 +343,10 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         {
             (Some(Joint::Then), 2)
         }
-        "after" if matches!(before, "second" | "minute") && matches!(text(i + 2), "start" | "beginning" | "outset") => {
+        "after"
+            if matches!(before, "second" | "minute")
+                && [i + 1, i + 2].iter().any(|k| matches!(text(*k), "start" | "beginning" | "outset")) =>
+        {
             (None, 1)
         }
         // `does not walk on before it has passed`
@@ -397,11 +403,11 @@ fn trails(before: &[Option<Word>]) -> bool {
 }
 
 /// Whether the verb of the sentence stands here, behind a relative clause that has its own.
-fn main_verb(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
+fn main_verb(words: &[Option<Word>], (i, from): (usize, usize), open: &Stretch) -> bool {
     let verbs = &lexicon().verbs;
     let finite = |word: &Word| word.text != word.stem && word.text.ends_with('s') && verbs.contains(&word.stem);
     let own = |word: &Word| finite(word) || matches!(word.text.as_str(), "is" | "was" | "has");
-    let before = i.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
+    let before = from.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
     // `the one who blocks it | gives way`
     let verb =
         open.words.len().checked_sub(2).and_then(|k| open.words.get(k)).is_some_and(|word| verbs.contains(&word.stem));
@@ -463,7 +469,8 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
         return true;
     }
     // `when it blocks her way, a cleaner who is coming along | stops`
-    if open.joint == Joint::Who && main_verb(words, i, open) {
+    let adverb = text(i).len() > 4 && text(i).ends_with("ly") && i > 0;
+    if open.joint == Joint::Who && (main_verb(words, (i, i), open) || adverb && main_verb(words, (i + 1, i), open)) {
         return true;
     }
     // `when it is two metres away Marta tells Tom to wait`

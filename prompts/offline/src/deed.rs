@@ -277,7 +277,8 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     if matches!(act, Act::Stop | Act::Stand) && whole(&around.quote) {
         person.still = Some(around.quote.clone());
     }
-    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether);
+    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether)
+        && !(act == Act::Stop && around.stands);
     person.bound |= moves;
     // `gives up after 10 seconds of following`
     if let (true, Some(Trigger::AfterSecs(secs))) = (around.gives_up, &around.trigger)

@@ -141,7 +141,19 @@ pub(crate) fn consequence(thread: &Thread, text: &str, stretch: &Stretch, found:
     let word = before.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
     let spoken = thread.acts.last().is_some_and(|(act, _)| *act == Act::Gesture)
         && matches!(thread.said, Some(Trigger::HumanSays(..)));
-    matches!(word, "so" | "hence" | "thus" | "therefore")
+    // `The mother says wait, and then the child stops`: somebody else does what was asked for.
+    let asked = match thread.said {
+        Some(Trigger::HumanSays(_, gesture)) => asked_for(gesture),
+        _ => None,
+    };
+    let answers = matches!(word, "then" | "and")
+        && matches!(thread.acts.as_slice(), [(Act::Gesture, _)])
+        && found.deeds.first().is_some_and(|deed| Some(deed.act) == asked)
+        && found
+            .mentions
+            .first()
+            .is_some_and(|mention| mention.from == 0 && !matches!(mention.who, crate::mention::Who::Same));
+    (matches!(word, "so" | "hence" | "thus" | "therefore") || answers)
         && spoken
         && thread.waiting.is_none()
         && found

@@ -401,7 +401,7 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     for k in 0..pieces.len() {
         let titles = title_before_name(pieces, k, &found);
         if let Some(Piece::Word(word)) = pieces.get_mut(k) {
-            word.name = word.capital && found.contains(&word.text);
+            word.name = word.capital && (found.contains(&word.text) || found.contains(&word.stem));
             word.label |= titles;
             word.used |= titles;
         }

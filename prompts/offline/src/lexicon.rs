@@ -307,7 +307,10 @@ impl Lexicon {
         self.known = known;
         let mut telling: BTreeSet<String> =
             self.roles.keys().flat_map(|role| [role.clone(), format!("{role}s")]).collect();
-        for text in actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)) {
+        let said = gestures.iter().flat_map(|row| &row.phrases);
+        for text in
+            actions.iter().flat_map(|row| &row.phrases).chain(cues.iter().flat_map(|row| &row.phrases)).chain(said)
+        {
             for word in plain_words(text) {
                 // `pace` gives `pacing`, and no `paceing`.
                 let cut = word.strip_suffix('e');

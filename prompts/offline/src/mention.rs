@@ -202,7 +202,11 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             return made(Who::All, None, end);
         }
         // `all but the first …`, where the last ones spoken of are some of them
-        "all" if words.len() == 1 => {
+        "all"
+            if words.len() == 1
+                || at == 0
+                    && words.get(1).is_some_and(|word| word.text == word.stem && lex.verbs.contains(&word.stem)) =>
+        {
             return made(Who::All, None, at).map(|mention| Mention { word: "all".to_owned(), ..mention });
         }
         "all" | "each" => {
@@ -344,7 +348,15 @@ fn counted(
     }
     // `an old couple`, `the pair`: words that are numbers too, but not where they count others.
     let described = next + usize::from(words.get(next).is_some_and(|word| lex.adjectives.contains(&word.text)));
-    for k in [described, next.saturating_sub(usize::from(count.is_some()))] {
+    // `a tour group of six`
+    let named = words
+        .get(next)
+        .is_some_and(|word| !lex.stop.contains(&word.text) && !lex.verbs.contains(&word.stem) && !word.label);
+    let of_six = next
+        + usize::from(
+            named && text(next + 2) == "of" && words.get(next + 3).is_some_and(|word| word.count().is_some()),
+        );
+    for k in [described, next.saturating_sub(usize::from(count.is_some())), of_six] {
         let counts = text(k + 1) == "of" && count.is_some() && matches!(text(k), "couple" | "crowd" | "trio");
         let around = matches!(text(k + 1), "around" | "round" | "about" | "up" | "in" | "the");
         let bare = at == 0 && k == 0 && words.len() > 1 && !around
@@ -440,7 +452,9 @@ fn counted(
         if text(at + 1) == "one" {
             return made(Who::ToldApart, None, false, at + 1);
         }
-        if text(at + 2) == "one" && (plain(at + 1) || text(at + 1) == "only") && stem(words, at + 1) != "robot" {
+        let wide = matches!(text(at + 1), "narrow" | "wide" | "main" | "broad" | "long");
+        if text(at + 2) == "one" && !wide && (plain(at + 1) || text(at + 1) == "only") && stem(words, at + 1) != "robot"
+        {
             return made(Who::ToldApart, None, false, at + 2);
         }
     }

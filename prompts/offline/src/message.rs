@@ -83,7 +83,11 @@ pub(crate) fn message(stretch: &mut Stretch, found: &mut Found) {
         || text(first.wrapping_sub(1)) == "to"
             && matches!(text(first.wrapping_sub(2)), "supposed" | "meant" | "allowed" | "expected")
             && text(first.wrapping_sub(3)) == "not";
-    if denied {
+    // `the robot must not ask for room`
+    let robot = stretch.words.iter().take(3).any(|word| word.stem == "robot")
+        && found.mentions.iter().all(|mention| mention.from > first);
+    let never = robot && !temporal && crate::negation::negated(stretch, first);
+    if denied || never {
         mark_each(stretch, &verb);
         return;
     }

@@ -20,6 +20,13 @@ const THINGS: &[&str] = &[
     "moment",
     "place",
     "thing",
+    "leg",
+    "stage",
+    "trip",
+    "lap",
+    "minute",
+    "seconds",
+    "minutes",
 ];
 
 /// Whether a number or `other` before this word counts things.

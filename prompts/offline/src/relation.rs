@@ -66,6 +66,14 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
     let at_door = (old, new) == (Relation::Leaving, Relation::Crossing)
         && person.start != Some(PlaceClass::Elevator)
         && before_robot(quote);
+    // `two pickers meet it at the junction: one crosses, the other …`: how they meet is told then.
+    let met =
+        old == Relation::Frontal && first.contains("meet") && !first.contains("toward") && new != Relation::Static;
+    if met {
+        person.relation = Some((new, quote.to_owned()));
+        person.doings.retain(|doing| doing != "comes towards the robot" || new == Relation::Frontal);
+        return;
+    }
     let ends = matches!(new, Relation::Leaving | Relation::Staying | Relation::Static)
         && !matches!(old, Relation::Leaving | Relation::Staying);
     // `come out of a room and cross its way`: both are played, and judged.

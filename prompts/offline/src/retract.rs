@@ -151,10 +151,11 @@ pub(crate) fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         let before = out.last().and_then(Option::as_ref).map_or("", |word| word.text.as_str());
         if let Some(word) = &mut item
             && word.text == "left"
-            && (words
-                .get(i + 1)
-                .and_then(Option::as_ref)
-                .is_some_and(|next| matches!(next.text.as_str(), "one" | "hand" | "side"))
+            && ((i + 1..i + 5).any(|k| words.get(k).and_then(Option::as_ref).is_some_and(|next| next.text == "right"))
+                || words
+                    .get(i + 1)
+                    .and_then(Option::as_ref)
+                    .is_some_and(|next| matches!(next.text.as_str(), "one" | "hand" | "side"))
                 || matches!(
                     before,
                     "the"

@@ -136,6 +136,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         thread.made.clear();
         thread.pending.clear();
         story.held.sentence();
+        story.cast.sentence();
         let count = sentence.len();
         for i in 0..count {
             let next = sentence.get(i + 1).map(|next| next.joint);
@@ -233,6 +234,14 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         && matches!(thread.fresh, Some(Trigger::RobotSays(_)))
     {
         // `The robot tells him to go first. He nods and goes.`
+        (thread.waiting, thread.vague) = (thread.fresh.take(), false);
+    } else if stretch.joint == Joint::Then
+        && thread.waiting.is_none()
+        && thread.ended.is_none()
+        && matches!(thread.fresh, Some(Trigger::RobotSays(_)))
+        && found.deeds.first().is_some_and(|deed| deed::manner(deed.act).is_some() && !deed.negated)
+    {
+        // `First the robot says excuse me; then she looks at it`
         (thread.waiting, thread.vague) = (thread.fresh.take(), false);
     } else if stretch.joint == Joint::Then && thread.waiting.is_none() && found.acts() {
         // `blocks its way until it asks; then he steps aside`

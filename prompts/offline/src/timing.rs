@@ -59,6 +59,16 @@ fn told(story: &mut Story, thread: &mut Thread, found: &Found, quote: &str) {
     let id = HumanId::new(u32::try_from(first + 1).unwrap_or(u32::MAX));
     thread.said = Some(Trigger::HumanSays(id, gesture));
     // `When the boss tells him to make room, he steps aside`: whoever was told.
+    // `When Anna tells Ben to wait, he stops`
+    let whom = found.mentions.iter().find(|mention| {
+        mention.from > found.gesture_at && matches!(mention.who, Who::Definite { .. } | Who::Other(_) | Who::Ordinal(_))
+    });
+    if let Some(whom) = whom {
+        let people = story.cast.resolve(whom, false, quote);
+        if !people.is_empty() && !people.contains(&first) {
+            story.cast.last = people;
+        }
+    }
     let told = found.mentions.iter().any(|mention| mention.from > found.gesture_at && mention.who == Who::Object);
     if told {
         let before: Vec<usize> =
@@ -445,5 +455,23 @@ pub(crate) fn quiet(
         }
     }
     story.cast.last.clone_from(&people);
-    thread.subject = Subject::People(people);
+    // `The robot picks up a visitor, says "follow me" and …`: what comes then is the robot's.
+    let robot = found.robots.first().copied();
+    let does = robot.is_some_and(|robot| {
+        robot <= 2
+            && stretch.joint != Joint::Who
+            && found.mentions.first().is_some_and(|mention| {
+                stretch.words.get(robot + 1..mention.from).is_some_and(|words| {
+                    words.iter().any(|word| {
+                        let lex = crate::lexicon::lexicon();
+                        word.stem != "be"
+                            && word.stem != "have"
+                            && (lex.verbs.contains(&word.stem)
+                                || lex.impossible.contains(&word.stem)
+                                || lex.task.contains(&word.stem))
+                    })
+                })
+            })
+    });
+    thread.subject = if does { Subject::Robot } else { Subject::People(people) };
 }

@@ -303,7 +303,7 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
     let robot = robot || opens;
     let own = !people && (robot || *subject == Subject::Robot && found.mentions.is_empty()) && (0..at).any(moves);
     // Who follows the robot to a place goes where it goes.
-    let along = people
+    let along = (people || matches!(subject, Subject::People(_)))
         && robot
         && found.deeds.iter().any(|deed| matches!(deed.act, Act::Follow | Act::Abreast | Act::Behind) && deed.at < at);
     // `starts in a room`
@@ -316,13 +316,19 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
     }
     // `to take him to the meeting room`: where the robot takes somebody is where it goes.
     let takes = |k: usize| matches!(stem(k), "take" | "bring" | "lead" | "guide" | "escort" | "show" | "accompany");
-    let led = robot
-        && before(at, stretch, TO)
+    let whose = robot || *subject == Subject::Robot;
+    let led = whose
+        && (before(at, stretch, TO) || before(at, stretch, FROM))
         && (0..at).rev().find(|k| takes(*k)).is_some_and(|verb| {
-            stretch.words.iter().take(verb).any(|word| word.stem == "robot")
+            (stretch.words.iter().take(verb).any(|word| word.stem == "robot") || *subject == Subject::Robot)
                 && found.mentions.iter().all(|mention| mention.from > verb)
         });
     if led {
+        return if before(at, stretch, FROM) { Part::Start } else { Part::Goal };
+    }
+    // `has to get past them to reach reception`
+    let first = found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot));
+    if first && before(at, stretch, &["reach", "reaches"]) {
         return Part::Goal;
     }
     if own && starts && before(at, stretch, IN) {
@@ -352,6 +358,14 @@ fn beside_elevator(story: &Story, class: PlaceClass, at: usize, found: &Found, s
             PlaceClass::ElevatorLobby
         }
         PlaceClass::Elevator if (0..at).any(|k| text(k) == "lobby") => PlaceClass::ElevatorLobby,
+        PlaceClass::OpenArea
+            if text(at) == "lobby"
+                && [&story.weak_place, &story.robot_enters, &story.robot_leaves]
+                    .into_iter()
+                    .any(|place| place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::ElevatorLobby)) =>
+        {
+            PlaceClass::ElevatorLobby
+        }
         PlaceClass::OpenArea if text(at) == "lobby" => {
             let inside = |person: &crate::cast::Person| {
                 person

@@ -28,11 +28,18 @@ const ANYBODY: &[&str] = &["somebody", "someone"];
 /// Rewrites such words, and makes nobody's those of whom only is told what happened before.
 pub(crate) fn reworded(text: &str, pieces: &mut Vec<Piece>) {
     wishes(pieces);
+    slips(pieces);
+    only_some(pieces);
     cars(pieces);
     this_one(pieces);
     only_one(pieces);
     placeholders(pieces);
-    let told: Vec<usize> = thoughts(pieces).into_iter().chain(reports(text, pieces)).collect();
+    let told: Vec<usize> = thoughts(pieces)
+        .into_iter()
+        .chain(reports(text, pieces))
+        .chain(points(pieces))
+        .chain(nobodies(pieces))
+        .collect();
     silence(pieces, told);
 }
 
@@ -70,7 +77,7 @@ fn sentences(pieces: &[Piece]) -> Vec<(usize, usize)> {
 fn wishes(pieces: &mut [Piece]) {
     for at in 0..pieces.len() {
         let wants = word_at(pieces, at).is_some_and(|word| word.stem == "want");
-        if wants && matches!(text_at(pieces, at + 1), "out" | "into" | "in" | "inside") {
+        if wants && matches!(text_at(pieces, at + 1), "out" | "into" | "in" | "inside" | "through" | "past") {
             set(pieces, at, "goes", "go");
         }
         let clears = matches!(text_at(pieces, at), "clears" | "clear") && text_at(pieces, at + 1) == "it";
@@ -78,6 +85,167 @@ fn wishes(pieces: &mut [Piece]) {
             set(pieces, at + 1, "way", "way");
         }
     }
+}
+
+/// `closer then 2 m`, `office 312`.
+fn slips(pieces: &mut [Piece]) {
+    for at in 1..pieces.len() {
+        let compared =
+            matches!(text_at(pieces, at - 1), "closer" | "nearer" | "less" | "rather" | "other" | "slower" | "faster");
+        if compared && text_at(pieces, at) == "then" {
+            set(pieces, at, "than", "than");
+        }
+        if text_at(pieces, at - 1) == "office" && word_at(pieces, at).is_some_and(Word::is_digits) {
+            set(pieces, at - 1, "room", "room");
+        }
+    }
+}
+
+/// `The night team has 12 members, but only one of them is in the corridor: …`, `Of a team of nine, just two are there`: so many.
+fn only_some(pieces: &mut [Piece]) {
+    let count = |k: usize| word_at(pieces, k).and_then(Word::count);
+    let mut told = Vec::new();
+    for (from, to) in sentences(pieces) {
+        for at in from + 2..to {
+            if !matches!(text_at(pieces, at), "only" | "just") {
+                continue;
+            }
+            let wants = matches!(text_at(pieces, at + 1), "need" | "want" | "use" | "take" | "have");
+            let number = at + 1 + usize::from(wants);
+            let Some(some) = count(number) else { continue };
+            let person =
+                |k: usize| role(pieces, k).is_some() || matches!(text_at(pieces, k), "members" | "them" | "us");
+            let whole = (from..at).any(|k| {
+                count(k).is_some_and(|all| all > some)
+                    && ((k + 1..k + 4).any(person)
+                        || (1..=3).filter_map(|back| k.checked_sub(back)).any(|k| {
+                            matches!(text_at(pieces, k), "team" | "shift" | "crew" | "group" | "class" | "staff")
+                        }))
+            });
+            let robot = (from..at).any(|k| word_at(pieces, k).is_some_and(|word| word.stem == "robot"));
+            let measured = matches!(
+                text_at(pieces, number + 1),
+                "m" | "meter" | "meters" | "metre" | "metres" | "s" | "seconds" | "second" | "minutes"
+            );
+            if whole && !robot && !measured {
+                told.extend(from..number);
+                if text_at(pieces, number + 1) == "of"
+                    && matches!(text_at(pieces, number + 2), "them" | "these" | "us" | "those")
+                {
+                    told.extend([number + 1, number + 2]);
+                }
+            }
+        }
+    }
+    silence(pieces, told);
+}
+
+/// Verbs by which somebody is in a scene.
+const THERE: &[&str] = &[
+    "come", "walk", "stand", "cross", "wait", "sit", "block", "follow", "overtake", "run", "step", "stop", "approach",
+    "leave", "enter", "chat", "talk", "look", "stay", "gather", "queue", "work", "pass", "meet", "crowd", "surround",
+    "give", "move", "go", "get", "hurry",
+];
+
+/// `The point of the scene is a person who …`: why a scene is wanted.
+fn points(pieces: &[Piece]) -> Vec<usize> {
+    let why = |k: usize| {
+        matches!(
+            text_at(pieces, k),
+            "point" | "purpose" | "aim" | "idea" | "question" | "focus" | "gist" | "reason" | "interest" | "thing"
+        )
+    };
+    sentences(pieces)
+        .into_iter()
+        .filter(|(from, to)| {
+            matches!(text_at(pieces, *from), "the" | "my" | "our" | "main")
+                && (why(from + 1) || why(from + 2))
+                && (*from..*to).any(|k| matches!(text_at(pieces, k), "is" | "was"))
+                && !(*from..*to).any(|k| matches!(pieces.get(k), Some(Piece::Colon)))
+        })
+        .flat_map(|(from, to)| from..to)
+        .collect()
+}
+
+/// `people are tired`, `I need someone who obeys it. A doctor …`: people in general, and somebody of whom it is told next who it is.
+fn nobodies(pieces: &[Piece]) -> Vec<usize> {
+    let spans = sentences(pieces);
+    let mut told = Vec::new();
+    let counted = |k: usize| {
+        (1..=2).filter_map(|back| k.checked_sub(back)).any(|k| {
+            word_at(pieces, k).is_some_and(|word| word.count().is_some())
+                || matches!(
+                    text_at(pieces, k),
+                    "the"
+                        | "these"
+                        | "those"
+                        | "some"
+                        | "several"
+                        | "few"
+                        | "no"
+                        | "more"
+                        | "all"
+                        | "other"
+                        | "young"
+                        | "old"
+                        | "of"
+                )
+        })
+    };
+    let introduced = |from: usize, to: usize, first: bool| {
+        (from..to).any(|k| {
+            role(pieces, k).is_some()
+                && !generic(pieces, k)
+                && (1..=3).filter_map(|back| k.checked_sub(back)).any(|back| {
+                    (matches!(text_at(pieces, back), "a" | "an")
+                        || word_at(pieces, back).is_some_and(|word| word.count().is_some()))
+                        && (!first || back == from)
+                })
+        })
+    };
+    for (n, (from, to)) in spans.iter().enumerate() {
+        let roles: Vec<usize> = (*from..*to).filter(|k| role(pieces, *k).is_some()).collect();
+        let there = (*from..*to)
+            .any(|k| word_at(pieces, k).is_some_and(|word| THERE.contains(&word.stem.as_str()) && !word.label));
+        for k in &roles {
+            let many = matches!(
+                text_at(pieces, *k),
+                "people" | "participants" | "humans" | "persons" | "users" | "families" | "everyone"
+            );
+            let verb = (k + 1..k + 4).find(|k| {
+                word_at(pieces, *k).is_some_and(|word| lexicon().verbs.contains(&word.stem) || word.stem == "be")
+            });
+            let idle = verb.is_none_or(|verb| {
+                let next = word_at(pieces, verb + 1).map_or("", |word| word.stem.as_str());
+                word_at(pieces, verb).is_some_and(|word| !THERE.contains(&word.stem.as_str()))
+                    && !THERE.contains(&next)
+                    && next != "there"
+                    && !matches!(next, "in" | "at" | "on")
+            });
+            let others = spans.iter().any(|(from, to)| introduced(*from, *to, false));
+            if many
+                && !counted(*k)
+                && idle
+                && others
+                && word_at(pieces, k + 1).is_some()
+                && !matches!(text_at(pieces, k + 1), "who" | "in" | "at" | "with")
+            {
+                told.push(*k);
+            }
+        }
+        // Somebody, and in the next sentence who it is.
+        let single = roles.len() == 1
+            && roles.iter().all(|k| {
+                generic(pieces, *k)
+                    && !word_at(pieces, *k).is_some_and(crate::noun::plural)
+                    && text_at(pieces, *k) != "people"
+            });
+        let next = spans.get(n + 1).is_some_and(|(from, to)| introduced(*from, *to, true));
+        if single && !there && next {
+            told.extend(*from..*to);
+        }
+    }
+    told
 }
 
 /// `the car` of a text about an elevator is that of the elevator.
@@ -187,6 +355,12 @@ fn thoughts(pieces: &[Piece]) -> Vec<usize> {
         let subject = matches!(text_at(pieces, at - 1), "he" | "she" | "they" | "who" | "because" | "that")
             || role(pieces, at - 1).is_some();
         // `finds it exciting`, and not `finds the robot in his way`
+        // `thinks it is funny to block the door` blocks it.
+        let does = matches!(text_at(pieces, at + 1), "it" | "it's" | "its")
+            && (at + 2..at + 6).any(|k| text_at(pieces, k) == "to");
+        if does {
+            continue;
+        }
         let finds = text_at(pieces, at) != "finds" || matches!(text_at(pieces, at + 1), "it" | "that" | "this");
         if !subject || !THINKS.contains(&text_at(pieces, at)) || !finds || text_at(pieces, at + 1) == "twice" {
             continue;

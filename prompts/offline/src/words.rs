@@ -317,6 +317,9 @@ const JOINED: &[(&str, &[&str])] = &[
     ("infornt", &["in", "front"]),
     ("hte", &["the"]),
     ("adn", &["and"]),
+    ("wating", &["waiting"]),
+    ("exuse", &["excuse"]),
+    ("excuze", &["excuse"]),
     ("docter", &["doctor"]),
     ("docters", &["doctors"]),
     ("visiter", &["visitor"]),
@@ -473,6 +476,20 @@ pub(crate) fn handles(words: &[Word], at: usize) -> bool {
     };
     // `takes a coffee break`
     let compound = |k: usize| words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "break" | "note" | "order"));
+    // `sticks a smiley on its screen`
+    let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
+    let sticks = words
+        .get(at)
+        .is_some_and(|word| matches!(word.stem.as_str(), "put" | "stick" | "hang" | "attach" | "lay" | "balance"))
+        && matches!(text(at + 1), "a" | "an" | "his" | "her" | "the" | "some" | "their")
+        && !matches!(text(at + 2), "hand" | "hands" | "eyes" | "eye" | "foot" | "palm")
+        && (at + 2..at + 8).any(|k| {
+            matches!(text(k), "on" | "onto" | "into" | "under")
+                && (k + 1..k + 3).any(|k| words.get(k).is_some_and(|word| word.stem == "robot"))
+        });
+    if sticks {
+        return true;
+    }
     handles && (at + 1..at + 6).take_while(open).find(object).is_some_and(|k| !compound(k + 1))
 }
 
