@@ -50,7 +50,10 @@ fn apposition(words: &[Option<Word>], at: usize) -> Option<(usize, List)> {
     let Who::New { count, .. } = head.who else { return None };
     // `a family`: as many as the list names.
     // `exactly three people: a nurse, two visitors and a cleaner`: said to be wrong, once it is known whose they are.
-    let colon = words.get(at + 1).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
+    let colon = words
+        .get(at + 1)
+        .and_then(Option::as_ref)
+        .is_some_and(|word| word.after_colon || matches!(word.text.as_str(), "namely" | "specifically"));
     // `three people get out, a cleaner, a doctor and a visitor, in that order`
     let whole = words.get(list.end).is_none_or(Option::is_none);
     let listed = |n: u32| {

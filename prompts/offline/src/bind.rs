@@ -317,7 +317,8 @@ pub(crate) fn people_deed(
         .map(Trigger::RobotNear);
     // `At 1.5 m he looks up and jumps aside`: both then.
     if near.is_some()
-        && stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from"))
+        && (thread.next == Some(Joint::And)
+            || stretch.words.first().is_some_and(|word| matches!(word.text.as_str(), "at" | "within" | "from")))
     {
         thread.waiting.clone_from(&near);
         thread.vague = false;

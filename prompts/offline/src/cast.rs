@@ -162,7 +162,8 @@ impl Cast {
                 self.latest()
             }
             Who::Bare(n) => {
-                let some = self.pick(*n, mention, quote).or_else(|| self.counted(*n));
+                let some = self.pick_open(*n, mention).or_else(|| self.counted(*n));
+                let some = some.or_else(|| self.pick(*n, mention, quote));
                 some.unwrap_or_else(|| {
                     let joined = self.join(*n, mention, declares, quote);
                     // `2 leave, 1 stays`: another one, not one of the two.

@@ -303,7 +303,13 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
             }
         }
         mark_each(stretch, &at);
-        found.cue = Some((phrase.means, first));
+        // `walks to the break room, and when he has reached it`
+        let last = at.last().copied().unwrap_or(first);
+        let goal = phrase.means == Cue::Near
+            && text_of(stretch, last) == "it"
+            && stretch.words.get(first).is_some_and(|word| word.stem == "reach")
+            && found.mentions.iter().any(|mention| mention.to < first);
+        found.cue = Some((if goal { Cue::Goal } else { phrase.means }, first));
         return;
     }
     // `when there is less than 1.5 m between them`, `with only one meter left`.

@@ -249,6 +249,24 @@ pub(crate) fn finish(story: &mut Story, rough: &str) {
         let why = format!("{} humans are there, or nobody", story.cast.people.len());
         story.problems.push(contradiction("rough_scenario", &empty, &some, &why));
     }
+    // `Exactly one person takes part. … two engineers …`
+    let lower = rough.to_lowercase();
+    let single = [
+        "exactly one person",
+        "exactly one human",
+        "exactly one pedestrian",
+        "one single person",
+        "a single person",
+        "only one person",
+    ]
+    .into_iter()
+    .find(|words| lower.contains(words) && !lower.contains(&format!("not {words}")));
+    if let (Some(single), 2..) = (single, story.cast.people.len()) {
+        let quote =
+            story.cast.sets.iter().rev().find(|set| set.members.len() > 1).map_or("the text", |set| set.quote.as_str());
+        let why = format!("{} humans are there, or one", story.cast.people.len());
+        story.problems.push(contradiction("rough_scenario", single, quote, &why));
+    }
     for (who, person) in story.cast.people.iter().enumerate() {
         for (k, first) in person.rules.iter().enumerate() {
             let clash = person.rules.iter().skip(k + 1).find(|second| {

@@ -8,7 +8,7 @@ use crate::clock::clock;
 use crate::headings::{labels, names, titled, totals};
 use crate::interject::{interjected, no_wait, notions};
 use crate::lexicon::lexicon;
-use crate::mention::mentions;
+use crate::mention::{Who, mentions};
 use crate::notes::notes;
 use crate::preamble::preamble;
 use crate::retract::settled;
@@ -77,10 +77,10 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     names(&mut pieces, known);
     takes_part(&mut pieces);
     preamble(&mut pieces);
-    for piece in pieces {
+    for (at, piece) in pieces.iter().enumerate() {
         match piece {
             Piece::Word(word) => {
-                words.push(Some(Word { after_colon: std::mem::take(&mut colon), ..word }));
+                words.push(Some(Word { after_colon: std::mem::take(&mut colon), ..word.clone() }));
             }
             Piece::Comma => words.push(None),
             Piece::Colon => {
@@ -91,8 +91,10 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
                     words.push(None);
                     continue;
                 }
-                words.push(None);
-                colon = true;
+                // `Worker: "wait".`
+                let own = !words.is_empty() && says_alone(&words, pieces.get(at + 1..).unwrap_or_default());
+                words.push(own.then(|| word("says".to_owned(), 0, 0)));
+                colon = !own;
             }
             Piece::Stop => {
                 titled(&mut words);
@@ -103,7 +105,58 @@ pub(crate) fn sentences(text: &str) -> Vec<Vec<Stretch>> {
     titled(&mut words);
     found.push(arranged(stretches(apposed(settled(words)))));
     found.retain(|sentence| !sentence.is_empty());
+    introduced(found)
+}
+
+/// `He stops when he sees it. He is a technician.`, `Freezes as soon as he sees it: that is the porter who comes along`: who it is
+/// stands before what he does.
+fn introduced(mut found: Vec<Vec<Stretch>>) -> Vec<Vec<Stretch>> {
+    let who = |stretches: &[Stretch]| -> (bool, bool) {
+        let all: Vec<Who> =
+            stretches.iter().flat_map(|stretch| mentions(&stretch.words)).map(|mention| mention.who).collect();
+        let noun = |who: &Who| !matches!(who, Who::Same | Who::Object | Who::All | Who::Nobody);
+        (all.iter().any(|who| matches!(who, Who::Same)), all.iter().any(noun))
+    };
+    // Within a sentence: what stands behind a colon.
+    for sentence in &mut found {
+        let colon = sentence.iter().position(|stretch| stretch.words.first().is_some_and(|word| word.after_colon));
+        if let Some(colon) = colon {
+            let (before, after) = sentence.split_at(colon);
+            if who(before) == (true, false) && who(after).1 {
+                sentence.rotate_left(colon);
+                if let Some(first) = sentence.first_mut() {
+                    first.joint = Joint::Opens;
+                }
+            }
+        }
+        if who(sentence).1 {
+            break;
+        }
+    }
+    let first = found.iter().position(|sentence| who(sentence).1);
+    let told = found.iter().take(first.unwrap_or(0)).take_while(|sentence| who(sentence) == (true, false)).count();
+    if let Some(first) = first.filter(|first| told > 0 && told == *first) {
+        let who = found.remove(first);
+        found.insert(0, who);
+    }
     found
+}
+
+/// Whether somebody who is not the robot is all that stands before a colon, and a message all that stands behind it.
+fn says_alone(words: &[Option<Word>], rest: &[Piece]) -> bool {
+    let said: Vec<Word> = words.iter().flatten().cloned().collect();
+    let who = mentions(&said);
+    let alone =
+        matches!(who.as_slice(), [only] if only.from == 0 && only.to + 1 == said.len()) && said.len() == words.len();
+    let message: Vec<Word> =
+        rest.iter().map_while(|piece| if let Piece::Word(word) = piece { Some(word.clone()) } else { None }).collect();
+    alone
+        && (1..=3).contains(&message.len())
+        && !message.iter().any(|word| word.text != word.stem && word.text.ends_with('s'))
+        && lexicon().gestures.iter().any(|phrase| {
+            crate::words::find(&message, phrase, 0, false, &|_| true)
+                .is_some_and(|at| at.first() == Some(&0) && at.last() == Some(&(message.len() - 1)))
+        })
 }
 
 /// Whether a sentence so far says nothing but what the robot does: `robot stops`, `robot moving`.
@@ -145,7 +198,9 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
                 inner.push(found.len());
             }
             if done.words.is_empty() || only {
-                open.after_and = done.after_and || done.joint == Joint::And && joint != Joint::And;
+                open.after_and = done.after_and
+                    || done.joint == Joint::And && joint != Joint::And
+                    || done.joint == Joint::Then && joint == Joint::When;
                 // `, and when`: the stronger joint stays; a sentence that opens with `when` is known by its index.
                 if matches!(joint, Joint::Comma | Joint::And)
                     && !matches!(done.joint, Joint::Opens | Joint::Comma | Joint::And)
@@ -507,6 +562,7 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                 | "must"
                 | "point"
         ),
+        "there" => temporal && matches!(text(i + 1), "is" | "are"),
         "does" | "do" | "did" => {
             (matches!(text(i + 1), "he" | "she" | "they")
                 || temporal && matches!(text(i + 1), "one" | "both" | "all" | "each" | "the"))

@@ -275,6 +275,17 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         person.never.push((Act::Look, around.quote.clone()));
     }
     if matches!(act, Act::Stop | Act::Stand) && whole(&around.quote) {
+        let walks = person.relation.as_ref().filter(|(relation, _)| {
+            matches!(
+                relation,
+                Relation::Frontal | Relation::Crossing | Relation::Behind | Relation::Ahead | Relation::Abreast
+            )
+        });
+        if let Some((_, first)) = walks.filter(|(_, first)| !excepting && *first != around.quote) {
+            let first = first.clone();
+            cast.problems.push(contradiction(who, &first, &around.quote));
+            return None;
+        }
         person.still = Some(around.quote.clone());
     }
     let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether)
@@ -383,6 +394,8 @@ fn whole(quote: &str) -> bool {
         "at all times",
         "from beginning to end",
         "from start to finish",
+        "from start to end",
+        "from the start to the end",
         "the whole scenario",
         "the complete run",
         "during the whole",

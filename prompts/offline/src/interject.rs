@@ -137,7 +137,13 @@ pub(crate) fn interjected(pieces: &mut Vec<Piece>) {
             said.iter().enumerate().all(|(k, wanted)| text_at(pieces, at + k) == *wanted)
                 && comma_at(pieces, at + said.len())
         });
-        let Some(length) = found.map(|said| said.len()) else {
+        // `five people, that is, four`
+        let corrects = |said: &&&[&str]| {
+            said.len() == 2
+                && text_at(pieces, at) == "that"
+                && word_at(pieces, at + 3).is_some_and(|word| word.count().is_some())
+        };
+        let Some(length) = found.filter(|said| !corrects(said)).map(|said| said.len()) else {
             at += 1;
             continue;
         };

@@ -129,7 +129,7 @@ pub(crate) struct Lexicon {
     pub(crate) telling: BTreeSet<String>,
     /// Things that people take from a robot or put on it.
     pub(crate) goods: BTreeSet<String>,
-    forms: BTreeMap<String, String>,
+    pub(crate) forms: BTreeMap<String, String>,
     /// Verbs by kind, for phrases.
     classes: BTreeMap<String, Arc<BTreeSet<String>>>,
 }

@@ -100,7 +100,8 @@ pub(crate) fn meant(
             }
             // `another girl who follows her`: somebody else than who follows.
             let himself = found.acts()
-                && (thread.subject == Subject::People(people.clone()) && stretch.joint == Joint::Who
+                && (thread.subject == Subject::People(people.clone())
+                    && (stretch.joint == Joint::Who || people.len() > 1 || mention.from == 1 && robot.is_none())
                     || meant.last().is_some_and(|(_, _, own)| *own == people));
             if himself && !story.cast.before.is_empty() {
                 people.clone_from(&story.cast.before);

@@ -158,6 +158,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         {
             return None;
         }
+        "both" if matches!(text(at + 1), "others" | "other") => {
+            return made(Who::Other(None), None, noun(words, at + 2, lex).unwrap_or(at + 1));
+        }
         "both" | "neither" => {
             let of = of_them(at + 1);
             let named = of.as_ref().map(|of| of.end).or_else(|| noun(words, at + 1, lex));

@@ -21,6 +21,7 @@ const THINGS: &[&str] = &[
     "place",
     "thing",
     "leg",
+    "spot",
     "stage",
     "trip",
     "lap",
@@ -72,7 +73,10 @@ pub(crate) const BANDS: &[(&str, Option<u32>)] = &[
 
 /// Whether the word is a noun for several people.
 pub(crate) fn band(words: &[Word], at: usize) -> Option<&'static (&'static str, Option<u32>)> {
-    words.get(at).filter(|word| !word.label).and_then(|word| BANDS.iter().find(|(name, _)| *name == word.stem))
+    words
+        .get(at)
+        .filter(|word| !word.label && !word.text.ends_with("ing"))
+        .and_then(|word| BANDS.iter().find(|(name, _)| *name == word.stem))
 }
 
 /// The noun for people that ends a noun phrase from `at` on, with at most three describing words before it.

@@ -82,17 +82,17 @@ pub(crate) fn others(
             };
             let number = lex.ordinals.get(word).copied().or_else(|| named(word))?;
             // `the first two`, `the last two of them`
-            if the == 1
+            if (the == 1 || at == 0)
                 && number <= 1
                 && word != "former"
                 && word != "latter"
-                && let Some(some) = count(at + 2).filter(|some| *some > 1)
-                && !words.get(at + 3).is_some_and(|word| {
+                && let Some(some) = count(at + the + 1).filter(|some| *some > 1)
+                && !words.get(at + the + 2).is_some_and(|word| {
                     matches!(word.stem.as_str(), "meter" | "second" | "minute" | "centimeter" | "hour" | "time")
                 })
             {
-                let of = text(at + 3) == "of" && matches!(text(at + 4), "them" | "these" | "those");
-                let last = if of { at + 4 } else { at + 2 };
+                let of = text(at + the + 2) == "of" && matches!(text(at + the + 3), "them" | "these" | "those");
+                let last = if of { at + the + 3 } else { at + the + 1 };
                 // `the first four of them patients`
                 let named = noun(words, last + 1, lex);
                 let role = named.and_then(role);

@@ -10,7 +10,7 @@ const CORRECTS: &[&str] = &["no", "actually", "rather", "sorry", "correction"];
 /// Words that stand between a number that is taken back and the one that holds; some of them take it back.
 const BETWEEN: &[&str] = &[
     "wait", "or", "better", "make", "that", "it", "just", "only", "i", "mean", "meant", "hang", "on", "hmm", "well",
-    "say", "should", "be", "strike", "scratch", "hold", "oops", "in", "fact", "now", "not",
+    "say", "should", "be", "strike", "scratch", "hold", "oops", "in", "fact", "now", "not", "is",
 ];
 
 /// `Three nurses, no sorry, two, are standing there`, `six people, scratch that, three, stand`: the number that holds, where the
@@ -33,6 +33,7 @@ fn recounted(mut words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         let takes_back = |k: usize| {
             CORRECTS.contains(&text(k))
                 || matches!(text(k), "scratch" | "strike" | "better" | "oops" | "meant")
+                || text(k) == "that" && text(k + 1) == "is" && mark(k + 2)
                 || text(k) == "make" && matches!(text(k + 1), "that" | "it")
         };
         let opens = mark(at) || text(at) == "or";

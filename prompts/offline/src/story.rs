@@ -91,6 +91,8 @@ pub(crate) struct Thread {
     pub(crate) denied: Option<Act>,
     /// How long after what it waits for the deed begins, s.
     pub(crate) delay_s: Option<f64>,
+    /// As [`Self::paused`], of the clause before a condition.
+    pub(crate) paused_before: bool,
     /// The clause before names people who do nothing in it.
     pub(crate) paused: bool,
     /// Who was told apart by nothing but what the relative clause says: `the one who stays`.
@@ -104,6 +106,10 @@ pub(crate) struct Thread {
     pub(crate) in_turn: bool,
     /// The clause before only names some of those whose deeds were told: `the first when …`.
     pub(crate) renamed: bool,
+    /// What a negated deed of this sentence is done at: `Unless the robot says excuse me, …`.
+    pub(crate) unless: Option<Trigger>,
+    /// The word before the next clause.
+    pub(crate) next: Option<Joint>,
     /// The robot is to do several things: `is to fetch a client, say …`.
     pub(crate) robot_to: bool,
     /// Who walked on in the clause before, which a later `when` may still time.
@@ -129,7 +135,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
         }
     }
     for mut sentence in sentences {
-        (thread.waiting, thread.doer, thread.in_turn) = (None, None, false);
+        (thread.waiting, thread.doer, thread.in_turn, thread.unless) = (None, None, false, None);
         story.cast.listing = false;
         story.cast.supposed = supposes(&sentence);
         story.cast.excepting = excepts(&sentence);
@@ -170,6 +176,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
 
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let of_robot = ellipsis::of_robot(thread, stretch);
+    thread.next = next;
     // Who somebody is, is no answer to what happens then; the clause after it may be.
     let suspended = (stretch.joint == Joint::Who).then(|| thread.waiting.take()).flatten();
     read_clause(story, thread, stretch, text, next);
@@ -529,6 +536,15 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                         relation::relate(&mut story.cast, *who, socrates_model::Relation::Frontal, quote);
                     }
                 }
+                // `goes down the aisle behind a picker`
+                let behind = meant.iter().find(|(from, _, some)| {
+                    *from > to && !some.is_empty() && from.checked_sub(1).is_some_and(|k| text(k) == "behind")
+                });
+                if let (Some((_, _, some)), Act::Walk | Act::GoOn | Act::Follow) = (behind, act) {
+                    for who in some {
+                        relation::relate(&mut story.cast, *who, socrates_model::Relation::Ahead, quote);
+                    }
+                }
                 robot_deed(story, act, &found, &object, quote);
                 // `The robot asks to be let through and the first one gives way`: what comes next answers it.
                 if let Some(gesture) = found
@@ -551,6 +567,11 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 let act = if deed::manner(act).is_some() { act } else { Act::GoOn };
                 people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote);
                 thread.not_until = true;
+            }
+            // `Unless the robot says excuse me, the picker won't make room.`
+            Subject::People(people) if negated && thread.unless.is_some() && deed::manner(act).is_some() => {
+                (thread.waiting, thread.vague) = (thread.unless.clone(), false);
+                people_deed(story, thread, (act, at, to), people, &found, &meant, stretch, quote);
             }
             Subject::People(people) if negated => {
                 for who in people {

@@ -34,7 +34,12 @@ pub(crate) fn trigger(cue: Cue, found: &Found, thread: &Thread) -> Option<Trigge
         Cue::Passed => Trigger::RobotPassed,
         Cue::Goal => Trigger::GoalReached,
         Cue::Meet => Trigger::AtEncounter,
-        Cue::Says => found.gesture.map_or(Trigger::RobotNear(3.0), Trigger::RobotSays),
+        // `when he hears it`: what was said just before.
+        Cue::Says => match (found.gesture, &thread.said) {
+            (Some(gesture), _) => Trigger::RobotSays(gesture),
+            (None, Some(said @ (Trigger::HumanSays(..) | Trigger::RobotSays(_)))) => said.clone(),
+            (None, _) => Trigger::RobotNear(3.0),
+        },
         Cue::Told | Cue::Echo => thread.said.clone()?,
     })
 }
@@ -99,7 +104,7 @@ pub(crate) fn timing(
     let asked = asked(thread, stretch, found);
     let found = asked.as_ref().unwrap_or(found);
     let Some((cue, _)) = found.cue else { return };
-    thread.paused = false;
+    thread.paused_before = std::mem::take(&mut thread.paused);
     place_of(story, found, stretch, &thread.subject, quote);
     // `just as the robot wants to get in`
     let comes_in = stretch.words.last().is_some_and(|word| word.text == "in")
@@ -117,6 +122,9 @@ pub(crate) fn timing(
         told(story, thread, found, quote);
     }
     let until = stretch.joint == Joint::Until && !std::mem::take(&mut thread.not_until);
+    if until && thread.made.is_empty() && thread.doer.is_none() && next == Some(Joint::Comma) {
+        thread.unless = trigger(cue, found, thread);
+    }
     // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
     if until
         && matches!(cue, Cue::Stopped | Cue::Moving | Cue::Passed | Cue::Says | Cue::Told | Cue::Echo)
@@ -226,6 +234,22 @@ pub(crate) fn timing(
                 person.never.retain(|(never, _)| *never != act);
             }
             let _rule = deed::apply(&mut story.cast, who, act, &around);
+        }
+        return;
+    }
+    // `The first steps aside at 3 m, the second when it is 1 m away`
+    if let (Subject::People(people), true) = (&thread.subject, thread.paused_before && stretch.joint == Joint::When)
+        && people.iter().all(|who| !thread.made.iter().any(|(of, _)| of == who))
+        && next != Some(Joint::Comma)
+        && !thread.acts.is_empty()
+    {
+        for (act, around) in thread.acts.clone() {
+            let around = deed::Around { trigger: Some(when.clone()), quote: quote.to_owned(), vague: false, ..around };
+            for who in people.clone() {
+                if let Some(rule) = deed::apply(&mut story.cast, who, act, &around) {
+                    thread.made.push((who, rule));
+                }
+            }
         }
         return;
     }

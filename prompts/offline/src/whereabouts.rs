@@ -150,8 +150,20 @@ fn referred(story: &mut Story, found: &Found, stretch: &Stretch, quote: &str) {
     let starts = |k: usize| {
         stretch.words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "start" | "begin" | "leave" | "depart"))
     };
-    let there = (1..stretch.words.len()).find(|k| text(*k) == "there");
-    let from_there = there.is_some_and(|k| text(k - 1) == "from");
+    // `…, which is also the robot's goal`
+    let goal = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "goal" | "destination"))
+        && robot.is_some()
+        && found.places.is_empty()
+        && found.mentions.is_empty()
+        && !stretch.words.iter().any(|word| word.stem == "reach");
+    if goal && story.robot_enters.is_none() {
+        story.robot_enters = story.headed.clone().or_else(|| story.place.clone());
+        return;
+    }
+    let there = (0..stretch.words.len()).find(|k| {
+        text(*k) == "there" && (*k > 0 || !matches!(text(k + 1), "is" | "are" | "will" | "should" | "must" | ""))
+    });
+    let from_there = there.is_some_and(|k| k > 0 && text(k - 1) == "from");
     let begins = robot.is_some_and(|robot| robot <= 2 && text(0) == "where" && starts(robot + 1));
     if robot.is_some() && story.robot_leaves.is_none() && (begins || from_there) {
         let last = story.place.clone().or_else(|| story.weak_place.clone());
@@ -163,8 +175,9 @@ fn referred(story: &mut Story, found: &Found, stretch: &Stretch, quote: &str) {
     }
     let stands = found.deeds.iter().any(|deed| matches!(deed.act, Act::Stand | Act::Stop | Act::Block | Act::Talk));
     let at_goal = found.places.is_empty() && !found.mentions.is_empty() && story.place.is_none();
-    let where_it_goes =
-        (there.is_some_and(|k| k + 1 == stretch.words.len() && !from_there) || text(0) == "where") && stands;
+    let where_it_goes = (there.is_some_and(|k| (k == 0 || k + 1 == stretch.words.len()) && !from_there)
+        || text(0) == "where")
+        && stands;
     if at_goal
         && where_it_goes
         && let Some((class, _)) = &story.robot_enters
@@ -328,7 +341,16 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
     }
     // `has to get past them to reach reception`
     let first = found.robots.first().is_some_and(|robot| found.mentions.iter().all(|mention| mention.from > *robot));
-    if first && before(at, stretch, &["reach", "reaches"]) {
+    // `drives past them to the exit`
+    let past = found.gesture.is_none()
+        && before(at, stretch, TO)
+        && found.robots.first().is_some_and(|robot| {
+            stretch.words.get(robot + 1).is_some_and(|word| {
+                matches!(word.stem.as_str(), "drive" | "go" | "travel" | "navigate" | "move" | "roll" | "head")
+            })
+        })
+        && found.deeds.iter().all(|deed| matches!(deed.act, Act::Pass | Act::Walk | Act::Overtake | Act::GoOn));
+    if first && (past || before(at, stretch, &["reach", "reaches"])) {
         return Part::Goal;
     }
     if own && starts && before(at, stretch, IN) {

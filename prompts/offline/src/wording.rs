@@ -30,6 +30,7 @@ pub(crate) fn reworded(text: &str, pieces: &mut Vec<Piece>) {
     wishes(pieces);
     slips(pieces);
     only_some(pieces);
+    idle(pieces);
     cars(pieces);
     this_one(pieces);
     only_one(pieces);
@@ -112,7 +113,8 @@ fn only_some(pieces: &mut [Piece]) {
             }
             let wants = matches!(text_at(pieces, at + 1), "need" | "want" | "use" | "take" | "have");
             let number = at + 1 + usize::from(wants);
-            let Some(some) = count(number) else { continue };
+            let him = matches!(text_at(pieces, number), "him" | "her").then_some(1);
+            let Some(some) = count(number).or(him) else { continue };
             let person =
                 |k: usize| role(pieces, k).is_some() || matches!(text_at(pieces, k), "members" | "them" | "us");
             let whole = (from..at).any(|k| {
@@ -210,7 +212,7 @@ fn nobodies(pieces: &[Piece]) -> Vec<usize> {
         for k in &roles {
             let many = matches!(
                 text_at(pieces, *k),
-                "people" | "participants" | "humans" | "persons" | "users" | "families" | "everyone"
+                "people" | "participants" | "humans" | "persons" | "users" | "families" | "everyone" | "staff"
             );
             let verb = (k + 1..k + 4).find(|k| {
                 word_at(pieces, *k).is_some_and(|word| lexicon().verbs.contains(&word.stem) || word.stem == "be")
@@ -246,6 +248,84 @@ fn nobodies(pieces: &[Piece]) -> Vec<usize> {
         }
     }
     told
+}
+
+/// `which he then does`, `says excuse me while doing so`, `I first wrote four`, `three is right`, `Eight people? Make it 4`.
+fn idle(pieces: &mut Vec<Piece>) {
+    let mut told = Vec::new();
+    let mut at = 1;
+    while at < pieces.len() {
+        let text = |k: usize| text_at(pieces, k);
+        if text(at) == "then"
+            && matches!(text(at - 1), "he" | "she" | "they" | "it")
+            && matches!(text(at + 1), "does" | "do" | "did")
+        {
+            pieces.remove(at);
+            continue;
+        }
+        if matches!(text(at - 1), "while" | "in" | "when" | "by")
+            && text(at) == "doing"
+            && matches!(text(at + 1), "so" | "this" | "that")
+        {
+            pieces.drain(at - 1..at + 2);
+            continue;
+        }
+        let count = |k: usize| word_at(pieces, k).is_some_and(|word| word.count().is_some());
+        let wrote = matches!(text(at), "wrote" | "said" | "typed" | "planned")
+            && (text(at - 1) == "i" || at > 1 && text(at - 2) == "i");
+        if wrote && count(at + 1) {
+            told.push(at + 1);
+        }
+        if count(at)
+            && matches!(text(at + 1), "is" | "are")
+            && matches!(text(at + 2), "right" | "correct" | "enough" | "fine")
+        {
+            told.push(at);
+        }
+        // `Eight people in the hall? Overkill. Make it 4, standing around …`
+        let opens = !matches!(pieces.get(at - 1), Some(Piece::Word(_)));
+        if opens
+            && text(at) == "make"
+            && matches!(text(at + 1), "it" | "that")
+            && count(at + 2)
+            && role(pieces, at + 3).is_none()
+        {
+            let old = (0..at).rev().find(|k| count(*k) && (k + 1..k + 4).any(|k| role(pieces, k).is_some()));
+            if let (Some(old), Some(Piece::Word(number))) = (old, pieces.get(at + 2)) {
+                let (text, stem) = (number.text.clone(), number.stem.clone());
+                set(pieces, old, &text, &stem);
+                let close = usize::from(comma_at(pieces, at + 3));
+                pieces.drain(at..at + 3 + close);
+                continue;
+            }
+        }
+        at += 1;
+    }
+    silence(pieces, told);
+    // `one curious person in the hall: a packer who …`, `just one single person, a technician`
+    let mut told = Vec::new();
+    for at in 1..pieces.len() {
+        if !generic(pieces, at)
+            || word_at(pieces, at).is_some_and(crate::noun::plural)
+            || text_at(pieces, at) == "people"
+        {
+            continue;
+        }
+        let one = (1..=3).filter_map(|back| at.checked_sub(back)).find(|k| {
+            word_at(pieces, *k).is_some_and(|word| word.count() == Some(1)) || matches!(text_at(pieces, *k), "a" | "an")
+        });
+        let Some(one) = one else { continue };
+        let counted = text_at(pieces, one) == "one";
+        let mark = (at + 1..at + 7).find(|k| word_at(pieces, *k).is_none());
+        let colon = mark.is_some_and(|mark| matches!(pieces.get(mark), Some(Piece::Colon)));
+        let next = mark.map_or(0, |mark| mark + 1);
+        let who = matches!(text_at(pieces, next), "a" | "an")
+            && (next + 1..next + 4).find(|k| role(pieces, *k).is_some()).is_some_and(|k| !generic(pieces, k));
+        if who && (colon || counted && mark.is_some_and(|mark| comma_at(pieces, mark))) {
+            told.extend(one..=at);
+        }
+    }
+    silence(pieces, told);
 }
 
 /// `the car` of a text about an elevator is that of the elevator.

@@ -281,6 +281,9 @@ fn apostrophe(
         // `he's` is `he is`; `it's` and `robot's` stay what they are.
         out.push(Piece::Word(word(lower.to_owned(), from, to)));
         out.push(Piece::Word(word("is".to_owned(), from, to)));
+    } else if tail == "s" && lower == "it" && gone(at, i + taken) {
+        out.push(Piece::Word(word(lower.to_owned(), from, to)));
+        out.push(Piece::Word(word("has".to_owned(), from, to)));
     } else if tail == "m" && lower == "i" {
         out.push(Piece::Word(word(lower.to_owned(), from, to)));
         out.push(Piece::Word(word("am".to_owned(), from, to)));
@@ -291,6 +294,12 @@ fn apostrophe(
         }
     }
     taken
+}
+
+/// Whether what comes says where it has gone: `until it's gone past`.
+fn gone(at: &dyn Fn(usize) -> Option<char>, from: usize) -> bool {
+    let next: String = (from + 1..).map_while(|k| at(k).filter(|c| c.is_alphabetic())).collect();
+    matches!(next.as_str(), "gone" | "passed" | "driven" | "rolled" | "moved" | "left" | "stopped" | "come")
 }
 
 /// Words that people write together.
@@ -405,7 +414,12 @@ fn swapped(text: &str) -> Option<&'static str> {
         let Some(meant) = lex
             .stop
             .get(&other)
-            .or_else(|| lex.telling.get(&other).filter(|_| text.len() > 4))
+            .or_else(|| {
+                lex.telling
+                    .get(&other)
+                    .or_else(|| lex.forms.get_key_value(&other).map(|(form, _)| form))
+                    .filter(|_| text.len() > 4)
+            })
             .filter(|_| other != text)
         else {
             continue;
