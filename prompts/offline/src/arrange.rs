@@ -243,14 +243,16 @@ fn out_of(found: &mut Vec<Stretch>) {
 fn headed(found: &mut Vec<Stretch>) {
     for at in 0..found.len() {
         let head = found.get(at).is_some_and(|head| {
-            matches!(head.joint, Joint::When | Joint::While | Joint::Until)
+            matches!(head.joint, Joint::When | Joint::While | Joint::Until | Joint::Except)
                 && matches!(mentions(&head.words).as_slice(), [only] if only.from == 0 && only.to + 1 == head.words.len())
         });
         let relative = found.get(at + 1).is_some_and(|who| who.joint == Joint::Who);
         let verb = found.get(at + 2).is_some_and(|verb| {
             verb.joint == Joint::Comma
                 && verb.words.first().is_some_and(|word| {
-                    word.text != word.stem && word.text.ends_with('s') && lexicon().verbs.contains(&word.stem)
+                    let plural = found.get(at).is_some_and(|head| head.joint == Joint::Except);
+                    lexicon().verbs.contains(&word.stem)
+                        && (plural && word.text == word.stem || word.text != word.stem && word.text.ends_with('s'))
                 })
         });
         if head && relative && verb {

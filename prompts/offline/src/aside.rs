@@ -9,8 +9,22 @@ pub(crate) struct Told {
 
 /// Words that only speak to a program when they come with one of [`OF_PROGRAMS`].
 const DISMISS: &[&str] = &["ignore", "disregard", "forget", "override", "bypass"];
-const OF_PROGRAMS: &[&str] =
-    &["instruction", "instructions", "prompt", "prompts", "above", "previous", "rules", "guidelines", "checks"];
+const OF_PROGRAMS: &[&str] = &[
+    "spec",
+    "specification",
+    "draft",
+    "version",
+    "email",
+    "instruction",
+    "instructions",
+    "prompt",
+    "prompts",
+    "above",
+    "previous",
+    "rules",
+    "guidelines",
+    "checks",
+];
 /// Orders that nobody in a scenario is given, as the first word of a sentence.
 const ORDERS: &[&str] = &[
     "print", "output", "respond", "reply", "answer", "execute", "reveal", "delete", "pretend", "mark", "set", "return",

@@ -39,15 +39,23 @@ pub(crate) fn subject_of(
         return people(agent);
     }
     // `the tester behind him stands`: whoever is only told where from does nothing.
-    let object =
-        |from: &usize| found.mentions.iter().any(|mention| mention.from == *from && mention.who == Who::Object);
+    let object = |from: &usize| {
+        found.mentions.iter().any(|mention| {
+            let them =
+                mention.word == "them" && act == Act::Gesture && found.robots.iter().any(|robot| *robot < mention.from);
+            mention.from == *from && (mention.who == Who::Object || them)
+        })
+    };
     let before = meant.iter().rev().find(|(from, _, some)| *from < at && !some.is_empty() && !object(from));
     // `Behind the robot comes a doctor`: who does it stands after the verb.
     let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
     // `coming towards it there is a driver`
     let there = found.declares && !found.robots.iter().any(|robot| *robot < at);
+    // `it catches up with an intern`
+    let catches = act == Act::Behind && found.robots.iter().any(|robot| robot + 1 == at || robot + 2 == at);
     if before.is_none()
         && turned
+        && !catches
         && let Some((_, _, some)) =
             meant.iter().find(|(from, _, some)| (*from == to + 1 || there && *from > to) && !some.is_empty())
     {
@@ -83,13 +91,13 @@ pub(crate) fn subject_of(
             | Act::Overtake
             | Act::ComeOut
             | Act::GiveWay
-            | Act::GoOn
             | Act::Abreast
             | Act::Stay
             | Act::Stand
             | Act::Toward
             | Act::Cross
-    ) || act == Act::Approach && !found.robots.iter().chain(&found.met).any(|robot| *robot > at);
+    ) || act == Act::GoOn && robot.is_some()
+        || act == Act::Approach && !found.robots.iter().chain(&found.met).any(|robot| *robot > at);
     // `out of the room that the robot drives into and nods to it`: what is nodded to nods not.
     let object_robot = act == Act::Gesture
         && found.robots.first().is_some_and(|robot| *robot > to && *robot <= to + 3)

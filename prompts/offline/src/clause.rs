@@ -308,7 +308,7 @@ fn cue(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]) {
         let goal = phrase.means == Cue::Near
             && text_of(stretch, last) == "it"
             && stretch.words.get(first).is_some_and(|word| word.stem == "reach")
-            && found.mentions.iter().any(|mention| mention.to < first);
+            && (first == 0 || found.mentions.iter().any(|mention| mention.to < first));
         found.cue = Some((if goal { Cue::Goal } else { phrase.means }, first));
         return;
     }

@@ -255,6 +255,8 @@ pub(crate) fn finish(story: &mut Story, rough: &str) {
         "exactly one person",
         "exactly one human",
         "exactly one pedestrian",
+        "exactly 1 human",
+        "exactly 1 person",
         "one single person",
         "a single person",
         "only one person",

@@ -223,9 +223,12 @@ fn stretches(words: Vec<Option<Word>>) -> Vec<Stretch> {
         found.push(open);
     }
     for at in inner {
+        let people = found.get(at).is_some_and(|inner| !mentions(&inner.words).is_empty());
         if let Some(rest) = found.get_mut(at + 1).filter(|rest| rest.joint == Joint::Comma) {
             rest.joint = Joint::Who;
-            found.swap(at, at + 1);
+            if people {
+                found.swap(at, at + 1);
+            }
         }
     }
     found
@@ -260,7 +263,7 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "having" if opens && matches!(stem(i + 1), "reach" | "arrive") => (Some(Joint::When), 1),
         // `up and down`, `back and forth` is one way of walking.
         "and" if matches!((before, text(i + 1)), ("up", "down") | ("back", "forth") | ("round", "round")) => (None, 1),
-        "and" if meeting(words, i) => (None, 1),
+        "and" if meeting(words, i) || !before.is_empty() && before == text(i + 1) => (None, 1),
         "and" => (Some(Joint::And), 1),
         // `all but two`, `all except one`, `everyone save two`
         "but" | "except" | "save" if matches!(before, "all" | "everyone" | "everybody") && counted(i + 1) => (None, 1),
@@ -295,7 +298,9 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
         "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
         "in" if text(i + 1) == "that" && text(i + 2) == "case" => (Some(Joint::Then), 3),
-        "not" if text(i + 1) == "until" => (Some(Joint::When), 2),
+        "not" if matches!(text(i + 1), "until" | "unless") => (Some(Joint::When), 2),
+        // `an engineer, who thereupon follows it`
+        "thereupon" | "then" if matches!(before, "who" | "which") && text(i) == "thereupon" => (None, 1),
         "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
             (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })
         }
@@ -431,8 +436,9 @@ fn meeting(words: &[Option<Word>], and: usize) -> bool {
     let stem = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.stem.as_str());
     let robot = and + 1 + usize::from(text(and + 1) == "the");
     let meets = stem(robot) == "robot" && stem(robot + 1) == "meet";
-    let before =
-        (1..=4).filter_map(|back| and.checked_sub(back)).find(|k| matches!(text(*k), "when" | "once" | "as" | "until"));
+    let before = (1..=4)
+        .filter_map(|back| and.checked_sub(back))
+        .find(|k| matches!(text(*k), "when" | "once" | "as" | "until" | "moment"));
     meets
         && before.is_some_and(|k| {
             (k + 1..and).all(|k| !lexicon().verbs.contains(stem(k)) || lexicon().roles.contains_key(stem(k)))
@@ -603,6 +609,11 @@ fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
                     | "so"
                     | "way"
                     | "path"
+                    | "room"
+                    | "space"
+                    | "past"
+                    | "through"
+                    | "aside"
                     | "asked"
                     | "signalled"
                     | "stops"

@@ -351,7 +351,11 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
                 )
         });
         word(k).is_some_and(|word| {
-            lex.verbs.contains(&word.stem) && !word.capital && word.text != word.stem && (!copula || goes_on)
+            lex.verbs.contains(&word.stem)
+                && !word.capital
+                && word.text != word.stem
+                && (!copula || goes_on)
+                && !matches!(word.stem.as_str(), "finish" | "start" | "begin" | "end" | "happen" | "continue")
                 || matches!(
                     word.text.as_str(),
                     "who"
@@ -393,7 +397,12 @@ pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
                 || verb(k + 3)
                 || matches!(pieces.get(k + 3), Some(Piece::Comma))
                     && word(k + 4).is_some_and(|word| word.text == "both" || word.text.ends_with("ing")));
-        if begins(k) && (does(k + 1) || pair) {
+        // `From the opposite direction comes Anna, …`
+        let after_verb = k > 1
+            && word(k - 1)
+                .is_some_and(|word| matches!(word.text.as_str(), "comes" | "walks" | "stands" | "sits" | "waits"))
+            && !matches!(pieces.get(k + 1), Some(Piece::Word(_)));
+        if begins(k) && (does(k + 1) || pair) || after_verb {
             found.push(name.text.clone());
             found.extend(word(k + 2).filter(|_| pair).map(|word| word.text.clone()));
         }

@@ -12,7 +12,7 @@ pub(crate) fn settle(story: &mut Story) {
     if elsewhere(&story.place) {
         return;
     }
-    let mut any = false;
+    let mut any = story.cast.people.iter().any(|person| matches!(person.relation, Some((Relation::Staying, _))));
     for person in &mut story.cast.people {
         let stands = person.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
         let Some(said) = person.stays.take().filter(|_| stands) else { continue };

@@ -70,6 +70,15 @@ pub(crate) fn meant(
             }
         }
         story.cast.call(mention, words, &people);
+        // `Dr. Weber … Weber walks past`
+        if let ([who], [.., role, name]) = (people.as_slice(), words)
+            && name.capital
+            && !lexicon().roles.contains_key(&name.stem)
+            && lexicon().roles.contains_key(&role.stem)
+            && let Some(person) = story.cast.people.get_mut(*who)
+        {
+            person.name.get_or_insert_with(|| name.stem.clone());
+        }
         let names: Vec<&String> = words.iter().flat_map(|word| &word.called).collect();
         story.cast.name(&people, &names);
         // `a few people`, `several nurses`

@@ -66,7 +66,7 @@ pub(crate) fn measures(stretch: &mut Stretch, found: &mut Found) {
                 };
                 let about = (0..i).rev().find(|k| !roughly(text(*k)));
                 let after = about.is_some_and(|k| text(k) == "after")
-                    || before == "at"
+                    || matches!(before, "at" | "t")
                     || matches!(text(unit_at + 1), "later" | "after" | "into")
                     || text(unit_at + 1) == "in" && text(unit_at + 2).is_empty();
                 if after { found.after_s = Some(secs) } else { found.lasts_s = Some(secs) }

@@ -202,7 +202,9 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         }
         "they" | "them" | "everyone" | "everybody" | "none" => {
             let end = of_them(at + 1).map_or(at, |of| of.end);
-            return made(Who::All, None, end);
+            let mention = made(Who::All, None, end);
+            let word = if text(at) == "them" { "them" } else { "" };
+            return mention.map(|mention| Mention { word: word.to_owned(), ..mention });
         }
         // `all but the first …`, where the last ones spoken of are some of them
         "all"
@@ -474,7 +476,8 @@ fn counted(
     }
     // `his guide`
     if matches!(text(at), "his" | "her" | "their") && matches!(text(at + 1), "guide" | "escort") {
-        return made(Who::Definite { plural: false, count: None }, role(at + 1), false, at + 1);
+        let mention = made(Who::Definite { plural: false, count: None }, role(at + 1), false, at + 1);
+        return mention.map(|mention| Mention { word: "own".to_owned(), ..mention });
     }
     // `his mother`, `her colleague`: known or new.
     // `her two colleagues`
@@ -551,6 +554,10 @@ fn counted(
     }
     // A number alone speaks of people only where it can stand for them: `2 leave`, `one stays`, `two more`.
     let n = count?;
+    // `when it is one and a half metres away`
+    if text(next) == "and" && text(next + 1) == "a" && text(next + 2) == "half" {
+        return None;
+    }
     let label = lex.labels.contains(before) && (words.get(next - 1).is_some_and(Word::is_digits))
         || matches!(before, "of" | "at" | "within" | "for" | "after" | "than" | "robot")
         // `a boy from wing 3`

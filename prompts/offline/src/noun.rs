@@ -197,7 +197,12 @@ pub(crate) fn stranger(words: &[Word], at: usize, introduced: bool, lex: &Lexico
         && back(1).is_some_and(|word| word.text == "a")
         && back(2).is_some_and(|word| word.text == "with");
     // `two people with two temperaments`
-    let had = back(1).is_some_and(|word| word.count().is_some()) && back(2).is_some_and(|word| word.text == "with");
+    // `draws a face on it with a marker`
+    let tool = back(1).is_some_and(|word| matches!(word.text.as_str(), "a" | "an"))
+        && back(2).is_some_and(|word| word.text == "with")
+        && words.get(at + 1).is_none();
+    let had =
+        tool || back(1).is_some_and(|word| word.count().is_some()) && back(2).is_some_and(|word| word.text == "with");
     if !introduced || has || variant || had {
         return None;
     }

@@ -25,6 +25,8 @@ pub(crate) enum Joiner {
     After,
     /// `before`.
     Before,
+    /// `unless`.
+    Unless,
 }
 
 /// Whether somebody who does this has a time at which he is there.
@@ -39,6 +41,7 @@ pub(crate) fn joiner(text: &str, stretch: &Stretch) -> Option<Joiner> {
     match word.as_str() {
         "after" | "once" => Some(Joiner::After),
         "before" => Some(Joiner::Before),
+        "unless" => Some(Joiner::Unless),
         _ => None,
     }
 }

@@ -91,8 +91,8 @@ pub(crate) struct Thread {
     pub(crate) denied: Option<Act>,
     /// How long after what it waits for the deed begins, s.
     pub(crate) delay_s: Option<f64>,
-    /// As [`Self::paused`], of the clause before a condition.
-    pub(crate) paused_before: bool,
+    /// The clause before is nothing but those whom it names.
+    pub(crate) bare: bool,
     /// The clause before names people who do nothing in it.
     pub(crate) paused: bool,
     /// Who was told apart by nothing but what the relative clause says: `the one who stays`.
@@ -182,6 +182,14 @@ fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text
     read_clause(story, thread, stretch, text, next);
     if thread.waiting.is_none() && suspended.is_some() {
         thread.waiting = suspended;
+    }
+    // `until an employee signals him to go ahead, who comes …`: who signals.
+    if let (Some(Trigger::HumanSays(id, _)), Some(Joint::Who), Joint::When | Joint::Until | Joint::While) =
+        (&thread.said, next, stretch.joint)
+        && stretch.words.iter().any(|word| matches!(word.text.as_str(), "him" | "her" | "them"))
+        && let Some(who) = usize::try_from(id.number()).ok().and_then(|n| n.checked_sub(1))
+    {
+        thread.subject = Subject::People(vec![who]);
     }
     if of_robot && next == Some(Joint::Comma) {
         thread.subject = Subject::Robot;

@@ -104,7 +104,8 @@ pub(crate) fn timing(
     let asked = asked(thread, stretch, found);
     let found = asked.as_ref().unwrap_or(found);
     let Some((cue, _)) = found.cue else { return };
-    thread.paused_before = std::mem::take(&mut thread.paused);
+    thread.paused = false;
+    let bare = std::mem::take(&mut thread.bare);
     place_of(story, found, stretch, &thread.subject, quote);
     // `just as the robot wants to get in`
     let comes_in = stretch.words.last().is_some_and(|word| word.text == "in")
@@ -122,7 +123,12 @@ pub(crate) fn timing(
         told(story, thread, found, quote);
     }
     let until = stretch.joint == Joint::Until && !std::mem::take(&mut thread.not_until);
-    if until && thread.made.is_empty() && thread.doer.is_none() && next == Some(Joint::Comma) {
+    if until
+        && thread.joiner == Some(order::Joiner::Unless)
+        && thread.made.is_empty()
+        && thread.doer.is_none()
+        && next == Some(Joint::Comma)
+    {
         thread.unless = trigger(cue, found, thread);
     }
     // A word or a standstill of the robot ends the deed exactly; passing by takes a while.
@@ -238,7 +244,7 @@ pub(crate) fn timing(
         return;
     }
     // `The first steps aside at 3 m, the second when it is 1 m away`
-    if let (Subject::People(people), true) = (&thread.subject, thread.paused_before && stretch.joint == Joint::When)
+    if let (Subject::People(people), true) = (&thread.subject, bare && stretch.joint == Joint::When)
         && people.iter().all(|who| !thread.made.iter().any(|(of, _)| of == who))
         && next != Some(Joint::Comma)
         && !thread.acts.is_empty()
@@ -462,6 +468,7 @@ pub(crate) fn quiet(
                 "both" | "either" | "only" | "just" | "exactly" | "simply" | "perhaps" | "maybe"
             )
     });
+    thread.bare = bare;
     if bare && matches!(next, Some(Joint::And | Joint::Comma | Joint::When | Joint::While)) {
         thread.pending.clone_from(&people);
     }

@@ -32,6 +32,7 @@ pub(crate) fn reworded(text: &str, pieces: &mut Vec<Piece>) {
     only_some(pieces);
     idle(pieces);
     cars(pieces);
+    settings(pieces);
     this_one(pieces);
     only_one(pieces);
     placeholders(pieces);
@@ -131,6 +132,10 @@ fn only_some(pieces: &mut [Piece]) {
             );
             if whole && !robot && !measured {
                 told.extend(from..number);
+                let of = if text_at(pieces, number + 1) == "of" { number + 3 } else { number + 1 };
+                if matches!(text_at(pieces, of), "matter" | "matters" | "count" | "counts") {
+                    told.extend(number..=of);
+                }
                 if text_at(pieces, number + 1) == "of"
                     && matches!(text_at(pieces, number + 2), "them" | "these" | "us" | "those")
                 {
@@ -250,6 +255,65 @@ fn nobodies(pieces: &[Piece]) -> Vec<usize> {
     told
 }
 
+/// `at no point in the scene`, `besides the robot`: words that only say that it is a scene, and a slip.
+fn settings(pieces: &mut Vec<Piece>) {
+    let mut at = 1;
+    while at + 2 < pieces.len() {
+        let scene = text_at(pieces, at) == "in"
+            && matches!(text_at(pieces, at + 1), "the" | "this")
+            && matches!(text_at(pieces, at + 2), "scene" | "run" | "test" | "trial" | "video" | "clip");
+        let there = matches!(text_at(pieces, at - 1), "is" | "are" | "be" | "people" | "anybody" | "nobody" | "else");
+        if scene && !there {
+            pieces.drain(at..at + 3);
+            continue;
+        }
+        let robot = |k: usize| word_at(pieces, k).is_some_and(|word| word.stem == "robot");
+        if text_at(pieces, at) == "besides" && (robot(at + 1) || robot(at + 2)) {
+            set(pieces, at, "beside", "beside");
+        }
+        at += 1;
+    }
+}
+
+/// `The landlord wants to know what it does`, `I know it's an odd spot, but two of our participants …`, `nine people, is elsewhere`: who
+/// has an opinion or is away.
+fn away(pieces: &[Piece]) -> Vec<usize> {
+    let mut told = Vec::new();
+    for (from, to) in sentences(pieces) {
+        let text = |k: usize| text_at(pieces, k);
+        let knows = text(from) == "i"
+            && matches!(text(from + 1), "know" | "realise" | "realize" | "admit" | "understand" | "remember");
+        let wants = matches!(text(from), "the" | "our" | "my" | "your")
+            && (from + 1..from + 4).find(|k| role(pieces, *k).is_some()).is_some_and(|k| {
+                let verb = k + 1 + usize::from(text(k + 1) == "would");
+                matches!(text(verb), "wants" | "want" | "like" | "likes" | "needs" | "wanted")
+                    && text(verb + 1) == "to"
+                    && matches!(text(verb + 2), "know" | "see" | "find" | "check" | "understand" | "be")
+                    && (text(verb + 2) != "be" || text(verb + 3) == "sure")
+            });
+        if knows || wants {
+            told.extend(from..to);
+        }
+        // `HR asked for something with a newcomer`
+        let asks = word_at(pieces, from)
+            .is_some_and(|word| word.capital && !lexicon().roles.contains_key(&word.stem) && !lexicon().has(word))
+            && matches!(text(from + 1), "asked" | "asks" | "wants" | "wanted" | "requested")
+            && (text(from + 2) == "for" || text(from + 1).starts_with("want"));
+        if asks {
+            told.extend([from, from + 1]);
+        }
+        for at in from..to {
+            let counted = word_at(pieces, at).is_some_and(|word| word.count().is_some());
+            let gone = (at + 1..at + 6)
+                .any(|k| matches!(text(k), "elsewhere" | "absent") || text(k) == "not" && text(k + 1) == "there");
+            if counted && gone && role(pieces, at + 1).is_some() {
+                told.extend([at, at + 1]);
+            }
+        }
+    }
+    told
+}
+
 /// `which he then does`, `says excuse me while doing so`, `I first wrote four`, `three is right`, `Eight people? Make it 4`.
 fn idle(pieces: &mut Vec<Piece>) {
     let mut told = Vec::new();
@@ -276,10 +340,7 @@ fn idle(pieces: &mut Vec<Piece>) {
         if wrote && count(at + 1) {
             told.push(at + 1);
         }
-        if count(at)
-            && matches!(text(at + 1), "is" | "are")
-            && matches!(text(at + 2), "right" | "correct" | "enough" | "fine")
-        {
+        if count(at) && matches!(text(at + 1), "is" | "are") && matches!(text(at + 2), "right" | "correct") {
             told.push(at);
         }
         // `Eight people in the hall? Overkill. Make it 4, standing around …`

@@ -192,6 +192,10 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 '+' if at(i + 1).is_some_and(char::is_whitespace) => {
                     out.push(Piece::Word(word("and".to_owned(), byte(i), byte(i + 1))));
                 }
+                // `Task: pharmacy -> room 214`
+                '>' if leads_to(&at, i, out.last()) => {
+                    out.push(Piece::Word(word("to".to_owned(), byte(i), byte(i + 1))));
+                }
                 '>' => out.push(Piece::Comma),
                 '-' if at(i + 1) == Some('-') => out.push(Piece::Comma),
                 '\n' if at(i + 1) == Some('\n') => out.push(Piece::Stop),
@@ -202,6 +206,20 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
         }
     }
     crate::numbered::settled(text, crate::again::joined(out))
+}
+
+/// Whether an arrow leads from a place to a place.
+fn leads_to(at: &dyn Fn(usize) -> Option<char>, i: usize, before: Option<&Piece>) -> bool {
+    let place = |name: &str| {
+        lexicon().places.iter().any(|place| {
+            place.items.last() == Some(&Item::Word(name.to_owned()))
+                || place.items.first() == Some(&Item::Word(name.to_owned()))
+        }) || matches!(name, "dock" | "exit" | "back")
+    };
+    let from = matches!(before, Some(Piece::Word(word)) if place(&word.text) || word.is_digits());
+    let next: String =
+        (i + 1..).skip_while(|k| at(*k) == Some(' ')).map_while(|k| at(k).filter(|c| c.is_alphabetic())).collect();
+    from && next != "back" && place(&next.to_lowercase())
 }
 
 /// `i.e.`, `e.g.`, `viz.`, `sc.`, `etc.`: where that ends.
@@ -327,6 +345,10 @@ const JOINED: &[(&str, &[&str])] = &[
     ("hte", &["the"]),
     ("adn", &["and"]),
     ("wating", &["waiting"]),
+    ("employes", &["employees"]),
+    ("coleagues", &["colleagues"]),
+    ("coleague", &["colleague"]),
+    ("begining", &["beginning"]),
     ("exuse", &["excuse"]),
     ("excuze", &["excuse"]),
     ("docter", &["doctor"]),
@@ -492,13 +514,15 @@ pub(crate) fn handles(words: &[Word], at: usize) -> bool {
     let compound = |k: usize| words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "break" | "note" | "order"));
     // `sticks a smiley on its screen`
     let text = |k: usize| words.get(k).map_or("", |word| word.text.as_str());
-    let sticks = words
-        .get(at)
-        .is_some_and(|word| matches!(word.stem.as_str(), "put" | "stick" | "hang" | "attach" | "lay" | "balance"))
-        && matches!(text(at + 1), "a" | "an" | "his" | "her" | "the" | "some" | "their")
+    let sticks = words.get(at).is_some_and(|word| {
+        matches!(
+            word.stem.as_str(),
+            "put" | "stick" | "hang" | "attach" | "lay" | "balance" | "draw" | "paint" | "write" | "throw" | "drape"
+        )
+    }) && matches!(text(at + 1), "a" | "an" | "his" | "her" | "the" | "some" | "their")
         && !matches!(text(at + 2), "hand" | "hands" | "eyes" | "eye" | "foot" | "palm")
         && (at + 2..at + 8).any(|k| {
-            matches!(text(k), "on" | "onto" | "into" | "under")
+            matches!(text(k), "on" | "onto" | "into" | "under" | "over" | "around")
                 && (k + 1..k + 3).any(|k| words.get(k).is_some_and(|word| word.stem == "robot"))
         });
     if sticks {
