@@ -117,6 +117,7 @@ pub(crate) fn only_says(story: &mut Story, thread: &mut Thread, stretch: &mut St
             story.robot_says.push((gesture, quote.to_owned()));
             (thread.waiting, thread.vague) = (Some(Trigger::RobotSays(gesture)), false);
             thread.said = Some(Trigger::RobotSays(gesture));
+            thread.fresh.clone_from(&thread.said);
         }
     }
 }

@@ -50,7 +50,7 @@ pub(crate) fn subject_of(
     // `Behind the robot comes a doctor`: who does it stands after the verb.
     let turned = matches!(act, Act::Behind | Act::Ahead | Act::Walk | Act::Stand | Act::ComeOut | Act::Toward);
     // `coming towards it there is a driver`
-    let there = found.declares && !found.robots.iter().any(|robot| *robot < at);
+    let there = (found.declares || found.inverted) && !found.robots.iter().any(|robot| *robot < at);
     // `it catches up with an intern`
     let catches = act == Act::Behind && found.robots.iter().any(|robot| robot + 1 == at || robot + 2 == at);
     if before.is_none()

@@ -60,6 +60,8 @@ pub(crate) struct Found {
     pub(crate) declares: bool,
     /// Amounts that cannot be played, with what is played instead.
     pub(crate) limited: Vec<String>,
+    /// Who does it stands behind the verb: `from the other side comes Anna`.
+    pub(crate) inverted: bool,
     /// Amounts beyond reason: `35 m/s`.
     pub(crate) absurd: Vec<String>,
 }
@@ -119,6 +121,14 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
     }
     deeds(stretch, &mut found, &mut taken, &placed);
     rest(stretch, &mut found, &taken);
+    let comes = |k: usize| {
+        stretch
+            .words
+            .get(k)
+            .is_some_and(|word| matches!(word.text.as_str(), "comes" | "come" | "walks" | "walk" | "follows" | "steps"))
+    };
+    found.inverted = matches!(text_of(stretch, 0), "from" | "behind" | "ahead" | "towards" | "out" | "next")
+        && found.mentions.first().is_some_and(|mention| mention.from > 1 && comes(mention.from - 1));
     let being = |k: usize| stretch.words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "be" | "get"));
     found.passive =
         stretch.words.iter().enumerate().any(|(k, word)| word.text.ends_with("ed") && k > 0 && being(k - 1));

@@ -151,12 +151,17 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
     }
     let inside = matches!(around.place, Some(PlaceClass::Room | PlaceClass::Elevator));
     let left_inside = inside || cast.people.iter().any(leaves);
-    let act = if act == Act::Stay && !left_inside {
+    // `comes out, freezes and stays like that`
+    let halted = cast.people.get(who).is_some_and(|person| {
+        leaves(person)
+            && person.rules.last().is_some_and(|last| matches!(last.rule.act, Action::StandStill | Action::LookAtRobot))
+    });
+    let act = if act == Act::Stay && (!left_inside || halted) {
         // `stays where she is` without anybody leaving is standing still.
         if cast.people.get(who).is_some_and(|p| p.relation.is_none()) {
             relate(cast, who, Relation::Static, &around.quote);
         }
-        if let Some(person) = cast.people.get_mut(who) {
+        if let Some(person) = cast.people.get_mut(who).filter(|_| !halted) {
             person.stays = Some(around.quote.clone());
         }
         Act::Stop

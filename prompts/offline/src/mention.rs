@@ -208,9 +208,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         }
         // `all but the first …`, where the last ones spoken of are some of them
         "all"
-            if words.len() == 1
-                || at == 0
-                    && words.get(1).is_some_and(|word| word.text == word.stem && lex.verbs.contains(&word.stem)) =>
+            if at == 0 && words.get(1).is_some_and(|word| word.text == word.stem && lex.verbs.contains(&word.stem)) =>
         {
             return made(Who::All, None, at).map(|mention| Mention { word: "all".to_owned(), ..mention });
         }

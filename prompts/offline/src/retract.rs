@@ -54,7 +54,10 @@ fn recounted(mut words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             if !noun(next + 1) && !(bare && !ends(next + 1)) {
                 let number = words.get(next).cloned().flatten();
                 // `people, maybe three, no, four, stand`: the mark parts what stood between marks before.
-                let close = usize::from((!bare || noun(next + 2)) && words.get(next + 1).is_some_and(Option::is_none));
+                let colon = words.get(next + 2).and_then(Option::as_ref).is_some_and(|word| word.after_colon);
+                let close = usize::from(
+                    (!bare || noun(next + 2)) && !colon && words.get(next + 1).is_some_and(Option::is_none),
+                );
                 if let Some(place) = words.get_mut(old) {
                     *place = number;
                 }
@@ -100,7 +103,11 @@ pub(crate) fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             };
             let at = (i + 2..i + 6).find(corrects)?;
             let paused = words.get(i + 1..at)?.iter().any(|item| item.as_ref().is_none_or(|word| word.text == "or"));
-            (at + 1..at + 7).find(|k| words.get(*k).is_some_and(count)).filter(|_| paused)
+            let nobody = |k: usize| {
+                let text = |k: usize| words.get(k).and_then(Option::as_ref).map_or("", |word| word.text.as_str());
+                text(k) == "one" && text(k - 1) == "no"
+            };
+            (at + 1..at + 7).find(|k| words.get(*k).is_some_and(count)).filter(|k| paused && !nobody(*k))
         });
         if let Some(next) = taken_back.flatten() {
             i = next;
@@ -143,7 +150,9 @@ pub(crate) fn settled(words: Vec<Option<Word>>) -> Vec<Option<Word>> {
         // `towards the robot, which asks him to wait`
         let robot =
             out.len().checked_sub(2).and_then(|k| out.get(k)).cloned().flatten().filter(|word| word.stem == "robot");
-        if let (Some(robot), "which", true) = (robot, word(i), out.last().is_some_and(Option::is_none)) {
+        // `asks him to follow it, which he does`
+        let his = matches!(word(i + 1), "he" | "she" | "they" | "both" | "all");
+        if let (Some(robot), "which", true, false) = (robot, word(i), out.last().is_some_and(Option::is_none), his) {
             out.push(Some(robot));
             i += 1;
             continue;

@@ -93,6 +93,8 @@ pub(crate) struct Thread {
     pub(crate) delay_s: Option<f64>,
     /// The clause before is nothing but those whom it names.
     pub(crate) bare: bool,
+    /// As [`Self::bare`], of the clause before this one.
+    pub(crate) bare_before: bool,
     /// The clause before names people who do nothing in it.
     pub(crate) paused: bool,
     /// Who was told apart by nothing but what the relative clause says: `the one who stays`.
@@ -177,6 +179,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
 fn clause_of(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, text: &str, next: Option<Joint>) {
     let of_robot = ellipsis::of_robot(thread, stretch);
     thread.next = next;
+    thread.bare_before = std::mem::take(&mut thread.bare);
     // Who somebody is, is no answer to what happens then; the clause after it may be.
     let suspended = (stretch.joint == Joint::Who).then(|| thread.waiting.take()).flatten();
     read_clause(story, thread, stretch, text, next);
@@ -546,7 +549,9 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 }
                 // `goes down the aisle behind a picker`
                 let behind = meant.iter().find(|(from, _, some)| {
-                    *from > to && !some.is_empty() && from.checked_sub(1).is_some_and(|k| text(k) == "behind")
+                    *from > to
+                        && !some.is_empty()
+                        && (1..=3).filter_map(|back| from.checked_sub(back)).any(|k| text(k) == "behind")
                 });
                 if let (Some((_, _, some)), Act::Walk | Act::GoOn | Act::Follow) = (behind, act) {
                     for who in some {

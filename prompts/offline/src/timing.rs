@@ -105,7 +105,7 @@ pub(crate) fn timing(
     let found = asked.as_ref().unwrap_or(found);
     let Some((cue, _)) = found.cue else { return };
     thread.paused = false;
-    let bare = std::mem::take(&mut thread.bare);
+    let bare = thread.bare_before;
     place_of(story, found, stretch, &thread.subject, quote);
     // `just as the robot wants to get in`
     let comes_in = stretch.words.last().is_some_and(|word| word.text == "in")

@@ -130,7 +130,24 @@ fn only_some(pieces: &mut [Piece]) {
                 text_at(pieces, number + 1),
                 "m" | "meter" | "meters" | "metre" | "metres" | "s" | "seconds" | "second" | "minutes"
             );
-            if whole && !robot && !measured {
+            let of = if matches!(text_at(pieces, number + 1), "of") { number + 3 } else { number + 1 };
+            let be = of + usize::from(matches!(text_at(pieces, of), "is" | "are"));
+            let there = matches!(
+                text_at(pieces, be),
+                "in" | "at"
+                    | "on"
+                    | "here"
+                    | "there"
+                    | "matter"
+                    | "matters"
+                    | "count"
+                    | "counts"
+                    | "needed"
+                    | "relevant"
+                    | "present"
+                    | "around"
+            ) || word_at(pieces, of).is_none();
+            if whole && !robot && !measured && (wants || there) {
                 told.extend(from..number);
                 let of = if text_at(pieces, number + 1) == "of" { number + 3 } else { number + 1 };
                 if matches!(text_at(pieces, of), "matter" | "matters" | "count" | "counts") {
