@@ -3,6 +3,7 @@
 use crate::apposed::apposed;
 use crate::arrange::arranged;
 use crate::asker::takes_part;
+use crate::begins::begins;
 use crate::called::called;
 use crate::clock::clock;
 use crate::headings::{labels, names, titled, totals};
@@ -294,13 +295,13 @@ fn joint_at(words: &[Option<Word>], i: usize) -> (Option<Joint>, usize) {
         "at" | "upon" if text(i + 1) == "which" && matches!(text(i + 2), "he" | "she" | "they" | "it") => {
             (Some(Joint::Said), 2)
         }
+        "thereupon" if matches!(before, "who" | "which") => (None, 1),
         "whereupon" | "thereupon" => (Some(Joint::Said), 1),
         "only" if text(i + 1) == "then" => (Some(Joint::Said), 2),
         "in" if text(i + 1) == "which" && text(i + 2) == "case" => (Some(Joint::Said), 3),
         "in" if text(i + 1) == "that" && text(i + 2) == "case" => (Some(Joint::Then), 3),
         "not" if matches!(text(i + 1), "until" | "unless") => (Some(Joint::When), 2),
         // `an engineer, who thereupon follows it`
-        "thereupon" | "then" if matches!(before, "who" | "which") && text(i) == "thereupon" => (None, 1),
         "at" if text(i + 1) == "the" && matches!(text(i + 2), "moment" | "instant" | "sight" | "very") => {
             (Some(Joint::When), if text(i + 2) == "very" { 4 } else { 3 - usize::from(text(i + 2) == "sight") })
         }
@@ -461,229 +462,4 @@ fn trails(before: &[Option<Word>]) -> bool {
         matches!(word.stem.as_str(), "trail" | "chase" | "tag" | "look" | "along" | "straight" | "right")
             || lexicon().kind("go").contains(&word.stem)
     })
-}
-
-/// Whether the verb of the sentence stands here, behind a relative clause that has its own.
-fn main_verb(words: &[Option<Word>], (i, from): (usize, usize), open: &Stretch) -> bool {
-    let verbs = &lexicon().verbs;
-    let finite = |word: &Word| word.text != word.stem && word.text.ends_with('s') && verbs.contains(&word.stem);
-    let own = |word: &Word| finite(word) || matches!(word.text.as_str(), "is" | "was" | "has");
-    let before = from.checked_sub(1).and_then(|k| words.get(k)).and_then(Option::as_ref);
-    // `the one who blocks it | gives way`
-    let verb =
-        open.words.len().checked_sub(2).and_then(|k| open.words.get(k)).is_some_and(|word| verbs.contains(&word.stem));
-    let object = before.is_some_and(|word| word.text == "it") && verb;
-    let joins = !object
-        && before.is_none_or(|word| {
-            verbs.contains(&word.stem) && word.text != word.stem
-                || matches!(
-                    word.text.as_str(),
-                    "and"
-                        | "or"
-                        | "nor"
-                        | "neither"
-                        | "not"
-                        | "never"
-                        | "the"
-                        | "a"
-                        | "an"
-                        | "its"
-                        | "his"
-                        | "her"
-                        | "their"
-                        | "who"
-                        | "of"
-                        | "to"
-                        | "that"
-                        | "which"
-                        | "also"
-                        | "then"
-                        | "it"
-                )
-                || word.text.ends_with("ly")
-                || word.number().is_some()
-        });
-    words.get(i).and_then(Option::as_ref).is_some_and(finite)
-        && !joins
-        && open.words.len() >= 2
-        && open.words.iter().take(3).any(own)
-}
-
-/// Whether a clause of its own begins at a word without a joint: `as soon as she sees the robot | she signals`.
-fn begins(words: &[Option<Word>], i: usize, open: &Stretch) -> bool {
-    let lex = lexicon();
-    let word = |k: usize| words.get(k).and_then(Option::as_ref);
-    let text = |k: usize| word(k).map_or("", |word| word.text.as_str());
-    let temporal = matches!(open.joint, Joint::When | Joint::Until | Joint::While);
-    let acts = open.words.iter().skip(1).any(|word| lex.verbs.contains(&word.stem));
-    if open.words.is_empty() || !(acts || temporal && open.words.len() > 1) {
-        return false;
-    }
-    let before = if i == 0 { "" } else { text(i - 1) };
-    // `on seeing the robot | halts`: who sees is who halts.
-    let sees = temporal && open.words.first().is_some_and(|word| word.text.ends_with("ing"));
-    if sees
-        && matches!(before, "robot" | "it" | "him" | "her" | "this" | "that")
-        && word(i)
-            .is_some_and(|word| word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem))
-    {
-        return true;
-    }
-    // `when it blocks her way, a cleaner who is coming along | stops`
-    let adverb = text(i).len() > 4 && text(i).ends_with("ly") && i > 0;
-    if open.joint == Joint::Who && (main_verb(words, (i, i), open) || adverb && main_verb(words, (i + 1, i), open)) {
-        return true;
-    }
-    // `when it is two metres away Marta tells Tom to wait`
-    let named = temporal
-        && word(i).is_some_and(|word| word.name)
-        && word(i + 1)
-            .is_some_and(|word| word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem));
-    if named && !matches!(before, "and" | "or" | "of" | "to" | "with" | "by" | "mr" | "mrs" | "dr" | "that") {
-        return true;
-    }
-    match text(i) {
-        "he" | "she" | "they" => !matches!(
-            before,
-            "where"
-                | "wherever"
-                | "what"
-                | "how"
-                | "that"
-                | "than"
-                | "as"
-                | "who"
-                | "whom"
-                | "which"
-                | "whether"
-                | "does"
-                | "do"
-                | "did"
-                | "should"
-                | "would"
-                | "will"
-                | "can"
-                | "could"
-                | "may"
-                | "must"
-                | "point"
-        ),
-        "there" => temporal && matches!(text(i + 1), "is" | "are"),
-        "does" | "do" | "did" => {
-            (matches!(text(i + 1), "he" | "she" | "they")
-                || temporal && matches!(text(i + 1), "one" | "both" | "all" | "each" | "the"))
-                && !matches!(before, "nor" | "neither")
-                && !matches!(before, "point" | "time" | "moment" | "circumstances")
-        }
-        "both" | "the" | "a" | "an" | "one" | "another" | "each" | "all" | "two" | "three"
-            if temporal && text(i + 1) != "times" =>
-        {
-            let closes = matches!(
-                before,
-                "robot"
-                    | "it"
-                    | "him"
-                    | "her"
-                    | "them"
-                    | "m"
-                    | "meter"
-                    | "meters"
-                    | "metre"
-                    | "metres"
-                    | "seconds"
-                    | "s"
-                    | "away"
-                    | "close"
-                    | "closer"
-                    | "near"
-                    | "nearer"
-                    | "by"
-                    | "past"
-                    | "pass"
-                    | "request"
-                    | "signal"
-                    | "gesture"
-                    | "sign"
-                    | "this"
-                    | "that"
-                    | "so"
-                    | "way"
-                    | "path"
-                    | "room"
-                    | "space"
-                    | "past"
-                    | "through"
-                    | "aside"
-                    | "asked"
-                    | "signalled"
-                    | "stops"
-                    | "arrives"
-                    | "appears"
-                    | "approaches"
-                    | "proceed"
-                    | "wait"
-                    | "me"
-                    | "acknowledged"
-                    | "halts"
-                    | "opens"
-                    | "open"
-            );
-            let next = mentions(&following(words, i)).into_iter().next();
-            // `when the robot comes into sight one of them goes up to it`: whoever a verb stands behind does it.
-            let finite = next.as_ref().is_some_and(|mention| {
-                word(i + mention.to + 1).is_some_and(|word| {
-                    word.text != word.stem && word.text.ends_with('s') && lex.verbs.contains(&word.stem)
-                })
-            });
-            let governed = matches!(
-                before,
-                "of" | "to"
-                    | "at"
-                    | "by"
-                    | "with"
-                    | "near"
-                    | "from"
-                    | "for"
-                    | "behind"
-                    | "beside"
-                    | "before"
-                    | "and"
-                    | "or"
-                    | "in"
-                    | "on"
-                    | "than"
-                    | "between"
-                    | "past"
-                    | "towards"
-                    | "as"
-                    | "that"
-                    | "both"
-                    | "is"
-                    | "are"
-                    | "when"
-                    | "the"
-                    | "a"
-                    | "not"
-                    | "only"
-            );
-            // `a second one does so`: the rest of a mention is none of its own.
-            let goes_on = lex.ordinals.contains_key(before)
-                || lex.adjectives.contains(before)
-                || matches!(before, "other" | "last");
-            (closes || finite && !governed && !goes_on)
-                && next.is_some_and(|mention| {
-                    mention.from == 0
-                        && word(i + mention.to + 1).is_some_and(|word| {
-                            lex.verbs.contains(&word.stem)
-                                || matches!(word.text.as_str(), "just" | "simply" | "then" | "both" | "all" | "of")
-                        })
-                })
-        }
-        _ => false,
-    }
-}
-
-/// The words from here to the next mark.
-fn following(words: &[Option<Word>], from: usize) -> Vec<Word> {
-    words.iter().skip(from).map_while(Clone::clone).collect()
 }

@@ -17,7 +17,10 @@
 pub mod card;
 
 mod aside;
+mod begins;
+mod hands;
 mod lexicon;
+mod slips;
 mod wording;
 mod words;
 
@@ -51,6 +54,7 @@ mod retract;
 mod again;
 mod clause;
 mod contra;
+mod deeds;
 mod measure;
 mod message;
 
@@ -60,11 +64,13 @@ mod deed;
 mod ellipsis;
 mod finish;
 mod inside;
+mod pick;
 mod relation;
 mod robot_deed;
 mod short;
 mod story;
 mod task;
+mod thread;
 mod timing;
 mod whereabouts;
 mod who;

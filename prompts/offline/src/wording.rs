@@ -41,6 +41,7 @@ pub(crate) fn reworded(text: &str, pieces: &mut Vec<Piece>) {
         .chain(reports(text, pieces))
         .chain(points(pieces))
         .chain(nobodies(pieces))
+        .chain(away(pieces))
         .collect();
     silence(pieces, told);
 }
