@@ -144,7 +144,7 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         Predicate::RunsAway { by_m, .. } => vec![metres("by_m", *by_m, (0.3, 10.0))],
         Predicate::Reacts { human, when, within_s, .. } => {
             let mut found = vec![secs("within_s", *within_s, (0.1, REACTS_S + busy_s(*human, proposal)))];
-            found.extend(when.iter().filter_map(distance_m).map(|m| metres("when, distance,", m, DISTANCE_M)));
+            found.extend(when.iter().filter_map(Trigger::distance_m).map(|m| metres("when, distance,", m, DISTANCE_M)));
             found
         }
         Predicate::RobotObeys { within_s, .. } => vec![secs("within_s", *within_s, (0.1, REACTS_S))],

@@ -45,9 +45,11 @@ fn main_verb(words: &[Option<Word>], (i, from): (usize, usize), open: &Stretch) 
                 || word.text.ends_with("ly")
                 || word.number().is_some()
         });
+    // `the one who crosses pauses`
+    let alone = matches!(open.words.as_slice(), [only] if finite(only)) && i == from;
     words.get(i).and_then(Option::as_ref).is_some_and(finite)
-        && !joins
-        && open.words.len() >= 2
+        && (!joins || alone)
+        && (open.words.len() >= 2 || alone)
         && open.words.iter().take(3).any(own)
 }
 

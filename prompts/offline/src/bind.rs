@@ -236,6 +236,17 @@ pub(crate) fn people_deed(
                 })
         });
     let act = if joins { Act::WalkTogether } else { act };
+    // `the robot signals it to wait, he then stands for 4 s`
+    let halts = act == Act::Stand
+        && found.lasts_s.is_some()
+        && matches!(thread.waiting, Some(Trigger::RobotSays(_) | Trigger::HumanSays(..) | Trigger::RobotStopped));
+    let act = if halts { Act::Stop } else { act };
+    // `sits on a chair next to it`
+    let seated = act == Act::Abreast
+        && (0..at).any(|k| {
+            stretch.words.get(k).is_some_and(|word| matches!(word.stem.as_str(), "stand" | "sit" | "wait" | "lean"))
+        });
+    let act = if seated { Act::Stand } else { act };
     // `is standing in the packing area in the robot's way`
     let stands_there = act == Act::Block
         && thread.waiting.is_none()

@@ -162,8 +162,9 @@ impl Cast {
                 self.latest()
             }
             Who::Bare(n) => {
-                let some = self.pick_open(*n, mention).or_else(|| self.counted(*n));
-                let some = some.or_else(|| self.pick(*n, mention, quote));
+                let some = self.pick_open(*n, mention);
+                let some = some.or_else(|| if self.alike_so_far() { self.counted(*n) } else { None });
+                let some = some.or_else(|| self.pick(*n, mention, quote)).or_else(|| self.counted(*n));
                 some.unwrap_or_else(|| {
                     let joined = self.join(*n, mention, declares, quote);
                     // `2 leave, 1 stays`: another one, not one of the two.
@@ -211,6 +212,10 @@ impl Cast {
                         ),
                     ));
                     return members;
+                }
+                // `at a corner that neither of them can see around`, before anybody was spoken of
+                if self.people.is_empty() && mention.role.is_none() && quote.contains("them") {
+                    return Vec::new();
                 }
                 // `neither of the two is in a hurry`: neither of it and the robot
                 if self.people.len() == 1 && wanted == 2 && mention.role.is_none() {

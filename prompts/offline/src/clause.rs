@@ -69,7 +69,7 @@ pub(crate) struct Found {
 }
 
 /// So many times more than can be played is a slip or a joke, and nothing is played instead.
-const BEYOND_REASON: f64 = 4.0;
+const BEYOND_REASON: f64 = 10.0;
 
 impl Found {
     /// An amount within its limits; says so where it is not.
@@ -420,8 +420,10 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
             && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");
         let taken = takes_along(&stretch.words, i) || gives;
+        // `at any point`
+        let point = word.stem == "point" && matches!(before, "any" | "no" | "some" | "this" | "that" | "the" | "which");
         let handles = handles(&stretch.words, i) || mounts(&stretch.words, i);
-        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself
+        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself && !point
             || pours(&stretch.words, i)
             || handles
         {

@@ -226,6 +226,13 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
             goes_on(cast, who, around);
         }
     }
+    // `tags along behind it until it says wait`
+    if act == Act::Follow && around.object.is_none() && around.trigger.is_none() && around.quote.contains("behind") {
+        let open = cast.people.get(who).is_some_and(|person| person.relation.is_none());
+        if open {
+            relate(cast, who, Relation::Behind, &around.quote);
+        }
+    }
     // Who follows stays behind; who overtakes does so no longer.
     if act == Act::Overtake && around.trigger.is_none() {
         let behind = |read: &ReadRule| follows_on(read) && read.rule.act == Action::FollowRobot && !read.stated;
@@ -270,7 +277,10 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         !excepting && (goes(act) || moves)
     });
     let never_walks = person.never.iter().find(|(never, quote)| {
-        matches!(never, Act::Walk | Act::GoOn) && matches!(act, Act::Walk | Act::GoOn) && !excepting && always(quote)
+        matches!(never, Act::Walk | Act::GoOn)
+            && matches!(act, Act::Walk | Act::GoOn | Act::GiveWay | Act::RunAway | Act::Approach | Act::Follow)
+            && !excepting
+            && always(quote)
     });
     if let Some(first) = still.or_else(|| never_walks.map(|(_, quote)| quote.clone())) {
         cast.problems.push(contradiction(who, &first, &around.quote));
@@ -293,8 +303,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         }
         person.still = Some(around.quote.clone());
     }
-    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether)
-        && !(act == Act::Stop && around.stands);
+    let moves = !matches!(act, Act::Talk | Act::Stand | Act::Pass | Act::Walk | Act::GoOn | Act::WalkTogether);
     person.bound |= moves;
     // `gives up after 10 seconds of following`
     if let (true, Some(Trigger::AfterSecs(secs))) = (around.gives_up, &around.trigger)
@@ -407,6 +416,7 @@ fn whole(quote: &str) -> bool {
         "the whole scenario",
         "the complete run",
         "during the whole",
+        "for the whole of",
     ]
     .iter()
     .any(|words| quote.contains(words))

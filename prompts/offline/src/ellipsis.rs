@@ -42,6 +42,9 @@ const LEFT: &[&str] = &[
     "must",
     "thing",
     "only",
+    "that",
+    "what",
+    "exactly",
 ];
 
 /// Whether the clause leaves its verb out, and whether its people do what was said before.
@@ -65,7 +68,10 @@ pub(crate) fn elided(stretch: &Stretch, found: &Found) -> Option<bool> {
         Some(false)
     } else if has(&["too", "likewise", "same", "well", "also", "similarly", "equally"])
         || verb && has(&["so", "only"])
-        || has(&["do"]) && left.iter().all(|word| matches!(*word, "do" | "only" | "just" | "all" | "both"))
+        || has(&["do"])
+            && left.iter().all(|word| {
+                matches!(*word, "do" | "only" | "just" | "all" | "both" | "that" | "what" | "be" | "exactly")
+            })
     {
         Some(true)
     } else {

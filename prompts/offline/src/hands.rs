@@ -6,7 +6,11 @@ use crate::words::Word;
 /// `pours coffee over it`
 pub(crate) fn pours(words: &[Word], at: usize) -> bool {
     words.get(at).is_some_and(|word| matches!(word.stem.as_str(), "pour" | "spill"))
-        && words.get(at + 1).is_some_and(|word| lexicon().things.contains(&word.stem))
+        && (at + 1..at + 5).any(|k| {
+            words
+                .get(k)
+                .is_some_and(|word| lexicon().things.contains(&word.stem) || lexicon().goods.contains(&word.text))
+        })
 }
 
 /// `takes a box from its tray`, `puts her cup down on its lid`
@@ -54,7 +58,10 @@ pub(crate) fn handles(words: &[Word], at: usize) -> bool {
     if sticks {
         return true;
     }
-    handles && (at + 1..at + 6).take_while(open).find(object).is_some_and(|k| !compound(k + 1))
+    // `sets off for the dock`
+    let leaves =
+        matches!(text(at + 1), "off" | "out" | "up" | "forth") && matches!(text(at), "sets" | "set" | "takes" | "take");
+    handles && !leaves && (at + 1..at + 6).take_while(open).find(object).is_some_and(|k| !compound(k + 1))
 }
 
 /// `hops onto the robot`, `gets on top of it`

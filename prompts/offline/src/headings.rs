@@ -336,8 +336,18 @@ pub(crate) fn totals(pieces: &mut Vec<Piece>) {
 pub(crate) fn names(pieces: &mut [Piece], known: Vec<String>) {
     let lex = lexicon();
     let word = |k: usize| word_at(pieces, k);
+    // `Perception runs at 5 Hz` names nobody.
+    let notion = |word: &Word| {
+        ["tion", "ness", "ment", "ity", "ance", "ence", "ing", "ism", "ics", "ogy"]
+            .iter()
+            .any(|end| word.text.ends_with(end))
+    };
     let strange = |word: &Word| {
-        word.capital && word.text.len() > 1 && word.text.chars().all(char::is_alphabetic) && !lex.has(word)
+        !notion(word)
+            && word.capital
+            && word.text.len() > 1
+            && word.text.chars().all(char::is_alphabetic)
+            && !lex.has(word)
     };
     let verb = |k: usize| word(k).is_some_and(|word| lex.verbs.contains(&word.stem) && !word.capital);
     let does = |k: usize| {

@@ -14,6 +14,14 @@ pub(crate) fn settle(story: &mut Story) {
     }
     let mut any = story.cast.people.iter().any(|person| matches!(person.relation, Some((Relation::Staying, _))));
     for person in &mut story.cast.people {
+        // `A patient is already in the elevator when the robot drives in.`
+        if person.relation.is_none()
+            && person.start == Some(class)
+            && !person.rules.iter().any(|read| read.rule.act == Action::FollowRobot)
+        {
+            person.relation = Some((Relation::Staying, quote.clone()));
+            any = true;
+        }
         let stands = person.relation.as_ref().is_none_or(|(relation, _)| *relation == Relation::Static);
         let Some(said) = person.stays.take().filter(|_| stands) else { continue };
         person.relation = Some((Relation::Staying, said.clone()));

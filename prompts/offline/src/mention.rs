@@ -301,6 +301,13 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
             let mention = made(Who::Further(number), role(end), end).filter(|_| !time);
             return mention.map(|mention| Mention { word: one.to_owned(), ..mention });
         }
+        // `all but the last step aside, that one blocks it`
+        "that"
+            if text(at + 1) == "one"
+                && words.get(at + 2).is_some_and(|word| word.text.ends_with('s') && lex.verbs.contains(&word.stem)) =>
+        {
+            return made(Who::Same, None, at + 1);
+        }
         "someone" | "somebody" => return made(Who::New { count: Some(1), article: true }, None, at),
         _ => {}
     }
@@ -489,6 +496,7 @@ fn counted(
     if matches!(text(at), "his" | "her" | "their" | "our" | "my")
         && noun(words, at + 1, lex).is_none()
         && words.get(at + 1).is_some_and(crate::noun::agentive)
+        && !thing(words, at + 1)
         && let Some(end) = stranger(words, at + 1, true, lex)
         && words.get(end + 1).is_none_or(|word| lex.verbs.contains(&word.stem) || word.text == "who")
     {
@@ -520,7 +528,10 @@ fn counted(
         && noun(words, at, lex).is_none()
         && stranger(words, at, true, lex).is_some_and(|end| {
             // `Blood samples are urgent` names nobody.
-            words.get(at..=end).is_some_and(|name| name.iter().all(|word| word.capital))
+            words.get(at..=end).is_some_and(|name| {
+                let notion = |word: &Word| ["tion", "ness", "ment", "ity", "ance", "ence", "ism", "ics", "ogy"].iter().any(|end| word.text.ends_with(end));
+                name.iter().all(|word| word.capital && !notion(word))
+            })
                 // `Earlier work suggests …` names nobody.
                 && words.get(end + 1).is_some_and(|word| {
                     let copula = matches!(word.text.as_str(), "is" | "was" | "has")

@@ -88,7 +88,15 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
         if word.label {
             break;
         }
-        if lex.roles.contains_key(&word.stem) {
+        // `how patient it is`
+        let quality = word.text == "patient"
+            && i.checked_sub(1).and_then(|k| words.get(k)).is_some_and(|word| {
+                matches!(
+                    word.text.as_str(),
+                    "how" | "very" | "too" | "so" | "more" | "be" | "stays" | "remains" | "quite"
+                )
+            });
+        if lex.roles.contains_key(&word.stem) && !quality {
             end = Some(i);
             break;
         }
@@ -142,6 +150,8 @@ pub(crate) fn noun(words: &[Word], at: usize, lex: &Lexicon) -> Option<usize> {
                     | "company"
                     | "site"
                     | "agency"
+                    | "tour"
+                    | "survey"
                     | "satisfaction"
             ) || !generic && lex.places.iter().any(place)
         })

@@ -27,6 +27,15 @@ impl Cast {
         })
     }
 
+    /// Whether the same was told of all who were introduced last: `two drivers wait there; one …`.
+    pub(crate) fn alike_so_far(&self) -> bool {
+        let Some(set) = self.sets.last().filter(|set| set.members.len() > 1) else { return false };
+        let mut told =
+            set.members.iter().filter_map(|who| self.people.get(*who)).map(|person| (person.bound, &person.doings));
+        let first = told.next();
+        first.is_some_and(|(bound, _)| bound) && told.all(|other| Some(other) == first)
+    }
+
     /// Whether nothing was told of any of these.
     pub(crate) fn idle(&self, people: &[usize]) -> bool {
         people.iter().all(|i| self.people.get(*i).is_some_and(|person| person.doings.is_empty()))

@@ -24,7 +24,7 @@ pub(crate) fn others(
         || text(at) == "each" && text(at + 1) == "other"
         || text(at) == "other"
             && (before == "each" || before == "the" && at > 1 && matches!(text(at - 2), "after" | "behind" | "to"))
-        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind")
+        || text(at) == "the" && text(at + 1) == "other" && matches!(before, "after" | "behind" | "on")
         // `from one side to the other`
         || text(at) == "the"
             && text(at + 1) == "other"

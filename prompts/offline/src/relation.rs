@@ -67,8 +67,11 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
         && person.start != Some(PlaceClass::Elevator)
         && before_robot(quote);
     // `two pickers meet it at the junction: one crosses, the other …`: how they meet is told then.
-    let met =
-        old == Relation::Frontal && first.contains("meet") && !first.contains("toward") && new != Relation::Static;
+    let met = old == Relation::Frontal
+        && first.contains("meet")
+        && !first.contains("toward")
+        && !first.contains("head")
+        && new != Relation::Static;
     if met {
         person.relation = Some((new, quote.to_owned()));
         person.doings.retain(|doing| doing != "comes towards the robot" || new == Relation::Frontal);

@@ -75,8 +75,10 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         | Act::GoOn
         | Act::Walk => {}
     }
-    let its_own =
-        matches!(act, Act::Stop | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look);
+    let its_own = matches!(
+        act,
+        Act::Stop | Act::GoOn | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look
+    );
     if its_own {
         story.cast.notes.push(up_to_planner(quote));
     }

@@ -27,6 +27,8 @@ pub(crate) const JOINED: &[(&str, &[&str])] = &[
     ("hte", &["the"]),
     ("adn", &["and"]),
     ("wating", &["waiting"]),
+    ("secons", &["seconds"]),
+    ("secods", &["seconds"]),
     ("employes", &["employees"]),
     ("coleagues", &["colleagues"]),
     ("coleague", &["colleague"]),

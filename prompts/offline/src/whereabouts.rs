@@ -321,6 +321,11 @@ fn part(at: usize, found: &Found, stretch: &Stretch, subject: &Subject) -> Part 
         && found.deeds.iter().any(|deed| matches!(deed.act, Act::Follow | Act::Abreast | Act::Behind) && deed.at < at);
     // `starts in a room`
     let starts = (0..at).rev().find(|k| moves(*k)).is_some_and(|k| matches!(stem(k), "start" | "begin" | "set"));
+    // `she follows it, all the way to the ward`
+    let all_the_way = text(0) == "all" && text(1) == "the" && text(2) == "way" && before(at, stretch, TO);
+    if all_the_way {
+        return Part::Goal;
+    }
     if let Some(part) = errand(at, found, stretch, subject) {
         return part;
     }

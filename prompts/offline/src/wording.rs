@@ -132,6 +132,8 @@ fn only_some(pieces: &mut [Piece]) {
                 "m" | "meter" | "meters" | "metre" | "metres" | "s" | "seconds" | "second" | "minutes"
             );
             let of = if matches!(text_at(pieces, number + 1), "of") { number + 3 } else { number + 1 };
+            // `just one nurse in the corridor`
+            let of = if role(pieces, of).is_some() { of + 1 } else { of };
             let be = of + usize::from(matches!(text_at(pieces, of), "is" | "are"));
             let there = matches!(
                 text_at(pieces, be),
@@ -537,7 +539,14 @@ fn thoughts(pieces: &[Piece]) -> Vec<usize> {
 /// `We had a complaint about a patient near room 214. So: … an elderly patient …`, `Could we have a person beside it for once? An
 /// assistant …`: of whom a later sentence tells anew.
 fn reports(text: &str, pieces: &[Piece]) -> Vec<usize> {
-    let spans = sentences(pieces);
+    let spans: Vec<(usize, usize)> = sentences(pieces)
+        .into_iter()
+        .flat_map(|(from, to)| {
+            let colon =
+                (from..to).find(|k| matches!(pieces.get(*k), Some(Piece::Colon))).filter(|k| *k > from && *k + 1 < to);
+            colon.map_or_else(|| vec![(from, to)], |colon| vec![(from, colon), (colon + 1, to)])
+        })
+        .collect();
     let mut told = Vec::new();
     for (n, (from, to)) in spans.iter().enumerate() {
         let words = || (*from..*to).filter_map(|k| word_at(pieces, k));
@@ -557,7 +566,12 @@ fn reports(text: &str, pieces: &[Piece]) -> Vec<usize> {
         let roles: Vec<&Word> = (*from..*to).filter_map(|k| role(pieces, k)).collect();
         let reported =
             words().any(|word| REPORTS.contains(&word.text.as_str())) && roles.iter().all(|word| anew(&word.stem));
-        let background = text_at(pieces, *from) == "background" && anew("");
+        let head = n
+            .checked_sub(1)
+            .and_then(|before| spans.get(before))
+            .filter(|(_, end)| end + 1 == *from)
+            .map_or(*from, |(from, _)| *from);
+        let background = text_at(pieces, head) == "background" && anew("");
         let asked = words()
             .last()
             .is_some_and(|word| text.get(word.to..).is_some_and(|rest| rest.trim_start().starts_with('?')))
