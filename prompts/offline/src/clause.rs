@@ -69,7 +69,7 @@ pub(crate) struct Found {
 }
 
 /// So many times more than can be played is a slip or a joke, and nothing is played instead.
-const BEYOND_REASON: f64 = 10.0;
+const BEYOND_REASON: f64 = 16.0;
 
 impl Found {
     /// An amount within its limits; says so where it is not.

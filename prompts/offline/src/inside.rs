@@ -7,7 +7,9 @@ use crate::story::Story;
 /// `A trainee is inside and remains there when the robot comes in`: said to stay before the robot was said to come in.
 pub(crate) fn settle(story: &mut Story) {
     let inside = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
-    let Some((class, quote)) = story.robot_enters.clone().filter(|(class, _)| inside(class)) else { return };
+    // `so the robot does not get in`
+    let enters = |(class, quote): &(PlaceClass, String)| inside(class) && !quote.contains(" not ");
+    let Some((class, quote)) = story.robot_enters.clone().filter(enters) else { return };
     let elsewhere = |found: &Option<(PlaceClass, String)>| found.as_ref().is_some_and(|(other, _)| *other != class);
     if elsewhere(&story.place) {
         return;
