@@ -4,6 +4,7 @@ use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, PlaceClass, Rel
 
 use crate::cast::{Cast, Person, ReadRule};
 use crate::finish::does;
+use crate::lasting::{always, whole};
 use crate::lexicon::Act;
 use crate::relation::{contradiction, relate, relation};
 use crate::short;
@@ -386,40 +387,6 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         return Some(person.rules.len() - 1);
     }
     Some(once(person, read))
-}
-
-/// Whether the words leave no exception.
-fn always(quote: &str) -> bool {
-    let lower = quote.to_lowercase();
-    whole(&lower)
-        || ["never", "at any time", "at no ", "under no ", "at all", "any point"]
-            .iter()
-            .any(|words| lower.contains(words))
-}
-
-/// Whether the words mean all of the time.
-fn whole(quote: &str) -> bool {
-    [
-        "the whole run",
-        "the whole time",
-        "the entire",
-        "throughout",
-        "all the time",
-        "at all times",
-        "from beginning to end",
-        "from start to finish",
-        "from start to end",
-        "from the beginning to the end",
-        "from the begining to the end",
-        "from beginning",
-        "from the start to the end",
-        "the whole scenario",
-        "the complete run",
-        "during the whole",
-        "for the whole of",
-    ]
-    .iter()
-    .any(|words| quote.contains(words))
 }
 
 /// Deeds by which somebody gets somewhere.

@@ -64,6 +64,7 @@ mod deed;
 mod ellipsis;
 mod finish;
 mod inside;
+mod lasting;
 mod pick;
 mod relation;
 mod robot_deed;

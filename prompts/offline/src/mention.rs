@@ -7,6 +7,41 @@ use crate::refer::{group, others, predicate};
 pub(crate) use crate::who::Who;
 use crate::words::Word;
 
+/// Words behind `her` that are nothing of hers: `follows her along the corridor`.
+const NO_NOUNS: &[&str] = &[
+    "to",
+    "at",
+    "in",
+    "into",
+    "on",
+    "through",
+    "along",
+    "and",
+    "from",
+    "by",
+    "until",
+    "for",
+    "past",
+    "like",
+    "wherever",
+    "everywhere",
+    "throughout",
+    "around",
+    "all",
+    "there",
+    "after",
+    "again",
+    "if",
+    "as",
+    "or",
+    "closely",
+    "when",
+    "while",
+    "without",
+    "but",
+    "robot",
+];
+
 /// One mention.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Mention {
@@ -253,43 +288,7 @@ fn phrase_at(words: &[Word], at: usize, lex: &Lexicon) -> Option<Mention> {
         }
         "him" => return made(Who::Object, None, at),
         // `her` before a word of its own is whose, not whom.
-        "her"
-            if words.get(at + 1).is_none_or(|word| {
-                matches!(
-                    word.stem.as_str(),
-                    "to" | "at"
-                        | "in"
-                        | "into"
-                        | "on"
-                        | "through"
-                        | "along"
-                        | "and"
-                        | "from"
-                        | "by"
-                        | "until"
-                        | "for"
-                        | "past"
-                        | "like"
-                        | "wherever"
-                        | "everywhere"
-                        | "throughout"
-                        | "around"
-                        | "all"
-                        | "there"
-                        | "after"
-                        | "again"
-                        | "if"
-                        | "as"
-                        | "or"
-                        | "closely"
-                        | "when"
-                        | "while"
-                        | "without"
-                        | "but"
-                        | "robot"
-                )
-            }) =>
-        {
+        "her" if words.get(at + 1).is_none_or(|word| NO_NOUNS.contains(&word.stem.as_str())) => {
             return made(Who::Object, None, at);
         }
         "a" | "an" if lex.ordinals.get(text(at + 1)).is_some_and(|n| *n > 1) => {

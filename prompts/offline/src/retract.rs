@@ -51,7 +51,7 @@ fn recounted(mut words: Vec<Option<Word>>) -> Vec<Option<Word>> {
             };
             // `three, no, two people`: what comes after says of whom.
             let bare = old + 1 == at;
-            if !noun(next + 1) && !(bare && !ends(next + 1)) {
+            if !noun(next + 1) && (!bare || ends(next + 1)) {
                 let number = words.get(next).cloned().flatten();
                 // `people, maybe three, no, four, stand`: the mark parts what stood between marks before.
                 let colon = words.get(next + 2).and_then(Option::as_ref).is_some_and(|word| word.after_colon);

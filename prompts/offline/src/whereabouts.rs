@@ -182,7 +182,7 @@ fn referred(story: &mut Story, found: &Found, stretch: &Stretch, quote: &str) {
         && where_it_goes
         && let Some((class, _)) = &story.robot_enters
     {
-        story.weak_place.get_or_insert((*class, quote.to_owned()));
+        story.weak_place.get_or_insert_with(|| (*class, quote.to_owned()));
     }
 }
 

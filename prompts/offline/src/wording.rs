@@ -459,10 +459,11 @@ fn only_one(pieces: &mut Vec<Piece>) {
         if let Some(is) = is.filter(|is| only && matches!(text_at(pieces, is + 1), "a" | "an")) {
             pieces.drain(at..=is);
             // Whatever came before told of others.
-            if at > 0 && comma_at(pieces, at - 1) {
-                if let Some(mark) = pieces.get_mut(at - 1) {
-                    *mark = Piece::Stop;
-                }
+            if at > 0
+                && comma_at(pieces, at - 1)
+                && let Some(mark) = pieces.get_mut(at - 1)
+            {
+                *mark = Piece::Stop;
             }
         }
         at += 1;
@@ -573,7 +574,7 @@ fn reports(text: &str, pieces: &[Piece]) -> Vec<usize> {
             .map_or(*from, |(from, _)| *from);
         let background = text_at(pieces, head) == "background" && anew("");
         let asked = words()
-            .last()
+            .next_back()
             .is_some_and(|word| text.get(word.to..).is_some_and(|rest| rest.trim_start().starts_with('?')))
             && roles.len() == 1
             && (*from..*to).any(|k| generic(pieces, k))
