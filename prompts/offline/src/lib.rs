@@ -130,6 +130,8 @@ mod short_tests;
 mod spot_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod wording_tests;
 
 use socrates_model::{Location, Reading, Request};
 

@@ -3,7 +3,7 @@
 use crate::clock::WEEKDAYS;
 use crate::lexicon::lexicon;
 use crate::mention::{Mention, Who, mentions};
-use crate::words::{Piece, Word, silence, word_at};
+use crate::words::{Piece, Word, silence, text_at, word_at};
 
 /// Words of whoever asks, of studies, and of what people are like in general.
 const SIGNS: &[&str] = &[
@@ -261,7 +261,10 @@ fn too_many(pieces: &mut [Piece]) {
             if let Some(Piece::Word(word)) = pieces.get_mut(first) {
                 (word.text, word.stem) = (number.text, number.stem);
             }
-            silence(pieces, k.saturating_sub(3)..=k);
+            // `one is enough: a cleaner who …`: it is told who.
+            let listed = (k + 1..k + 8).find(|k| matches!(pieces.get(*k), Some(Piece::Colon | Piece::Comma)));
+            let who = listed.is_some_and(|mark| matches!(text_at(pieces, mark + 1), "a" | "an"));
+            silence(pieces, if who { first..=k } else { k.saturating_sub(3)..=k });
             return;
         }
         let end = (k..pieces.len()).find(|k| matches!(pieces.get(*k), Some(Piece::Stop))).unwrap_or(pieces.len());

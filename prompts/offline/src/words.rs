@@ -193,11 +193,12 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
                 '+' if at(i + 1).is_some_and(char::is_whitespace) => {
                     out.push(Piece::Word(word("and".to_owned(), byte(i), byte(i + 1))));
                 }
-                // `Task: pharmacy -> room 214`
-                '>' if leads_to(&at, i, out.last()) => {
-                    out.push(Piece::Word(word("to".to_owned(), byte(i), byte(i + 1))));
-                }
-                '>' => out.push(Piece::Comma),
+                '>' => match arrow(&at, i, out.last()) {
+                    [] => out.push(Piece::Comma),
+                    to => {
+                        out.extend(to.iter().map(|text| Piece::Word(word((*text).to_owned(), byte(i), byte(i + 1)))));
+                    }
+                },
                 '-' if at(i + 1) == Some('-') => out.push(Piece::Comma),
                 '\n' if at(i + 1) == Some('\n') => out.push(Piece::Stop),
                 '-' if at(i + 1).is_some_and(char::is_whitespace) => out.push(Piece::Comma),
@@ -209,18 +210,23 @@ pub(crate) fn pieces(text: &str) -> Vec<Piece> {
     crate::numbered::settled(text, crate::again::joined(out))
 }
 
-/// Whether an arrow leads from a place to a place.
-fn leads_to(at: &dyn Fn(usize) -> Option<char>, i: usize, before: Option<&Piece>) -> bool {
+/// What an arrow from a place to a place says: `pharmacy -> room 214`; `-> exit` is `to the exit`, and nobody exits.
+fn arrow(at: &dyn Fn(usize) -> Option<char>, i: usize, before: Option<&Piece>) -> &'static [&'static str] {
+    let bare = |name: &str| matches!(name, "dock" | "exit" | "gate");
     let place = |name: &str| {
-        lexicon().places.iter().any(|place| {
-            place.items.last() == Some(&Item::Word(name.to_owned()))
-                || place.items.first() == Some(&Item::Word(name.to_owned()))
-        }) || matches!(name, "dock" | "exit" | "back")
+        let named = Item::Word(name.to_owned());
+        let ends = |place: &Phrase<_>| place.items.last() == Some(&named) || place.items.first() == Some(&named);
+        bare(name) || name != "back" && lexicon().places.iter().any(ends)
     };
     let from = matches!(before, Some(Piece::Word(word)) if place(&word.text) || word.is_digits());
     let next: String =
         (i + 1..).skip_while(|k| at(*k) == Some(' ')).map_while(|k| at(k).filter(|c| c.is_alphabetic())).collect();
-    from && next != "back" && place(&next.to_lowercase())
+    let next = next.to_lowercase();
+    match (from && place(&next), bare(&next)) {
+        (false, _) => &[],
+        (true, false) => &["to"],
+        (true, true) => &["to", "the"],
+    }
 }
 
 /// `i.e.`, `e.g.`, `viz.`, `sc.`, `etc.`: where that ends.
