@@ -11,7 +11,7 @@ use crate::rules;
 use crate::story::Story;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
-const CIRCLE_M: f64 = 2.8;
+pub(crate) const CIRCLE_M: f64 = 2.8;
 /// The farthest from which the first sight of the robot startles somebody, m (`spec/case_studies` E.S5).
 const FIRST_SIGHT_M: f64 = 5.0;
 

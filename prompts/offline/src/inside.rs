@@ -2,6 +2,7 @@
 
 use socrates_model::{Action, PlaceClass, Relation};
 
+use crate::cast::ReadRule;
 use crate::story::Story;
 
 /// `A trainee is inside and remains there when the robot comes in`: said to stay before the robot was said to come in.
@@ -29,9 +30,13 @@ pub(crate) fn settle(story: &mut Story) {
         person.relation = Some((Relation::Staying, said.clone()));
         person.start = Some(class);
         // To stay is to stand there, which needs no rule of its own.
-        person.rules.retain(|read| {
-            read.rule.act != Action::StandStill || read.stated || read.rule.gesture.is_some() || read.quote != said
-        });
+        let idle = |read: &ReadRule| {
+            read.rule.act == Action::StandStill
+                && read.rule.gesture.is_none()
+                && !read.exact
+                && (read.quote == said || read.quote.starts_with(&format!("{said}, ")))
+        };
+        person.rules.retain(|read| !idle(read));
         any = true;
     }
     if any && story.place.is_none() {

@@ -11,6 +11,7 @@ use socrates_prompts::Question;
 
 use crate::card::{Card, card};
 use crate::draw::Draw;
+use crate::finish::CIRCLE_M;
 use crate::understand::{Extra, understand};
 use crate::{NAME, chance, default_cast, events, pattern, place, prose, solve, spot};
 
@@ -239,7 +240,7 @@ fn robot(
             };
             let quoted = fact.quote.contains("block") || fact.quote.contains("obstruct");
             let blocked = quoted || humans.iter().any(answers);
-            let when = if blocked { RobotWhen::Blocked(2.0) } else { RobotWhen::HumanNear(4.0) };
+            let when = if blocked { RobotWhen::Blocked(2.0) } else { heard_at(gesture, humans) };
             let asks =
                 |line: &RobotRule| line.act == RobotDo::Say(gesture) && matches!(line.when, RobotWhen::Blocked(_));
             if !(blocked && script.iter().any(asks)) {
@@ -292,9 +293,19 @@ pub(crate) fn hear(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
         if let Trigger::RobotSays(gesture) = heard
             && !script.iter().any(|line| line.act == RobotDo::Say(*gesture))
         {
-            script.push(RobotRule { when: RobotWhen::HumanNear(4.0), act: RobotDo::Say(*gesture) });
+            script.push(RobotRule { when: heard_at(*gesture, humans), act: RobotDo::Say(*gesture) });
         }
     }
+}
+
+/// When the robot says something to people near it; to a standing group only once it is there, which stands as one until then.
+fn heard_at(gesture: Gesture, humans: &[HumanProposal]) -> RobotWhen {
+    let circled = humans.iter().any(|human| {
+        human.group.is_some()
+            && human.relation == Relation::Static
+            && human.rules.iter().any(|rule| rule.when.contains(&Trigger::RobotSays(gesture)))
+    });
+    RobotWhen::HumanNear(if circled { CIRCLE_M } else { 4.0 })
 }
 
 /// `start`, `blocked N s`, `human within N m`, `after N s`, as requests write it.
