@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! house/   walls, homes of foreign libraries, file cap, fault pages, links in documents
+//! golden/  recording hashes of everything that is shipped
 //! life/    requests in, bundles out, with real processes
 //! chaos/   kill -9 of any process during a batch
 //! ```

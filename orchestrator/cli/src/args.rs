@@ -520,6 +520,11 @@ pub(crate) enum DevVerb {
         #[arg(required = true)]
         bundles: Vec<PathBuf>,
     },
+    /// Print the recording hash of each shipped request, each canonical scenario and these agents files, for two seeds.
+    Golden {
+        /// HuNavSim agents files.
+        agents: Vec<PathBuf>,
+    },
     /// Measure the main job on this machine.
     Bench {
         /// Runs to take the median of.

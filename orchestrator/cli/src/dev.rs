@@ -28,6 +28,7 @@ pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb)
         DevVerb::Agents { file, to, out } => agents::convert(talk, file, to.as_deref(), out.as_deref()),
         DevVerb::Mutations { requests, seeds, all } => mutations::mutations(talk, config, requests, *seeds, *all).await,
         DevVerb::Agreement { labels, bundles } => agreement::agreement(talk, labels, bundles),
+        DevVerb::Golden { agents } => crate::golden::golden(talk, config, agents).await,
         DevVerb::Bench { runs } => bench::bench(talk, cli, config, *runs).await,
     }
 }

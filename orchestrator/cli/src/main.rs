@@ -31,6 +31,7 @@ mod explain;
 mod figure;
 mod figures;
 mod files;
+mod golden;
 mod history;
 mod labels;
 mod library;

@@ -23,6 +23,7 @@ pub(crate) struct Made {
 pub(crate) struct Played {
     pub(crate) proposal: Proposal,
     pub(crate) report: Report,
+    pub(crate) recording: Recording,
 }
 
 /// Writes a scenario with the offline author, runs it with the reference robot and judges it. The seed is that of the author
@@ -48,7 +49,7 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
     let made = Made { proposal, paths, behaviors };
     let recording = simulate(request, location, made.clone(), run, REFERENCE, seed)?;
     let report = socrates_scoring::score(&evidence(request, &reading, location, &made, &recording));
-    Ok(Played { proposal: made.proposal, report })
+    Ok(Played { proposal: made.proposal, report, recording })
 }
 
 /// The proposal alone, of the offline author.

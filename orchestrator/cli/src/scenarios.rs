@@ -233,7 +233,7 @@ impl Rate {
 }
 
 /// A request for this card, in a place where it fits.
-fn request(card: &Card, location: &str) -> Result<Request, Complaint> {
+pub(crate) fn request(card: &Card, location: &str) -> Result<Request, Complaint> {
     serde_json::from_value(json!({
         "location": location, "social_context": "", "task": "Deliver mail", "expect": { "pattern": card.id },
     }))
