@@ -38,3 +38,4 @@ pub use verdict::{Ruling, rule};
 
 pub(crate) use gaps::encounter_gaps;
 pub(crate) use leaves::does;
+pub(crate) use verdict::ruling_of_played;
