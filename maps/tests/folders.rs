@@ -121,7 +121,7 @@ mod folders {
         let plan = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let files = generate(plan).unwrap_or_else(|faults| panic!("{faults:#?}"));
         let location = parse(&files, "fourth").unwrap();
-        assert_eq!((location.graph.nodes.len(), location.doors.len()), (6, 1));
+        assert_eq!((location.graph.nodes.len(), location.doors.len()), (8, 1));
         assert_eq!(location.warnings, Vec::<String>::new());
     }
 

@@ -231,7 +231,7 @@ pub(crate) fn feedback(sent_back: &[Fault], newest: &[Fault]) -> Vec<Fault> {
     for fault in newest.iter().chain(sent_back) {
         let message: String = fault.message.chars().take(FEEDBACK_CHARS).collect();
         let at: String = fault.at.chars().take(FEEDBACK_CHARS).collect();
-        let short = Fault { code: fault.code, at, message };
+        let short = Fault::new(fault.code, at, message);
         if all.len() < FEEDBACK && !all.contains(&short) {
             all.push(short);
         }

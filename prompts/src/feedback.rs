@@ -1,6 +1,6 @@
 //! Why the last answer was refused, as the author reads it.
 
-use socrates_model::Fault;
+use socrates_model::{Fault, FaultCode};
 
 use crate::message::{Message, Role};
 
@@ -10,6 +10,13 @@ const MOST: usize = 8;
 const LONGEST: usize = 24_000;
 const CLOSING: &str =
     "Keep what is correct, change only what is listed, and answer in the same form with the whole answer.";
+
+/// What an author can do about a fault whose message is written for people.
+const ADVICE: &[(FaultCode, &str)] = &[(
+    FaultCode::PVerify,
+    "expected_events: give each such human and each such fact a clause with role `setup`, `must` and the fact's id as `source`, such \
+     as `meets`, `reacts` or `stands_still`",
+)];
 
 /// What is said of a refused answer where no reasons are given.
 const VAGUE: &str = "This answer is wrong. Try again: answer in the same form with the whole answer.";
@@ -38,6 +45,9 @@ pub(crate) fn messages(faults: &[Fault], refused: Option<&str>) -> Vec<Message> 
     for (index, fault) in listed.iter().enumerate() {
         text.push_str(&format!("{}. {fault}\n", index + 1));
     }
+    for (code, advice) in ADVICE.iter().filter(|(code, _)| listed.iter().any(|fault| fault.code == *code)) {
+        text.push_str(&format!("To mend {code}: {advice}.\n"));
+    }
     if more > 0 {
         text.push_str(&format!("(and {more} more of the same kinds)\n"));
     }
@@ -52,7 +62,16 @@ pub(crate) fn messages(faults: &[Fault], refused: Option<&str>) -> Vec<Message> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use socrates_model::FaultCode;
+
+    #[test]
+    fn what_an_author_can_do_is_told_to_the_author_and_not_to_people() {
+        let fault = Fault::new(FaultCode::PVerify, "fact f2", "\"runs away\" was asked for, and no clause shows it");
+        let texts = messages(&[fault.clone(), fault], Some("{}"));
+        let text = &texts.last().unwrap().text;
+        assert_eq!(text.matches("To mend P-VERIFY: expected_events").count(), 1, "{text}");
+        let other = messages(&[Fault::new(FaultCode::GDisc, "robot step 1", "jumps")], Some("{}"));
+        assert!(!other.last().unwrap().text.contains("To mend"));
+    }
 
     #[test]
     fn at_most_eight_reasons_are_given_and_none_twice() {

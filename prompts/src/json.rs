@@ -16,7 +16,8 @@ const AROUND: usize = 40;
 /// The JSON object of an answer, without what stands around it.
 ///
 /// # Errors
-/// One fault: empty, too large, cut off, or not JSON; the latter two with line, column and the characters around.
+/// One fault: empty, too large, cut off, or not JSON; the latter two with line, column and the characters around. An author
+/// that says in an object of one text that it cannot answer gives E-CANNOT with that text.
 pub fn object(text: &str) -> Result<Value, Vec<Fault>> {
     let fault = |code, message: String| Err(vec![Fault::new(code, "answer", message)]);
     if text.len() > MAX_ANSWER_BYTES {
@@ -30,7 +31,10 @@ pub fn object(text: &str) -> Result<Value, Vec<Fault>> {
         return fault(FaultCode::EJson, format!("has no JSON object; it starts with `{start}`"));
     };
     match serde_json::from_str::<Once>(core).map(|Once(value)| value) {
-        Ok(value @ Value::Object(_)) => Ok(value),
+        Ok(Value::Object(members)) => match cannot(&members) {
+            Some(why) => fault(FaultCode::ECannot, why),
+            None => Ok(Value::Object(members)),
+        },
         Ok(other) => fault(FaultCode::EJson, format!("is {}, not a JSON object", kind(&other))),
         Err(error) if error.classify() == Category::Eof => fault(
             FaultCode::ETrunc,
@@ -41,6 +45,19 @@ pub fn object(text: &str) -> Result<Value, Vec<Fault>> {
             fault(FaultCode::EJson, format!("{error}; near `{near}`"))
         }
     }
+}
+
+/// Members under which an author says in a sentence why it cannot answer, instead of an answer.
+const SAYS_WHY: [&str; 5] = ["cannot", "error", "message", "note", "reason"];
+/// Longest reason that is kept, characters.
+const MAX_REASON: usize = 500;
+
+/// The reason of an author that answers with nothing but one.
+fn cannot(members: &Map<String, Value>) -> Option<String> {
+    let mut answer = members.iter().filter(|(name, _)| !matches!(name.as_str(), "analysis" | "author" | "format"));
+    let (Some((name, Value::String(why))), None) = (answer.next(), answer.next()) else { return None };
+    let line = why.split_whitespace().collect::<Vec<_>>().join(" ");
+    (SAYS_WHY.contains(&name.as_str()) && !line.is_empty()).then(|| line.chars().take(MAX_REASON).collect())
 }
 
 /// What was repaired to read the answer: text around the JSON object is dropped and named here (E-EXTRA, a warning).

@@ -13,8 +13,7 @@ pub(crate) fn humans(proposal: &Proposal) -> Vec<Fault> {
         .iter()
         .filter(|human| !must_setup(proposal).any(|clause| speaks_of(clause, human.id, proposal)))
         .map(|human| {
-            let message = "has no clause with role `setup` and `must` that speaks of it; add one that says how it is seen \
-                           that it did its part, such as `meets`, `reacts` or `stands_still`";
+            let message = "does their part without a clause that could show it";
             Fault::new(FaultCode::PVerify, human.id, message)
         })
         .collect()
@@ -26,16 +25,15 @@ pub(crate) fn facts(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
     for fact in reading.facts.iter().filter(|fact| needs_clause(&fact.kind)) {
         let carriers: Vec<&Clause> = must_setup(proposal).filter(|clause| clause.source == fact.id).collect();
         if carriers.is_empty() {
-            let message = format!(
-                "\"{}\" was asked for, but no clause with role `setup` and `must` has `source` = `{}`; add one that verifies it",
-                fact.quote, fact.id
-            );
+            let message =
+                format!("\"{}\" was asked for, and no clause of the proposal shows whether it happens", fact.quote);
             faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));
         } else if let Some(owner) = human_of(fact)
             && !carriers.iter().any(|clause| speaks_of(clause, owner, proposal))
         {
             let message = format!(
-                "is about {owner}, but its clauses {} speak of others; one must speak of {owner}",
+                "\"{}\" is about {owner}, but its clauses {} show only what others do",
+                fact.quote,
                 list(carriers.iter().map(|clause| &clause.id))
             );
             faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));

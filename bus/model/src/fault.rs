@@ -107,6 +107,7 @@ fault_codes! {
     "T-TIMEOUT" TTimeout Transient Remedy::Wait, false, "the author's server did not answer in time";
     "T-OVERSIZE" TOversize Unparsable Remedy::AskAgain, false, "the answer is larger than is read";
     "E-REFUSAL" ERefusal Permanent Remedy::AskPerson, false, "the model refuses to answer";
+    "E-CANNOT" ECannot Semantic Remedy::AskAgain, false, "the author says that it cannot answer, and why";
     "E-TRUNC" ETrunc Unparsable Remedy::AskAgain, false, "the answer is cut off";
     "E-EMPTY" EEmpty Unparsable Remedy::AskAgain, false, "the answer is empty";
     "E-JSON" EJson Unparsable Remedy::AskAgain, false, "the answer is not JSON";
@@ -216,12 +217,22 @@ pub struct Fault {
     pub at: String,
     /// What was found and what is allowed, with every value.
     pub message: String,
+    /// Words of the request that it is about, as written there; empty where it is about none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quotes: Vec<String>,
 }
 
 impl Fault {
     /// A fault.
     pub fn new(code: FaultCode, at: impl fmt::Display, message: impl Into<String>) -> Self {
-        Self { code, at: at.to_string(), message: message.into() }
+        Self { code, at: at.to_string(), message: message.into(), quotes: Vec::new() }
+    }
+
+    /// The same fault, about these words of the request.
+    #[must_use]
+    pub fn about(mut self, quotes: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.quotes.extend(quotes.into_iter().map(Into::into));
+        self
     }
 
     /// Whether it is only a warning.

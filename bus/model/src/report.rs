@@ -24,7 +24,7 @@ pub enum Verdict {
     NotTriggered,
     /// Something that was promised was seen to be otherwise.
     Contradicted,
-    /// The recording proves nothing: overlap, stuck, NaN, or nothing to verify.
+    /// The recording proves nothing (overlap, stuck, NaN, nothing to verify), or part of the request was not played.
     Invalid,
     /// It happens with the reference robot, but not with this planner.
     RobotPrevented,

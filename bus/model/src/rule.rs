@@ -76,6 +76,22 @@ impl Action {
             Self::StandStill => "stands still".to_owned(),
         }
     }
+
+    /// What is done, after `they`: `run away from the robot`.
+    #[must_use]
+    pub fn they(&self) -> String {
+        match self {
+            Self::Navigate => "walk on".to_owned(),
+            Self::FollowRobot => "follow the robot".to_owned(),
+            Self::FollowHuman(id) => format!("follow {id}"),
+            Self::RunAway => "run away from the robot".to_owned(),
+            Self::GiveWay => "give way to the robot".to_owned(),
+            Self::Block => "block the robot".to_owned(),
+            Self::LookAtRobot => "stop and look at the robot".to_owned(),
+            Self::Approach => "come up to the robot".to_owned(),
+            Self::StandStill => "stand still".to_owned(),
+        }
+    }
 }
 
 impl Trigger {
@@ -145,20 +161,20 @@ impl Trigger {
         }
     }
 
-    /// The trigger in words: `when it sees the robot within 5 m`.
+    /// The trigger in words: `when they see the robot within 5 m`.
     #[must_use]
     pub fn phrase(&self) -> String {
         match self {
             Self::Always => "from the start".to_owned(),
-            Self::RobotVisible(m) => format!("when it sees the robot within {m} m"),
+            Self::RobotVisible(m) => format!("when they see the robot within {m} m"),
             Self::RobotNear(m) => format!("when the robot is within {m} m"),
-            Self::RobotBlocking(m) => format!("when the robot is in its way within {m} m"),
+            Self::RobotBlocking(m) => format!("when the robot is in their way within {m} m"),
             Self::RobotMoving => "while the robot moves".to_owned(),
             Self::RobotStopped => "while the robot stands".to_owned(),
             Self::RobotPassed => "once the robot has passed".to_owned(),
             Self::RobotSays(gesture) => format!("when the robot says {gesture}"),
             Self::HumanSays(id, gesture) => format!("when {id} says {gesture}"),
-            Self::GoalReached => "at its goal".to_owned(),
+            Self::GoalReached => "at their goal".to_owned(),
             Self::AtEncounter => "at the encounter".to_owned(),
             Self::AfterSecs(s) => format!("after {s} s"),
         }
@@ -186,12 +202,12 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// The rule in words: `when the robot is within 2 m it gives way to the robot and says PROCEED`.
+    /// The rule in words: `when the robot is within 2 m they give way to the robot and say PROCEED`.
     #[must_use]
     pub fn phrase(&self) -> String {
         let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
-        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
-        format!("{} it {}{gesture}", when.join(" and "), self.act.phrase())
+        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
+        format!("{} they {}{gesture}", when.join(" and "), self.act.they())
     }
 }
 

@@ -125,3 +125,89 @@ fn wrong<T>() -> Result<T, Vec<Fault>> {
 fn ours(why: String) -> Fault {
     Fault::new(FaultCode::JSpec, "scenario", why)
 }
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::Verdict;
+
+    use super::*;
+
+    /// A corridor with two elevators that only the types of their nodes tell; their openings are as wide as the cars.
+    const CARS: &str = r#"
+        description = "A corridor with two elevators."
+        size_m = [20.0, 9.0]
+        resolution_m = 0.05
+        floors = [[0.5, 0.5, 19.5, 3.5], [5.0, 3.7, 7.6, 7.0], [12.0, 3.7, 14.6, 7.0]]
+        openings = [[5.0, 3.6, 7.6, 3.6], [12.0, 3.6, 14.6, 3.6]]
+        nodes = [
+          { id = "w", type = "CORRIDOR", at = [1.5, 2.0] },
+          { id = "h1", type = "CORRIDOR", at = [4.0, 2.0] },
+          { id = "o1", type = "OUTSIDE_ELEVATOR_1", at = [6.3, 2.3] },
+          { id = "d1", type = "WITHIN_ELEVATOR_1", at = [6.3, 4.6] },
+          { id = "ac", type = "WITHIN_ELEVATOR_1", at = [6.3, 6.2] },
+          { id = "h2", type = "CORRIDOR", at = [9.8, 2.0] },
+          { id = "o2", type = "OUTSIDE_ELEVATOR_2", at = [13.3, 2.3] },
+          { id = "d2", type = "WITHIN_ELEVATOR_2", at = [13.3, 4.6] },
+          { id = "bc", type = "WITHIN_ELEVATOR_2", at = [13.3, 6.2] },
+          { id = "h3", type = "CORRIDOR", at = [16.0, 2.0] },
+          { id = "e", type = "CORRIDOR", at = [18.5, 2.0] },
+        ]
+        edges = [
+          { type = "CORRIDOR", along = ["w", "h1", "o1", "h2", "o2", "h3", "e"] },
+          { type = "ELEVATOR", along = ["o1", "d1", "ac"] },
+          { type = "ELEVATOR", along = ["o2", "d2", "bc"] },
+        ]
+    "#;
+
+    fn location(plan: &str) -> Location {
+        socrates_maps::parse(&socrates_maps::generate(plan).unwrap(), "own").unwrap()
+    }
+
+    async fn judged(location: &Location, task: &str, rough: &str, seed: u64) -> Report {
+        let request =
+            serde_json::json!({ "location": "own", "social_context": "", "task": task, "rough_scenario": rough });
+        let request: Request = serde_json::from_value(request).unwrap();
+        play(&request, location, seed).await.unwrap_or_else(|faults| panic!("{rough}: {faults:#?}")).report
+    }
+
+    #[tokio::test]
+    async fn elevators_that_only_node_types_tell_are_left_entered_and_stayed_in() {
+        let place = location(CARS);
+        for rough in [
+            "The door opens and a visitor comes out of the elevator.",
+            "Two people leave the elevator, one stays inside.",
+            "A visitor comes out of the elevator and waves at the robot.",
+            "A nurse gets into the elevator.",
+        ] {
+            for seed in 1..=3 {
+                let report = judged(&place, "Take the elevator to deliver supplies", rough, seed).await;
+                assert_eq!(report.verdict, Verdict::Realised, "{rough} {seed}: {}", report.verdict_text);
+            }
+        }
+    }
+
+    #[tokio::test]
+    async fn somebody_comes_out_of_the_room_of_the_map_that_the_readme_makes() {
+        let readme = include_str!("../../../maps/README.md");
+        let plan = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+        let place = location(plan);
+        for seed in 1..=5 {
+            let report = judged(&place, "Drive along the corridor", "A person comes out of the room.", seed).await;
+            assert_eq!(report.verdict, Verdict::Realised, "{seed}: {}", report.verdict_text);
+        }
+    }
+
+    #[tokio::test]
+    async fn a_request_of_which_something_cannot_be_played_is_never_realised() {
+        let place = socrates_maps::shipped::load("office").unwrap();
+        for (rough, words) in [
+            ("A person drops a cup and kneels down.", "`drops`, `kneels`"),
+            ("A nurse comes towards the robot. Then she sings a song.", "`sings`"),
+        ] {
+            let report = judged(&place, "Drive to the exit", rough, 1).await;
+            assert_eq!(report.verdict, Verdict::Invalid, "{rough}: {}", report.verdict_text);
+            let start = format!("part of the request is not played: {words} · ");
+            assert!(report.verdict_text.starts_with(&start), "{rough}: {}", report.verdict_text);
+        }
+    }
+}

@@ -134,7 +134,13 @@ pub(crate) fn prepare_text(
         return Err(Complaint::faults(
             format!("the request `{shown}` asks for something that cannot be made"),
             &stops,
-            format!("correct the text, or set the fact under [expect]; `socrates read {shown}` shows the reading"),
+            match socrates_offline::settled_by(&request, &location).as_slice() {
+                [] => format!("correct the text; `socrates read {shown}` shows the reading"),
+                keys => format!(
+                    "correct the text, or set {} under [expect]; `socrates read {shown}` shows the reading",
+                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ")
+                ),
+            },
         ));
     }
     let mut pins = BTreeMap::new();

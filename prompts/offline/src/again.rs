@@ -156,7 +156,7 @@ pub(crate) fn fact(
 ) -> Option<(String, FactKind)> {
     let quote = &again.quote;
     let mut problem = |code: FaultCode, message: String| {
-        let fault = Fault::new(code, human, message);
+        let fault = Fault::new(code, human, message).about([quote.as_str()]);
         if !reading.problems.contains(&fault) {
             reading.problems.push(fault);
         }

@@ -5,7 +5,7 @@ use socrates_model::Proposal;
 use socrates_model::job::Stage;
 use socrates_prompts::Question;
 
-use crate::{NAME, mended, proposal, solve};
+use crate::{NAME, cannot, mended, proposal, solve};
 
 /// The offline author.
 ///
@@ -20,21 +20,24 @@ impl Offline {
 
     /// The answer to a question, as JSON text; the same question gives the same answer.
     ///
-    /// What cannot be answered (no way on the map, a stage without questions) is an object with a `note` that
-    /// says so, which the parser refuses like any other wrong answer.
+    /// What cannot be answered (no way on the map, a stage without questions) is an object with a single member `cannot` that
+    /// says why, which the parser refuses with that reason (E-CANNOT).
     #[must_use]
     pub fn answer(question: &Question) -> String {
         match question.stage {
             Stage::Proposal => text(&proposal::propose(question)),
             Stage::Paths => match with_proposal(question, |known| solve::solve(question, known)) {
                 Some(paths) => text(&paths),
-                None => json!({ "note": "the map has no ways that fit the proposal" }).to_string(),
+                None => {
+                    let why = with_proposal(question, |known| Some(cannot::reason(question, known)));
+                    json!({ "cannot": why }).to_string()
+                }
             },
             Stage::Behaviors => {
                 with_proposal(question, |known| Some(behaviors(question, known))).unwrap_or_else(|| "{}".to_owned())
             }
             Stage::Simulation | Stage::Scoring | Stage::Review => {
-                json!({ "note": "only proposals, paths and behaviors are written" }).to_string()
+                json!({ "cannot": "only proposals, paths and behaviors are written" }).to_string()
             }
         }
     }
@@ -51,7 +54,7 @@ fn with_proposal<T>(question: &Question, answer: impl FnOnce(&Proposal) -> Optio
 }
 
 fn text<T: serde::Serialize>(answer: &T) -> String {
-    serde_json::to_string_pretty(answer).unwrap_or_else(|why| json!({ "note": why.to_string() }).to_string())
+    serde_json::to_string_pretty(answer).unwrap_or_else(|why| json!({ "cannot": why.to_string() }).to_string())
 }
 
 fn behaviors(question: &Question, proposal: &Proposal) -> String {

@@ -23,7 +23,7 @@ fn full(story: &mut Story) {
             "`{quote}`: an elevator holds at most {RIDERS} people, and whom the robot does not ride with it does not meet; \
              say who gets out, or who waits in front and gets in"
         );
-        story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
+        story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message).about([quote]));
     }
 }
 

@@ -114,11 +114,12 @@ fn impossible(story: &mut Story, narrow: bool) {
             read.exact && read.rule.act != Action::Block && read.rule.when.iter().any(near)
         };
         said.extend(person.rules.iter().find(touches).filter(|_| blocks).map(|read| {
-            format!(
+            let message = format!(
                 "`{}`: the robot stops more than a metre before whoever stands in its way; ask for {} m or more",
                 read.quote,
                 STOPS_BEFORE_M + 0.4
-            )
+            );
+            unread(&read.quote, message)
         }));
     }
     let aside = |read: &&ReadRule| read.rule.act == Action::GiveWay;
@@ -127,14 +128,19 @@ fn impossible(story: &mut Story, narrow: bool) {
         .filter(|person| matches!(person.relation, Some((Relation::Static, _))))
         .filter_map(|person| person.rules.iter().find(aside));
     if let (true, Some(read), Some(_)) = (narrow, yield_there.next(), yield_there.next()) {
-        said.push(format!(
+        let message = format!(
             "`{}`: in an aisle that only one gets through there is no room for several to make way; ask for one, or for a wider \
              place",
             read.quote
-        ));
+        );
+        said.push(unread(&read.quote, message));
     }
-    let faults = said.into_iter().map(|message| Fault::new(FaultCode::PRead, "rough_scenario", message));
-    story.problems.extend(faults);
+    story.problems.extend(said);
+}
+
+/// The fault of words of which something is not played.
+fn unread(quote: &str, message: String) -> Fault {
+    Fault::new(FaultCode::PRead, "rough_scenario", message).about([quote])
 }
 
 /// `stops, looks at it for ten seconds and then lets it pass`: at no stated distance the way is free after all that.

@@ -9,7 +9,7 @@ use crate::lexicon::{Act, Cue, lexicon};
 use crate::mention::{Mention, Who, mentions};
 use crate::negation::negated;
 use crate::topic::drop_topics;
-use crate::words::find;
+use crate::words::{Word, find};
 use crate::{measure, message};
 
 /// A deed and where it stands.
@@ -64,6 +64,8 @@ pub(crate) struct Found {
     pub(crate) limited: Vec<String>,
     /// Who does it stands behind the verb: `from the other side comes Anna`.
     pub(crate) inverted: bool,
+    /// Words of a door that somebody opens or closes to walk through.
+    pub(crate) moves_door: Option<(usize, usize)>,
     /// Amounts beyond reason: `35 m/s`.
     pub(crate) absurd: Vec<String>,
 }
@@ -90,6 +92,17 @@ impl Found {
     }
 }
 
+/// The last word of a door that somebody opens or closes to walk through: it does so by itself for whoever comes near. Held open
+/// for somebody else, it would be a deed of their own.
+fn door_moved(words: &[Word], at: usize) -> Option<usize> {
+    let stem = |k: usize| words.get(k).map_or("", |word| word.stem.as_str());
+    if !matches!(stem(at), "open" | "close") {
+        return None;
+    }
+    let door = (at + 1..at + 5).find(|k| matches!(stem(*k), "door" | "doors"))?;
+    (!(door + 1..words.len()).any(|k| stem(k) == "for")).then_some(door)
+}
+
 /// Reads a clause; words that something was read from are marked as used.
 pub(crate) fn read(stretch: &mut Stretch) -> Found {
     let mut found = Found { mentions: mentions(&stretch.words), ..Found::default() };
@@ -98,8 +111,10 @@ pub(crate) fn read(stretch: &mut Stretch) -> Found {
         for at in mention.from..=mention.to {
             // A word between that only describes, and that no table has, is read by nobody.
             let tells = matches!(mention.who, Who::ToldApart) && at != mention.to && at != mention.from;
-            if at == mention.to || at == mention.from || known(stretch, at) && !tells {
+            if at == mention.to || at == mention.from {
                 mark(stretch, at, at);
+            } else if known(stretch, at) && !tells {
+                skim(stretch, at);
             }
         }
     }
@@ -149,8 +164,16 @@ fn known(stretch: &Stretch, at: usize) -> bool {
 
 pub(crate) fn mark(stretch: &mut Stretch, from: usize, to: usize) {
     for word in stretch.words.iter_mut().take(to + 1).skip(from) {
-        word.used = true;
+        (word.used, word.skimmed) = (true, false);
     }
+}
+
+/// Takes a word as part of a phrase of which other words are read; one that only describes stays unread.
+fn skim(stretch: &mut Stretch, at: usize) {
+    let Some(word) = stretch.words.get_mut(at).filter(|word| !word.used) else { return };
+    let lex = lexicon();
+    word.skimmed = lex.adjectives.contains(&word.text) || lex.adjectives.contains(&word.stem);
+    word.used = true;
 }
 
 pub(crate) fn mark_each(stretch: &mut Stretch, at: &[usize]) {
@@ -415,15 +438,22 @@ fn rest(stretch: &mut Stretch, found: &mut Found, taken: &[bool]) {
         found.declares |= exists || text == "scenario" || exactly;
         // `the lift opens`: of itself, and nobody does it.
         let itself = matches!(word.stem.as_str(), "open" | "close") && matches!(before, "lift" | "elevator" | "doors")
-            || text == "open" && matches!(before, "an" | "the" | "its");
+            || text == "open" && matches!(before, "an" | "the" | "its")
+            // `gets in when it opens`
+            || matches!(word.stem.as_str(), "open" | "close") && before == "it" && next.is_empty();
         // `hands the robot a letter`, `joins the queue`
         let gives = matches!(text, "hands" | "handed" | "joins" | "joined")
             && matches!(next, "the" | "a" | "an" | "it" | "him" | "her" | "over" | "some");
         let taken = takes_along(&stretch.words, i) || gives;
+        let door = door_moved(&stretch.words, i).filter(|_| !word.used);
+        if let Some(to) = door {
+            used.extend(i..=to);
+            found.moves_door = Some((i, to));
+        }
         // `at any point`
         let point = word.stem == "point" && matches!(before, "any" | "no" | "some" | "this" | "that" | "the" | "which");
         let handles = handles(&stretch.words, i) || mounts(&stretch.words, i);
-        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself && !point
+        if (lex.impossible.contains(&word.stem) || taken) && !word.used && !itself && !point && door.is_none()
             || pours(&stretch.words, i)
             || handles
         {

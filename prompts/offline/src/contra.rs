@@ -214,7 +214,7 @@ pub(crate) fn condition(story: &mut Story, thread: &Thread, stretch: &Stretch, f
         "`{when}` is what another human does, and `{quote}` should wait for it; people wait for the robot, for a time, or for a \
          gesture of another human: the two are played on their own"
     );
-    story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
+    story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message).about([when.as_str(), quote]));
 }
 
 /// Two motions of which only one can be done.

@@ -476,7 +476,7 @@ pub(crate) fn rule_out(cast: &mut Cast, who: usize, act: Act, quote: &str) {
             format!(
                 "`{quote}`: a scenario is a meeting of people and the robot; that somebody never meets it is not played"
             ),
-        ));
+        ).about([quote]));
         return;
     }
     if act == Act::ComeOut && person.relation.is_none() {

@@ -18,6 +18,8 @@ pub mod card;
 
 mod aside;
 mod begins;
+mod cannot;
+mod expect;
 mod hands;
 mod lexicon;
 mod slips;
@@ -129,6 +131,8 @@ mod short_tests;
 #[cfg(test)]
 mod spot_tests;
 #[cfg(test)]
+mod stranger_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod wording_tests;
@@ -151,4 +155,29 @@ pub const NAME: &str = "offline/1";
 #[must_use]
 pub fn read(request: &Request, location: &Location) -> Reading {
     understand::understand(request, location).reading
+}
+
+/// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.
+#[must_use]
+pub fn settled_by(request: &Request, location: &Location) -> Vec<&'static str> {
+    let stops = |request: &Request| socrates_model::fault::hard(&read(request, location).problems);
+    let before = stops(request);
+    let settles = |expect: socrates_model::request::Expect| {
+        let after = stops(&Request { expect, ..request.clone() });
+        after.len() < before.len()
+    };
+    let class = socrates_model::PlaceClass::ALL.into_iter().find(|class| place::has(location, *class));
+    let mut keys = Vec::new();
+    if request.expect.humans.is_none()
+        && settles(socrates_model::request::Expect { humans: Some(2), ..request.expect.clone() })
+    {
+        keys.push("humans");
+    }
+    if request.expect.place.is_none()
+        && let Some(class) = class
+        && settles(socrates_model::request::Expect { place: Some(class.to_string()), ..request.expect.clone() })
+    {
+        keys.push("place");
+    }
+    keys
 }

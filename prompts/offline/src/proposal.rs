@@ -61,7 +61,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         if let FactKind::MeetsTimes { human, .. } = fact.kind
             && let Some(human) = humans.iter_mut().find(|other| other.id == human)
         {
-            human.behavior.push_str(" Later on it meets the robot a second time.");
+            human.behavior.push_str(" Later on they meet the robot a second time.");
         }
     }
     let description = prose::description(&about, &location.name, place, &humans);
@@ -180,7 +180,7 @@ fn proposed(
     let mut behavior = prose::behavior(&human.role, relation, place, start, &human.rules, human.group.is_some());
     let goal = extra.goal.filter(|class| place::has(location, *class));
     if relation == Relation::Static && goal.is_some() {
-        behavior.push_str(" Once the door is open and everybody is out it goes in.");
+        behavior.push_str(" Once the door is open and everybody is out they go in.");
     }
     HumanProposal {
         id: human.id,

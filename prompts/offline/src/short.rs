@@ -80,11 +80,12 @@ pub(crate) fn unplayed(problems: &mut Vec<Fault>, quote: &str, what: &str) {
     once(problems, quote, format!("`{quote}` is not played in full: {what} is not played"));
 }
 
-/// Says what is not played of these words, unless that was said of them already. The message begins with them.
+/// Says what is not played of these words, unless that was said of them already.
 pub(crate) fn once(problems: &mut Vec<Fault>, quote: &str, message: String) {
-    let words = format!("`{quote}`");
-    if !problems.iter().any(|fault| fault.code == FaultCode::PRead && fault.message.starts_with(&words)) {
-        problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message));
+    let said =
+        |fault: &Fault| fault.code == FaultCode::PRead && fault.quotes.first().is_some_and(|words| words == quote);
+    if !problems.iter().any(said) {
+        problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message).about([quote]));
     }
 }
 

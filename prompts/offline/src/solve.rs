@@ -22,6 +22,8 @@ use crate::routes::{Net, Route, Tree, Wish, over, score};
 use crate::spot;
 use crate::twice;
 
+/// Shortest path of the robot that is taken where the map has no longer one, m.
+pub(crate) const SHORTEST_M: f64 = 6.0;
 /// Meeting nodes that are tried, and ways of the robot over each.
 const NODES: usize = 14;
 const ROUTES: usize = 10;
@@ -260,7 +262,7 @@ fn up_to(net: &Net<'_>, proposal: &Proposal, wish: &Wish, goal: usize, walkers: 
 
 fn anywhere(net: &Net<'_>, proposal: &Proposal, wish: &Wish, crowded: bool) -> Vec<Solution> {
     let all: Vec<usize> = (0..net.len()).collect();
-    let relaxed = Wish { least_m: 6.0, ..*wish };
+    let relaxed = Wish { least_m: SHORTEST_M, ..*wish };
     at_nodes(net, proposal, &relaxed, &all, crowded)
 }
 

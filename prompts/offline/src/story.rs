@@ -36,6 +36,8 @@ pub(crate) struct Story {
     pub(crate) robot_leaves: Option<(PlaceClass, String)>,
     /// Where people go: the robot goes there too if it leads them.
     pub(crate) headed: Option<(PlaceClass, String)>,
+    /// Words of doors that somebody opens or closes.
+    pub(crate) doors: Vec<String>,
     pub(crate) ignored: Vec<String>,
     pub(crate) order: Order,
     pub(crate) held: contra::Held,
@@ -93,14 +95,14 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
                 FaultCode::PRead,
                 "rough_scenario",
                 format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
-            ));
+            ).about([quote.as_str()]));
         }
         for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
             let often = again::how_often(word, text);
             let known = often.is_none()
                 && (lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot");
             let said = often.unwrap_or(&word.text);
-            if !word.used && !known && !story.ignored.iter().any(|word| word == said) {
+            if word.unread() && !known && !story.ignored.iter().any(|word| word == said) {
                 story.ignored.push(said.to_owned());
             }
         }
@@ -153,6 +155,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
         if !story.cast.notes.contains(&limited) {
             story.cast.notes.push(limited);
         }
+    }
+    if let Some((from, to)) = found.moves_door {
+        let words = stretch.words.get(from..=to).unwrap_or_default();
+        story.doors.push(words.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" "));
     }
     let absurd = std::mem::take(&mut found.absurd).into_iter();
     story.problems.extend(absurd.map(|message| Fault::new(FaultCode::PLimit, "rough_scenario", message)));
@@ -241,7 +247,7 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
             FaultCode::PRead,
             "rough_scenario",
             format!("`{}` in `{quote}` cannot be simulated; people walk, stop, look, follow, flee, block, give way, approach and gesture", verbs.join("`, `")),
-        ));
+        ).about(verbs));
         mark_each(stretch, &found.impossible);
     }
     place_of(story, &found, stretch, &thread.subject, &quote);
@@ -545,11 +551,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 }
                 story.cast.notes.push(format!("`{quote}` rules something out for everybody; no reaction is added"));
             }
-            Subject::Nobody => story.problems.push(Fault::new(
-                FaultCode::PRead,
-                "rough_scenario",
-                format!("`{quote}` does not say who does it"),
-            )),
+            Subject::Nobody => {
+                let message = format!("`{quote}` does not say who does it");
+                story.problems.push(Fault::new(FaultCode::PRead, "rough_scenario", message).about([quote]));
+            }
         }
         if by_robot && act == Act::Gesture && !object.is_empty() {
             thread.subject = Subject::People(object);

@@ -45,74 +45,26 @@ pub(crate) fn nodes(ends: &[End]) -> &[NodeId] {
 /// Reads a task such as `Take the elevator to deliver supplies` or `Bring mail from the lobby to the kitchen`.
 pub(crate) fn read(text: &str, location: &Location) -> Task {
     let mut task = Task::default();
-    for mut stretch in sentences(text).into_iter().flatten() {
+    let (returns, first): (Vec<Stretch>, Vec<Stretch>) =
+        sentences(text).into_iter().flatten().partition(|stretch| comes_back(stretch).is_some());
+    for stretch in first {
+        errand(&mut task, stretch, text, location);
+    }
+    // `deliver mail and return (to the desk)`: the second errand. `return to the desk`, with no other place to go: the first.
+    for mut stretch in returns {
         let quote = stretch.quote(text).to_owned();
-        if let Some(denied) = denied(&mut stretch, text, location) {
-            task.denied.push(denied);
-            if stretch.words.is_empty() {
-                continue;
-            }
+        let mut onward = task.clone();
+        let at = comes_back(&stretch).unwrap_or(0);
+        for word in stretch.words.iter_mut().skip(at).take(2) {
+            word.used = true;
         }
-        let found = clause::read(&mut stretch);
-        // `deliver mail and return (to the desk)`: the second errand; `return the cup to the kitchen` is the first.
-        let comes_back = |i: usize| {
-            let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
-            let last = matches!(text(i + 1), "" | "to" | "back" | "home" | "again");
-            matches!(text(i), "return" | "returns" | "returning") && last
-                || matches!(text(i), "come" | "comes" | "go" | "goes" | "coming") && text(i + 1) == "back"
-        };
-        if let Some(at) = (0..stretch.words.len()).find(|i| comes_back(*i)) {
-            task.back.get_or_insert_with(|| quote.clone());
-            for word in stretch.words.iter_mut().skip(at).take(2) {
-                word.used = true;
-            }
-            continue;
-        }
-        // `fetch goods from the rack`: the way leads there, unless the text says where it leads then.
-        let fetches =
-            stretch.words.iter().any(|word| matches!(word.stem.as_str(), "fetch" | "get" | "collect" | "pick"))
-                && !text.to_lowercase().split_whitespace().any(|word| TO.contains(&word));
-        let named = named_ends(&mut task, &mut stretch, &found, text, location);
-        for (class, at) in found.places {
-            if named.iter().any(|(from, to)| (*from..=*to).contains(&at)) {
-                continue;
-            }
-            let before: Vec<&str> = (1..=3)
-                .filter_map(|back| at.checked_sub(back))
-                .filter_map(|i| stretch.words.get(i))
-                .map(|word| word.text.as_str())
-                .collect();
-            let near = |names: &[&str]| before.iter().position(|word| names.contains(word));
-            let (from, to, via) = (
-                near(&["from"]),
-                near(&["to", "into", "at", "reach", "towards", "toward"]),
-                near(&["via", "through", "along", "past"]),
-            );
-            let rides = class == PlaceClass::Elevator && near(&["take", "use", "ride", "enter", "the", "an"]).is_some();
-            let slot = match (from, to, via) {
-                (Some(_), None, _) if fetches => &mut task.goal,
-                (Some(from), Some(to), _) if from < to => &mut task.start,
-                (Some(_), None, _) => &mut task.start,
-                (None, None, Some(_)) => &mut task.via,
-                (_, Some(_), _) => &mut task.goal,
-                (None, None, None) if rides => &mut task.goal,
-                (None, None, None) => &mut task.via,
-            };
-            if slot.is_none() {
-                *slot = Some((class, quote.clone()));
-            }
-        }
-        if fetches {
-            task.goals.append(&mut task.starts);
-        }
-        load(&mut stretch);
-        for word in stretch.words {
-            let lex = lexicon();
-            let known =
-                [&lex.stop, &lex.task].iter().any(|table| table.contains(&word.text) || table.contains(&word.stem));
-            if !word.used && !known && word.stem != "robot" && !task.ignored.contains(&word.text) {
-                task.ignored.push(word.text);
-            }
+        errand(&mut onward, stretch, text, location);
+        let first = task.goal.is_none() && task.goals.is_empty();
+        if first && (onward.goal.is_some() || !onward.goals.is_empty()) {
+            task = onward;
+        } else {
+            task.back.get_or_insert(quote);
+            task.denied = onward.denied;
         }
     }
     // The name tells more than the kind of place.
@@ -124,6 +76,72 @@ pub(crate) fn read(text: &str, location: &Location) -> Task {
         }
     }
     task
+}
+
+/// Where a clause asks for a way back: `return to the desk`, `comes back`; `return the cup to the kitchen` does not.
+fn comes_back(stretch: &Stretch) -> Option<usize> {
+    let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
+    let last = |i: usize| matches!(text(i + 1), "" | "to" | "back" | "home" | "again");
+    (0..stretch.words.len()).find(|i| {
+        matches!(text(*i), "return" | "returns" | "returning") && last(*i)
+            || matches!(text(*i), "come" | "comes" | "go" | "goes" | "coming") && text(i + 1) == "back"
+    })
+}
+
+/// Reads one clause of a task.
+fn errand(task: &mut Task, mut stretch: Stretch, text: &str, location: &Location) {
+    let quote = stretch.quote(text).to_owned();
+    if let Some(denied) = denied(&mut stretch, text, location) {
+        task.denied.push(denied);
+        if stretch.words.is_empty() {
+            return;
+        }
+    }
+    let found = clause::read(&mut stretch);
+    // `fetch goods from the rack`: the way leads there, unless the text says where it leads then.
+    let fetches = stretch.words.iter().any(|word| matches!(word.stem.as_str(), "fetch" | "get" | "collect" | "pick"))
+        && !text.to_lowercase().split_whitespace().any(|word| TO.contains(&word));
+    let named = named_ends(task, &mut stretch, &found, text, location);
+    for (class, at) in found.places {
+        if named.iter().any(|(from, to)| (*from..=*to).contains(&at)) {
+            continue;
+        }
+        let before: Vec<&str> = (1..=3)
+            .filter_map(|back| at.checked_sub(back))
+            .filter_map(|i| stretch.words.get(i))
+            .map(|word| word.text.as_str())
+            .collect();
+        let near = |names: &[&str]| before.iter().position(|word| names.contains(word));
+        let (from, to, via) = (
+            near(&["from"]),
+            near(&["to", "into", "at", "reach", "towards", "toward"]),
+            near(&["via", "through", "along", "past"]),
+        );
+        let rides = class == PlaceClass::Elevator && near(&["take", "use", "ride", "enter", "the", "an"]).is_some();
+        let slot = match (from, to, via) {
+            (Some(_), None, _) if fetches => &mut task.goal,
+            (Some(from), Some(to), _) if from < to => &mut task.start,
+            (Some(_), None, _) => &mut task.start,
+            (None, None, Some(_)) => &mut task.via,
+            (_, Some(_), _) => &mut task.goal,
+            (None, None, None) if rides => &mut task.goal,
+            (None, None, None) => &mut task.via,
+        };
+        if slot.is_none() {
+            *slot = Some((class, quote.clone()));
+        }
+    }
+    if fetches {
+        task.goals.append(&mut task.starts);
+    }
+    load(&mut stretch);
+    for word in stretch.words {
+        let lex = lexicon();
+        let known = [&lex.stop, &lex.task].iter().any(|table| table.contains(&word.text) || table.contains(&word.stem));
+        if word.unread() && !known && word.stem != "robot" && !task.ignored.contains(&word.text) {
+            task.ignored.push(word.text);
+        }
+    }
 }
 
 /// Takes the words off a clause that say where the robot is not to go: `do not go to the kitchen`, `without entering the elevator`.

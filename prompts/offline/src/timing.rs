@@ -1,6 +1,6 @@
 //! Clauses that only say when, and clauses that only name people.
 
-use socrates_model::{Gesture, HumanId, PlaceClass, Trigger};
+use socrates_model::{Gesture, HumanId, PlaceClass, Relation, Trigger};
 
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
@@ -15,6 +15,9 @@ use crate::whereabouts::place_of;
 
 /// What is done until the robot has passed is done for no longer than this, s.
 const PASSES_S: f64 = 30.0;
+
+/// How long is done what lasts until something that has no exact moment, s.
+const UNTIL_S: f64 = 10.0;
 
 /// Whether the robot is who the clause speaks of.
 pub(crate) fn robot_first(found: &Found) -> bool {
@@ -165,9 +168,11 @@ pub(crate) fn timing(
         return;
     }
     if until {
+        let mut timed: Option<String> = None;
         for (who, rule) in &thread.made {
             if let Some(read) = story.cast.people.get_mut(*who).and_then(|p| p.rules.get_mut(*rule)) {
-                read.rule.for_s = Some(10.0);
+                read.rule.for_s = Some(UNTIL_S);
+                timed.get_or_insert_with(|| read.quote.clone());
             }
         }
         // `notices nothing until it is 1 m away; he then freezes`, `stands still until it is 3 m away, then he walks off`
@@ -178,7 +183,10 @@ pub(crate) fn timing(
         if thread.made.is_empty() {
             thread.said.clone_from(&thread.ended);
         }
-        story.cast.notes.push(format!("`until {quote}` was read as 10 s"));
+        // Whoever stands there anyway, or does nothing of their own until then, does so as long as it takes.
+        story.cast.notes.extend(timed.map(|deed| {
+            format!("`{deed}`, until `{quote}`: it is played for {UNTIL_S} s, whether or not that comes before")
+        }));
         return;
     }
     // `if it moves they wait, if it stops they walk on`: what has its own time already is not timed by what comes after it.
@@ -292,8 +300,12 @@ pub(crate) fn timing(
         }
     } else {
         thread.waiting = Some(when);
-        // Who comes out waits for the door anyway; whoever is met is there as the robot passes by.
-        let met = cue == Cue::Near && quote.contains("pass");
+        // Who comes out waits for the door anyway; whoever is met is there as the robot comes near, or passes by.
+        let meets = |who: &usize| {
+            matches!(story.relation_of(*who), Some(Relation::Leaving | Relation::Crossing | Relation::Frontal))
+        };
+        let timed = found.distance_m.is_none() && !story.cast.last.is_empty() && story.cast.last.iter().all(meets);
+        let met = cue == Cue::Near && (quote.contains("pass") || timed);
         thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open") && !met);
         thread.vague = found.distance_m.is_none();
     }

@@ -7,13 +7,13 @@ use socrates_model::{
 };
 
 use crate::card::Ends;
-use crate::cast::{Cast, Person, ReadRule};
+use crate::cast::{Person, ReadRule};
 use crate::lexicon::lexicon;
 use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, boards, chance, contra, cut, default_cast, numbered, place, spot, words};
+use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, numbered, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -47,11 +47,11 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         reading.problems.extend(found.instructions.iter().map(|sentence| {
             let message =
                 format!("`{sentence}` speaks to the program and is no part of a scenario; nothing was done about it");
-            Fault::new(FaultCode::PRead, at, message)
+            Fault::new(FaultCode::PRead, at, message).about([sentence.as_str()])
         }));
     }
     language(request, &mut reading);
-    expectations(request, &mut story, &mut reading);
+    expect::settle(request, &mut story, &mut reading);
     story.finish();
     contra::finish(&mut story, &told.story);
     boards::settle(&mut story, location);
@@ -160,78 +160,6 @@ fn language(request: &Request, reading: &mut Reading) {
             reading.problems.push(Fault::new(FaultCode::PLang, key, message));
         }
     }
-}
-
-/// `[expect]` wins over the text.
-fn expectations(request: &Request, story: &mut Story, reading: &mut Reading) {
-    if let Some(count) = request.expect.humans {
-        let wanted = usize::try_from(count).unwrap_or(0);
-        let read = story.cast.people.len();
-        if read > 0 && wanted > 0 && read != wanted {
-            reading
-                .notes
-                .push(format!("the text speaks of {read} humans, `expect.humans` of {wanted}; {wanted} it is"));
-            story.cast.people.truncate(wanted);
-            story.cast.people.resize_with(wanted, Default::default);
-            for (_, members, _) in &mut story.cast.groups {
-                members.retain(|i| *i < wanted);
-            }
-            story.cast.groups.retain(|(_, members, _)| members.len() > 1);
-            story.problems.retain(|fault| fault.code != FaultCode::PLimit);
-        }
-        story.cast.count_quote = Some(format!("expect.humans = {count}"));
-    }
-    if let Some(Ok(class)) = request.expect.place.as_ref().map(|text| text.parse::<PlaceClass>()) {
-        story.place = Some((class, format!("expect.place = \"{class}\"")));
-    }
-    let read = story.cast.people.len();
-    for numbers in &request.expect.groups {
-        let members: Vec<usize> = numbers.iter().filter_map(|n| usize::try_from(*n).ok()?.checked_sub(1)).collect();
-        // Where the text names nobody, the pattern's people are grouped so.
-        if read == 0 {
-            continue;
-        }
-        if let Some(nobody) = members.iter().find(|i| **i >= read) {
-            reading.problems.push(Fault::new(
-                FaultCode::PContra,
-                "expect.groups",
-                format!(
-                    "{numbers:?} names human_{}, but the text speaks of {read}; correct one of the two",
-                    nobody + 1
-                ),
-            ));
-            continue;
-        }
-        regroup(&mut story.cast, &members);
-    }
-}
-
-/// A group that wins over those of the text: its members are in no other.
-fn regroup(cast: &mut Cast, members: &[usize]) {
-    if cast.groups.iter().any(|(_, known, _)| known.len() == members.len() && members.iter().all(|i| known.contains(i)))
-    {
-        return;
-    }
-    for (_, known, _) in &mut cast.groups {
-        known.retain(|i| !members.contains(i));
-    }
-    for (_, alone, _) in cast.groups.extract_if(.., |(_, known, _)| known.len() < 2) {
-        for i in alone {
-            if let Some(person) = cast.people.get_mut(i) {
-                person.group = None;
-            }
-        }
-    }
-    // Ids stay one to n.
-    for (id, (own, members, _)) in (1..).map(GroupId).zip(&mut cast.groups) {
-        *own = id;
-        for i in members.iter() {
-            if let Some(person) = cast.people.get_mut(*i) {
-                person.group = Some(id);
-            }
-        }
-    }
-    cast.group(members, "expect.groups");
 }
 
 /// Places by name that this map does not have: a fault, and the next best place.
@@ -398,14 +326,11 @@ fn errand(task: &Task, reading: &mut Reading) {
     reading.problems.extend(task.denied.iter().map(|quote| {
         let message =
             format!("`{quote}`: where the robot may not go is up to its planner and is not judged; say where it goes");
-        Fault::new(FaultCode::PRead, "task", message)
+        Fault::new(FaultCode::PRead, "task", message).about([quote.as_str()])
     }));
     if let Some(quote) = &task.back {
-        reading.problems.push(Fault::new(
-            FaultCode::PRead,
-            "task",
-            format!("`{quote}`: the way back is not played; a run ends where the robot gets to its goal"),
-        ));
+        let message = format!("`{quote}`: the way back is not played; a run ends where the robot gets to its goal");
+        reading.problems.push(Fault::new(FaultCode::PRead, "task", message).about([quote.as_str()]));
     }
 }
 
@@ -479,7 +404,7 @@ fn again_and_again(rough: &str, story: &mut Story) {
             let message = format!(
                 "`{words}`: what somebody does is played once; ask for somebody more who does it, or for how long it lasts"
             );
-            Fault::new(FaultCode::PRead, "rough_scenario", message)
+            Fault::new(FaultCode::PRead, "rough_scenario", message).about([*words])
         };
         story.problems.splice(0..0, said.iter().map(once));
         return;
@@ -512,10 +437,21 @@ fn other_places(location: &Location, reading: &mut Reading) {
     reading.notes.append(&mut notes);
 }
 
+/// Says of doors that people open how they open.
+fn doors(story: &Story, location: &Location, reading: &mut Reading) {
+    let how = if location.doors.is_empty() {
+        "this map declares no doors; its openings are always open"
+    } else {
+        "doors open and close by themselves for whoever comes near, as the map says"
+    };
+    reading.notes.extend(story.doors.iter().map(|quote| format!("`{quote}`: {how}")));
+}
+
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     errand(task, reading);
     ends(story, task, location, reading);
     other_places(location, reading);
+    doors(story, location, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
     // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
@@ -534,7 +470,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
     }
     for (i, human) in reading.humans.iter().enumerate() {
         if human.summary.is_empty() && request.rough_scenario.is_some() {
-            reading.notes.push(format!("nothing is said of what human_{} does; it walks its way", i + 1));
+            reading.notes.push(format!("nothing is said of what human_{} does; they walk their path", i + 1));
         }
     }
     if request.rough_scenario.is_none() {

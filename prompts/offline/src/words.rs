@@ -16,6 +16,8 @@ pub(crate) struct Word {
     pub(crate) to: usize,
     /// Whether something was read from it.
     pub(crate) used: bool,
+    /// Whether it only stands in a phrase that was read, and no rule read the word itself: `left` in `the left visitor`.
+    pub(crate) skimmed: bool,
     /// Whether it is written with a capital letter.
     pub(crate) capital: bool,
     /// A number that names something (`case 14`), or a word that only describes the robot: read by nobody.
@@ -47,6 +49,11 @@ impl Word {
             }
         };
         if self.label { None } else { lexicon().numbers.get(&self.text).copied().or_else(digits) }
+    }
+
+    /// Whether no rule read it.
+    pub(crate) fn unread(&self) -> bool {
+        !self.used || self.skimmed
     }
 
     /// Whether it is written in digits.
@@ -341,6 +348,7 @@ pub(crate) fn word(text: String, from: usize, to: usize) -> Word {
         from,
         to,
         used: false,
+        skimmed: false,
         capital: false,
         label: false,
         after_colon: false,

@@ -267,18 +267,50 @@ fn who_passes_beside_the_encounter_is_there_when_it_is_nearest() {
 }
 
 #[test]
-fn a_wish_that_nothing_was_played_for_stands_beside_the_verdict() {
+fn a_run_that_shows_all_its_clauses_is_invalid_while_a_wish_is_not_played() {
     let wish = |words: &str| {
         let message = format!("`{words}`: what somebody does is played once");
-        socrates_model::Fault::new(socrates_model::FaultCode::PRead, "rough_scenario", message)
+        socrates_model::Fault::new(socrates_model::FaultCode::PRead, "rough_scenario", message).about([words])
     };
     let mut case = asked_to_give_way();
+    let yields = || Walk::human_through(1, &[(0., 0., -0.3), (9.2, 0., -0.3), (10., 0., 0.6), (40., 0., 0.6)]);
+    let shown = recording(&[asks(9.0), yields().leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
     let stays = Walk::human_through(1, &[(0., 0., -0.3), (18., 0., -0.3), (19., 0., 0.6), (40., 0., 0.6)]);
-    let run = recording(&[asks(9.0), stays.leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
-    assert!(!case.judge(&run).verdict_text.contains("not played"));
+    let otherwise = recording(&[asks(9.0), stays.leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
+    let never = recording(&[asks(90.0), yields().leaf(0.0, 1)], 34.0, 0.01);
+    let verdicts = |case: &Case| [&shown, &otherwise, &never].map(|run| case.judge(run).verdict);
+    assert_eq!(verdicts(&case), [Verdict::Realised, Verdict::Contradicted, Verdict::NotTriggered]);
+
     if let Some(reading) = &mut case.reading {
-        reading.problems = vec![wish("again and again"), wish("dances")];
+        reading.problems = vec![wish("drops"), wish("kneels down"), wish("drops")];
+        reading.ignored = vec!["cup".to_owned()];
     }
-    let text = case.judge(&run).verdict_text;
-    assert!(text.ends_with(" · not played: `again and again` and 1 more"), "{text}");
+    assert_eq!(verdicts(&case), [Verdict::Invalid, Verdict::Contradicted, Verdict::NotTriggered]);
+    let report = case.judge(&shown);
+    let start = "part of the request is not played: `drops`, `kneels down` · 5 of 5 setup clauses";
+    assert!(
+        report.verdict_text.starts_with(start) && report.verdict_text.ends_with(" · words not read: `cup`"),
+        "{}",
+        report.verdict_text
+    );
+    assert_eq!((report.score, report.repair), (0.0, None), "no author can mend a wish that cannot be played");
+    let text = case.judge(&otherwise).verdict_text;
+    assert!(text.ends_with(" · not played: `drops`, `kneels down` · words not read: `cup`"), "{text}");
+}
+
+#[test]
+fn a_planner_that_prevents_a_scenario_does_so_also_where_a_wish_is_not_played() {
+    let mut case = asked_to_give_way();
+    let message = "`sings` cannot be simulated";
+    if let Some(reading) = &mut case.reading {
+        reading.problems = vec![
+            socrates_model::Fault::new(socrates_model::FaultCode::PRead, "rough_scenario", message).about(["sings"]),
+        ];
+    }
+    let yields = || Walk::human_through(1, &[(0., 0., -0.3), (9.2, 0., -0.3), (10., 0., 0.6), (40., 0., 0.6)]);
+    let reference = recording(&[asks(9.0), yields().leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
+    let mut other = recording(&[asks(90.0), yields().leaf(0.0, 1)], 34.0, 0.01);
+    other.header.planner = "reactive".into();
+    let report = crate::score(&crate::Evidence { reference: Some(&reference), ..case.evidence(&other) });
+    assert_eq!(report.verdict, Verdict::RobotPrevented, "{}", report.verdict_text);
 }

@@ -131,9 +131,18 @@ pub(crate) fn recording(walks: &[Walk], seconds: f64, step_s: f64) -> Recording 
                 role: if walk.agent == AgentId::Robot { "robot".into() } else { "person".into() },
             })
             .collect(),
-        leaves: ["", "RegularNav", "RunAwayFromRobot", "FollowRobot", "LookAtRobot", "BlockRobot", "GiveWaytoRobot"]
-            .map(String::from)
-            .to_vec(),
+        leaves: [
+            "",
+            "RegularNav",
+            "RunAwayFromRobot",
+            "FollowRobot",
+            "LookAtRobot",
+            "BlockRobot",
+            "GiveWaytoRobot",
+            "StandStill",
+        ]
+        .map(String::from)
+        .to_vec(),
     };
     let ticks = (seconds / step_s).round() as u64;
     let mut frames = Vec::new();

@@ -44,6 +44,8 @@ mod lasting;
 #[cfg(test)]
 mod meetings;
 #[cfg(test)]
+mod reasons;
+#[cfg(test)]
 mod scenarios;
 
 pub use doubts::doubts;

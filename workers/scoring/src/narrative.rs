@@ -153,7 +153,9 @@ fn near(signals: &Signals<'_>, t: f64) -> String {
         })
         .filter(|(_, moment)| moment.ahead_m > 0.0 && moment.distance_m < 3.0)
         .min_by(|a, b| a.1.distance_m.total_cmp(&b.1.distance_m));
-    nearest.map_or_else(String::new, |(human, moment)| format!(", {human} {:.1} m ahead", moment.distance_m))
+    nearest.map_or_else(String::new, |(human, moment)| {
+        format!(", {human} {:.1} m ahead, center to center", moment.distance_m)
+    })
 }
 
 /// The closest approach of every human, where they come near at all.
@@ -163,8 +165,9 @@ fn closest(signals: &Signals<'_>) -> Vec<(f64, String)> {
         .iter()
         .filter_map(|(human, moments)| {
             let moment = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m))?;
-            (moment.distance_m < 5.0)
-                .then(|| (moment.t, format!("{human} and the robot are closest, {:.2} m", moment.distance_m)))
+            (moment.distance_m < 5.0).then(|| {
+                (moment.t, format!("{human} and the robot are closest, {:.2} m center to center", moment.distance_m))
+            })
         })
         .collect()
 }
@@ -199,7 +202,7 @@ pub(crate) fn robot_text(scene: &Scene<'_>, judged: &Judged) -> String {
         .filter_map(|((_, human), distance)| Some((distance.least()?, human.agent)))
         .min_by(|a, b| a.0.1.total_cmp(&b.0.1));
     if let Some(((t, distance), who)) = least {
-        parts.push(format!("smallest distance {distance:.2} m ({who} at {t:.1} s)"));
+        parts.push(format!("smallest distance {distance:.2} m (surface to surface, {who} at {t:.1} s)"));
     }
     let contacts = scene.distances.iter().filter(|distance| distance.least().is_some_and(|(_, d)| d < 0.0)).count();
     if contacts > 0 {

@@ -28,8 +28,7 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
             if faults.is_empty() {
                 evidence.proposal?;
                 for missing in &judged.uncovered {
-                    let message = format!("{missing}; give expected_events a must-clause of role setup for it");
-                    faults.push((Stage::Proposal, Fault::new(FaultCode::PVerify, "expected_events", message)));
+                    faults.push((Stage::Proposal, Fault::new(FaultCode::PVerify, "expected_events", missing)));
                 }
             }
         }
@@ -57,8 +56,8 @@ pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<R
 /// Code, stage and message of a clause that was missed.
 fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
     let (code, stage) = match &clause.predicate {
+        _ if finding.early => (FaultCode::DEarly, Stage::Behaviors),
         predicate if is_meeting(predicate) => (FaultCode::DNoMeet, Stage::Paths),
-        Predicate::Reacts { .. } if finding.early => (FaultCode::DEarly, Stage::Behaviors),
         // Who was never near could not act: that is for the paths.
         Predicate::Blocks { .. }
         | Predicate::Looks { .. }

@@ -84,15 +84,18 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    pub(crate) fn judge(&self, run: &Recording) -> Report {
-        let evidence = Evidence {
+    pub(crate) fn evidence<'a>(&'a self, run: &'a Recording) -> Evidence<'a> {
+        Evidence {
             location: Some(&self.place),
             proposal: Some(&self.plan),
             paths: Some(&self.ways),
             reading: self.reading.as_ref(),
             ..Evidence::of(run)
-        };
-        let report = score(&evidence);
+        }
+    }
+
+    pub(crate) fn judge(&self, run: &Recording) -> Report {
+        let report = score(&self.evidence(run));
         // Every report survives its file.
         let text = serde_json::to_string(&report).unwrap();
         assert_eq!(serde_json::from_str::<Report>(&text).unwrap(), report);

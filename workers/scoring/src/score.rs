@@ -3,7 +3,7 @@
 use socrates_model::{FORMAT, Predicate, Report, Verdict};
 
 use crate::evidence::Evidence;
-use crate::fidelity::{Signals, encounter_gaps, judge, rule};
+use crate::fidelity::{Signals, encounter_gaps, judge, rule, ruling_of_played};
 use crate::metrics::{self, Scene};
 use crate::tracks::{TrackFault, Tracks};
 use crate::{narrative, repair};
@@ -64,12 +64,12 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
     report
 }
 
-/// The verdict alone, without metrics.
+/// The verdict on what was played, without metrics.
 pub(crate) fn verdict_of(evidence: &Evidence<'_>) -> Result<Verdict, TrackFault> {
     let tracks = Tracks::read(evidence.recording)?;
     let signals = Signals::new(evidence, &tracks);
     let judged = judge(&signals);
-    Ok(rule(evidence, &judged, &encounter_gaps(&signals), None).verdict)
+    Ok(ruling_of_played(evidence, &judged, &encounter_gaps(&signals), None).verdict)
 }
 
 /// Whether a predicate tells of a meeting that the paths must make.

@@ -5,12 +5,13 @@ use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
 use crate::fidelity::company::follow_marks;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::gaps;
-use crate::fidelity::leaves::does;
+use crate::fidelity::leaves::{LeafSpan, does};
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
 use crate::fidelity::reactions::said_after;
 use crate::fidelity::signals::{Moment, Signals};
+use crate::fidelity::since::{since, since_act};
 use crate::fidelity::windows::{Mark, held, longest_s, stretches};
-use crate::tracks::MOVING_MPS;
+use crate::tracks::{MOVING_MPS, Sample};
 
 /// Heading within this of the robot is looking at it, rad (20°).
 const LOOK_RAD: f64 = 0.349_065_850_398_866;
@@ -66,10 +67,14 @@ pub(super) fn blocks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findi
     if let Some(found) = absent(signals, human) {
         return found;
     }
+    let from = match since_act(signals, human, &Action::Block) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
     let end = signals.arrived_s.unwrap_or(f64::INFINITY);
     let marks = signals.of(human).iter().filter(|moment| moment.t <= end).map(block_mark).collect();
     let what = format!("in the robot's way within {BLOCK_M} m for {for_s:.1} s");
-    lasting(signals, human, marks, for_s, 4.0, &what)
+    from.told(lasting(signals, human, from.marks(marks), for_s, 4.0, &what))
 }
 
 /// The human has stopped and looks at the robot for some time.
@@ -77,6 +82,10 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
     if let Some(found) = absent(signals, human) {
         return found;
     }
+    let from = match since_act(signals, human, &Action::LookAtRobot) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
     // Who looks by a rule looks while its leaf runs; one who only happens to face the robot was not startled.
     let by_rule = signals.tells_leaves
         && signals
@@ -92,26 +101,41 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
     let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
-    lasting(signals, human, marks, for_s, GESTURE_M, &format!("stopped and looking at the robot for {for_s:.1} s"))
+    let what = format!("stopped and looking at the robot for {for_s:.1} s");
+    from.told(lasting(signals, human, from.marks(marks), for_s, GESTURE_M, &what))
 }
 
-/// The human stands still for some time.
+/// The human stands still for some time; where that is a reaction, after its reason.
 pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Finding {
     let Some(track) = signals.tracks.human(human) else {
         return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
     };
-    let marks: Vec<Mark> = track.present().map(|sample| Mark::new(sample.t, MOVING_MPS - sample.speed())).collect();
+    let from = match since_act(signals, human, &Action::StandStill) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
+    // Who stands at the end of their path, or waits to set off, walks as far as their tree is concerned.
+    let walking: Vec<&LeafSpan> =
+        signals.leaves_of(human).iter().filter(|span| does(&span.name, &Action::Navigate)).collect();
+    let walks = |t: f64| from.is_reaction() && walking.iter().any(|span| t > span.from_s && t < span.to_s);
+    let mark = |sample: &Sample| {
+        let margin = MOVING_MPS - sample.speed();
+        Mark::new(sample.t, if walks(sample.t) { margin.min(-MOVING_MPS) } else { margin })
+    };
+    let marks = from.marks(track.present().map(mark).collect());
     let longest = longest_s(marks.iter().copied());
-    let text = format!("{human} below {MOVING_MPS} m/s for {longest:.1} s at most ({for_s:.1} s asked)");
-    match held(marks, for_s, 0.0) {
+    let text = format!(
+        "{human} stands still (below {MOVING_MPS} m/s) for {longest:.1} s without a break ({for_s:.1} s asked)"
+    );
+    let found = match held(marks, for_s, 0.0) {
         Some(found) => Finding::by_margin(
             if found.first_s.is_some() { longest - for_s } else { (longest - for_s).min(found.margin) },
             vec![found.first_s.unwrap_or(found.best_s)],
             text,
         ),
         None => Finding::fails(longest - for_s, vec![], text),
-    }
-    .shifted(longest - for_s)
+    };
+    from.told(found.shifted(longest - for_s))
 }
 
 /// The human gets away from the robot by its own motion.
@@ -119,8 +143,13 @@ pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Fin
     if let Some(found) = absent(signals, human) {
         return found;
     }
+    let since = match since_act(signals, human, &Action::RunAway) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
     let moments = signals.of(human);
-    let onsets = seen(signals, human, &Action::RunAway);
+    let mut onsets = seen(signals, human, &Action::RunAway);
+    onsets.retain(|onset| since.counts(*onset));
     let Some(nearest) = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m)) else {
         return Finding::not_applicable("the recording is empty");
     };
@@ -154,7 +183,11 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let moments = signals.of(human);
+    let since = match since_act(signals, human, &Action::GiveWay) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
+    let moments = since.moments(signals.of(human));
     let passing = moments
         .iter()
         .zip(moments.iter().skip(1))
@@ -194,6 +227,11 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
         .collect();
     times.extend(track.samples.iter().find(|sample| sample.gesture == gesture).map(|sample| sample.t));
     times.sort_by(f64::total_cmp);
+    if let AgentId::Human(id) = agent
+        && let Some(early) = before_reason(signals, id, gesture, &mut times)
+    {
+        return early;
+    }
     let reach = |t: f64| -> Option<f64> {
         let me = track.at(t)?;
         let others: Vec<f64> = match agent {
@@ -234,6 +272,21 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
             }
         }
         None => Finding::never(-1.0, vec![], format!("{agent} never says {gesture}")),
+    }
+}
+
+/// Takes the times out at which a human makes a gesture before its reason; the finding where no other is left.
+fn before_reason(signals: &Signals<'_>, human: HumanId, gesture: Gesture, times: &mut Vec<f64>) -> Option<Finding> {
+    let first = times.first().copied()?;
+    let early = |why: String| Finding::fails(-1.0, vec![first], why).too_early();
+    match since(signals, human, |rule| rule.gesture == Some(gesture)) {
+        Ok(from) => {
+            times.retain(|t| from.counts(*t));
+            let text =
+                || from.told(early(format!("{human} says {gesture} at {first:.1} s, only before the reason for it")));
+            times.is_empty().then(text)
+        }
+        Err(never) => Some(early(format!("{human} says {gesture} at {first:.1} s; {}", never.evidence))),
     }
 }
 
@@ -287,32 +340,37 @@ fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>,
     }
 }
 
-/// Times at which the action begins, in order. Where the recording tells leaves, a leaf that does the
-/// action and the motion to be seen while it runs are both needed; else the motion alone decides.
+/// Times at which the action begins, in order.
 pub(super) fn seen(signals: &Signals<'_>, human: HumanId, action: &Action) -> Vec<f64> {
+    spans(signals, human, action).into_iter().map(|(from, _)| from).collect()
+}
+
+/// The motion may last so much longer than the leaf that began it, s.
+const AFTER_LEAF_SECS: f64 = 1.0;
+
+/// Times from which and up to which the action is seen, in order. Where the recording tells leaves, a leaf that does the
+/// action and the motion to be seen while it runs are both needed; else the motion alone decides.
+pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> Vec<(f64, f64)> {
     let (marks, kept_s) = motion(signals, human, action);
     let shown = stretches(marks, kept_s);
-    let spans = signals.leaves_of(human);
-    if spans.is_empty() && !signals.tells_leaves {
+    let leaves = signals.leaves_of(human);
+    if leaves.is_empty() && !signals.tells_leaves {
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }
-        return shown.into_iter().map(|(from, _)| from).collect();
+        return shown;
     }
-    spans
-        .iter()
-        .filter(|span| does(&span.name, action))
-        .filter(|span| {
-            // The motion may last a moment longer than the leaf that began it.
-            shown.iter().any(|(from, to)| *from <= span.to_s + 1.0 && *to >= span.from_s + kept_s.min(0.3))
-        })
-        .map(|span| span.from_s)
-        .collect()
+    let seen = |span: &LeafSpan| {
+        let latest_s = span.to_s + AFTER_LEAF_SECS;
+        let fits = |(from, to): &&(f64, f64)| *from <= latest_s && *to >= span.from_s + kept_s.min(0.3);
+        shown.iter().rfind(fits).map(|(_, to)| (span.from_s, to.min(latest_s)))
+    };
+    leaves.iter().filter(|span| does(&span.name, action)).filter_map(seen).collect()
 }
 
 /// Without leaves, walking away after passing looks like fleeing: only a change of velocity away from
 /// the robot, of at least 0.4 m/s within 2 s, begins a flight.
-fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Vec<f64> {
+fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let Some(track) = signals.tracks.human(human) else { return Vec::new() };
     shown
         .iter()
@@ -327,7 +385,7 @@ fn turns_away(signals: &Signals<'_>, human: HumanId, shown: &[(f64, f64)]) -> Ve
                 _ => false,
             }
         })
-        .map(|(from, _)| *from)
+        .copied()
         .collect()
 }
 

@@ -8,6 +8,7 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::{Gap, arcs, gaps};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
+use crate::fidelity::since::since_follows;
 use crate::fidelity::windows::{Mark, held, longest_s, stretches};
 use crate::tracks::MOVING_MPS;
 
@@ -49,7 +50,12 @@ pub(super) fn follows(
     };
     let Some(behind) = signals.track(follower) else { return missing(follower) };
     let Some(lead) = signals.track(leader) else { return missing(leader) };
-    let gaps = gaps(lead, behind);
+    let from = match since_follows(signals, follower, leader) {
+        Ok(from) => from,
+        Err(never) => return never,
+    };
+    let mut gaps = gaps(lead, behind);
+    gaps.retain(|gap| from.counts(gap.t));
     let marks = follow_marks(&gaps, gap_m);
     let [low, high] = gap_m;
     let what = format!("{follower} behind {leader} with a gap of {low:.1} to {high:.1} m for {for_s:.1} s");

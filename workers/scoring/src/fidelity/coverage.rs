@@ -28,7 +28,7 @@ pub(super) fn uncovered(evidence: &Evidence<'_>, clauses: &[(Clause, Finding)]) 
             let group = human.group;
             // A clause that the map cannot judge verifies nobody.
             if !judged.iter().any(|clause| about(clause, human.id, group, count)) {
-                missing.push(format!("{}: no must-clause about this human could be judged", human.id));
+                missing.push(format!("nothing that could be judged shows what {} does", human.id));
             }
         }
     }
@@ -36,7 +36,10 @@ pub(super) fn uncovered(evidence: &Evidence<'_>, clauses: &[(Clause, Finding)]) 
         for fact in &reading.facts {
             // A clause of a fact may be dropped with a note where the map has no doors; it must have been promised.
             if asks(&fact.kind) && !deciding.iter().any(|clause| covers(clause, fact)) {
-                missing.push(format!("fact {} (\"{}\"): no must-clause", fact.id, fact.quote));
+                missing.push(format!(
+                    "\"{}\" was asked for, and no clause shows whether it happened (fact {})",
+                    fact.quote, fact.id
+                ));
             }
         }
     }

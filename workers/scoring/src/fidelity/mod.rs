@@ -25,6 +25,7 @@ mod ring;
 mod robot;
 mod setting;
 mod signals;
+mod since;
 mod times;
 mod verdict;
 mod windows;
@@ -38,3 +39,5 @@ pub use verdict::{Ruling, rule};
 
 pub(crate) use gaps::encounter_gaps;
 pub(crate) use leaves::does;
+pub(crate) use since::since;
+pub(crate) use verdict::ruling_of_played;

@@ -13,6 +13,9 @@ const REACH_M: f64 = 2.5;
 const WALL_M: f64 = 0.02;
 /// Places that differ in width by less than this are equally narrow, m: what a cell of a map makes of it.
 const EQUAL_M: f64 = 0.1;
+/// Distance of an opening from the nodes on both of its sides, m, or half of the way between them where that is shorter:
+/// somebody who stands at the inside node is inside.
+const CLEAR_M: f64 = 0.5;
 
 /// Whether somebody at a node of this kind is inside of something.
 const fn is_inside(class: PlaceClass) -> bool {
@@ -29,8 +32,8 @@ const fn is_inside(class: PlaceClass) -> bool {
 }
 
 /// The opening through which a way leads out of the room that it begins in, as a door that always stands open: across
-/// the way at its first doorway node; where it has none, at the narrowest place between the room and what comes next.
-/// `None` where the way begins in no room, or no walls bound the opening.
+/// the way at its first doorway node; where it has none, at the narrowest place between the room and what comes next, of
+/// equally narrow ones the outermost. `None` where the way begins in no room, or no walls bound the opening.
 #[must_use]
 pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -> Option<Door> {
     let class = |id: &NodeId| place.graph.node(id).map(|node| PlaceClass::of_type(&node.kind));
@@ -41,35 +44,70 @@ pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -
     let doorway = way.iter().position(|id| class(id) == Some(PlaceClass::Doorway));
     let outside = way.iter().position(|id| class(id).is_some_and(|class| !is_inside(class)))?;
     // A doorway farther on belongs to another room.
-    let (door, nodes) = match doorway.filter(|at| *at == outside) {
+    let (door, nodes): (Option<&NodeId>, &[NodeId]) = match doorway.filter(|at| *at == outside) {
         Some(at) => (way.get(at), way.get(at.checked_sub(1)?..way.len().min(at + 2))?),
         // Plain nodes say nothing of a room without a doorway.
         None if class(first) == Some(PlaceClass::Plain) => return None,
         None => (None, way.get(outside.checked_sub(1)?..=outside)?),
     };
-    let near = door.and_then(|id| place.graph.node(id)).map(|node| node.at);
-    let (from, to) = narrowest(field, &place.graph.polyline(nodes), near)?;
+    let line = place.graph.polyline(nodes);
+    let (from, to) = match door.and_then(|id| place.graph.node(id)) {
+        Some(node) => narrowest(field, &line, node.at, NEAR_M)?,
+        None => between(field, &line)?,
+    };
     let id = door.or_else(|| nodes.first()).map(ToString::to_string)?;
     let kind = if class(first) == Some(PlaceClass::Elevator) { DoorKind::Elevator } else { DoorKind::Room };
     let inside = nodes.first().cloned().into_iter().collect();
     Some(Door { id, kind, from, to, opens: DoorOpens::Always, hold_s: 0.0, inside })
 }
 
-/// The way out of the room of a node: to the nearest doorway and one node on.
+/// The way out of the room of a node: to the nearest node that is not inside of anything and, where that is a doorway, one
+/// node on.
 #[must_use]
 pub(super) fn way_out(graph: &SceneGraph, from: &NodeId) -> Option<Vec<NodeId>> {
-    let doorways = graph.nodes.iter().filter(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway);
-    let mut way = doorways
+    let class = |id: &NodeId| graph.node(id).map(|node| PlaceClass::of_type(&node.kind));
+    let outside = graph.nodes.iter().filter(|node| !is_inside(PlaceClass::of_type(&node.kind)));
+    let mut way = outside
         .filter_map(|node| graph.shortest(from, &node.id))
         .min_by(|a, b| graph.length_m(a).total_cmp(&graph.length_m(b)))?;
-    let on = way.last().and_then(|last| graph.neighbors(last).into_iter().find(|next| !way.contains(next)));
-    way.extend(on);
+    let last = way.last()?;
+    let on = graph.neighbors(last).into_iter().find(|next| !way.contains(next));
+    way.extend(on.filter(|_| class(last) == Some(PlaceClass::Doorway)));
     Some(way)
 }
 
-/// Ends of the shortest line across a way from wall to wall; of equal ones the nearest to a point.
-fn narrowest(field: &DistanceField, way: &[Point], near: Option<Point>) -> Option<(Point, Point)> {
-    let mut best: Option<(f64, f64, (Point, Point))> = None;
+/// Ends of the shortest line across a way from an inside node to an outside node: the narrowest place, of equally narrow ones
+/// the outermost, and at some distance from both nodes. A node may be drawn in the very opening of its room, or a corridor
+/// go on as wide as the car: then the line is moved along the way.
+fn between(field: &DistanceField, way: &[Point]) -> Option<(Point, Point)> {
+    let length_m: f64 = way.windows(2).map(|pair| if let [a, b] = pair { (b - a).norm() } else { 0.0 }).sum();
+    let clear_m = CLEAR_M.min(length_m / 2.0);
+    let outermost = along(way, length_m - clear_m)?;
+    let (left, right) = narrowest(field, way, outermost, f64::INFINITY)?;
+    let first = way.first()?;
+    let middle = left + (right - left) / 2.0;
+    let inside = (middle - first).norm();
+    let moved = if inside < clear_m { along(way, clear_m)? - along(way, inside)? } else { Vector::zeros() };
+    Some((left + moved, right + moved))
+}
+
+/// The point so far along a way.
+fn along(way: &[Point], mut length_m: f64) -> Option<Point> {
+    for pair in way.windows(2) {
+        let [a, b] = pair else { continue };
+        let piece = (b - a).norm();
+        if piece >= length_m && piece > 0.0 {
+            return Some(a + (b - a) * (length_m / piece));
+        }
+        length_m -= piece;
+    }
+    way.last().copied()
+}
+
+/// Ends of the shortest line across a way from wall to wall, of places within a distance of a point; of equally narrow ones
+/// the nearest to it.
+fn narrowest(field: &DistanceField, way: &[Point], near: Point, within_m: f64) -> Option<(Point, Point)> {
+    let mut places: Vec<(f64, f64, (Point, Point))> = Vec::new();
     for pair in way.windows(2) {
         let [a, b] = pair else { continue };
         let length = (b - a).norm();
@@ -82,21 +120,17 @@ fn narrowest(field: &DistanceField, way: &[Point], near: Option<Point>) -> Optio
         let steps = (length / STEP_M).floor() as u32;
         for step in 0..=steps {
             let at = a + ahead * (f64::from(step) * STEP_M);
-            let off = near.map_or(0.0, |near| (at - near).norm());
-            if off > NEAR_M {
+            let off = (at - near).norm();
+            if off > within_m {
                 continue;
             }
             let Some((left, right)) = to_wall(field, &at, &across).zip(to_wall(field, &at, &-across)) else { continue };
-            let width = (left - right).norm();
-            let better = best
-                .as_ref()
-                .is_none_or(|(least, far, _)| width < least - EQUAL_M || width < least + EQUAL_M && off < *far);
-            if better {
-                best = Some((width, off, (left, right)));
-            }
+            places.push(((left - right).norm(), off, (left, right)));
         }
     }
-    best.map(|(_, _, line)| line)
+    let least = places.iter().map(|(width, ..)| *width).min_by(f64::total_cmp)?;
+    let narrow = places.into_iter().filter(|(width, ..)| *width < least + EQUAL_M);
+    narrow.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(_, _, line)| line)
 }
 
 /// The wall that a line from a point meets, if it does so within reach.
@@ -145,5 +179,46 @@ mod tests {
         let door = found(&place, &["r", "d", "c"]).unwrap();
         assert!((door.middle().x - 4.1).abs() < 0.25 && (door.to - door.from).norm() < 1.4, "{door:?}");
         assert_eq!(found(&room(["NODE", "NODE", "CORRIDOR"]), &["r", "d", "c"]), None, "plain nodes tell of no room");
+    }
+
+    /// A car of constant width behind the wall x = 4, with a node deep inside and one near its opening; the lobby before it.
+    fn car(front_x: f64) -> Location {
+        floor(
+            &[(4., 0.9, 9., 4.), (4., -4., 9., -0.9), (7., -0.9, 9., 0.9)],
+            &[
+                ("back", "WITHIN_ELEVATOR_2", 6.4, 0.),
+                ("front", "WITHIN_ELEVATOR_2", front_x, 0.),
+                ("out", "OUTSIDE_ELEVATOR_2", 2.6, 0.),
+                ("hall", "CORRIDOR", 2.6, 6.),
+                ("d", "DOORWAY", 2.6, 7.),
+            ],
+            &[("back", "front"), ("front", "out"), ("out", "hall"), ("hall", "d")],
+        )
+    }
+
+    #[test]
+    fn a_car_told_by_node_types_alone_has_its_opening_outside_its_nodes() {
+        for front_x in [5.0, 4.3, 4.0] {
+            let place = car(front_x);
+            for way in [&["front", "out", "hall"][..], &["back", "front", "out", "hall"]] {
+                let door = found(&place, way).unwrap();
+                assert_eq!((door.kind, door.id.as_str()), (DoorKind::Elevator, "front"));
+                let x = door.middle().x;
+                assert!(x < front_x - 0.3 && x > 2.9 && x < 4.1, "a node at {front_x}, its opening at {x}");
+                let inside = place.graph.nodes[1].at;
+                for node in &place.graph.nodes[..2] {
+                    assert!(door.depth_m(&node.at, &inside) > 0.3, "{}: {door:?}", node.id);
+                }
+                assert!(door.depth_m(&place.graph.nodes[2].at, &inside) < -0.3, "{door:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn whoever_stays_in_a_car_without_a_door_has_its_own_opening_and_no_other_doorway() {
+        let place = car(5.0);
+        let way = way_out(&place.graph, &node("back")).unwrap();
+        assert_eq!(way, vec![node("back"), node("front"), node("out")]);
+        assert!(opening(&place, &DistanceField::new(&place.grid), &way).is_some());
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 
-use crate::fidelity::acts::{seen, timely};
+use crate::fidelity::acts::{spans, timely};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::kept::kept;
 use crate::fidelity::leaves::does;
@@ -23,7 +23,7 @@ const AT_GOAL_M: f64 = 0.6;
 /// How much farther than its stated distance a trigger may be and still not be early, m.
 const EARLY_M: f64 = 0.3;
 /// How much sooner than its trigger an action may start, s: a tree reads the tick before.
-const EARLY_SECS: f64 = 0.3;
+pub(super) const EARLY_SECS: f64 = 0.3;
 /// How much sooner than after what comes before it a gesture may be made, s.
 const TOO_EARLY_SECS: f64 = 1.5;
 
@@ -91,6 +91,15 @@ fn marks(signals: &Signals<'_>, human: HumanId, when: &[Trigger], slack_m: f64) 
     signals.of(human).iter().map(mark).collect()
 }
 
+/// When all triggers first hold for a human, their distances read loosely; where they never do, the moment that comes nearest.
+pub(super) fn first_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigger]) -> Result<f64, Mark> {
+    let loose = marks(signals, human, when, EARLY_M);
+    match first(loose.iter().copied()) {
+        Some(mark) => Ok(mark.t),
+        None => Err(best(loose).unwrap_or(Mark::new(0.0, -1.0))),
+    }
+}
+
 /// Whether all triggers hold at a moment of a human.
 pub(super) fn holds(signals: &Signals<'_>, human: HumanId, when: &[Trigger], moment: &Moment) -> bool {
     // Only who was passed needs to know how near the robot has been.
@@ -128,7 +137,8 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
         return found;
     }
     let phrase = when.iter().map(Trigger::phrase).collect::<Vec<_>>().join(" and ");
-    let onsets = seen(signals, human, act);
+    let acts = spans(signals, human, act);
+    let onsets: Vec<f64> = acts.iter().map(|(from, _)| *from).collect();
     let strict = marks(signals, human, when, 0.0);
     let loose = marks(signals, human, when, EARLY_M);
     let distance = |t: f64| {
@@ -163,12 +173,21 @@ pub(super) fn reacts(signals: &Signals<'_>, human: HumanId, when: &[Trigger], ac
         );
         return Finding::never(near.margin, vec![near.t], text);
     };
-    let Some(onset) = onsets.iter().copied().find(|onset| *onset >= trigger.t - EARLY_SECS).or_else(|| {
-        // Begun in time under the loose reading, or by another rule, and still going on.
-        onsets.last().copied()
-    }) else {
-        let text = format!("trigger at {:.1} s ({phrase}), but {human} never {}", trigger.t, act.phrase());
-        return Finding::fails(-within_s.max(0.5), vec![trigger.t], text);
+    // Begun in time under the loose reading, or by another rule, it counts where it is still going on then.
+    let loosely_s = first(loose.iter().copied()).map_or(trigger.t, |mark| mark.t.min(trigger.t));
+    let goes_on = || acts.iter().rfind(|(_, to)| *to >= loosely_s - EARLY_SECS).map(|(from, _)| *from);
+    let Some(onset) = onsets.iter().copied().find(|onset| *onset >= trigger.t - EARLY_SECS).or_else(goes_on) else {
+        let start = format!("trigger at {:.1} s ({phrase}), but {human}", trigger.t);
+        return match acts.last() {
+            Some((from, to)) => {
+                let text = format!("{start} {} only before it, from {from:.1} s to {to:.1} s", act.phrase());
+                Finding::fails(to - trigger.t, vec![trigger.t, *from], text).too_early()
+            }
+            None => {
+                let text = format!("{start} never {}", act.phrase());
+                Finding::fails(-within_s.max(0.5), vec![trigger.t], text)
+            }
+        };
     };
     let start = busy_until(signals, human, act, trigger.t);
     let delay = (onset - start).max(0.0);

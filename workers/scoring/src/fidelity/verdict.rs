@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::report::Standing;
-use socrates_model::{Fault, FaultCode, Predicate, Verdict};
+use socrates_model::{Predicate, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
@@ -22,9 +22,32 @@ pub struct Ruling {
     pub score: f64,
 }
 
-/// Rules on the clauses. `reference` is the verdict of the same scenario with the reference robot, if known.
+/// Rules on the clauses, and on what the request asks for beyond them. `reference` is what [`ruling_of_played`] says of the
+/// same scenario with the reference robot, if known.
+///
+/// A run that shows all its clauses is `invalid` while part of the request could not be read or played: nothing is
+/// realised by leaving a wish out. Verdicts that tell of what was played (`contradicted`, `not_triggered`,
+/// `robot_prevented`) take precedence.
 #[must_use]
 pub fn rule(
+    evidence: &Evidence<'_>,
+    judged: &Judged,
+    gaps: &BTreeMap<String, f64>,
+    reference: Option<Verdict>,
+) -> Ruling {
+    let ruling = ruling_of_played(evidence, judged, gaps, reference);
+    let wishes = unplayed_wishes(evidence);
+    if !matches!(ruling.verdict, Verdict::Realised | Verdict::RealisedLate) || wishes.is_empty() {
+        let text = format!("{}{}{}", ruling.text, after(" · not played: ", &wishes), unread_words(evidence));
+        return Ruling { text, ..ruling };
+    }
+    let text =
+        format!("part of the request is not played: {} · {}{}", named(&wishes), ruling.text, unread_words(evidence));
+    Ruling { verdict: Verdict::Invalid, text, score: 0.0 }
+}
+
+/// Rules on the clauses alone, whatever of the request has none.
+pub(crate) fn ruling_of_played(
     evidence: &Evidence<'_>,
     judged: &Judged,
     gaps: &BTreeMap<String, f64>,
@@ -89,29 +112,42 @@ pub fn rule(
     } else if let (Some(from), Some(to)) = times(judged) {
         text.push_str(&format!(" · seen from {from:.1} s to {to:.1} s"));
     }
-    text.push_str(&unplayed(evidence));
     Ruling { verdict: if prevented { Verdict::RobotPrevented } else { own }, text, score: score(judged) }
 }
 
-/// Words of a request named beside a verdict: more of them stand in the report.
-const WORDS_NAMED: usize = 3;
+/// Most quotes of a request beside a verdict; the rest is counted, and all of them stand in the reading.
+const MOST_QUOTES: usize = 3;
 
-/// Wishes of the text that nothing was played for, and words that nothing was read from: said beside every verdict, so
-/// that none is read as more than it is.
-fn unplayed(evidence: &Evidence<'_>) -> String {
-    let Some(reading) = evidence.reading else { return String::new() };
-    let more = |count: usize| if count > 0 { format!(" and {count} more") } else { String::new() };
-    let wish = |fault: &&Fault| fault.at == "rough_scenario" && fault.code == FaultCode::PRead;
-    let wishes: Vec<&str> =
-        reading.problems.iter().filter(wish).map(|fault| fault.message.split('`').nth(1).unwrap_or_default()).collect();
-    let mut text = wishes
-        .split_first()
-        .map_or_else(String::new, |(first, rest)| format!(" · not played: `{first}`{}", more(rest.len())));
-    let named: Vec<String> = reading.ignored.iter().take(WORDS_NAMED).map(|word| format!("`{word}`")).collect();
-    if !named.is_empty() {
-        text.push_str(&format!(" · words not read: {}{}", named.join(", "), more(reading.ignored.len() - named.len())));
+/// The words of every problem of the reading, as quoted in the request; where a problem quotes none, the key of the request.
+fn unplayed_wishes(evidence: &Evidence<'_>) -> Vec<String> {
+    let mut wishes: Vec<String> = Vec::new();
+    for problem in evidence.reading.map_or(&[][..], |reading| &reading.problems) {
+        let at = std::slice::from_ref(&problem.at);
+        for wish in if problem.quotes.is_empty() { at } else { &problem.quotes } {
+            if !wishes.contains(wish) {
+                wishes.push(wish.clone());
+            }
+        }
     }
-    text
+    wishes
+}
+
+/// Words of the request that no rule of the reader used: said beside every verdict, so that none is taken for more than it is.
+fn unread_words(evidence: &Evidence<'_>) -> String {
+    after(" · words not read: ", evidence.reading.map_or(&[][..], |reading| &reading.ignored))
+}
+
+/// The first quotes after an introduction; nothing where there are none.
+fn after(introduction: &str, quotes: &[String]) -> String {
+    if quotes.is_empty() { String::new() } else { format!("{introduction}{}", named(quotes)) }
+}
+
+/// The first quotes, and how many more there are.
+fn named(quotes: &[String]) -> String {
+    let first: Vec<String> = quotes.iter().take(MOST_QUOTES).map(|quote| format!("`{quote}`")).collect();
+    let rest = quotes.len() - first.len();
+    let more = if rest > 0 { format!(" and {rest} more") } else { String::new() };
+    format!("{}{more}", first.join(", "))
 }
 
 /// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.

@@ -2,12 +2,13 @@
 
 use socrates_maps::{Sight, sight_clear};
 use socrates_model::{
-    Action, AgentId, AgentState, Clause, ClauseRole, EventKind, HumanId, Point, Predicate, Recording,
+    Action, AgentId, AgentState, Clause, ClauseRole, EventKind, Gesture, HumanId, Point, Predicate, Recording, Relation,
 };
 
-use super::edit::{ahead_of_time, delayed, stands_at, states, ticks_of};
+use super::edit::{Stood, ahead_of_time, delayed, gestures_from, reacts_first, stands_at, states, ticks_of};
 use crate::evidence::Evidence;
-use crate::fidelity::does;
+use crate::fidelity::{Signals, does, since};
+use crate::tracks::{MOVING_MPS, Tracks};
 
 /// From so far the robot sees somebody who should come up suddenly, m.
 const SEEN_M: (f64, f64) = (6.0, 9.0);
@@ -17,6 +18,13 @@ const LONG_SECS: f64 = 1.5;
 const BEFORE_SECS: f64 = 2.0;
 /// Who is no farther than this from where it starts has not set off, m.
 const SET_OFF_M: f64 = 0.1;
+
+/// A reason that comes no later than this has no time before it for a reaction without a reason, s.
+const REASON_SECS: f64 = 6.0;
+/// A reaction without a reason is over so long before the reason comes, s.
+const CLEAR_SECS: f64 = 2.0;
+/// Less standing than this shows no reaction, s.
+const STANDS_SECS: f64 = 1.0;
 
 type Add<'a> = dyn FnMut(&'static str, String, Recording) + 'a;
 
@@ -44,6 +52,67 @@ pub(super) fn early(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             seen_ahead(evidence, human.id, add);
         }
     }
+    before_reason(evidence, add);
+}
+
+/// What somebody does for a reason, they do before it and not after it: they stand where they start, and walk past when it
+/// comes; they say early what they should answer.
+fn before_reason(evidence: &Evidence<'_>, add: &mut Add<'_>) {
+    let (Some(proposal), Ok(tracks)) = (evidence.proposal, Tracks::read(evidence.recording)) else { return };
+    let (run, signals) = (evidence.recording, Signals::new(evidence, &tracks));
+    for human in &proposal.humans {
+        let id = human.id;
+        for act in [Action::StandStill, Action::LookAtRobot] {
+            let asked = |clause: &Clause| {
+                let stands = matches!(clause.predicate, Predicate::StandsStill { human: who, .. } if who == id);
+                let looks = matches!(clause.predicate, Predicate::Looks { human: who, .. } if who == id);
+                let reacts = matches!(&clause.predicate, Predicate::Reacts { human: who, act: of, .. } if *who == id && *of == act);
+                reacts || stands && act == Action::StandStill || looks && act == Action::LookAtRobot
+            };
+            if matches!(human.relation, Relation::Static | Relation::Staying) || !musts(evidence).any(asked) {
+                continue;
+            }
+            let reason = since(&signals, id, |rule| rule.act == act).ok().filter(|reason| reason.secs() >= REASON_SECS);
+            if let Some(stood) = reason.and_then(|reason| stands(run, &signals, id, &act, reason.secs())) {
+                let about = format!("{id}, {}", act.phrase());
+                add("N: reaction only before its reason", about, reacts_first(run, AgentId::Human(id), &stood));
+            }
+        }
+        for clause in musts(evidence) {
+            let Predicate::Gestures { agent: AgentId::Human(who), gesture } = clause.predicate else { continue };
+            let reason = since(&signals, id, |rule| rule.gesture == Some(gesture)).ok();
+            let Some(reason) = reason.filter(|reason| who == id && reason.secs() >= REASON_SECS) else { continue };
+            let early = says_early(run, AgentId::Human(id), gesture, reason.secs());
+            if let Some(recording) = early {
+                add("N: gesture only before its reason", format!("{id}, {gesture}"), recording);
+            }
+        }
+    }
+}
+
+/// When somebody stands for an act that they do from a time on; nothing where they do not stand, or do it more than once.
+fn stands(run: &Recording, signals: &Signals<'_>, id: HumanId, act: &Action, from_s: f64) -> Option<Stood> {
+    let mut spans = signals.leaves_of(id).iter().filter(|span| does(&span.name, act));
+    let (span, other) = (spans.next()?, spans.next());
+    if other.is_some() || span.from_s < from_s - STANDS_SECS {
+        return None;
+    }
+    let all = states(run, AgentId::Human(id));
+    let from = ticks_of(run, span.from_s);
+    let still = |state: &AgentState| state.speed() < MOVING_MPS;
+    let begins = from + all.iter().skip(from).take_while(|state| !still(state)).count();
+    let ends = begins + all.iter().skip(begins).take_while(|state| still(state)).count();
+    let walks_on = ends < all.len() && ends >= begins + ticks_of(run, STANDS_SECS);
+    let stood = Stood { samples: (begins, ends), leaf_s: (span.from_s, span.to_s) };
+    (walks_on && begins <= ticks_of(run, span.to_s)).then_some(stood)
+}
+
+/// The gesture as long as it was made, but over before its reason comes.
+fn says_early(run: &Recording, agent: AgentId, gesture: Gesture, reason_s: f64) -> Option<Recording> {
+    let all = states(run, agent);
+    let long = all.iter().filter(|state| state.gesture() == gesture).count();
+    let start = ticks_of(run, reason_s - CLEAR_SECS).checked_sub(long)?;
+    (long > 0).then(|| gestures_from(run, agent, gesture, start))
 }
 
 /// Whoever is startled by the robot is so before the door opens.

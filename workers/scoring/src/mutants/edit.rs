@@ -166,6 +166,55 @@ pub(super) fn shifted(run: &Recording, agent: AgentId, by: &Vector) -> Recording
     with_states(run, agent, &new, Some)
 }
 
+/// When somebody stood for an act: the samples, and the times of the leaf.
+pub(super) struct Stood {
+    pub(super) samples: (usize, usize),
+    pub(super) leaf_s: (f64, f64),
+}
+
+/// The agent does an act first, where it starts, for as long as it stood for it, and walks on where it stood.
+pub(super) fn reacts_first(run: &Recording, agent: AgentId, stood: &Stood) -> Recording {
+    let old = states(run, agent);
+    let Some(start) = old.first().copied() else { return run.clone() };
+    let (from, to) = stood.samples;
+    let long = to.saturating_sub(from);
+    let new: Vec<AgentState> = (0..old.len())
+        .filter_map(|k| match k {
+            k if k < long => old.get(from + k).map(|state| AgentState { flags: state.flags, ..still(&start) }),
+            k if k < to => old.get(k - long).copied(),
+            k => old.get(k).copied(),
+        })
+        .collect();
+    let time = |k: usize| old.get(k).map_or(0.0, |state| time_of(run, state));
+    let later_s = time(to) - time(from);
+    // The leaf begins at once; what came before it comes after it, but for the leaf of the beginning, which is that after it.
+    let (begins, ends) = stood.leaf_s;
+    with_states(run, agent, &new, |t| match t {
+        t if t < 1e-9 => None,
+        t if t < begins - 1e-9 => Some(t + later_s),
+        t if t < ends - 1e-9 => Some(t - begins),
+        t if t < ends + 1e-9 => Some(later_s),
+        t => Some(t),
+    })
+}
+
+/// The agent makes a gesture from a sample on for as long as it made it, and never elsewhere.
+pub(super) fn gestures_from(run: &Recording, agent: AgentId, gesture: Gesture, from: usize) -> Recording {
+    let mut found = regestured(run, agent, gesture, Gesture::None);
+    let old = states(run, agent);
+    let long = old.iter().filter(|state| state.gesture() == gesture).count();
+    let begins = old.get(from).map_or(0.0, |state| time_of(run, state));
+    let column = found.frames.iter_mut().filter(|state| state.agent == agent.number());
+    for state in column.skip(from).take(long) {
+        state.flags = state.flags & NO_GESTURE | (u32::from(gesture.code()) << 8);
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a run, not negative")]
+    let time = SimTime::from_nanos(libm::round(begins.max(0.0) * 1e9) as u64);
+    found.events.push(Event { time, kind: EventKind::Gesture { agent, gesture } });
+    found.events.sort_by_key(|event| event.time);
+    found
+}
+
 /// The agent makes another gesture wherever it made one.
 pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Gesture) -> Recording {
     let mut found = run.clone();
