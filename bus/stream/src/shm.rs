@@ -84,6 +84,16 @@ impl ShmConfig {
         Self { root: folder.join(format!("socrates-shm-{user}")), prefix: format!("socrates_{user}_"), user }
     }
 
+    /// Closes the user's segments to others: the library opens one to everybody, a counter of its nodes. What cannot be
+    /// closed is not the user's.
+    fn close_segments(&self) {
+        use std::os::unix::fs::PermissionsExt as _;
+        let segments = std::fs::read_dir(SHM_FOLDER).into_iter().flatten().filter_map(Result::ok);
+        for segment in segments.filter(|entry| entry.file_name().to_string_lossy().starts_with(&self.prefix)) {
+            drop(std::fs::set_permissions(segment.path(), std::fs::Permissions::from_mode(0o600)));
+        }
+    }
+
     /// Makes the folder, or looks whether the one that is there is the user's own and closed to everybody else: another
     /// user may have made one of that name, to read what is put there.
     fn claim(&self) -> Result<(), String> {
@@ -135,6 +145,7 @@ impl Corner {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|why| failed("joining", &why))?;
+        config.close_segments();
         let name = ServiceName::new(&format!("socrates/{run}")).map_err(|why| failed("naming", &why))?;
         Ok(Self { run: run.to_string(), node, name })
     }
