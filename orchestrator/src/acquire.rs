@@ -37,6 +37,10 @@ impl Turn<'_> {
             Worker::new(hello, now)
         });
         worker.seen = now;
+        if worker.hello.stages.is_empty() {
+            // Its first word to this orchestrator was a beat, which names no stage.
+            worker.hello.stages.clone_from(&ask.stages);
+        }
         let draining = worker.draining;
         let repeated = if worker.last.0 == ask.req_id { worker.last.1.clone() } else { Vec::new() };
 

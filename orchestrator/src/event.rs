@@ -71,7 +71,10 @@ pub enum Event {
     /// Time has passed.
     Tick,
     /// The state was rebuilt: arm every timer, tell every stage.
-    Recover,
+    Recover {
+        /// Whether no worker of before can be alive: what they held is handed out again at once, without counting.
+        alone: bool,
+    },
 }
 
 /// An answer to a question.

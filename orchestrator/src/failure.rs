@@ -50,7 +50,14 @@ impl Turn<'_> {
         }
         match class {
             FailureClass::Transient => {
-                let limit = self.state.policy.transient_tries;
+                // A question that got no answer in time may have been paid for; passing trouble costs nothing.
+                let late = [FaultCode::TTimeout, FaultCode::JDeadline];
+                let late = failure.faults.iter().any(|fault| late.contains(&fault.code));
+                let limit = if late && pipeline::is_authored(key.stage) {
+                    self.state.policy.late_tries
+                } else {
+                    self.state.policy.transient_tries
+                };
                 let tries = self.count(key, |job| &mut job.tries.transient);
                 self.wait_or_die(key, number, tries, limit, failure.retry_after_ms, &why);
             }

@@ -132,12 +132,12 @@ fn essence(state: &State) -> Vec<String> {
     jobs.chain(scenarios).collect()
 }
 
-fn restart(world: &mut World) {
+fn restart(world: &mut World, alone: bool) {
     let before = essence(&world.state);
     world.now += 50;
     world.state = State::restore(replay(&world.rows), world.state.policy.clone(), world.now);
     assert_eq!(essence(&world.state), before);
-    world.send(|_| Event::Recover);
+    world.send(|_| Event::Recover { alone });
 }
 
 fn history(seed: u64, length: u64) -> World {
@@ -186,7 +186,10 @@ fn history(seed: u64, length: u64) -> World {
                 1 => drop(world.control(Control::Pause("b".to_owned()))),
                 2 | 3 => drop(world.control(Control::Resume("b".to_owned()))),
                 4..8 => drop(world.control(Control::Requeue(dice.pick(&specs).id))),
-                _ => restart(&mut world),
+                _ => {
+                    let alone = dice.below(3) == 0;
+                    restart(&mut world, alone);
+                }
             },
             _ => {
                 let ms = dice.pick(&[1, 100, 1_000, 16_000, 125_000]);

@@ -37,6 +37,8 @@ mod status;
 #[cfg(test)]
 mod histories;
 #[cfg(test)]
+mod lease_rules;
+#[cfg(test)]
 mod look_rules;
 #[cfg(test)]
 mod rates;
@@ -69,7 +71,7 @@ pub fn step(state: &mut State, event: Event, now: Millis) -> Vec<Effect> {
         Event::Control { control, to } => turn.control(&control, to),
         Event::Gone { instance } => turn.gone(&instance),
         Event::Tick => turn.tick(),
-        Event::Recover => turn.recover(),
+        Event::Recover { alone } => turn.recover(alone),
     }
     turn.finish()
 }

@@ -5,6 +5,9 @@ use socrates_model::{Digest, hash};
 
 use crate::state::Millis;
 
+/// What an authoring attempt may take beside its call, ms: fetching inputs, reading the answer, checking it.
+pub const AFTER_CALL_MS: u64 = 30_000;
+
 /// What the orchestrator allows. Every field has a default that suits one machine and a cluster.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Policy {
@@ -16,16 +19,18 @@ pub struct Policy {
     pub grace_ms: u64,
     /// How long a canceled attempt may take to say so, ms. Default 30 000.
     pub cancel_ms: u64,
-    /// Longest authoring attempt, ms. Default 120 000.
+    /// Longest authoring attempt, ms: the longest call of an author and [`AFTER_CALL_MS`]. Default 120 000.
     pub author_deadline_ms: u64,
     /// Longest simulation attempt, ms. Default 1 200 000: ten times the longest scenario.
     pub simulation_deadline_ms: u64,
     /// Longest scoring attempt, ms. Default 60 000.
     pub scoring_deadline_ms: u64,
-    /// Longest look of a person, ms. Default one day.
+    /// Longest look of a person, ms. Default ten years: whoever looks has all the time they want.
     pub review_deadline_ms: u64,
     /// Transient failures that a job survives. Default 8.
     pub transient_tries: u32,
+    /// Questions without an answer in time that an authoring job survives. Default 3.
+    pub late_tries: u32,
     /// Overloads without a stated wait that a job survives. Default 8.
     pub overload_tries: u32,
     /// Unparsable answers that a job survives. Default 2.
@@ -80,8 +85,9 @@ impl Default for Policy {
             author_deadline_ms: 120_000,
             simulation_deadline_ms: 1_200_000,
             scoring_deadline_ms: 60_000,
-            review_deadline_ms: 86_400_000,
+            review_deadline_ms: 315_360_000_000,
             transient_tries: 8,
+            late_tries: 3,
             overload_tries: 8,
             unparsable_tries: 2,
             feedback_tries: 2,
@@ -115,6 +121,7 @@ impl Policy {
         Self {
             feedback_tries: times.saturating_sub(1),
             reseeds: times.min(1),
+            late_tries: times,
             unparsable_tries: times.min(self.unparsable_tries),
             reproposals: times.min(self.reproposals),
             ..self

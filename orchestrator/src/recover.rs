@@ -7,7 +7,7 @@ use socrates_model::job::JobKey;
 use socrates_model::wire::Hello;
 
 use crate::policy::Policy;
-use crate::state::{Attempt, Job, JobResult, JobState, Millis, Scenario, State, Worker};
+use crate::state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, State, Worker};
 use crate::turn::Turn;
 
 /// What a store holds.
@@ -107,8 +107,11 @@ impl State {
 
 impl Turn<'_> {
     /// Arms every timer in full and tells every stage that has work.
-    pub(crate) fn recover(&mut self) {
+    pub(crate) fn recover(&mut self, alone: bool) {
         let keys: Vec<JobKey> = self.state.jobs.keys().cloned().collect();
+        if alone {
+            self.end_all_leases(&keys);
+        }
         let policy = self.state.policy.clone();
         let now = self.now;
         for key in keys {
@@ -135,5 +138,30 @@ impl Turn<'_> {
             self.arm(&key, due);
         }
         self.moved.extend(self.state.scenarios.keys().cloned());
+    }
+
+    /// Ends what workers held that are gone for certain: nobody waits for a lease that nobody can renew.
+    fn end_all_leases(&mut self, keys: &[JobKey]) {
+        for key in keys {
+            match self.job(key).map(|job| job.state) {
+                Some(JobState::Leased) => self.hand_out_again(key),
+                Some(JobState::Canceling) => {
+                    self.end_current(key, AttemptEnd::Canceled);
+                    self.move_to(key, JobState::Canceled, "canceled");
+                }
+                Some(
+                    JobState::Blocked
+                    | JobState::Ready
+                    | JobState::Delayed
+                    | JobState::Succeeded
+                    | JobState::Failed
+                    | JobState::Dead
+                    | JobState::Canceled
+                    | JobState::Superseded,
+                )
+                | None => {}
+            }
+        }
+        self.state.workers.clear();
     }
 }

@@ -1,7 +1,7 @@
 //! Tick and Gone: leases and deadlines run out, pauses end, workers disappear.
 
 use socrates_model::fault::{FailureClass, Fault, FaultCode};
-use socrates_model::job::JobKey;
+use socrates_model::job::{JobKey, Stage};
 
 use crate::failure::Failure;
 use crate::state::{AttemptEnd, JobState};
@@ -52,6 +52,7 @@ impl Turn<'_> {
                     },
                 );
             }
+            JobState::Leased if self.now >= lease_until && key.stage == Stage::Review => self.hand_out_again(key),
             JobState::Leased if self.now >= lease_until => {
                 let instance = job.current().map(|attempt| attempt.instance.clone()).unwrap_or_default();
                 let message = format!("worker `{instance}` was not heard of in time");
@@ -79,6 +80,13 @@ impl Turn<'_> {
             | JobState::Canceled
             | JobState::Superseded => {}
         }
+    }
+
+    /// Hands out again what a lost worker held, without counting. A person's job is always handed out again: that
+    /// the program before them went away says nothing against the job.
+    pub(crate) fn hand_out_again(&mut self, key: &JobKey) {
+        self.end_current(key, AttemptEnd::Lapsed);
+        self.offer(key, "its worker was lost");
     }
 
     /// A worker's token is gone: its leases shrink to the grace; a beat before then restores them.

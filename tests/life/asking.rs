@@ -8,7 +8,7 @@ use socrates_tests::program::{Finished, finish, start_typed};
 use crate::{PROGRAM, WAREHOUSE};
 
 /// Runs `run --ask` with these lines typed.
-fn asked(folder: &Path, name: &str, typed: &str, editor: &str) -> (Finished, Value) {
+pub(crate) fn asked(folder: &Path, name: &str, typed: &str, editor: &str) -> (Finished, Value) {
     let file = folder.join("asked.toml");
     std::fs::write(&file, WAREHOUSE).unwrap();
     let (file, out) = (file.display().to_string(), folder.join("bundle").display().to_string());

@@ -5,12 +5,15 @@ mod asking;
 mod bad_input;
 mod bundles;
 mod evaluations;
+mod folders;
+mod leaving;
 mod live;
 mod models;
 mod originals;
 mod pages;
 mod repairs;
 mod requests;
+mod strangers;
 mod training;
 
 use std::path::Path;

@@ -186,6 +186,8 @@ impl Bus for ZenohBus {
         let body = fits(key, body)?;
         let failed = |why: &dyn std::fmt::Display| transport(&format!("asking `{key}`"), &why.to_string());
         let late = || LinkError::Timeout { key: key.to_owned(), after: timeout };
+        // A channel of our own: whoever gave up waiting is no error, which the transport's own channel would print.
+        let (heard, mut replies) = tokio::sync::mpsc::channel(1);
         let get = self
             .session
             .get(full)
@@ -194,12 +196,13 @@ impl Bus for ZenohBus {
             .consolidation(ConsolidationMode::None)
             .congestion_control(CongestionControl::Block)
             .express(true)
-            .timeout(timeout);
-        let replies = get.await.map_err(|why| failed(&why))?;
+            .timeout(timeout)
+            .callback(move |reply| drop(heard.try_send(reply)));
+        get.await.map_err(|why| failed(&why))?;
         // The transport has the same limit; ours also holds where a router forgets its own.
-        let first = tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), replies.recv_async());
+        let first = tokio::time::timeout(timeout.saturating_add(Duration::from_millis(250)), replies.recv());
         match first.await {
-            Ok(Ok(reply)) => match reply.into_result() {
+            Ok(Some(reply)) => match reply.into_result() {
                 Ok(sample) => Ok(bytes(sample.payload())),
                 Err(error) => match error.payload().try_to_string() {
                     Ok(text) if text.eq_ignore_ascii_case("timeout") => Err(late()),
@@ -207,7 +210,7 @@ impl Bus for ZenohBus {
                     Err(why) => Err(failed(&why)),
                 },
             },
-            Ok(Err(_no_more_replies)) => Err(LinkError::NoReply { key: key.to_owned() }),
+            Ok(None) => Err(LinkError::NoReply { key: key.to_owned() }),
             Err(_elapsed) => Err(late()),
         }
     }

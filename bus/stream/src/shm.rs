@@ -66,18 +66,49 @@ impl From<&ShmState> for AgentState {
     }
 }
 
-/// Where shared memory is arranged. Writers and readers must agree.
+/// Where shared memory is arranged: a corner of one user, which nobody else can enter. Writers and readers must agree.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShmConfig {
-    /// Folder of the small files by which both sides find each other. Default `/tmp/socrates-shm`.
+    /// Folder of the small files by which both sides find each other. Made where needed; it has to belong to `user` alone.
     pub root: PathBuf,
-    /// Begin of every segment's name. Default `socrates_`.
+    /// Begin of every segment's name.
     pub prefix: String,
+    /// Number of the user whose corner it is.
+    pub user: u32,
 }
 
-impl Default for ShmConfig {
-    fn default() -> Self {
-        Self { root: PathBuf::from("/tmp/socrates-shm"), prefix: "socrates_".to_owned() }
+impl ShmConfig {
+    /// The corner of a user in a folder for temporary files: `FOLDER/socrates-shm-USER`.
+    #[must_use]
+    pub fn of_user(folder: &FsPath, user: u32) -> Self {
+        Self { root: folder.join(format!("socrates-shm-{user}")), prefix: format!("socrates_{user}_"), user }
+    }
+
+    /// Closes the user's segments to others: the library opens one to everybody, a counter of its nodes. What cannot be
+    /// closed is not the user's.
+    fn close_segments(&self) {
+        use std::os::unix::fs::PermissionsExt as _;
+        let segments = std::fs::read_dir(SHM_FOLDER).into_iter().flatten().filter_map(Result::ok);
+        for segment in segments.filter(|entry| entry.file_name().to_string_lossy().starts_with(&self.prefix)) {
+            drop(std::fs::set_permissions(segment.path(), std::fs::Permissions::from_mode(0o600)));
+        }
+    }
+
+    /// Makes the folder, or looks whether the one that is there is the user's own and closed to everybody else: another
+    /// user may have made one of that name, to read what is put there.
+    fn claim(&self) -> Result<(), String> {
+        use std::os::unix::fs::{DirBuilderExt as _, MetadataExt as _};
+        match std::fs::DirBuilder::new().mode(0o700).create(&self.root) {
+            Err(why) if why.kind() != std::io::ErrorKind::AlreadyExists => return Err(why.to_string()),
+            Ok(()) | Err(_) => {}
+        }
+        // The folder itself, not what a link of its name points to.
+        let there = std::fs::symlink_metadata(&self.root).map_err(|why| why.to_string())?;
+        let (owner, mode) = (there.uid(), there.mode() & 0o777);
+        if there.is_dir() && owner == self.user && mode == 0o700 {
+            return Ok(());
+        }
+        Err(format!("`{}` is of user {owner} with mode {mode:o}, not of user {} alone", self.root.display(), self.user))
     }
 }
 
@@ -97,6 +128,7 @@ impl Corner {
             what,
             why: format!("{why:?}"),
         };
+        config.claim().map_err(|why| failed("claiming the folder", &why))?;
         // Failures come back as values; the library's own lines would reach a terminal.
         set_log_level(LogLevel::Fatal);
         let mut settings = Config::default();
@@ -113,6 +145,7 @@ impl Corner {
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|why| failed("joining", &why))?;
+        config.close_segments();
         let name = ServiceName::new(&format!("socrates/{run}")).map_err(|why| failed("naming", &why))?;
         Ok(Self { run: run.to_string(), node, name })
     }
@@ -275,8 +308,35 @@ mod tests {
     use crate::csv;
 
     fn config(dir: &FsPath) -> ShmConfig {
+        use std::os::unix::fs::MetadataExt as _;
         let prefix = format!("soct{}_", dir.file_name().unwrap().to_string_lossy().replace('.', ""));
-        ShmConfig { root: dir.to_path_buf(), prefix }
+        ShmConfig { root: dir.join("shm"), prefix, user: std::fs::metadata(dir).unwrap().uid() }
+    }
+
+    #[test]
+    fn a_folder_that_others_can_enter_is_not_used() {
+        use std::os::unix::fs::PermissionsExt as _;
+        let dir = tempfile::tempdir().unwrap();
+        let own = config(dir.path());
+        own.claim().unwrap();
+        own.claim().unwrap();
+        std::fs::set_permissions(&own.root, std::fs::Permissions::from_mode(0o755)).unwrap();
+        assert!(own.claim().unwrap_err().contains("mode 755"));
+        std::fs::set_permissions(&own.root, std::fs::Permissions::from_mode(0o700)).unwrap();
+        let other = ShmConfig { user: own.user + 1, ..own.clone() };
+        assert!(other.claim().unwrap_err().contains(&format!("is of user {}", own.user)));
+        let link = dir.path().join("link");
+        std::os::unix::fs::symlink(&own.root, &link).unwrap();
+        assert!(ShmConfig { root: link, ..own }.claim().is_err(), "a link is no folder");
+    }
+
+    /// Every segment and folder that a run has, with its mode.
+    fn modes(config: &ShmConfig) -> Vec<(PathBuf, u32)> {
+        use std::os::unix::fs::PermissionsExt as _;
+        let of = |path: PathBuf| std::fs::metadata(&path).ok().map(|there| (path, there.permissions().mode() & 0o777));
+        let segments = std::fs::read_dir(SHM_FOLDER).unwrap().filter_map(Result::ok).map(|entry| entry.path());
+        let segments = segments.filter(|path| path.file_name().unwrap().to_string_lossy().contains(&config.prefix));
+        segments.chain([config.root.clone()]).filter_map(of).collect()
     }
 
     #[test]
@@ -299,6 +359,9 @@ mod tests {
         assert!(ShmWatch::open(&run, &config(dir.path())).is_err(), "nobody has announced the run");
         sink.announce(&recording.header);
         assert!(sink.port.is_some(), "the service was not created");
+        let modes = modes(&config(dir.path()));
+        assert!(modes.len() > 1, "{modes:?}: a folder and segments");
+        assert!(modes.iter().all(|(_, mode)| mode & 0o077 == 0), "{modes:?}: others can look in");
         for tick in 0..10 {
             sink.tick(tick as u64, recording.tick(tick));
         }

@@ -185,6 +185,14 @@ pub(crate) enum Verb {
     Orchestrator(OrchestratorOptions),
 }
 
+impl Verb {
+    /// Whether this process is the child of a supervisor.
+    pub(crate) const fn is_tied(&self) -> bool {
+        matches!(self, Self::Worker(WorkerOptions { tied: true, .. }))
+            || matches!(self, Self::Orchestrator(OrchestratorOptions { tied: true, .. }))
+    }
+}
+
 /// Verbs on the catalogue.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ScenariosVerb {
@@ -564,9 +572,14 @@ pub(crate) struct OrchestratorOptions {
     /// Folder of the job store and the artifacts; on a local disk.
     #[arg(long)]
     pub(crate) dir: PathBuf,
-    /// Endpoint to listen on, such as `tcp/0.0.0.0:7447`.
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach, such as `tcp/0.0.0.0:7447`,
+    /// needs `--insecure`.
     #[arg(long)]
     pub(crate) listen: Option<String>,
+    /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
+    /// returns any result. There is no password and no encryption.
+    #[arg(long)]
+    pub(crate) insecure: bool,
     /// Endpoint of a router to use instead of listening.
     #[arg(long)]
     pub(crate) connect: Option<String>,
@@ -579,4 +592,7 @@ pub(crate) struct OrchestratorOptions {
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(crate) tied: bool,
+    /// No worker of before is alive: what they held is handed out again at once.
+    #[arg(long, hide = true)]
+    pub(crate) alone: bool,
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use socrates_author::{Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
+use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
 use crate::config::Config;
@@ -33,11 +34,55 @@ pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
         servers,
         auto_model: Some(config.text("author.model")).filter(|model| !model.is_empty()),
         rung,
-        timeout: Some(Duration::from_secs(config.number("author.timeout_s").clamp(1, 3_600))),
+        timeout: Some(Duration::from_secs(seconds(config, "author.timeout_s")?)),
         max_tokens: u32::try_from(config.number("author.max_tokens")).ok().filter(|most| *most > 0),
         plain_http: config.truth("author.plain_http"),
         ..Keys::default()
     })
+}
+
+/// Longest time that can be set for anything, s: a day.
+const LONGEST_S: u64 = 86_400;
+
+/// A time of the configuration in seconds. One that cannot be kept is refused, not replaced by another.
+fn seconds(config: &Config, key: &str) -> Result<u64, Complaint> {
+    let found = config.number(key);
+    if (1..=LONGEST_S).contains(&found) {
+        return Ok(found);
+    }
+    let what = format!("`{key}` is {found}; it takes whole seconds, 1 to {LONGEST_S}");
+    Err(Complaint::input(what, "`socrates config` prints the manual"))
+}
+
+/// Longest attempts of authoring, simulation and scoring, ms.
+pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Complaint> {
+    let ms = |key: &str| seconds(config, key).map(|seconds| seconds * 1_000);
+    let author = ms("author.timeout_s")? + AFTER_CALL_MS;
+    Ok((author, ms("orchestrator.simulation_s")?, ms("orchestrator.scoring_s")?))
+}
+
+/// What follows from the times of the configuration, in sentences.
+pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
+    let (author, simulation, scoring) = deadlines_ms(config)?;
+    let again = config.number("orchestrator.asks_again").min(10);
+    Ok(vec![
+        format!(
+            "# A question waits {} s for its answer (author.timeout_s); with reading and checking, its attempt ends after {} s.",
+            config.number("author.timeout_s"),
+            author / 1_000
+        ),
+        format!(
+            "# Without an answer in time it is put {} at most (orchestrator.asks_again); each counts in `socrates cost`.",
+            crate::prepare::plural(usize::try_from(again + 1).unwrap_or(1), "time")
+        ),
+        format!(
+            "# A simulation ends after {} s, scoring after {} s (orchestrator.simulation_s, scoring_s). A worker that is silent for \
+             {} s loses its job (orchestrator.lease_ms); a person who looks never does.",
+            simulation / 1_000,
+            scoring / 1_000,
+            config.number("orchestrator.lease_ms") / 1_000
+        ),
+    ])
 }
 
 /// Whether a key for Chat Completions is there, which `auto` looks for.
@@ -134,6 +179,40 @@ mod tests {
         let keys = keys(&config).unwrap();
         assert!(!format!("{keys:?} {:?}", config.lines(None)).contains("sk-of-the-file"));
         assert!(keys.servers[&Dialect::OpenAi].key.is_some() && keys.servers[&Dialect::Ollama].key.is_none());
+    }
+
+    #[test]
+    fn the_time_that_is_configured_is_the_time_that_an_author_has() {
+        let slow = config(&["author.timeout_s=600"]);
+        assert_eq!(keys(&slow).unwrap().timeout, Some(Duration::from_secs(600)));
+        let (author, ..) = deadlines_ms(&slow).unwrap();
+        assert!(author > 600_000, "the attempt of {author} ms does not end before its call");
+        let told = consequences(&slow).unwrap().join("\n");
+        assert!(told.contains("600 s") && told.contains("630 s") && told.contains("4 times"), "{told}");
+        for wrong in ["author.timeout_s=0", "author.timeout_s=100000", "orchestrator.simulation_s=0"] {
+            let key = wrong.split('=').next().unwrap();
+            assert!(deadlines_ms(&config(&[wrong])).unwrap_err().what.contains(key), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn every_key_that_a_page_of_a_fault_names_exists() {
+        let config = config(&[]);
+        let known: Vec<String> = config.lines(None).into_iter().map(|(key, ..)| key).collect();
+        let sections: Vec<&str> = known.iter().filter_map(|key| key.split('.').next()).collect();
+        let mut named = 0;
+        for code in socrates_model::FaultCode::ALL {
+            for word in code.page().split('`').skip(1).step_by(2) {
+                let is_key = word.split_once('.').is_some_and(|(section, rest)| {
+                    sections.contains(&section) && rest.chars().all(|c| c.is_ascii_lowercase() || "_.".contains(c))
+                });
+                if is_key {
+                    named += 1;
+                    assert!(known.iter().any(|key| key == word), "{}: there is no `{word}`", code.code());
+                }
+            }
+        }
+        assert!(named >= 4, "{named}");
     }
 
     #[test]

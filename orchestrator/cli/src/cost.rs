@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use socrates_orchestrator::bucket::asked_by;
-use socrates_orchestrator::price_of;
+use socrates_orchestrator::{pipeline, price_of};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -40,6 +40,8 @@ struct Sum {
     cached: u64,
     output: u64,
     estimated: bool,
+    /// Of the calls, those that got no answer: their tokens are not known.
+    unanswered: u64,
 }
 
 impl Sum {
@@ -49,6 +51,7 @@ impl Sum {
         self.cached += other.cached;
         self.output += other.output;
         self.estimated |= other.estimated;
+        self.unanswered += other.unanswered;
     }
 
     #[expect(clippy::cast_precision_loss, reason = "sums of tokens stay far below 2^53")]
@@ -93,6 +96,10 @@ pub(crate) fn cost(talk: &Talk, config: &Config, what: &[PathBuf], prices: Optio
             format!("{mark}{}", sum.output)
         ));
     }
+    for (model, sum) in total.iter().filter(|(_, sum)| sum.unanswered > 0) {
+        let calls = crate::prepare::plural(usize::try_from(sum.unanswered).unwrap_or(usize::MAX), "call");
+        talk.line(&format!("{calls} of {model} got no answer; what they cost is not known and not in the sum"));
+    }
     talk.line(&format!("{} bundles; `~` marks figures that hold estimates (bytes / 4)", bundles.len()));
     if total.keys().any(|model| money(model, &Sum::default(), &prices).is_none()) {
         talk.line("hint: --prices FILE takes a table such as [\"gpt-4o\"] input = 2.5, cached_input = 1.25, output = 10.0 (per million)");
@@ -107,7 +114,7 @@ fn lines(models: &BTreeMap<String, Sum>, prices: &BTreeMap<String, Price>) -> Ve
         .map(|(model, sum)| {
             let cost = money(model, sum, prices);
             json!({"author": model, "calls": sum.calls, "tokens_in": sum.input, "cached": sum.cached,
-                "tokens_out": sum.output, "estimated": sum.estimated,
+                "tokens_out": sum.output, "estimated": sum.estimated, "unanswered": sum.unanswered,
                 "cost": cost.as_ref().map(|(cost, _)| cost), "currency": cost.as_ref().map(|(_, currency)| currency)})
         })
         .collect()
@@ -205,16 +212,17 @@ fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
     let list = |value: &Value, key: &str| value.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
     let mut models: BTreeMap<String, Sum> = BTreeMap::new();
     for job in list(provenance, "jobs") {
-        // The exchange of the attempt that was taken stands with the job as well.
-        let mut seen = BTreeSet::new();
-        let all = list(&job, "attempts").iter().flat_map(|attempt| list(attempt, "exchanges")).collect::<Vec<_>>();
-        for exchange in all.into_iter().chain(list(&job, "exchanges")).filter(Value::is_object) {
+        let attempts = list(&job, "attempts");
+        let of_attempts: Vec<Value> = attempts.iter().flat_map(|attempt| list(attempt, "exchanges")).collect();
+        // The exchange of the attempt that was taken may stand with the job as well. Two attempts with the same exchange were
+        // two calls: a question that got no answer is put again word for word.
+        let seen: BTreeSet<String> = of_attempts.iter().map(Value::to_string).collect();
+        let of_job = list(&job, "exchanges").into_iter().filter(|exchange| !seen.contains(&exchange.to_string()));
+        for exchange in of_attempts.iter().cloned().chain(of_job).filter(Value::is_object) {
             let Some([input, output]) = tokens(&exchange) else { continue };
-            if !seen.insert(exchange.to_string()) {
-                continue;
-            }
             let name = |key: &str| exchange.get(key).and_then(Value::as_str).filter(|name| !name.is_empty());
             let model = name("model").or_else(|| name("author")).unwrap_or("unknown");
+            let unanswered = u64::from(name("model").is_none() && (input, output) == (0, 0));
             let how = exchange.get("how").cloned().unwrap_or_default();
             models.entry(model.to_owned()).or_default().add(&Sum {
                 calls: 1,
@@ -222,10 +230,31 @@ fn sums(provenance: &Value) -> BTreeMap<String, Sum> {
                 output,
                 cached: how.get("cached").and_then(Value::as_u64).unwrap_or(0),
                 estimated: how.get("estimated").and_then(Value::as_bool).unwrap_or(false),
+                unanswered,
             });
+        }
+        // An attempt that was ended from outside left no exchange, though its author was asked.
+        let author = provenance.get("author").and_then(Value::as_str).unwrap_or("unknown");
+        let lost = attempts.iter().filter(|attempt| is_authored(&job) && ended_from_outside(attempt)).count() as u64;
+        if lost > 0 {
+            models.entry(author.to_owned()).or_default().add(&Sum { calls: lost, unanswered: lost, ..Sum::default() });
         }
     }
     models
+}
+
+/// Whether an author was asked for this job.
+fn is_authored(job: &Value) -> bool {
+    let stage = job.pointer("/job/stage").and_then(Value::as_str).unwrap_or_default();
+    stage.parse().is_ok_and(pipeline::is_authored)
+}
+
+/// Whether an attempt was ended by its deadline or the loss of its worker, with no word of its author.
+fn ended_from_outside(attempt: &Value) -> bool {
+    let is_empty = |key: &str| attempt.get(key).and_then(Value::as_array).is_none_or(Vec::is_empty);
+    let faults = attempt.get("faults").and_then(Value::as_array).into_iter().flatten();
+    let mut codes = faults.filter_map(|fault| fault.get("code")?.as_str());
+    is_empty("exchanges") && codes.any(|code| matches!(code, "J-DEADLINE" | "J-LOST"))
 }
 
 fn tokens(exchange: &Value) -> Option<[u64; 2]> {
@@ -247,7 +276,7 @@ mod tests {
             {"attempts": [], "exchanges": [exchange("offline/1", "c", [0, 0])]},
         ]});
         let found = sums(&provenance);
-        let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false };
+        let sum = Sum { calls: 2, input: 220, cached: 20, output: 50, estimated: false, unanswered: 0 };
         assert_eq!(found["openai:gpt-4o-2024"], sum);
         let price =
             |input, cached_input| Price { input, cached_input, output: 10.0, currency: dollars(), _valid_from: None };
@@ -257,6 +286,24 @@ mod tests {
         assert!((cost - (200.0 * 2.5 + 20.0 + 500.0) / 1e6).abs() < 1e-12);
         assert_eq!(money("anthropic:other", &sum, &prices), None);
         assert_eq!(money("offline/1", &sum, &prices).unwrap().0.to_bits(), 0.0_f64.to_bits());
+    }
+
+    #[test]
+    fn a_question_that_got_no_answer_counts_as_often_as_it_was_put() {
+        let silent = json!({"author": "openai:gpt-4o", "model": "", "answer": "", "tokens": [0, 0]});
+        let answered = json!({"author": "openai:gpt-4o", "model": "openai:gpt-4o", "answer": "a", "tokens": [100, 20]});
+        let ended = |code: &str| json!({"exchanges": [], "faults": [{"code": code}]});
+        let job = |stage: &str| {
+            json!({"job": {"stage": stage}, "exchanges": [answered],
+                   "attempts": [{"exchanges": [silent]}, {"exchanges": [silent]}, ended("J-DEADLINE"), {"exchanges": []}]})
+        };
+        let found = sums(&json!({"author": "openai:gpt-4o", "jobs": [job("paths")]}));
+        let sum = &found["openai:gpt-4o"];
+        assert_eq!((sum.calls, sum.unanswered, sum.input), (4, 3, 100), "{found:?}");
+        let found = sums(
+            &json!({"author": "openai:gpt-4o", "jobs": [{"job": {"stage": "scoring"}, "attempts": [ended("J-DEADLINE")]}]}),
+        );
+        assert!(found.is_empty(), "scoring asks nobody: {found:?}");
     }
 
     #[test]

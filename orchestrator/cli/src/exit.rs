@@ -20,6 +20,8 @@ pub(crate) enum Code {
     Waits = 4,
     /// Author unreachable.
     Author = 5,
+    /// Between a supervisor and its children only: the child cannot go on, and would not after another start either.
+    Stuck = 65,
 }
 
 /// An error for the user: what, causes, a hint with a command that helps, and the exit code.
@@ -58,6 +60,19 @@ impl Complaint {
             members.insert("hint".to_owned(), self.hint.clone().into());
         }
         object
+    }
+
+    /// What the object of a child says, for its supervisor.
+    pub(crate) fn of_object(object: &serde_json::Value) -> Option<Self> {
+        let text = |key: &str| object.get(key)?.as_str().map(str::to_owned);
+        let causes = object.get("causes")?.as_array()?.iter().filter_map(|cause| cause.as_str().map(str::to_owned));
+        Some(Self {
+            code: Code::Ours,
+            what: text("error")?,
+            causes: causes.collect(),
+            hint: text("hint")?,
+            result: None,
+        })
     }
 
     /// With another exit code.

@@ -109,6 +109,12 @@ pub(crate) fn config(talk: &Talk, config: &Config, part: Option<&str>) -> Result
     for (key, value, origin) in &lines {
         talk.line(&format!("{key:<24} {value:<32} # {origin}"));
     }
+    if part.is_none_or(|part| "author.timeout_s".starts_with(part) || "orchestrator.".starts_with(part)) {
+        talk.line("");
+        for line in crate::authors::consequences(config)? {
+            talk.line(&line);
+        }
+    }
     if part == Some("author") {
         talk.line("");
         talk.line("# To ask a language model: put the key into the variable named by author.key_variable, and");

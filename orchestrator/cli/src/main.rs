@@ -31,6 +31,7 @@ mod explain;
 mod figure;
 mod figures;
 mod files;
+mod folder;
 mod golden;
 mod history;
 mod labels;
@@ -54,6 +55,7 @@ mod traces;
 mod video;
 mod watch;
 
+use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -74,6 +76,11 @@ fn main() -> ExitCode {
     let talk = Talk::new(cli.format);
     let code = match begin(&talk, &cli) {
         Ok(code) => code,
+        // A child tells its supervisor, who tells the person once.
+        Err(complaint) if cli.verb.is_tied() => {
+            talk.to_supervisor(&complaint.object());
+            if complaint.code == Code::Input { Code::Stuck } else { complaint.code }
+        }
         Err(complaint) => {
             // Who left on purpose made no error.
             let word = if complaint.code == Code::Waits { "" } else { "error: " };
@@ -153,6 +160,12 @@ fn start_log(config: &Config) -> Result<(), Complaint> {
             "for example \"warn\" or \"socrates_kit=debug\"",
         )
     })?;
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().compact().init();
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .without_time()
+        .compact()
+        .init();
     Ok(())
 }

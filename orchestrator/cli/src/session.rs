@@ -13,6 +13,7 @@ use crate::args::{Flags, RunOptions};
 use crate::ask::Asking;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::folder::Hold;
 use crate::history::{self, History};
 use crate::prepare::Prepared;
 use crate::run::stage_line;
@@ -38,6 +39,8 @@ pub(crate) struct Made {
     /// Every revision and attempt of each scenario.
     pub(crate) history: History,
     blobs: LocalBlobs,
+    /// Until the bundle is written, nobody else makes it.
+    _hold: Hold,
 }
 
 impl Made {
@@ -70,6 +73,7 @@ pub(crate) async fn make(
     wanted: &[Wanted<'_>],
     at_once: usize,
 ) -> Result<Made, Complaint> {
+    let hold = Hold::take(work)?;
     let blobs = LocalBlobs::new(work.join("blobs"), false);
     let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
     let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
@@ -78,7 +82,7 @@ pub(crate) async fn make(
         Some(want) => Some(Asking::start(talk, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?),
         None => None,
     };
-    let followed = follow_all(talk, &mut supervisor, &specs, at_once, asking.as_mut()).await;
+    let followed = follow_all(talk, &mut supervisor, &hold, &specs, at_once, asking.as_mut()).await;
     talk.clear();
     if let Some(asking) = asking {
         asking.end().await;
@@ -90,13 +94,14 @@ pub(crate) async fn make(
         talk.warn(&format!("the history of attempts cannot be read: {why}"));
         Default::default()
     });
-    Ok(Made { statuses, history, blobs })
+    Ok(Made { statuses, history, blobs, _hold: hold })
 }
 
 /// Submits so many at once and waits for them, until all are done.
 async fn follow_all(
     talk: &Talk,
     supervisor: &mut Supervisor,
+    hold: &Hold,
     specs: &[ScenarioSpec],
     at_once: usize,
     mut asking: Option<&mut Asking>,
@@ -104,7 +109,7 @@ async fn follow_all(
     let mut all = Vec::new();
     for some in specs.chunks(at_once.max(1)) {
         let before = u32::try_from(all.len()).unwrap_or(u32::MAX);
-        all.extend(follow(talk, supervisor, some.to_vec(), before, asking.as_deref_mut()).await?);
+        all.extend(follow(talk, supervisor, hold, some.to_vec(), before, asking.as_deref_mut()).await?);
     }
     Ok(all)
 }
@@ -192,6 +197,7 @@ pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>)
 async fn follow(
     talk: &Talk,
     supervisor: &mut Supervisor,
+    hold: &Hold,
     specs: Vec<ScenarioSpec>,
     before: u32,
     mut asking: Option<&mut Asking>,
@@ -222,7 +228,11 @@ async fn follow(
                     passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
                 }
             },
-            gone = supervisor.gave_up() => return Err(ours(&gone.unwrap_or_else(|| "every process has ended".to_owned()))),
+            complaint = supervisor.gave_up() => {
+                // A folder that is gone is the reason for whatever else its processes complain of.
+                hold.check()?;
+                return Err(complaint.with_code(Code::Ours));
+            }
             complaint = left(&mut asking) => return Err(complaint),
             _ = stop.recv() => if !looking || !talk.live {
                 return Err(stopped());
@@ -233,6 +243,7 @@ async fn follow(
             continue;
         }
         looks_done = false;
+        hold.check()?;
         match status(bus.as_ref(), 0).await {
             Ok(reply) => {
                 last_heard = Instant::now();

@@ -51,6 +51,11 @@ impl Talk {
         drop(writeln!(std::io::stderr(), "{text}"));
     }
 
+    /// The last word of a child, for the supervisor at the other end of its standard output.
+    pub(crate) fn to_supervisor(&self, object: &serde_json::Value) {
+        drop(writeln!(std::io::stdout(), "{object}"));
+    }
+
     /// The result object; printed for programs only.
     pub(crate) fn result(&self, object: &serde_json::Value) {
         if self.format == Format::Json {

@@ -35,10 +35,12 @@ pub const OUTBOX: u64 = 10_000;
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// Another process has it.
-    #[error("the job store `{path}` is in use by another process; one orchestrator per store is allowed")]
+    #[error("the job store `{path}` is in use by {holder}; one orchestrator per store is allowed")]
     Locked {
         /// Its file.
         path: PathBuf,
+        /// Who has it: `process 4711`.
+        holder: String,
     },
     /// The folder or file cannot be made or written.
     #[error("the job store `{path}` cannot be written")]

@@ -124,7 +124,7 @@ fn what_was_saved_is_loaded(store: &mut dyn Store) {
         store.save(&work(&mut state)).unwrap();
         assert_eq!(store.fsck().unwrap(), Vec::<String>::new());
         let mut again = State::restore(store.load().unwrap(), Policy::default(), 0);
-        step(&mut again, Event::Recover, 0);
+        step(&mut again, Event::Recover { alone: false }, 0);
         assert_eq!(socrates_orchestrator::fsck(&again), Vec::<String>::new());
         assert_eq!(again.counts(), state.counts());
         for (key, job) in &state.jobs {

@@ -1,6 +1,7 @@
 //! The store in one `SQLite` file: write-ahead log, synced at every commit, one writer.
 
 use std::fs::{File, TryLockError};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, ErrorCode, OptionalExtension as _, params};
@@ -60,17 +61,18 @@ impl SqliteStore {
         if let Some(dir) = path.parent() {
             std::fs::create_dir_all(dir).map_err(unwritable)?;
         }
-        let lock = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(path.with_extension("lock"))
-            .map_err(unwritable)?;
+        let beside = path.with_extension("lock");
+        let mut lock = File::options().create(true).truncate(false).write(true).open(&beside).map_err(unwritable)?;
         match lock.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(StoreError::Locked { path: path.to_owned() }),
+            Err(TryLockError::WouldBlock) => {
+                let pid = std::fs::read_to_string(&beside).unwrap_or_default();
+                return Err(StoreError::Locked { path: path.to_owned(), holder: format!("process {}", pid.trim()) });
+            }
             Err(TryLockError::Error(source)) => return Err(unwritable(source)),
         }
+        let told = lock.set_len(0).and_then(|()| writeln!(lock, "{}", std::process::id()));
+        told.map_err(unwritable)?;
         let failed = |source| failure(path, source);
         let connection = Connection::open(path).map_err(failed)?;
         connection.execute_batch(schema::PRAGMAS).map_err(failed)?;
@@ -283,7 +285,9 @@ fn failure(path: &Path, source: rusqlite::Error) -> StoreError {
     let path = path.to_owned();
     match source.sqlite_error_code() {
         Some(ErrorCode::DiskFull) => StoreError::Full { path },
-        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => StoreError::Locked { path },
+        Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
+            StoreError::Locked { path, holder: "another process".to_owned() }
+        }
         Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied) => {
             StoreError::Unwritable { path, source: std::io::Error::other(source) }
         }

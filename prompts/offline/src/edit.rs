@@ -38,7 +38,9 @@ pub struct Edited {
     pub reading: Reading,
     /// What was done, a sentence each.
     pub done: Vec<String>,
-    /// What was not done and why, with what can be said instead (P-READ, P-PLACE).
+    /// Words that were not understood within what was done: the rest of their wish holds.
+    pub left_out: Vec<String>,
+    /// What was not done and why, with what can be said instead (P-READ, P-PLACE). Nothing of it was changed.
     pub not_done: Vec<Fault>,
 }
 
@@ -48,19 +50,7 @@ pub struct Edited {
 /// never fails: what cannot be done stands in [`Edited::not_done`].
 #[must_use]
 pub fn edit(question: &Question, draft: &Draft, words: &str) -> Edited {
-    let mut desk = Desk {
-        question: Question {
-            stage: Stage::Paths,
-            feedback: Vec::new(),
-            refused: None,
-            only: Vec::new(),
-            ..question.clone()
-        },
-        draft: draft.clone(),
-        done: Vec::new(),
-        not_done: Vec::new(),
-        changed: Vec::new(),
-    };
+    let mut desk = Desk::of(question, draft);
     let mut crowd = Crowd::of(&draft.proposal);
     let found = wishes(words);
     if found.is_empty() {
@@ -69,7 +59,17 @@ pub fn edit(question: &Question, draft: &Draft, words: &str) -> Edited {
     for wish in found {
         desk.grant(&wish, &mut crowd);
     }
-    desk.finish(draft)
+    desk.finish(draft, &question.reading)
+}
+
+/// What follows from a proposal that was changed elsewhere: prose, clauses and trees of those whose part changed, given by
+/// their places, and what is asked for now.
+#[must_use]
+pub fn settled(question: &Question, before: &Draft, proposal: Proposal, changed: &[usize]) -> Edited {
+    let mut desk = Desk::of(question, before);
+    desk.draft.proposal = proposal;
+    desk.changed = changed.to_vec();
+    desk.finish(before, &question.reading)
 }
 
 /// The artifacts while they are being edited.
@@ -77,13 +77,48 @@ pub(crate) struct Desk {
     pub(crate) question: Question,
     pub(crate) draft: Draft,
     pub(crate) done: Vec<String>,
+    pub(crate) left_out: Vec<String>,
     pub(crate) not_done: Vec<Fault>,
     /// Humans whose part changed, by place in the proposal.
     pub(crate) changed: Vec<usize>,
 }
 
 impl Desk {
+    fn of(question: &Question, draft: &Draft) -> Self {
+        Self {
+            question: Question {
+                stage: Stage::Paths,
+                feedback: Vec::new(),
+                refused: None,
+                only: Vec::new(),
+                ..question.clone()
+            },
+            draft: draft.clone(),
+            done: Vec::new(),
+            left_out: Vec::new(),
+            not_done: Vec::new(),
+            changed: Vec::new(),
+        }
+    }
+
+    /// Does a wish, or nothing of it: what is said to be done is done, and for what is not nothing was changed.
     fn grant(&mut self, wish: &Wish, crowd: &mut Crowd) {
+        let before = (self.draft.clone(), self.question.clone(), self.changed.clone(), crowd.cast.clone());
+        let (done, left_out, refused) = (self.done.len(), self.left_out.len(), self.not_done.len());
+        self.try_wish(wish, crowd);
+        let did = self.done.len() > done;
+        if did && self.not_done.len() > refused {
+            (self.draft, self.question, self.changed, crowd.cast) = before;
+            self.done.truncate(done);
+            self.left_out.truncate(left_out);
+        } else if !did {
+            for words in self.left_out.split_off(left_out) {
+                self.refuse(&words, "was not understood");
+            }
+        }
+    }
+
+    fn try_wish(&mut self, wish: &Wish, crowd: &mut Crowd) {
         match wish.kind {
             Kind::Longer | Kind::Shorter | Kind::Reverse | Kind::Avoid | Kind::Start | Kind::End | Kind::Move => {
                 edit_paths::grant(self, wish, crowd);
@@ -118,18 +153,23 @@ impl Desk {
         }
     }
 
-    fn finish(mut self, before: &Draft) -> Edited {
+    fn finish(mut self, before: &Draft, asked: &Reading) -> Edited {
         let mut reading = self.question.reading.clone();
         if self.draft.proposal != before.proposal {
-            edit_settle::settle(&mut self, &mut reading);
+            edit_settle::settle(&mut self, &before.proposal, &mut reading);
         }
-        self.behaviors(before);
-        Edited { draft: self.draft, reading, done: self.done, not_done: self.not_done }
+        if let Err(faults) = self.behaviors(before) {
+            // People whose trees cannot be written cannot do what was asked for.
+            self.not_done.extend(faults);
+            let (draft, reading) = (before.clone(), asked.clone());
+            return Edited { draft, reading, done: Vec::new(), left_out: Vec::new(), not_done: self.not_done };
+        }
+        Edited { draft: self.draft, reading, done: self.done, left_out: self.left_out, not_done: self.not_done }
     }
 
     /// Trees of those whose part changed; everybody's where somebody left, because their numbers changed.
-    fn behaviors(&mut self, before: &Draft) {
-        let Some(known) = self.draft.behaviors.clone() else { return };
+    fn behaviors(&mut self, before: &Draft) -> Result<(), Vec<Fault>> {
+        let Some(known) = self.draft.behaviors.clone() else { return Ok(()) };
         let fewer = self.draft.proposal.humans.len() < before.proposal.humans.len();
         let ids: Vec<socrates_model::HumanId> = self
             .draft
@@ -141,7 +181,7 @@ impl Desk {
             .map(|(_, human)| human.id)
             .collect();
         if ids.is_empty() {
-            return;
+            return Ok(());
         }
         let ask = Question {
             stage: Stage::Behaviors,
@@ -149,13 +189,10 @@ impl Desk {
             only: ids,
             ..self.question.clone()
         };
-        match socrates_prompts::parse_behaviors(&crate::Offline::answer(&ask), &ask) {
-            Ok(made) => {
-                let mut humans = if fewer { std::collections::BTreeMap::new() } else { known.humans };
-                humans.extend(made.humans);
-                self.draft.behaviors = Some(Behaviors { humans, ..known });
-            }
-            Err(faults) => self.not_done.extend(faults),
-        }
+        let made = socrates_prompts::parse_behaviors(&crate::Offline::answer(&ask), &ask)?;
+        let mut humans = if fewer { std::collections::BTreeMap::new() } else { known.humans };
+        humans.extend(made.humans);
+        self.draft.behaviors = Some(Behaviors { humans, ..known });
+        Ok(())
     }
 }

@@ -99,10 +99,11 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     for fault in std::mem::take(&mut read.problems) {
         desk.refuse(&wish.quote, &format!("is not clear: {}", fault.message));
     }
-    let ignored: Vec<&String> = read.ignored.iter().filter(|word| !COURTESY.contains(&word.as_str())).collect();
+    let ignored: Vec<&String> =
+        read.ignored.iter().filter(|word| COURTESY.split(' ').all(|known| known != word.as_str())).collect();
     if !ignored.is_empty() {
         let listed: Vec<&str> = ignored.iter().map(|word| word.as_str()).collect();
-        desk.refuse(&listed.join(" "), "was not understood");
+        desk.left_out.push(listed.join(" "));
     }
     let mut did = false;
     for who in 0..old {
@@ -132,28 +133,13 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     let mut cast = Cast::known(desk.draft.proposal.humans.iter().map(person).collect());
     cast.last.clone_from(&read.cast.last);
     crowd.cast = cast;
-    if !did && desk.not_done.is_empty() {
+    if !did && desk.not_done.is_empty() && ignored.is_empty() {
         desk.refuse(&wish.quote, "was not understood as a change");
     }
 }
 
 /// Words of those who ask for something, which ask for nothing by themselves.
-const COURTESY: &[&str] = &[
-    "please",
-    "instead",
-    "add",
-    "additional",
-    "include",
-    "change",
-    "edit",
-    "would",
-    "like",
-    "want",
-    "rather",
-    "yet",
-    "keep",
-    "okay",
-];
+const COURTESY: &str = "please instead add additional include change edit would like want rather yet keep okay";
 
 fn quoted(wish: &Wish) -> String {
     // Words know their place in the whole text; blanks keep them there.
@@ -387,13 +373,21 @@ pub(crate) fn pace(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd, factor: f64)
         Whom::Unsaid if crowd.cast.people.len() == 1 => vec![0],
         Whom::Unsaid => return desk.refuse(&wish.quote, "does not say who"),
     };
+    let mut did = false;
     for who in people {
         let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
         let before = human.speed_mps.unwrap_or(USUAL_MPS);
         let mps = (libm::round(before * factor * 10.0) / 10.0).clamp(0.3, 1.8);
+        if mps.total_cmp(&before).is_eq() {
+            continue;
+        }
+        did = true;
         human.speed_mps = Some(mps);
         let line = format!("{} walks at {mps} m/s instead of {before} m/s", human.id);
         desk.done.push(line);
+    }
+    if !did {
+        desk.refuse(&wish.quote, "changes nothing: people walk at 0.3 to 1.8 m/s");
     }
 }
 
@@ -496,6 +490,11 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     }
     let gone: Vec<HumanId> =
         out.iter().filter_map(|i| desk.draft.proposal.humans.get(*i)).map(|human| human.id).collect();
+    for who in &out {
+        let Some(human) = desk.draft.proposal.humans.get(*who) else { continue };
+        let line = format!(" {}: {}", human.id, human.behavior);
+        desk.draft.proposal.description = desk.draft.proposal.description.replacen(&line, "", 1);
+    }
     for who in out.iter().rev() {
         desk.draft.proposal.humans.remove(*who);
         desk.changed.retain(|other| other != who);

@@ -9,17 +9,26 @@ use crate::edit_people::{next_id, same_act};
 use crate::{events, proposal, prose};
 
 /// What follows from the changes: prose, clauses, script, and what was asked for.
-pub(crate) fn settle(desk: &mut Desk, reading: &mut Reading) {
+pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) {
     reading.clone_from(&desk.question.reading);
     let proposal = &mut desk.draft.proposal;
+    let (were, are) = (prose::headcount(before.humans.len()), prose::headcount(proposal.humans.len()));
+    if were != are {
+        proposal.description = proposal.description.replacen(&were, &are, 1);
+    }
     for who in &desk.changed {
         let place = proposal.place;
+        // Two who do the same are described by the same words; then only the line with the name is certain.
+        let same = proposal.humans.get(*who).map(|human| human.behavior.clone()).unwrap_or_default();
+        let alone = proposal.humans.iter().filter(|human| human.behavior == same).count() == 1;
         let Some(human) = proposal.humans.get_mut(*who) else { continue };
         let old = std::mem::take(&mut human.behavior);
         let new = prose::behavior(&human.role, human.relation, place, human.start, &human.rules, human.group.is_some());
         human.behavior.clone_from(&new);
-        let line = format!("{}: {new}", human.id);
-        if !old.is_empty() && proposal.description.contains(&old) {
+        let (told, line) = (format!("{}: {old}", human.id), format!("{}: {new}", human.id));
+        if !old.is_empty() && proposal.description.contains(&told) {
+            proposal.description = proposal.description.replacen(&told, &line, 1);
+        } else if !old.is_empty() && alone && proposal.description.contains(&old) {
             proposal.description = proposal.description.replacen(&old, &new, 1);
         } else if !proposal.description.contains(&line) {
             proposal.description = format!("{} {line}", proposal.description.trim_end());

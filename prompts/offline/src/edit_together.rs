@@ -194,12 +194,12 @@ pub(crate) fn gesture(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     if !adds && !people.iter().any(makes) {
         return desk.refuse(&wish.quote, "changes nothing: nobody of them makes that gesture; say `add a gesture`");
     }
+    let had = desk.done.len();
     for who in people {
         let Some(human) = desk.draft.proposal.humans.get_mut(who) else { continue };
         let id = human.id;
         if adds {
             if human.rules.iter().any(|rule| rule.gesture == Some(new)) {
-                desk.refuse(&wish.quote, &format!("is so already: {id} gestures {new}"));
                 continue;
             }
             let at = human.rules.iter().position(|rule| rule.for_s.is_none()).unwrap_or(human.rules.len());
@@ -216,6 +216,9 @@ pub(crate) fn gesture(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
             desk.done.push(format!("{id} gestures {new} instead of {before}"));
         }
         desk.touch(who);
+    }
+    if desk.done.len() == had {
+        desk.refuse(&wish.quote, &format!("is so already: they gesture {new}"));
     }
 }
 

@@ -141,7 +141,7 @@ use socrates_model::{Location, Reading, Request};
 
 pub use answer::Offline;
 pub use card::{Card, catalog};
-pub use edit::{Draft, Edited, edit};
+pub use edit::{Draft, Edited, edit, settled};
 pub use summary::summary;
 
 /// Name of this author, as artifacts spell it.

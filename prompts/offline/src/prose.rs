@@ -55,14 +55,19 @@ pub(crate) fn sentence(rule: &Rule) -> String {
     format!("{first}{}", letters.as_str())
 }
 
+/// How many take part: `2 humans take part.`
+pub(crate) fn headcount(humans: usize) -> String {
+    match humans {
+        1 => "One human takes part.".to_owned(),
+        n => format!("{n} humans take part."),
+    }
+}
+
 /// The whole scenario in sentences that name types of places only.
 pub(crate) fn description(about: &str, location: &str, place: PlaceClass, humans: &[HumanProposal]) -> String {
-    let count = match humans.len() {
-        1 => "One human takes part".to_owned(),
-        n => format!("{n} humans take part"),
-    };
+    let count = headcount(humans.len());
     let mut text = format!(
-        "{about} It happens at {} of the {}. {count}.",
+        "{about} It happens at {} of the {}. {count}",
         crate::place::an(place),
         location.replace(['_', '-'], " ")
     );

@@ -370,3 +370,41 @@ fn gestures_come_and_change() {
         assert!(!after.not_done.is_empty(), "{words}");
     }
 }
+
+#[test]
+fn the_story_tells_of_everybody_who_is_there_and_of_nobody_else() {
+    let two = "A person comes towards the robot in the corridor. A person follows the robot.";
+    let (before, after) = edited("office", two, "add a person who walks towards the robot");
+    let story = &after.draft.proposal.description;
+    assert!(before.proposal.description.contains("2 humans take part."), "{}", before.proposal.description);
+    assert!(story.contains("3 humans take part.") && story.contains("human_3: "), "{story}");
+    assert!(story.contains("human_1: ") && story.contains("human_2: "), "{story}");
+    let ask = Question { proposal: None, ..draft("office", two).0 };
+    let changed = edit(&ask, &after.draft, "human_3 stops when the robot is within 2 m");
+    let story = changed.draft.proposal.description;
+    let told = |id: &str| story.split(&format!("{id}: ")).nth(1).unwrap().split("human_").next().unwrap().to_owned();
+    assert!(told("human_3").contains("stops") && !told("human_1").contains("stops"), "{story}");
+    let fewer = edit(&ask, &after.draft, "remove human_2").draft.proposal.description;
+    assert!(fewer.contains("2 humans take part.") && !fewer.contains("human_3"), "{fewer}");
+    assert_eq!(fewer.matches("human_2: ").count(), 1, "{fewer}");
+}
+
+#[test]
+fn a_wish_is_done_whole_or_not_at_all_and_words_left_out_are_named_as_such() {
+    let (ask, before) = draft("office", TWO);
+    let after = edit(&ask, &before, "the visitor stops and yodels when the robot is within 2 m");
+    assert!(after.not_done.is_empty() != after.done.is_empty(), "{after:?}");
+    if after.done.is_empty() {
+        assert_eq!(after.draft, before);
+    } else {
+        assert!(after.left_out.iter().any(|words| words.contains("yodels")), "{:?}", after.left_out);
+    }
+    let slow = edit(
+        &ask,
+        &before,
+        "the nurse walks slower. the nurse walks slower. the nurse walks slower. the nurse walks slower. the nurse walks slower. the nurse walks slower",
+    );
+    let again = edit(&ask, &slow.draft, "the nurse walks slower. the nurse walks slower. the nurse walks slower");
+    let last = edit(&ask, &again.draft, "the nurse walks slower");
+    assert!(last.done.is_empty() && last.not_done[0].message.contains("0.3 to 1.8 m/s"), "{last:?}");
+}

@@ -11,6 +11,7 @@ use socrates_model::{Digest, FailureClass, Fault, FaultCode};
 use tokio::task::{JoinError, JoinSet};
 use tokio::time::Instant;
 
+use crate::blobs::BlobError;
 use crate::cancel::Cancel;
 use crate::error::KitError;
 use crate::held::slot_of;
@@ -62,8 +63,8 @@ pub(crate) async fn attempt<S: Stage>(worker: Arc<Worker>, stage: Arc<S>, grant:
     if worker.config.faults.die_before_report == Some(number) {
         return Err(KitError::InjectedDeath { at: "before a report" });
     }
-    let report = report(&worker, &grant, worked, wall_ms).await;
-    let report = keep(&worker, report).await;
+    let report = report(&worker, &grant, worked, wall_ms).await?;
+    let report = keep(&worker, report).await?;
     worker.held.worked(&slot);
     worker.send_report(&report, number).await?;
     worker.held.end(&slot);
@@ -161,8 +162,13 @@ fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
-/// Stores the outputs and makes the report. An output that cannot be stored makes it a passing failure.
-async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, wall_ms: u64) -> Report {
+/// Stores the outputs and makes the report. An output that cannot be stored makes it a passing failure, or ends the worker.
+async fn report(
+    worker: &Worker,
+    grant: &Grant,
+    worked: Result<Done, Failure>,
+    wall_ms: u64,
+) -> Result<Report, KitError> {
     let mut report = Report {
         instance: worker.config.instance.clone(),
         key: grant.spec.key.clone(),
@@ -194,9 +200,15 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
     };
     let mut budget = INLINE_BUDGET;
     for output in outputs {
+        let role = output.role.clone();
         match stored(worker, output, &mut budget).await {
             Ok(artifact) => report.artifacts.push(artifact),
-            Err(fault) => {
+            Err(BlobError::File { path, why }) if !worker.config.waits_for_disk => {
+                return Err(KitError::Folder { path, why: why.to_string() });
+            }
+            Err(why) => {
+                let message = format!("output `{role}` could not be stored: {}", chain(&why));
+                let fault = Fault::new(FaultCode::JBlob, &role, message);
                 report.outcome =
                     Outcome::Failed { class: FailureClass::Transient, faults: vec![fault], retry_after_ms: None };
                 (report.repair, report.verdict) = (None, None);
@@ -204,10 +216,10 @@ async fn report(worker: &Worker, grant: &Grant, worked: Result<Done, Failure>, w
             }
         }
     }
-    report
+    Ok(report)
 }
 
-async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<Artifact, Fault> {
+async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<Artifact, BlobError> {
     let Output { role, media, bytes } = output;
     let (digest, len) = (Digest::of(&bytes), bytes.len());
     let small = len <= INLINE_BYTES.min(*budget);
@@ -215,17 +227,15 @@ async fn stored(worker: &Worker, output: Output, budget: &mut usize) -> Result<A
     if inline.is_some() {
         *budget -= len;
     } else {
-        let put = worker.config.blobs.put(&worker.bus, bytes, worker.config.timeout).await;
-        put.map_err(|why| {
-            Fault::new(FaultCode::JBlob, &role, format!("output `{role}` could not be stored: {}", chain(&why)))
-        })?;
+        worker.config.blobs.put(&worker.bus, bytes, worker.config.timeout).await?;
     }
     Ok(Artifact { role, digest, len: len as u64, media, inline })
 }
 
-/// Spools a report; one that does not fit a message gets shorter faults. A full disk is waited out.
-async fn keep(worker: &Worker, mut report: Report) -> Report {
+/// Spools a report; one that does not fit a message gets shorter faults. A full disk is waited out, or ends the worker.
+async fn keep(worker: &Worker, mut report: Report) -> Result<Report, KitError> {
     let mut backoff = Backoff::new(&worker.config.instance);
+    let mut told = false;
     loop {
         let (spool, copy) = (worker.spool.clone(), report.clone());
         let kept = match tokio::task::spawn_blocking(move || spool.keep(&copy)).await {
@@ -233,13 +243,16 @@ async fn keep(worker: &Worker, mut report: Report) -> Report {
             Err(why) => Err(KitError::Folder { path: worker.config.spool_dir.clone(), why: why.to_string() }),
         };
         match kept {
-            Ok(()) => return report,
+            Ok(()) => return Ok(report),
             Err(KitError::Link(LinkError::TooLarge { len, .. })) => {
                 tracing::warn!(job = %report.key, len, "the report is too large for a message and is shortened");
                 shorten(&mut report);
             }
+            Err(why) if !worker.config.waits_for_disk => return Err(why),
             Err(why) => {
-                tracing::error!(job = %report.key, %why, "the report cannot be spooled; tried again");
+                if !std::mem::replace(&mut told, true) {
+                    tracing::error!(job = %report.key, %why, "the report cannot be spooled; tried until it can");
+                }
                 tokio::time::sleep(backoff.next()).await;
             }
         }

@@ -120,7 +120,11 @@ impl LocalBlobs {
             file.write_all(bytes)?;
             if self.durable { file.sync_all() } else { Ok(()) }
         };
-        write().map_err(|why| BlobError::File { path: temp.clone(), why })?;
+        write().map_err(|why| {
+            // Half of it would take room that the disk may not have.
+            drop(fs::remove_file(&temp));
+            BlobError::File { path: path.clone(), why }
+        })?;
         self.reveal(&temp, &path)?;
         Ok(digest)
     }

@@ -36,6 +36,9 @@ pub struct WorkerConfig {
     pub spool_dir: PathBuf,
     /// Forces reports to disk before they are sent. Default true; off, a power cut may lose a report (a crash may not).
     pub durable: bool,
+    /// Whether a full disk or a vanished folder is waited out. Default true: a worker of a cluster keeps what it has made
+    /// until there is room. Off, [`crate::serve`] ends with the reason, for whoever supervises it.
+    pub waits_for_disk: bool,
     /// Version of the stage's code; part of the idempotency key.
     pub code_version: String,
     /// Host name, for people.
@@ -61,6 +64,7 @@ impl WorkerConfig {
             blobs,
             spool_dir: spool_dir.into(),
             durable: true,
+            waits_for_disk: true,
             code_version: code_version.to_owned(),
             host: String::new(),
             timeout: Duration::from_secs(2),

@@ -1,7 +1,7 @@
 //! The worker's side of the protocol: one function per message, each repeated with backoff by its caller.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::time::Duration;
 
 use serde::Serialize;
@@ -9,7 +9,8 @@ use serde::de::DeserializeOwned;
 use socrates_link::{Bus, LinkError, call_envelope, keys};
 use socrates_model::Digest;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Recorded, Release, Report};
+use socrates_model::wire::{Hello, Recorded, Release, Report};
+use tokio::sync::watch;
 
 use crate::config::WorkerConfig;
 use crate::error::KitError;
@@ -25,8 +26,18 @@ pub(crate) struct Worker {
     pub(crate) spool: Spool,
     /// Highest reign seen; replies of lower ones are stale.
     epoch: AtomicU64,
+    /// Whether the orchestrator of this reign was not told yet who this worker is.
+    unknown: AtomicBool,
+    /// Whether it takes no more work.
+    leaving: watch::Sender<bool>,
     /// Reports made so far, for the fault plan.
     reports: AtomicU32,
+}
+
+/// Ends when the worker leaves.
+pub(crate) async fn left(leaving: &mut watch::Receiver<bool>) {
+    // The sender lives as long as the worker.
+    drop(leaving.wait_for(|leaving| *leaving).await);
 }
 
 /// Growing pauses with jitter that is a function of the worker and the count, not of a clock.
@@ -67,8 +78,46 @@ impl Worker {
             held: Held::default(),
             spool,
             epoch: AtomicU64::new(0),
+            unknown: AtomicBool::new(false),
+            leaving: watch::Sender::new(false),
             reports: AtomicU32::new(0),
         })
+    }
+
+    /// Takes no more work from now on.
+    pub(crate) fn leave(&self) {
+        self.leaving.send_replace(true);
+    }
+
+    /// Whether it takes no more work.
+    pub(crate) fn is_leaving(&self) -> bool {
+        *self.leaving.borrow()
+    }
+
+    /// Tells when it takes no more work.
+    pub(crate) fn leaving(&self) -> watch::Receiver<bool> {
+        self.leaving.subscribe()
+    }
+
+    /// Who this worker is.
+    pub(crate) fn introduction(&self) -> Hello {
+        Hello {
+            instance: self.config.instance.clone(),
+            stages: vec![self.stage],
+            code_version: self.config.code_version.clone(),
+            pid: std::process::id(),
+            host: self.config.host.clone(),
+        }
+    }
+
+    /// Whether a new orchestrator answers that was not told who this worker is; the next call says no.
+    pub(crate) fn take_unknown(&self) -> bool {
+        self.unknown.swap(false, Ordering::AcqRel)
+    }
+
+    /// The orchestrator has to be told later who this worker is.
+    pub(crate) fn stays_unknown(&self) {
+        self.unknown.store(true, Ordering::Release);
     }
 
     /// One message and its answer; an answer of an earlier reign counts as none.
@@ -82,6 +131,9 @@ impl Worker {
         if reply.epoch < newest {
             tracing::debug!(key, epoch = reply.epoch, newest, "an answer of an earlier orchestrator is not heard");
             return Err(LinkError::NoReply { key: key.to_owned() });
+        }
+        if newest > 0 && reply.epoch > newest {
+            self.stays_unknown();
         }
         Ok(reply.body)
     }
@@ -135,7 +187,8 @@ impl Worker {
             }
             tokio::time::sleep(backoff.next()).await;
         }
-        tracing::warn!(job = %slot.0, attempt = slot.1, "could not be handed back; its lease will end");
+        // Costs time, loses nothing: the lease ends by itself.
+        tracing::info!(job = %slot.0, attempt = slot.1, "could not be handed back; its lease will end");
     }
 }
 

@@ -1,7 +1,6 @@
 //! The loop of a worker.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use socrates_link::{Bus, Overflow, Subscription, keys};
@@ -14,7 +13,7 @@ use crate::beat::beats;
 use crate::config::{Stop, WorkerConfig};
 use crate::error::KitError;
 use crate::held::slot_of;
-use crate::messages::{Backoff, Worker};
+use crate::messages::{Backoff, Worker, left};
 use crate::stage::Stage;
 
 /// Longest pause that an orchestrator may ask for between two asks for work.
@@ -43,13 +42,13 @@ pub async fn serve<S: Stage>(
     let beat_every = welcomed?;
     let hints = worker.bus.subscribe(&keys::hint(S::STAGE), 16, Overflow::DropOldest).await?;
     let token = worker.bus.declare_alive(&keys::worker_alive(S::STAGE, &worker.config.instance)).await?;
-    let draining = Arc::new(AtomicBool::new(false));
     let (granted, mut grants) = mpsc::channel::<Vec<Grant>>(16);
 
     // Tasks that end with this function, whatever happens.
     let mut service = JoinSet::new();
-    service.spawn(beats(Arc::clone(&worker), beat_every, Arc::clone(&draining), granted.clone()));
-    service.spawn(asks(Arc::clone(&worker), hints, granted));
+    service.spawn(beats(Arc::clone(&worker), beat_every, granted.clone()));
+    let mut asking = JoinSet::new();
+    asking.spawn(asks(Arc::clone(&worker), hints, granted));
     let mut attempts: JoinSet<Result<(), KitError>> = JoinSet::new();
     let replay = Arc::clone(&worker);
     attempts.spawn(async move {
@@ -79,8 +78,9 @@ pub async fn serve<S: Stage>(
             }
         }
     }
-    draining.store(true, Ordering::Release);
-    drain(&worker, &mut attempts, &mut grants, &mut shutdown).await?;
+    worker.leave();
+    finish(&worker, &mut attempts, &mut grants, &mut shutdown).await?;
+    hand_back(&worker, &mut attempts, &mut asking, &mut grants).await?;
     service.shutdown().await;
     drop(token);
     Ok(())
@@ -104,13 +104,7 @@ fn settled(ended: Result<Result<(), KitError>, tokio::task::JoinError>) -> Resul
 
 /// Says hello until it is welcomed; gives the pause between beats.
 async fn hello(worker: &Worker) -> Result<Duration, KitError> {
-    let hello = Hello {
-        instance: worker.config.instance.clone(),
-        stages: vec![worker.stage],
-        code_version: worker.config.code_version.clone(),
-        pid: std::process::id(),
-        host: worker.config.host.clone(),
-    };
+    let hello = worker.introduction();
     let mut backoff = Backoff::new(&worker.config.instance);
     loop {
         match worker.ask::<Hello, Welcome>(keys::HELLO, "hello", &hello).await {
@@ -127,11 +121,17 @@ async fn hello(worker: &Worker) -> Result<Duration, KitError> {
     }
 }
 
-/// Asks for work whenever a place is free. A lost answer is asked for again under the same id.
+/// Asks for work whenever a place is free, until the worker leaves. A lost answer is asked for again under the same id; an
+/// answer that is on its way is waited for, so that no grant comes after the last was handed back.
 async fn asks(worker: Arc<Worker>, mut hints: Subscription, granted: mpsc::Sender<Vec<Grant>>) {
     let mut backoff = Backoff::new(&worker.config.instance);
+    let mut leaving = worker.leaving();
     loop {
-        let credits = worker.held.wait_free(worker.config.slots.max(1)).await;
+        let credits = tokio::select! {
+            biased;
+            () = left(&mut leaving) => return,
+            free = worker.held.wait_free(worker.config.slots.max(1)) => free,
+        };
         let acquire = Acquire {
             req_id: uuid::Uuid::new_v4().to_string(),
             instance: worker.config.instance.clone(),
@@ -150,7 +150,10 @@ async fn asks(worker: Arc<Worker>, mut hints: Subscription, granted: mpsc::Sende
                     } else {
                         tracing::warn!(%why, "asking for work was refused and is tried again");
                     }
-                    tokio::time::sleep(backoff.next()).await;
+                    tokio::select! {
+                        () = left(&mut leaving) => return,
+                        () = tokio::time::sleep(backoff.next()) => {}
+                    }
                 }
             }
         };
@@ -162,31 +165,35 @@ async fn asks(worker: Arc<Worker>, mut hints: Subscription, granted: mpsc::Sende
                     return;
                 }
                 // Asking again before the places are taken would ask for too much.
-                worker.held.wait_seen(&slots).await;
+                tokio::select! {
+                    () = left(&mut leaving) => return,
+                    () = worker.held.wait_seen(&slots) => {}
+                }
             }
-            Acquired::Grants(_none) => pause(&worker, &mut hints, Duration::ZERO).await,
+            Acquired::Grants(_none) => pause(&worker, &mut hints, &mut leaving, Duration::ZERO).await,
             Acquired::None { retry_after_ms, reason } => {
                 tracing::trace!(reason, "no work");
                 // Only "empty" may be cut short by the poll period: whoever is throttled waits as told.
                 let told = Duration::from_millis(retry_after_ms).min(LONGEST_PAUSE);
                 let told = if reason == "empty" { told.min(worker.config.poll) } else { told };
-                pause(&worker, &mut hints, told).await;
+                pause(&worker, &mut hints, &mut leaving, told).await;
             }
         }
     }
 }
 
-/// Waits for a hint, the pause asked for, or the poll period where none was.
-async fn pause(worker: &Worker, hints: &mut Subscription, told: Duration) {
+/// Waits for a hint, the pause asked for, or the poll period where none was; not longer than the worker stays.
+async fn pause(worker: &Worker, hints: &mut Subscription, leaving: &mut watch::Receiver<bool>, told: Duration) {
     let pause = if told.is_zero() { worker.config.poll } else { told };
     tokio::select! {
+        () = left(leaving) => {}
         _hint = hints.next() => {}
         () = tokio::time::sleep(pause) => {}
     }
 }
 
-/// Finishes what fits the drain time, hands back the rest, gives the last reports a moment.
-async fn drain(
+/// Finishes what fits the drain time; nothing where the worker has to stop now.
+async fn finish(
     worker: &Arc<Worker>,
     attempts: &mut JoinSet<Result<(), KitError>>,
     grants: &mut mpsc::Receiver<Vec<Grant>>,
@@ -203,33 +210,52 @@ async fn drain(
         };
         tokio::select! {
             biased;
-            () = now => break,
-            () = &mut limit => break,
+            () = now => return Ok(()),
+            () = &mut limit => return Ok(()),
             Some(ended) = attempts.join_next() => settled(ended)?,
-            Some(batch) = grants.recv() => {
-                for grant in &batch {
-                    worker.release(&slot_of(grant)).await;
-                }
-            }
-            () = worker.held.wait_empty() => break,
+            Some(batch) = grants.recv() => release(worker, &batch).await,
+            () = worker.held.wait_empty() => return Ok(()),
         }
     }
+}
+
+/// Hands back what is left, each with an answer of the orchestrator, and gives the last reports a moment. The asking for
+/// work has to end as well: its last answer may grant what was just handed back.
+async fn hand_back(
+    worker: &Arc<Worker>,
+    attempts: &mut JoinSet<Result<(), KitError>>,
+    asking: &mut JoinSet<()>,
+    grants: &mut mpsc::Receiver<Vec<Grant>>,
+) -> Result<(), KitError> {
     for slot in worker.held.running() {
         if let Some(entry) = worker.held.entry(&slot) {
             entry.cancel.stop();
         }
     }
     let last = async {
-        while let Some(ended) = attempts.join_next().await {
-            settled(ended)?;
+        while !(attempts.is_empty() && asking.is_empty()) {
+            tokio::select! {
+                Some(batch) = grants.recv() => release(worker, &batch).await,
+                Some(ended) = attempts.join_next() => settled(ended)?,
+                Some(_ended) = asking.join_next() => {}
+            }
+        }
+        while let Ok(batch) = grants.try_recv() {
+            release(worker, &batch).await;
         }
         Ok(())
     };
     match tokio::time::timeout(LAST_REPORTS, last).await {
         Ok(result) => result,
         Err(_elapsed) => {
-            tracing::warn!("some reports are not recorded; they stay in the spool");
+            tracing::info!("some reports are not recorded; they stay in the spool");
             Ok(())
         }
+    }
+}
+
+async fn release(worker: &Worker, grants: &[Grant]) {
+    for grant in grants {
+        worker.release(&slot_of(grant)).await;
     }
 }

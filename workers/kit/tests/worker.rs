@@ -59,6 +59,11 @@ struct Office {
     lose_reports: u32,
     cancel: bool,
     beats: u32,
+    /// Reigns after the first.
+    reigns: u64,
+    hellos: u32,
+    /// A job that is handed back is granted again at once, to whoever asks.
+    eager: bool,
 }
 
 /// Serves the worker protocol the way the orchestrator would.
@@ -69,10 +74,12 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
         let mut all = bus.serve("rpc/*").await.unwrap();
         while let Some(ask) = all.next().await {
             let key = ask.key().to_owned();
+            let reign = 1 + shared.lock().unwrap().reigns;
             match key.as_str() {
                 keys::HELLO => {
                     ask.read::<Hello>("hello").unwrap();
-                    ask.answer("hello", "office", 1, &Welcome::Welcome { epoch: 1, lease_ms: 1000, beat_ms: 20 })
+                    shared.lock().unwrap().hellos += 1;
+                    ask.answer("hello", "office", reign, &Welcome::Welcome { epoch: 1, lease_ms: 1000, beat_ms: 20 })
                         .await
                         .unwrap();
                 }
@@ -98,7 +105,7 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                     };
                     // A lost answer: the ask is dropped and the worker hears no reply.
                     if let Some(reply) = reply {
-                        ask.answer("acquire", "office", 1, &reply).await.unwrap();
+                        ask.answer("acquire", "office", reign, &reply).await.unwrap();
                     }
                 }
                 keys::BEAT => {
@@ -110,7 +117,7 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                         let verdicts = beat.held.into_iter().map(|held| (held.key, held.attempt, verdict)).collect();
                         BeatReply { verdicts, missing: vec![], epoch: 1 }
                     };
-                    ask.answer("beat", "office", 1, &reply).await.unwrap();
+                    ask.answer("beat", "office", reign, &reply).await.unwrap();
                 }
                 keys::REPORT => {
                     let report = ask.read::<Report>("report").unwrap().body;
@@ -129,12 +136,27 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                         }
                     };
                     if let Some(recorded) = recorded {
-                        ask.answer("report", "office", 1, &recorded).await.unwrap();
+                        ask.answer("report", "office", reign, &recorded).await.unwrap();
                     }
                 }
                 keys::RELEASE => {
-                    shared.lock().unwrap().released.push(ask.read::<Release>("release").unwrap().body);
-                    ask.answer("release", "office", 1, &Recorded::Accepted).await.unwrap();
+                    let release = ask.read::<Release>("release").unwrap().body;
+                    let mut hinted = false;
+                    {
+                        let mut office = shared.lock().unwrap();
+                        let granted = office.granted.values().flatten().find(|grant| grant.spec.key == release.key);
+                        let again = granted.cloned().filter(|_| office.eager);
+                        if let Some(grant) = again {
+                            let attempt = release.attempt + 1;
+                            office.open.push_back(Grant { attempt, fence: release.fence + 1, ..grant });
+                            hinted = true;
+                        }
+                        office.released.push(release);
+                    }
+                    if hinted {
+                        bus.publish(&keys::hint(socrates_model::job::Stage::Paths), vec![], Qos::Hint).await.unwrap();
+                    }
+                    ask.answer("release", "office", reign, &Recorded::Accepted).await.unwrap();
                 }
                 other => panic!("unexpected key {other}"),
             }
@@ -385,6 +407,60 @@ async fn a_worker_told_to_stop_now_hands_back_what_it_holds() {
         let office = rig.office.lock().unwrap();
         assert_eq!(office.released.len(), 1);
         assert!(office.reports.is_empty());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn who_leaves_is_not_given_again_what_it_hands_back() {
+    guarded(async {
+        for _ in 0..20 {
+            let (rig, dir) = (Rig::new(), tempfile::tempdir().unwrap());
+            rig.office.lock().unwrap().eager = true;
+            let worker = rig.worker(Rig::config(dir.path()));
+            rig.open(grant(1, "abc", "hang")).await;
+            while rig.runs.load(Ordering::SeqCst) == 0 {
+                tokio::time::sleep(Duration::from_millis(2)).await;
+            }
+            rig.stop.send_replace(Stop::Now);
+            worker.await.unwrap().unwrap();
+            let office = rig.office.lock().unwrap();
+            assert_eq!(office.open.len(), 1, "the job waits for the next one: {:?}", office.released);
+        }
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_worker_tells_a_new_orchestrator_who_it_is() {
+    guarded(async {
+        let (rig, dir) = (Rig::new(), tempfile::tempdir().unwrap());
+        let worker = rig.worker(Rig::config(dir.path()));
+        rig.until(|office| office.beats > 2).await;
+        assert_eq!(rig.office.lock().unwrap().hellos, 1);
+        rig.office.lock().unwrap().reigns = 1;
+        rig.until(|office| office.hellos == 2).await;
+        let beats = rig.office.lock().unwrap().beats;
+        rig.until(|office| office.beats > beats + 3).await;
+        assert_eq!(rig.office.lock().unwrap().hellos, 2, "once for each");
+        rig.stop.send_replace(Stop::Now);
+        worker.await.unwrap().unwrap();
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_supervised_worker_ends_with_the_reason_when_nothing_can_be_written() {
+    guarded(async {
+        let (rig, dir) = (Rig::new(), tempfile::tempdir().unwrap());
+        let mut config = Rig::config(dir.path());
+        config.waits_for_disk = false;
+        // A file where a folder has to be: no write succeeds, whoever the user is.
+        std::fs::write(dir.path().join("blobs"), "").unwrap();
+        let worker = rig.worker(config);
+        rig.open(grant(1, "abc", "big")).await;
+        let why = worker.await.unwrap().unwrap_err();
+        assert!(matches!(&why, KitError::Folder { path, .. } if path.starts_with(dir.path().join("blobs"))), "{why}");
     })
     .await;
 }

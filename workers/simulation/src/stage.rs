@@ -19,8 +19,11 @@ const LINGER: Duration = Duration::from_secs(3);
 
 /// The simulation stage. Settings: `pace` (`max` or simulated seconds per second), `live` (`off`, `bus`,
 /// `shm`, `on` for both; default `off`).
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Simulation;
+#[derive(Debug, Clone)]
+pub struct Simulation {
+    /// Where shared memory is arranged for readers on this machine.
+    pub shm: ShmConfig,
+}
 
 /// Everything of a job, decoded.
 struct Inputs {
@@ -76,7 +79,7 @@ impl Onlooker for Viewers {
     }
 }
 
-async fn viewers(job: &Job, run: &RunId) -> Result<Viewers, Failure> {
+async fn viewers(job: &Job, run: &RunId, config: &ShmConfig) -> Result<Viewers, Failure> {
     let live = job.setting("live").unwrap_or("off");
     let (bus, shm) = match live {
         "" | "off" | "0" | "false" => (false, false),
@@ -85,7 +88,7 @@ async fn viewers(job: &Job, run: &RunId) -> Result<Viewers, Failure> {
         _ => (true, true),
     };
     let mut sinks = Fanout::new(Vec::new());
-    if shm && let Some(sink) = ShmSink::open_or_log(run, &ShmConfig::default()) {
+    if shm && let Some(sink) = ShmSink::open_or_log(run, config) {
         sinks.add(Box::new(sink));
     }
     if bus {
@@ -118,7 +121,7 @@ impl Stage for Simulation {
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
         let Inputs { setup, planner, location } = inputs(job)?;
         let run = setup.run.clone();
-        let mut viewers = viewers(job, &run).await?;
+        let mut viewers = viewers(job, &run, &self.shm).await?;
         let work = tokio::task::spawn_blocking(move || {
             let recording = simulate_into(setup, &planner, &mut viewers)?;
             viewers.sinks.end(recording.ticks() as u64);

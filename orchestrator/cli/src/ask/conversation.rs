@@ -13,7 +13,8 @@ use socrates_offline::{Draft, edit};
 use socrates_prompts::Question;
 
 use super::command::{Command, stage as stage_named};
-use super::log::Log;
+use super::keep::kept;
+use super::log::{Log, MADE, MADE_AGAIN};
 use super::version::{Version, lines, named};
 use crate::exit::Complaint;
 
@@ -102,8 +103,14 @@ pub(super) struct Decision {
 /// # Errors
 /// Only what [`Person::keep`] says.
 pub(super) fn converse(look: &Look, log: &mut Log, person: &mut dyn Person) -> Result<Option<Decision>, Complaint> {
-    let how = if look.reasons.is_empty() { "made by the author" } else { "made again" };
+    let how = if look.reasons.is_empty() { MADE } else { MADE_AGAIN };
+    let edits = log.edits();
     let before = log.begin(&look.job, look.came.clone(), how);
+    if let (About::Proposal, MADE_AGAIN, Some(_), Some((base, mine))) = (look.about, how, &before, edits)
+        && let Some(version) = kept(&look.question, &base, &mine, &look.came)
+    {
+        log.push("what you had changed, kept", version);
+    }
     let mut talk = Conversation { look, log, person, page: look.about, texts: BTreeMap::new() };
     talk.greet(before.as_ref());
     talk.person.keep(talk.log)?;
@@ -322,8 +329,13 @@ impl Conversation<'_> {
         match self.log.undo(whole) {
             Some(how) => {
                 self.say(Tone::Good, &format!("undone: {how}"));
+                // A text that could not be read belongs to what is undone.
+                self.texts.clear();
                 let now = self.now();
                 self.difference(&undone, &now);
+                if now.paths != undone.paths {
+                    self.person.picture(self.look, &now);
+                }
                 self.faults();
             }
             None => self.say(Tone::Quiet, "nothing to undo in this look"),
@@ -370,6 +382,9 @@ impl Conversation<'_> {
         let edited = edit(&question, &draft, words);
         for done in &edited.done {
             self.all(Tone::Good, &named("done", done));
+        }
+        for words in &edited.left_out {
+            self.all(Tone::Bad, &named("left out", &format!("`{words}` was not understood; the rest was done")));
         }
         for fault in &edited.not_done {
             self.all(Tone::Bad, &named("not done", &fault.message));

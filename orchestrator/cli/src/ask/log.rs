@@ -7,6 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::version::Version;
 use crate::exit::Complaint;
 
+/// How a version came about that an author made.
+pub(super) const MADE: &str = "made by the author";
+/// The same of one that a person had wanted otherwise.
+pub(super) const MADE_AGAIN: &str = "made again";
 /// Format number of the file.
 const FORMAT: u32 = 1;
 /// Largest file that is read, bytes.
@@ -51,6 +55,13 @@ impl Log {
             self.versions.push(Kept { how: how.to_owned(), version: came });
         }
         before
+    }
+
+    /// What the author made last and what the person made of it; nothing where they changed nothing.
+    pub(super) fn edits(&self) -> Option<(Version, Version)> {
+        let base = self.versions.iter().rev().find(|kept| kept.how == MADE || kept.how == MADE_AGAIN)?;
+        let mine = self.now().filter(|mine| **mine != base.version)?;
+        Some((base.version.clone(), mine.clone()))
     }
 
     /// The version that stands.

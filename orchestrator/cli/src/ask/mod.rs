@@ -12,6 +12,7 @@
 
 mod command;
 mod conversation;
+mod keep;
 mod log;
 mod terminal;
 mod version;

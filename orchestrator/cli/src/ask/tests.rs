@@ -281,3 +281,72 @@ fn back_shows_the_proposal_and_accept_returns_to_the_draft() {
     assert!(person.heard(&title), "{}", person.text());
     assert_eq!(person.pictures, 2);
 }
+
+#[test]
+fn what_was_changed_is_kept_when_the_proposal_is_made_again() {
+    let first = look(About::Proposal);
+    let lines = ["slow down the visitor", "the robot should say excuse me", "again somewhere livelier"];
+    let (decision, mut log) = talk(&first, &mut Script::of(&lines));
+    let mine = decision.unwrap().left;
+    let slowed = mine.proposal.humans[0].speed_mps;
+    assert!(slowed.is_some_and(|mps| mps < 1.2) && mine.proposal != first.came.proposal);
+    // The author answers with what it had written first.
+    let mut second = first.clone();
+    second.job = "again".to_owned();
+    second.reasons = vec![Fault::new(FaultCode::PPerson, Stage::Proposal, "somewhere livelier")];
+    second.came.reading = mine.reading.clone();
+    let mut person = Script::of(&["accept"]);
+    let left = converse(&second, &mut log, &mut person).unwrap().unwrap().left;
+    assert_eq!(left.proposal.humans[0].speed_mps, slowed, "{}", person.text());
+    assert_eq!(left.proposal.robot.script, mine.proposal.robot.script, "{}", person.text());
+    // It is a change as any other: it can be taken back.
+    let (_, mut log) = talk(&first, &mut Script::of(&lines));
+    let mut person = Script::of(&["undo", "accept"]);
+    let left = converse(&second, &mut log, &mut person).unwrap().unwrap().left;
+    assert!(person.heard("undone: what you had changed, kept"), "{}", person.text());
+    assert_eq!(left.proposal, second.came.proposal);
+}
+
+#[test]
+fn no_words_are_both_done_and_not_done() {
+    let look = look(About::Draft);
+    for words in [
+        "the visitor gives way when the robot is within 3 m and yodels",
+        "slow down the visitor and paint her green",
+        "add a nurse who walks towards the robot and juggles",
+        "add a third person and remove the astronaut",
+    ] {
+        let mut person = Script::of(&[words, "quit"]);
+        talk(&look, &mut person);
+        let text = person.text();
+        let quoted = |line: &str| line.split('`').nth(1).unwrap_or_default().to_owned();
+        let refused: Vec<String> = person
+            .heard
+            .iter()
+            .filter(|(_, line)| line.starts_with("not done"))
+            .map(|(_, line)| quoted(line))
+            .collect();
+        assert!(!refused.contains(&words.to_owned()) || !person.heard("done       "), "{text}");
+        assert!(!(person.heard("nothing was changed for it") && refused.is_empty()), "{text}");
+    }
+}
+
+#[test]
+fn after_undo_the_story_the_picture_and_the_text_by_hand_are_those_of_before() {
+    let look = look(About::Draft);
+    let mut person = Script::of(&["add a nurse who walks towards the robot", "show", "undo", "accept"]);
+    let (decision, _) = talk(&look, &mut person);
+    assert_eq!(decision.unwrap().left, look.came);
+    // Drawn as it came, as it was changed, as it was shown, and as it is again.
+    assert_eq!(person.pictures, 4, "{}", person.text());
+
+    let mut person = Script::of(&["edit proposal", "slow down the visitor", "undo", "edit proposal", "accept"]);
+    let mut tries = 0;
+    person.editor = Some(Box::new(move |text| {
+        tries += 1;
+        assert!(text.starts_with("{\n"), "what was undone is not opened again: {text}");
+        Ok(if tries == 1 { "{{".to_owned() } else { text.to_owned() })
+    }));
+    talk(&look, &mut person);
+    assert!(person.heard("proposal.json cannot be read"), "{}", person.text());
+}

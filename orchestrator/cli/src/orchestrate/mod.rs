@@ -18,18 +18,18 @@ mod tests;
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use socrates_kit::{LocalBlobs, Stop};
 use socrates_link::{Bus, keys};
 use socrates_orchestrator::{Event, Policy, Row, State, step};
-use socrates_store::{Durability, SqliteStore, Store as _};
+use socrates_store::{Durability, SqliteStore, Store as _, StoreError};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 
 use owner::Owner;
-use reader::Inbound;
+use reader::{Disk, Inbound};
 
 /// Events that wait for the owner at most; beyond it the readers wait, then the bus.
 const LINE: usize = 1024;
@@ -44,6 +44,8 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) lease_ms: u64,
     /// Pause between a worker's beats, ms.
     pub(crate) beat_ms: u64,
+    /// Longest attempts of authoring, simulation and scoring, ms.
+    pub(crate) deadlines_ms: (u64, u64, u64),
     /// New revisions that a scenario may have.
     pub(crate) repairs: u32,
     /// Further asks after an answer that cannot be taken.
@@ -60,7 +62,15 @@ pub(crate) struct OrchestratorConfig {
     pub(crate) durability: Durability,
     /// Version that workers must have; empty takes any.
     pub(crate) code_version: String,
+    /// Whether no worker of before is alive: what they held is handed out again at once.
+    pub(crate) alone: bool,
+    /// Whether a disk that takes nothing more is waited for, while workers keep their reports; otherwise serving ends with
+    /// the reason, for whoever supervises it.
+    pub(crate) waits: bool,
 }
+
+/// How long the orchestrator of a supervisor waits for the one of an earlier supervisor, which is leaving, to give up the store.
+const PREDECESSOR: Duration = Duration::from_secs(5);
 
 /// Serves until it is asked to stop or the store fails. Stopping takes no time for anybody's work: what
 /// workers hold stays theirs, and the next orchestrator on this folder knows of it.
@@ -78,6 +88,9 @@ pub(crate) async fn serve(
     let policy = Policy {
         lease_ms: config.lease_ms,
         beat_ms: config.beat_ms,
+        author_deadline_ms: config.deadlines_ms.0,
+        simulation_deadline_ms: config.deadlines_ms.1,
+        scoring_deadline_ms: config.deadlines_ms.2,
         repairs: config.repairs,
         code_version: config.code_version,
         tokens_per_scenario: config.author_budget.0,
@@ -88,10 +101,17 @@ pub(crate) async fn serve(
         requests_per_minute: config.author_rates.1,
         ..Policy::default().asking_again(config.asks_again)
     };
-    let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
-    let (store, state) = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept))
-        .await
-        .context("opening the job store")??;
+    let (store, state) = loop {
+        let (at, durability, kept) = (config.dir.join("jobs.sqlite"), config.durability, blobs.clone());
+        let (policy, alone) = (policy.clone(), config.alone);
+        let opened = tokio::task::spawn_blocking(move || open(&at, durability, policy, &kept, alone)).await;
+        match opened.context("opening the job store")? {
+            Err(why) if config.alone && is_locked(&why) && started.elapsed() < PREDECESSOR => {
+                tokio::time::sleep(Duration::from_millis(20)).await;
+            }
+            opened => break opened?,
+        }
+    };
     let epoch = state.epoch;
     tracing::info!(epoch, scenarios = state.counts().0, "the orchestrator begins");
 
@@ -105,7 +125,8 @@ pub(crate) async fn serve(
         [keys::HELLO, keys::ACQUIRE, keys::BEAT, keys::REPORT, keys::RELEASE, keys::SUBMIT, keys::CONTROL, keys::STATUS]
     {
         let serving = bus.serve(key).await.with_context(|| format!("serving `{key}`"))?;
-        tasks.spawn(reader::read(Arc::clone(&bus), epoch, serving, line.clone(), blobs.clone()));
+        let disk = Disk { blobs: blobs.clone(), waits: config.waits };
+        tasks.spawn(reader::read(Arc::clone(&bus), epoch, serving, line.clone(), disk));
     }
     let (parts_bus, parts) = (Arc::clone(&bus), blobs.clone());
     tasks.spawn(async move {
@@ -123,7 +144,7 @@ pub(crate) async fn serve(
         why = &mut broken => Err(why.map_or_else(|_gone| anyhow::anyhow!("the writer of the job store has ended"), anyhow::Error::from)),
         // Nobody left who could ask is a wish to stop, too.
         _asked = shutdown.wait_for(|stop| *stop != Stop::Run) => Ok(()),
-        () = owner.run(inbound) => Ok(()),
+        full = owner.run(inbound) => full.map_or(Ok(()), |why| Err(why.into())),
     };
     drop(token);
     // The writer ends when its line does: what stands in it is committed and told.
@@ -133,12 +154,17 @@ pub(crate) async fn serve(
     result.and(ended)
 }
 
+fn is_locked(why: &anyhow::Error) -> bool {
+    why.downcast_ref::<StoreError>().is_some_and(|why| matches!(why, StoreError::Locked { .. }))
+}
+
 /// Opens the store, begins a new reign, and puts small texts back where workers look for them.
 fn open(
     at: &std::path::Path,
     durability: Durability,
     policy: Policy,
     blobs: &LocalBlobs,
+    alone: bool,
 ) -> anyhow::Result<(SqliteStore, State)> {
     let mut store = SqliteStore::open_with(at, durability)?;
     let snapshot = store.load().context("reading the job store")?;
@@ -150,7 +176,7 @@ fn open(
         }
     }
     let mut state = State::restore(snapshot, policy, 0);
-    let rows: Vec<Row> = step(&mut state, Event::Recover, 0).into_iter().filter_map(owner::row).collect();
+    let rows: Vec<Row> = step(&mut state, Event::Recover { alone }, 0).into_iter().filter_map(owner::row).collect();
     store.save(&rows)?;
     Ok((store, state))
 }

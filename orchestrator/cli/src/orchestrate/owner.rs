@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
+use socrates_kit::BlobError;
 use socrates_link::Ask;
 use socrates_model::job::Stage;
 use socrates_model::wire::{Acquire, Acquired};
@@ -72,8 +73,8 @@ impl Owner {
         u64::try_from(self.started.elapsed().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// Works through the line until it ends.
-    pub(super) async fn run(&mut self, mut line: mpsc::Receiver<Inbound>) {
+    /// Works through the line until it ends, or the disk is full and nobody waits.
+    pub(super) async fn run(&mut self, mut line: mpsc::Receiver<Inbound>) -> Option<BlobError> {
         // What the rebuilt state has to offer.
         let hints = Stage::WORKERS.into_iter().filter(|stage| self.state.has_ready(*stage)).map(Effect::Hint).collect();
         self.commit(hints).await;
@@ -87,7 +88,8 @@ impl Owner {
                         self.waiting.retain(|waiting| waiting.acquire.instance != instance);
                         self.event(Event::Gone { instance }).await;
                     }
-                    None => return,
+                    Some(Inbound::Full(why)) => return Some(why),
+                    None => return None,
                 },
                 () = tokio::time::sleep(wait) => {}
             }

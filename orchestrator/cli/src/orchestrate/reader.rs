@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use serde::de::DeserializeOwned;
-use socrates_kit::LocalBlobs;
+use socrates_kit::{BlobError, LocalBlobs};
 use socrates_link::{Ask, Bus, Presence, Serving, keys};
 use socrates_model::wire::{Acquire, Beat, Control, Hello, Recorded, Release, Report, StatusAsk, Submit, Submitted};
-use socrates_orchestrator::Answer;
 use tokio::sync::mpsc;
 
 use super::artifacts;
@@ -29,6 +28,16 @@ pub(super) enum Inbound {
     Asked(Question, Ask),
     /// A worker's token is gone.
     Gone(String),
+    /// The disk takes nothing more, and nobody waits until it does.
+    Full(BlobError),
+}
+
+/// Where artifacts are kept.
+#[derive(Clone)]
+pub(super) struct Disk {
+    pub(super) blobs: LocalBlobs,
+    /// Whether room is waited for.
+    pub(super) waits: bool,
 }
 
 /// Kind of the messages on a key: its last chunk.
@@ -37,13 +46,8 @@ pub(super) fn kind(key: &str) -> &str {
 }
 
 /// Reads one key until the bus closes. Whatever cannot be read is refused with the reason.
-pub(super) async fn read(
-    bus: Arc<dyn Bus>,
-    epoch: u64,
-    mut serving: Serving,
-    line: mpsc::Sender<Inbound>,
-    blobs: LocalBlobs,
-) {
+pub(super) async fn read(bus: Arc<dyn Bus>, epoch: u64, mut serving: Serving, line: mpsc::Sender<Inbound>, disk: Disk) {
+    let mut told_of_disk = false;
     while let Some(ask) = serving.next().await {
         let question = match decode(&ask) {
             Ok(question) => question,
@@ -53,15 +57,24 @@ pub(super) async fn read(
                 continue;
             }
         };
-        match checked(question, &blobs).await {
+        match checked(question, &disk.blobs).await {
             Ok(question) => {
                 if line.send(Inbound::Asked(question, ask)).await.is_err() {
                     return;
                 }
             }
-            Err(Answer::Submitted(answer)) => told(ask.answer(kind(keys::SUBMIT), bus.name(), epoch, &answer).await),
-            Err(Answer::Recorded(answer)) => told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &answer).await),
-            Err(Answer::Welcome(_) | Answer::Acquired(_) | Answer::Beat(_)) => {}
+            Err(Refused::Full(why)) if !disk.waits => {
+                drop(line.send(Inbound::Full(why)).await);
+                return;
+            }
+            Err(Refused::Full(why)) => {
+                if !std::mem::replace(&mut told_of_disk, true) {
+                    tracing::error!(%why, "artifacts cannot be written; reports stay with the workers until they can");
+                }
+                told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &Recorded::Busy).await);
+            }
+            Err(Refused::Said(answer)) => told(ask.answer(kind(keys::SUBMIT), bus.name(), epoch, &answer).await),
+            Err(Refused::Busy) => told(ask.answer(kind(keys::REPORT), bus.name(), epoch, &Recorded::Busy).await),
         }
     }
 }
@@ -90,20 +103,27 @@ fn decode(ask: &Ask) -> Result<Question, String> {
     }
 }
 
+/// Why a question does not reach the owner.
+enum Refused {
+    /// It has its answer.
+    Said(Submitted),
+    /// The report has to be sent again.
+    Busy,
+    /// Its artifacts cannot be written.
+    Full(BlobError),
+}
+
 /// Looks after the artifacts a question speaks of, off the runtime's own threads.
-async fn checked(question: Question, blobs: &LocalBlobs) -> Result<Question, Answer> {
+async fn checked(question: Question, blobs: &LocalBlobs) -> Result<Question, Refused> {
     let blobs = blobs.clone();
     match question {
         Question::Report(report) => {
             match tokio::task::spawn_blocking(move || artifacts::settle(&blobs, *report)).await {
                 Ok(Ok(report)) => Ok(Question::Report(Box::new(report))),
-                Ok(Err(why)) => {
-                    tracing::error!(%why, "artifacts cannot be written; reports stay with the workers");
-                    Err(Answer::Recorded(Recorded::Busy))
-                }
+                Ok(Err(why)) => Err(Refused::Full(why)),
                 Err(why) => {
                     tracing::error!(%why, "a report could not be looked at");
-                    Err(Answer::Recorded(Recorded::Busy))
+                    Err(Refused::Busy)
                 }
             }
         }
@@ -111,8 +131,8 @@ async fn checked(question: Question, blobs: &LocalBlobs) -> Result<Question, Ans
             let looked = tokio::task::spawn_blocking(move || (artifacts::missing_input(&blobs, &submit), submit)).await;
             match looked {
                 Ok((None, submit)) => Ok(Question::Submit(submit)),
-                Ok((Some(why), _)) => Err(Answer::Submitted(Submitted::Refused { why })),
-                Err(_broken) => Err(Answer::Submitted(Submitted::Busy { retry_after_ms: 500 })),
+                Ok((Some(why), _)) => Err(Refused::Said(Submitted::Refused { why })),
+                Err(_broken) => Err(Refused::Said(Submitted::Busy { retry_after_ms: 500 })),
             }
         }
         Question::Hello(_)

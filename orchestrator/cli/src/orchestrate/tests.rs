@@ -35,6 +35,7 @@ async fn open(dir: &Path) -> Site {
         dir: dir.to_owned(),
         lease_ms: 15_000,
         beat_ms: 2_000,
+        deadlines_ms: (120_000, 1_200_000, 60_000),
         repairs: 3,
         asks_again: 3,
         author_rates: (0, 0),
@@ -43,6 +44,8 @@ async fn open(dir: &Path) -> Site {
         prices: std::collections::BTreeMap::new(),
         durability: socrates_store::Durability::Disk,
         code_version: "1".to_owned(),
+        alone: false,
+        waits: true,
     };
     let mut alive = bus.watch_alive(keys::ORCHESTRATORS_ALIVE).await.unwrap();
     let running = tokio::spawn(serve(config, Arc::clone(&bus), shutdown));
@@ -232,6 +235,7 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         dir: dir.path().to_owned(),
         lease_ms: 15_000,
         beat_ms: 2_000,
+        deadlines_ms: (120_000, 1_200_000, 60_000),
         repairs: 3,
         asks_again: 3,
         author_rates: (0, 0),
@@ -240,10 +244,12 @@ async fn a_second_orchestrator_on_the_folder_is_refused() {
         prices: std::collections::BTreeMap::new(),
         durability: socrates_store::Durability::Disk,
         code_version: String::new(),
+        alone: false,
+        waits: true,
     };
     let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
     let refused = tokio::time::timeout(LIMIT, serve(config, bus, shutdown)).await.expect("hangs");
-    assert!(refused.unwrap_err().to_string().contains("in use by another process"));
+    assert!(refused.unwrap_err().to_string().contains("in use by process"));
     site.close().await;
 }
 
