@@ -480,6 +480,22 @@ fn status_pages_fit_a_message_and_cover_everything() {
 }
 
 #[test]
+fn status_counts_what_runs_and_how_the_others_ended() {
+    let mut world = World::new();
+    world.submit(vec![spec("a"), spec("b"), spec("c")]);
+    let ask = StatusAsk { batch: String::new(), from: 0 };
+    let reply = status(&world.state, &ask, world.now);
+    assert_eq!((reply.total, reply.done, reply.running, reply.results.len()), (3, 0, 0, 0));
+    let lead = world.reach_scoring();
+    let reply = status(&world.state, &ask, world.now);
+    assert_eq!(reply.running, 1, "one scoring job is held: {reply:?}");
+    world.score(&lead, Verdict::Contradicted, None);
+    let reply = status(&world.state, &ask, world.now);
+    assert_eq!((reply.done, reply.running), (1, 0), "{reply:?}");
+    assert_eq!(reply.results.get("contradicted"), Some(&1), "{:?}", reply.results);
+}
+
+#[test]
 fn a_scenario_with_many_runs_takes_several_lines() {
     let mut world = World::new();
     let mut spec = spec("a");

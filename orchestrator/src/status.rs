@@ -1,7 +1,8 @@
 //! Status: how things stand, for clients, in pages that fit a message.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
+use socrates_model::ScenarioId;
 use socrates_model::job::JobKey;
 use socrates_model::wire::{JobStatus, ScenarioStatus, StatusAsk, StatusReply};
 
@@ -17,7 +18,7 @@ const BYTES: usize = 40 * 1024;
 const FAULTS: usize = 6;
 const FAULT_CHARS: usize = 300;
 
-/// Answers a status question at time `now`, ms. Lines come in order of submission; ask again from
+/// Answers a status question at time `now`, ms. The running scenarios are those of every batch. Lines come in order of submission; ask again from
 /// `from` plus the number of lines until there are none.
 ///
 /// A scenario with many runs takes several lines under the same id, each with a part of its jobs.
@@ -32,6 +33,12 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     } else {
         chosen().fold((0, 0), |(total, done), scenario| (total + 1, done + usize::from(scenario.end.is_some())))
     };
+    let mut results: BTreeMap<String, u32> = BTreeMap::new();
+    for end in chosen().filter_map(|scenario| scenario.end) {
+        *results.entry(end.name().to_owned()).or_default() += 1;
+    }
+    let held = state.workers.values().flat_map(|worker| &worker.held).map(|key| &key.scenario);
+    let running: BTreeSet<&ScenarioId> = held.collect();
     let mut workers: BTreeMap<String, u32> = BTreeMap::new();
     let alive = |seen: Millis| now.saturating_sub(seen) < state.policy.lease_ms;
     for worker in state.workers.values().filter(|worker| alive(worker.seen)) {
@@ -60,7 +67,17 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
         }
     }
     let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    StatusReply { total: count(total), done: count(done), workers, scenarios }
+    StatusReply {
+        total: count(total),
+        done: count(done),
+        running: count(running.len()),
+        results,
+        // Only the shell knows when it began.
+        serving_ms: 0,
+        done_before: 0,
+        workers,
+        scenarios,
+    }
 }
 
 /// The jobs that stand in the plan of the revision that counts.

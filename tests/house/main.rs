@@ -111,6 +111,7 @@ const HOMES: &[(&str, &[&str])] = &[
     ("png", &["maps", "maps/draw"]),
     ("rusqlite", &["orchestrator/store"]),
     ("clap", &["orchestrator/cli"]),
+    ("indicatif", &["orchestrator/cli"]),
     ("anyhow", &["orchestrator/cli"]),
 ];
 

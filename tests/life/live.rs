@@ -26,7 +26,16 @@ fn every_worker_is_a_process_and_a_watcher_misses_no_tick_unsaid() {
     let watched = start(PROGRAM, &["--format", "json", "watch", &out], folder.path(), "watch").unwrap();
     let watched = finish(watched, folder.path(), "watch").unwrap();
     assert_eq!(watched.code, 0, "{}", watched.err);
+    let lines: Vec<serde_json::Value> = watched
+        .out
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|why| panic!("{why}: {line}")))
+        .collect();
+    let kinds = |kind: &str| lines.iter().filter(|line| line["type"] == kind).count() as u64;
     let json = watched.json();
+    assert_eq!((kinds("run"), kinds("end"), &json["type"]), (1, 1, &"end".into()));
+    assert!(kinds("event") > 0 && kinds("tick") == json["received"].as_u64().unwrap(), "{json}");
+    assert!(lines.iter().any(|line| line["agents"][0]["x"].is_number()));
     let (ticks, received, missing) =
         (json["ticks"].as_u64().unwrap(), json["received"].as_u64().unwrap(), json["missing_ticks"].as_u64().unwrap());
     assert!(ticks > 1000, "{json}");

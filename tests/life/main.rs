@@ -3,6 +3,7 @@
 
 mod asking;
 mod bad_input;
+mod batches;
 mod bundles;
 mod evaluations;
 mod folders;

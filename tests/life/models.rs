@@ -125,6 +125,8 @@ fn fixtures(answers: &Answers) -> Value {
         says("robot_script", &answers.behaviors),
         says("Your task: paths", &with_a_jump(&answers.paths)),
         says("\"place\":", &with_a_jump(&answers.paths)),
+        // The list of models is made of the names that stand here.
+        json!({"match": {"userMessage": "nobody asks this", "model": "small"}, "response": {"content": ""}}),
     ])
 }
 

@@ -378,6 +378,18 @@ pub struct StatusReply {
     pub total: u32,
     /// Scenarios done.
     pub done: u32,
+    /// Scenarios of which a worker holds a job.
+    #[serde(default)]
+    pub running: u32,
+    /// Scenarios that are done, by how they ended: `realised` … or `failed`, `canceled`.
+    #[serde(default)]
+    pub results: BTreeMap<String, u32>,
+    /// How long this orchestrator has been serving, ms.
+    #[serde(default)]
+    pub serving_ms: u64,
+    /// Scenarios that were done when it began.
+    #[serde(default)]
+    pub done_before: u32,
     /// Workers that beat, by stage name.
     pub workers: BTreeMap<String, u32>,
     /// Lines from the asked index on.

@@ -17,9 +17,10 @@ pub struct LabelPage {
 }
 
 impl LabelPage {
-    /// Adds a run of a scenario with the camera of `all` its runs. The run is known by its id in the exported table.
+    /// Adds a run of a scenario with the camera of `all` its runs. The run is known by this name in the exported table.
     pub fn add(
         &mut self,
+        name: &str,
         request: &Request,
         location: &Location,
         paths: &Paths,
@@ -31,7 +32,7 @@ impl LabelPage {
         // The intended way stays hidden: what is judged is what is seen.
         let mut run = play::run(location, &[], recording, play::rate(all));
         if let Some(members) = run.as_object_mut() {
-            members.insert("name".to_owned(), recording.header.run.to_string().into());
+            members.insert("name".to_owned(), name.into());
             members.insert("place".to_owned(), index.into());
             members.insert("focus".to_owned(), json!(play::focus(location, &way, all)));
             members.insert("context".to_owned(), request.social_context.trim().into());
@@ -75,7 +76,7 @@ mod tests {
         let (location, run) = (hall(text), walk(2));
         let mut page = LabelPage::default();
         assert!(page.is_empty());
-        page.add(&request, &location, &paths, &[&run], &run);
+        page.add(run.header.run.as_str(), &request, &location, &paths, &[&run], &run);
         assert_eq!(page.len(), 1);
         page.html(text)
     }

@@ -31,10 +31,27 @@ pub(crate) fn agreement(talk: &Talk, labels: &Path, bundles: &[PathBuf]) -> Resu
     let text = files::text(labels, MAX_BYTES, &format!("a CSV with the columns {}", COLUMNS.join(",")))?;
     let labels = read(&text, &labels.display().to_string())?;
     let mut verdicts: BTreeMap<String, Verdict> = BTreeMap::new();
-    for dir in bundles {
-        for (_, report) in bundle::read(dir)?.runs {
-            verdicts.insert(report.run.to_string(), report.verdict);
+    let dirs = crate::labels::folders(bundles)?;
+    // A page for some of these bundles may have called a run by its own name alone; where two have it, that says too little.
+    let mut double: BTreeSet<String> = BTreeSet::new();
+    for (dir, names) in dirs.iter().zip(crate::labels::names(&dirs)?) {
+        for report in
+            bundle::manifest(dir).map_or_else(|| Ok(Vec::new()), |manifest| bundle::reports(dir, &manifest))?
+        {
+            let run = report.run.to_string();
+            let name = names.get(&run).cloned().unwrap_or_else(|| run.clone());
+            if name != run {
+                double.insert(run);
+            }
+            verdicts.insert(name, report.verdict);
         }
+    }
+    for run in labels.iter().map(|label| &label.run).filter(|run| double.contains(*run)) {
+        let fits: Vec<&str> = verdicts.keys().filter(|name| name.ends_with(run.as_str())).map(String::as_str).collect();
+        return Err(Complaint::input(
+            format!("several bundles hold a run `{run}`: {}", fits.join(", ")),
+            "name only the bundles that were on the page, or write these names into the labels",
+        ));
     }
     let unknown: BTreeSet<&str> =
         labels.iter().map(|label| label.run.as_str()).filter(|run| !verdicts.contains_key(*run)).collect();

@@ -118,10 +118,16 @@ pub(crate) enum Verb {
         #[arg(long)]
         run: Option<String>,
     },
-    /// Show how the jobs of a folder stand.
+    /// Show how the scenarios of a folder stand, while they are made and afterwards.
     Status {
-        /// Bundle or library folder, or a zenoh endpoint.
+        /// Bundle or library folder, a folder of bundles, or a zenoh endpoint.
         what: String,
+        /// List those of which no bundle could be made, with the reason.
+        #[arg(long)]
+        failed: bool,
+        /// List every scenario with what its stages did.
+        #[arg(long)]
+        all: bool,
     },
     /// Explain a fault code, such as G-DISC, or a metric; without one, list the codes.
     Explain {

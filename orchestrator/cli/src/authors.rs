@@ -3,7 +3,7 @@
 //! A key comes from an environment variable or a file that the configuration names; it is held in memory and goes into the
 //! header of a request, nowhere else.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::time::Duration;
 
@@ -101,6 +101,21 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
         let key = fault.at.replacen("prompt.", "author.", 1);
         Complaint::input(format!("`{key}`: {}", fault.message), "`socrates config author` prints the manual")
     })
+}
+
+/// Looks whether these authors can be asked, before anything is made.
+pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &str>) -> Result<(), Complaint> {
+    let authors: BTreeSet<&str> = authors.into_iter().collect();
+    let keys = keys(config)?;
+    for author in authors {
+        if let Err(why) = socrates_author::check(author, &keys).await {
+            let code = if why.code.code().starts_with("T-") { Code::Author } else { Code::Input };
+            let what = format!("the author `{author}` cannot be asked; nothing was made");
+            let hint = "`socrates config author` shows model, address and key; `--author offline` needs none";
+            return Err(Complaint::faults(what, &[why.fault()], hint).with_code(code));
+        }
+    }
+    Ok(())
 }
 
 /// `dev probe`: what a server enforces.

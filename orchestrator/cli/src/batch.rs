@@ -11,6 +11,8 @@ use crate::bundle;
 use crate::exit::Complaint;
 use crate::figures;
 use crate::library;
+use crate::progress::Progress;
+use crate::talk::Talk;
 
 /// What the page shows.
 #[derive(Debug)]
@@ -40,7 +42,7 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
 }
 
 /// Writes `report.html` and `planners.csv` into a folder of bundles: those its library lists first, in their order, then the others.
-pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
+pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
     let listed = library::read(root);
     let mut names: Vec<String> = Vec::new();
     let mut failed: Vec<String> = Vec::new();
@@ -57,7 +59,9 @@ pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
     let mut page = BatchPage::default();
     let mut left_out = Vec::new();
     let mut reports = Vec::new();
-    for name in names {
+    let mut progress = Progress::new(*talk, "reading", names.len());
+    for (index, name) in names.into_iter().enumerate() {
+        progress.at(index, "");
         match add(&mut page, root, &name) {
             Ok(found) => reports.push((name, found)),
             Err(why) => {
@@ -66,6 +70,7 @@ pub(crate) fn write(root: &Path) -> Result<Found, Complaint> {
             }
         }
     }
+    drop(progress);
     let figures = figures::of(&reports);
     match &figures {
         Ok(pool) => {

@@ -180,7 +180,7 @@ pub(crate) fn write(
     for (id, human) in &behaviors.humans {
         out.put(&format!("details/behaviors/{id}.xml"), human.tree.as_bytes())?;
     }
-    let stages = stage_rows(status);
+    let stages = stage_rows(past);
     let provenance = provenance(prepared, seed, status, past, fetch);
     out.put_outside("details/provenance.json", pretty(&provenance)?.as_bytes())?;
     let manifest = Manifest {
@@ -401,30 +401,21 @@ fn metrics(runs: &[(Recording, Report)]) -> String {
     text
 }
 
-/// Stage lines of a status, in pipeline order.
-pub(crate) fn stage_rows(status: &ScenarioStatus) -> Vec<StageRow> {
-    let mut jobs: Vec<&JobStatus> = status.jobs.iter().collect();
-    jobs.sort_by(|a, b| (a.key.stage, &a.key.item, a.key.revision).cmp(&(b.key.stage, &b.key.item, b.key.revision)));
-    jobs.iter()
-        .map(|job| {
-            let item = if job.key.item.is_empty() { String::new() } else { format!(" {}", job.key.item) };
-            let revision =
-                if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
-            let faults: Vec<String> = job.faults.iter().map(ToString::to_string).collect();
-            let remark = [job.remark.clone(), faults.join("; ")]
-                .into_iter()
-                .filter(|part| !part.is_empty())
-                .collect::<Vec<_>>()
-                .join(" · ");
-            StageRow {
-                stage: format!("{}{item}{revision}", job.key.stage),
-                state: job.state.clone(),
-                attempts: job.attempts,
-                wall_ms: job.wall_ms,
-                remark,
-            }
-        })
-        .collect()
+/// Stage lines of what was tried, in pipeline order.
+pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
+    let row = |job: &PastJob| {
+        let item = if job.key.item.is_empty() { String::new() } else { format!(" {}", job.key.item) };
+        let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
+        let remarks: Vec<&str> = job.attempts.iter().map(|attempt| attempt.remark.as_str()).collect();
+        StageRow {
+            stage: format!("{}{item}{revision}", job.key.stage),
+            state: job.state.clone(),
+            attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
+            wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
+            remark: remarks.into_iter().filter(|remark| !remark.is_empty()).collect::<Vec<_>>().join(" · "),
+        }
+    };
+    past.iter().map(row).collect()
 }
 
 /// An exchange without what was asked and answered.

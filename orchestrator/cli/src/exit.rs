@@ -75,6 +75,12 @@ impl Complaint {
         })
     }
 
+    /// What is wrong and the first cause, on one line.
+    pub(crate) fn short(&self) -> String {
+        let cause = self.causes.first().map_or_else(String::new, |cause| format!(": {}", cause.trim()));
+        format!("{}{cause}", self.what)
+    }
+
     /// With another exit code.
     pub(crate) fn with_code(mut self, code: Code) -> Self {
         self.code = code;

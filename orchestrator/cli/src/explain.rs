@@ -139,7 +139,7 @@ pub(crate) fn new(talk: &Talk, file: &Path, location: &str) -> Result<(), Compla
     std::fs::write(file, text)
         .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
     talk.line(&format!("wrote      {}", file.display()));
-    talk.line(&format!("next       socrates read {}", file.display()));
+    talk.line(&format!("next       socrates read {}", crate::files::shell(file)));
     talk.result(&json!({ "request": file.display().to_string() }));
     Ok(())
 }

@@ -47,6 +47,13 @@ pub(crate) fn write_or_say(talk: &Talk, text: &str, out: Option<&Path>) -> Resul
     Ok(())
 }
 
+/// A path, or another word, as a shell takes it: in quotes where it holds a blank or anything else that a shell would read.
+pub(crate) fn shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    // Only a byte that no path holds cannot be quoted.
+    shlex::try_quote(&text).map_or_else(|_why| text.clone(), |quoted| quoted.into_owned())
+}
+
 /// Cells of a line of a CSV table, without the blanks round them; in quotes a comma is a comma and two quotes are one.
 pub(crate) fn cells(line: &str) -> Vec<String> {
     let mut cells = vec![String::new()];
@@ -74,4 +81,19 @@ pub(crate) fn program_hash() -> Option<String> {
         Some(socrates_model::Digest::of(&bytes).to_string())
     };
     HASH.get_or_init(read).clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_with_a_blank_stays_one_word_of_a_shell() {
+        for (path, word) in
+            [("runs/my-1", "runs/my-1"), ("mein Büro/out put", "'mein Büro/out put'"), ("it's", "\"it's\"")]
+        {
+            assert_eq!(shell(Path::new(path)), word);
+            assert_eq!(shlex::split(&shell(Path::new(path))), Some(vec![path.to_owned()]));
+        }
+    }
 }

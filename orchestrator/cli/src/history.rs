@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use socrates_model::job::{Artifact, JobKey};
+use socrates_model::job::{Artifact, JobKey, Stage};
 use socrates_model::{Digest, Fault, ScenarioId};
-use socrates_orchestrator::Attempt;
-use socrates_store::{SqliteStore, Store as _, StoreError};
+use socrates_orchestrator::{Attempt, ScenarioEnd};
+use socrates_store::{SqliteStore, StoreError};
 
 /// One revision of one job.
 #[derive(Debug, Clone)]
@@ -25,45 +25,56 @@ pub(crate) struct PastJob {
     pub(crate) attempts: Vec<Attempt>,
     /// What a scoring job found.
     pub(crate) verdict: Option<socrates_model::Verdict>,
+    /// The stage that a scoring job sends back.
+    pub(crate) blames: Option<Stage>,
+    /// Remark of its result, else why it is where it is.
+    pub(crate) remark: String,
     /// Outputs of its result.
     pub(crate) artifacts: Vec<Artifact>,
 }
 
 /// Everything that was tried, by scenario.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct History(BTreeMap<ScenarioId, Vec<PastJob>>);
+pub(crate) struct History {
+    jobs: BTreeMap<ScenarioId, Vec<PastJob>>,
+    /// Scenarios in order of submission, and how each ended; none while it is not done.
+    pub(crate) ends: Vec<(ScenarioId, Option<ScenarioEnd>)>,
+}
 
 impl History {
     /// What was tried for a scenario, in pipeline order.
     pub(crate) fn of(&self, scenario: &ScenarioId) -> &[PastJob] {
-        self.0.get(scenario).map_or(&[], Vec::as_slice)
+        self.jobs.get(scenario).map_or(&[], Vec::as_slice)
     }
 }
 
-/// Reads the store; nobody else may have it open.
+/// Reads the store, and leaves it as it is: an orchestrator may be at work on it.
 pub(crate) fn read(path: &Path) -> Result<History, StoreError> {
-    let snapshot = SqliteStore::open(path)?.load()?;
+    let peek = SqliteStore::peek(path)?;
     let mut attempts: BTreeMap<JobKey, Vec<Attempt>> = BTreeMap::new();
-    for (key, attempt) in snapshot.attempts {
+    for (key, attempt) in peek.attempts {
         attempts.entry(key).or_default().push(attempt);
     }
-    let mut results: BTreeMap<JobKey, _> = snapshot.results.into_iter().collect();
-    let mut history = History::default();
-    for job in snapshot.jobs {
+    let mut results: BTreeMap<JobKey, _> = peek.results.into_iter().collect();
+    let ends = peek.scenarios.into_iter().map(|scenario| (scenario.spec.id, scenario.end)).collect();
+    let mut history = History { ends, ..History::default() };
+    for job in peek.jobs {
         let result = results.remove(&job.key);
         let past = PastJob {
-            state: format!("{:?}", job.state).to_lowercase(),
+            state: job.state.name().to_owned(),
             seed: job.spec.seed,
             inputs: job.spec.inputs,
             sent_back: job.sent_back,
             attempts: attempts.remove(&job.key).unwrap_or_default(),
             verdict: result.as_ref().and_then(|result| result.verdict),
+            blames: result.as_ref().and_then(|result| Some(result.repair.as_ref()?.stage)),
+            remark: result.as_ref().map_or(job.reason, |result| result.remark.clone()),
             artifacts: result.map(|result| result.artifacts).unwrap_or_default(),
             key: job.key,
         };
-        history.0.entry(past.key.scenario.clone()).or_default().push(past);
+        history.jobs.entry(past.key.scenario.clone()).or_default().push(past);
     }
-    for jobs in history.0.values_mut() {
+    for jobs in history.jobs.values_mut() {
         jobs.sort_by(|a, b| {
             (a.key.stage, &a.key.item, a.key.revision).cmp(&(b.key.stage, &b.key.item, b.key.revision))
         });

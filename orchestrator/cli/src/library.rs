@@ -10,6 +10,7 @@ use socrates_model::{Digest, Proposal, Reading, ScenarioId};
 
 use crate::args::RunOptions;
 use crate::exit::{Code, Complaint};
+use crate::run::Refused;
 use crate::talk::Talk;
 
 /// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
@@ -27,6 +28,9 @@ pub(crate) struct Row {
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
     pub(crate) verdict: String,
+    /// Why there is no bundle; empty where there is one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(crate) reason: String,
     /// The earlier scenario that it repeats (P-DUP).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) repeats: Option<ScenarioId>,
@@ -82,7 +86,7 @@ impl Repeats {
 }
 
 /// Prints what a library holds.
-pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<Code, Complaint> {
+pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
     let library = read(root)
         .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
     let mut verdicts = BTreeMap::<&str, u64>::new();
@@ -97,10 +101,12 @@ pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path) -> Result<C
         talk.line(&format!("alike      {again} repeat an earlier proposal (P-DUP); the request leaves little open"));
     }
     talk.line(&format!("look       {}", root.join("report.html").display()));
+    talk.line(&format!("next       {}", crate::next::after_batch(root, &library)));
     let whole = realised == library.count;
     talk.result(&json!({
         "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
         "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+        "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
     }));
     Ok(if options.require == "any" || whole { Code::Ok } else { Code::NotRealised })
 }

@@ -36,18 +36,24 @@ mod golden;
 mod history;
 mod labels;
 mod library;
+mod many;
 mod map;
 mod mutations;
+mod next;
 #[cfg(test)]
 mod online;
 mod orchestrate;
+mod place;
 mod play;
 mod prepare;
 mod process;
+mod progress;
 mod report;
 mod run;
 mod scenarios;
 mod session;
+mod stages;
+mod standing;
 mod supervise;
 mod talk;
 mod tokens;
@@ -57,12 +63,14 @@ mod watch;
 
 use std::io::IsTerminal as _;
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::Parser as _;
 
 use crate::args::{Cli, ClusterVerb, SimulateOptions, Verb};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
+use crate::standing::Listed;
 use crate::talk::Talk;
 
 fn main() -> ExitCode {
@@ -95,6 +103,7 @@ fn main() -> ExitCode {
 fn begin(talk: &Talk, cli: &Cli) -> Result<Code, Complaint> {
     let config = Config::load(cli.flags.config.as_deref(), std::env::vars(), &cli.flags.set)?;
     start_log(&config)?;
+    let talk = &talk.with_pause(Duration::from_secs(config.number("log.progress_s")));
     let runtime =
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_all().build().map_err(|why| {
             Complaint::input(format!("no threads can be started: {why}"), "`socrates doctor`").with_code(Code::Ours)
@@ -132,7 +141,14 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
         Verb::Bt { verb } => done(bt::bt(talk, verb)),
         Verb::Score(options) => done(again::score(talk, options)),
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
-        Verb::Status { what } => done(watch::status(talk, what).await),
+        Verb::Status { what, failed, all } => {
+            let listed = match (*all, *failed) {
+                (true, _) => Listed::All,
+                (false, true) => Listed::Failed,
+                (false, false) => Listed::None,
+            };
+            done(standing::status(talk, what, listed).await)
+        }
         Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),
         Verb::Doctor => done(explain::doctor(talk, config)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
@@ -160,10 +176,12 @@ fn start_log(config: &Config) -> Result<(), Complaint> {
             "for example \"warn\" or \"socrates_kit=debug\"",
         )
     })?;
+    // Codes of colors are for terminals; in a file or a pipe they are letters that nobody wrote.
+    let colored = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|text| text.is_empty());
     tracing_subscriber::fmt()
         .with_env_filter(filter)
+        .with_ansi(colored)
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .compact()
         .init();

@@ -18,8 +18,10 @@ const MAX_PIN_BYTES: u64 = 16 * 1024 * 1024;
 /// A request with everything it names, read and checked.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
-    /// Name of the scenario: the file's stem.
+    /// Name of the scenario: the file's stem, or the name of the bundle whose request it is.
     pub(crate) name: String,
+    /// The file it was read from, if it was one.
+    pub(crate) file: Option<PathBuf>,
     /// The request, options applied.
     pub(crate) request: Request,
     /// The location.
@@ -78,9 +80,17 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 /// Reads and checks one request file.
 pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
     let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
-    let name = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
-    let folder = file.parent().unwrap_or_else(|| Path::new(".")).to_path_buf();
-    prepare_text(&name, &text, &file.display().to_string(), &folder, options, config)
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let of_bundle = file.ends_with("request.toml") && crate::bundle::manifest(folder).is_some();
+    let named = if of_bundle { folder.canonicalize().unwrap_or_default() } else { file.with_extension("") };
+    let name = named.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let shown = file.display().to_string();
+    let prepared = prepare_text(&name, &text, &shown, folder, options, config).map_err(|why| {
+        // Of hundreds of files, the name of the one is what helps.
+        let what = if why.what.contains(&shown) { why.what } else { format!("`{shown}`: {}", why.what) };
+        Complaint { what, ..why }
+    })?;
+    Ok(Prepared { file: Some(file.to_path_buf()), ..prepared })
 }
 
 /// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
@@ -135,10 +145,11 @@ pub(crate) fn prepare_text(
             format!("the request `{shown}` asks for something that cannot be made"),
             &stops,
             match socrates_offline::settled_by(&request, &location).as_slice() {
-                [] => format!("correct the text; `socrates read {shown}` shows the reading"),
+                [] => format!("correct the text; `socrates read {}` shows the reading", files::shell(Path::new(shown))),
                 keys => format!(
-                    "correct the text, or set {} under [expect]; `socrates read {shown}` shows the reading",
-                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and ")
+                    "correct the text, or set {} under [expect]; `socrates read {}` shows the reading",
+                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and "),
+                    files::shell(Path::new(shown))
                 ),
             },
         ));
@@ -175,6 +186,7 @@ pub(crate) fn prepare_text(
     }
     Ok(Prepared {
         name: slug(name),
+        file: None,
         request,
         location,
         location_files,
@@ -230,7 +242,8 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
             format!("the location `{name}` is not usable"),
             &faults,
             format!(
-                "`socrates map check {name}` lists everything; shipped locations: {}",
+                "`socrates map check {}` lists everything; shipped locations: {}",
+                files::shell(Path::new(name)),
                 socrates_maps::shipped::names().join(", ")
             ),
         )

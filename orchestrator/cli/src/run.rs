@@ -11,10 +11,12 @@ use crate::args::{Cli, RunOptions};
 use crate::bundle::{self, Bundle};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
-use crate::library;
-use crate::prepare::{Prepared, plural, prepare, prepare_text, request_files, scenario_id};
+use crate::history::PastJob;
+use crate::place::{self, Place};
+use crate::prepare::{Prepared, prepare, prepare_text, request_files, scenario_id};
 use crate::session::{Made, Wanted, make};
 use crate::talk::Talk;
+use crate::{many, next, stages};
 
 /// The shipped request of `demo`.
 const DEMO: (&str, &str) = ("hospital", "elevator");
@@ -38,8 +40,55 @@ pub(crate) async fn run(
     options: &RunOptions,
 ) -> Result<Code, Complaint> {
     let files = request_files(requests)?;
-    let prepared = files.iter().map(|file| prepare(file, Some(options), config)).collect::<Result<Vec<_>, _>>()?;
-    single_or_batch(talk, cli, config, options, prepared).await
+    let (mut prepared, mut refused) = (Vec::new(), Vec::new());
+    for file in &files {
+        match prepare(file, Some(options), config) {
+            Ok(one) => prepared.push(one),
+            Err(why) if files.len() == 1 => return Err(why),
+            Err(why) => refused.push(Refused { file: file.clone(), why }),
+        }
+    }
+    if refused.is_empty() {
+        return single_or_batch(talk, cli, config, options, prepared).await;
+    }
+    let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
+    let what = format!("{} of {} requests cannot be run: {}", refused.len(), files.len(), names.join(", "));
+    if prepared.is_empty() {
+        let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
+        complaint.causes = refused.iter().flat_map(Refused::lines).collect();
+        return Err(complaint);
+    }
+    for bad in &refused {
+        talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
+    }
+    many::batch(talk, cli, config, options, prepared, &refused).await?;
+    talk.warn(&format!("error: {what}\n\nhint: the others were run; correct these and run them alone"));
+    Ok(Code::Input)
+}
+
+/// A request file that cannot be run, beside others that can.
+#[derive(Debug)]
+pub(crate) struct Refused {
+    file: PathBuf,
+    why: Complaint,
+}
+
+impl Refused {
+    /// The reason, which names the file, then causes and hint, a line each.
+    fn lines(&self) -> Vec<String> {
+        let first = self.why.what.clone();
+        let hint = Some(&self.why.hint).filter(|hint| !hint.is_empty()).map(|hint| format!("hint: {hint}"));
+        std::iter::once(first).chain(self.why.causes.iter().cloned()).chain(hint).collect()
+    }
+
+    /// The same for programs.
+    pub(crate) fn object(&self) -> serde_json::Value {
+        let mut object = self.why.object();
+        if let Some(members) = object.as_object_mut() {
+            members.insert("request".to_owned(), self.file.display().to_string().into());
+        }
+        object
+    }
 }
 
 async fn single_or_batch(
@@ -62,7 +111,7 @@ async fn single_or_batch(
         Some(one) if count == 1 => single(talk, cli, config, options, one).await,
         last => {
             prepared.extend(last);
-            batch(talk, cli, config, options, prepared, count).await
+            many::batch(talk, cli, config, options, prepared, &[]).await
         }
     }
 }
@@ -94,33 +143,37 @@ async fn single(
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
-    let dir = match place(&base, wish) {
+    let dir = match place::place(&base, wish) {
         Place::Finished(dir) => {
             talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
             let bundle = bundle::read(&dir)?;
-            return Ok(finish(talk, options, &bundle, None));
+            return Ok(finish(talk, options, &prepared, &bundle, None));
         }
         Place::New(dir) => dir,
     };
-    let work = dir.join(".socrates");
-    claim(&dir, &work, wish)?;
-    let id = scenario_id(&prepared.name, options.seed, 0, 1)?;
+    crate::authors::check(config, [prepared.author.as_str()]).await?;
+    let work = place::claim(&dir, wish)?;
+    let id = place::named_like(&dir, scenario_id(&prepared.name, options.seed, 0, 1)?);
     let wanted = vec![Wanted { id, seed: options.seed, prepared: &prepared }];
     let mut made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
     let status = made.statuses.pop().ok_or_else(|| {
         Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
     })?;
     let outcome = conclude(&dir, &prepared, options.seed, &status, &made);
-    talk.line(&stage_line(&status));
+    let past = made.history.of(&status.id);
+    talk.line(&stages::line(past, &status.result));
     let result = match outcome {
         Ok(bundle) => {
             // The work folder is only needed to resume; the bundle holds everything now.
             drop(std::fs::remove_dir_all(&work));
-            finish(talk, options, &bundle, Some(&status))
+            finish(talk, options, &prepared, &bundle, Some(past))
         }
         Err(mut complaint) => {
+            if complaint.code != Code::Ours {
+                place::end(&dir, &status.result);
+            }
             complaint.result = Some(Box::new(
-                json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": stages(&status), "metrics": {}, "reading": prepared.reading }),
+                json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": told(past), "metrics": {}, "reading": prepared.reading }),
             ));
             return Err(complaint);
         }
@@ -129,7 +182,7 @@ async fn single(
 }
 
 /// Writes the bundle, or says why there is none.
-fn conclude(
+pub(crate) fn conclude(
     dir: &Path,
     prepared: &Prepared,
     seed: u64,
@@ -158,7 +211,7 @@ fn conclude(
 }
 
 /// Prints verdict, robot, where to look, what to try next, and the result object.
-fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&ScenarioStatus>) -> Code {
+fn finish(talk: &Talk, options: &RunOptions, prepared: &Prepared, bundle: &Bundle, past: Option<&[PastJob]>) -> Code {
     let Some((_, report)) = bundle.runs.first() else { return Code::Ours };
     talk.line(&format!("{:<10} {}", report.verdict.name(), report.verdict_text));
     for (_, report) in &bundle.runs {
@@ -183,92 +236,13 @@ fn finish(talk: &Talk, options: &RunOptions, bundle: &Bundle, status: Option<&Sc
     }
     let dir = bundle.dir.display().to_string();
     talk.line(&format!("look       {dir}/report.html"));
-    let next = if report.verdict == Verdict::Realised {
-        format!("socrates run {dir}/request.toml --planner reactive --seeds 1..5")
-    } else {
-        format!(
-            "socrates explain {}; or another --seed",
-            report
-                .repair
-                .as_ref()
-                .and_then(|repair| repair.faults.first())
-                .map_or("D-SETUP", |fault| fault.code.code())
-        )
-    };
-    talk.line(&format!("next       {next}"));
+    talk.line(&format!("next       {}", next::after_run(options, bundle, prepared.file.as_deref())));
     talk.result(&json!({
-        "bundle": dir, "verdict": report.verdict, "stages": status.map(stages), "metrics": values(report), "reading": bundle.reading,
+        "bundle": dir, "verdict": report.verdict, "stages": past.map(told), "metrics": values(report), "reading": bundle.reading,
         "author": bundle.proposal.author,
         "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
     }));
     if options.require == "any" || report.verdict == Verdict::Realised { Code::Ok } else { Code::NotRealised }
-}
-
-async fn batch(
-    talk: &Talk,
-    cli: &Cli,
-    config: &Config,
-    options: &RunOptions,
-    prepared: Vec<Prepared>,
-    count: u64,
-) -> Result<Code, Complaint> {
-    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
-    let wishes: Vec<String> =
-        prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
-    let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
-    let root = match place(&base, wish) {
-        Place::Finished(root) => {
-            talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
-            return library::finish(talk, options, &root);
-        }
-        Place::New(root) => root,
-    };
-    let work = root.join(".socrates");
-    claim(&root, &work, wish)?;
-    for one in &prepared {
-        talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
-        print_reading(talk, one);
-    }
-    let mut wanted = Vec::new();
-    for one in &prepared {
-        for index in 0..one.request.run.variants {
-            let seed = options.seed + u64::from(index);
-            wanted.push(Wanted {
-                id: scenario_id(&one.name, options.seed, index, one.request.run.variants)?,
-                seed,
-                prepared: one,
-            });
-        }
-    }
-    let made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
-    let mut rows = Vec::new();
-    let mut repeats = library::Repeats::default();
-    for status in &made.statuses {
-        let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };
-        let dir = root.join(want.id.as_str());
-        let known = bundle::manifest(&dir).filter(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
-        let made = match known {
-            Some(manifest) => bundle::read_some(&dir, |_, _| false).map(|bundle| (manifest.verdict, bundle.proposal)),
-            None => conclude(&dir, want.prepared, want.seed, status, &made)
-                .map(|bundle| (bundle.manifest.verdict, bundle.proposal)),
-        };
-        let (verdict, repeats) = match made {
-            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal)),
-            Err(why) => {
-                talk.warn(&format!("{}: {why}", want.id));
-                ("failed".to_owned(), None)
-            }
-        };
-        rows.push(library::Row { scenario: want.id.clone(), bundle: dir.display().to_string(), verdict, repeats });
-    }
-    let readings = prepared.iter().map(|one| one.reading.clone()).collect();
-    library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
-    if let Err(why) = crate::batch::write(&root)?.figures {
-        talk.warn(&why.what);
-    }
-    // The work folder is only needed to resume.
-    drop(std::fs::remove_dir_all(&work));
-    library::finish(talk, options, &root)
 }
 
 /// Prints how a request is read.
@@ -287,85 +261,10 @@ pub(crate) fn print_reading(talk: &Talk, prepared: &Prepared) {
     }
 }
 
-enum Place {
-    New(PathBuf),
-    Finished(PathBuf),
-}
-
-/// The folder for this wish: the same again, or the next free suffix.
-fn place(base: &Path, wish: socrates_model::Digest) -> Place {
-    for number in 1.. {
-        let dir = if number == 1 { base.to_path_buf() } else { PathBuf::from(format!("{}-{number}", base.display())) };
-        let made = bundle::manifest(&dir)
-            .map(|manifest| manifest.wish)
-            .or_else(|| library::read(&dir).map(|library| library.wish));
-        if let Some(made) = made {
-            if made == wish {
-                return Place::Finished(dir);
-            }
-            continue;
-        }
-        let started = std::fs::read_to_string(dir.join(".socrates/wish")).ok();
-        if started.is_none_or(|text| text.trim() == wish.to_string()) {
-            return Place::New(dir);
-        }
-    }
-    Place::New(base.to_path_buf())
-}
-
-/// Makes the work folder and marks it with the wish, so that the same command resumes it.
-fn claim(dir: &Path, work: &Path, wish: socrates_model::Digest) -> Result<(), Complaint> {
-    let cannot = |why: std::io::Error| {
-        Complaint::input(format!("cannot write into `{}`: {why}", dir.display()), "--out chooses another folder")
-    };
-    std::fs::create_dir_all(work).map_err(cannot)?;
-    std::fs::write(work.join("wish"), wish.to_string()).map_err(cannot)
-}
-
-/// Stages of a status for the result object.
-fn stages(status: &ScenarioStatus) -> Vec<serde_json::Value> {
-    bundle::stage_rows(status)
+/// Stages for the result object.
+fn told(past: &[PastJob]) -> Vec<serde_json::Value> {
+    bundle::stage_rows(past)
         .into_iter()
         .map(|row| json!({ "stage": row.stage, "state": row.state, "attempts": row.attempts, "ms": row.wall_ms, "remark": row.remark }))
         .collect()
-}
-
-/// `proposal ✔ 3 ms   paths ✔ 11 ms (1 retry: G-MEET)   …`
-pub(crate) fn stage_line(status: &ScenarioStatus) -> String {
-    let mut parts = Vec::new();
-    for stage in socrates_model::job::Stage::WORKERS {
-        let jobs: Vec<_> =
-            status.jobs.iter().filter(|job| job.key.stage == stage && job.state != "superseded").collect();
-        let Some(last) = jobs.iter().max_by_key(|job| job.key.revision) else { continue };
-        let mark = match last.state.as_str() {
-            "succeeded" => "✔",
-            "failed" | "dead" | "cancelled" | "canceled" => "✘",
-            _ => "…",
-        };
-        let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();
-        let what = if stage == socrates_model::job::Stage::Simulation && !last.remark.is_empty() {
-            format!("{} in {ms} ms", last.remark)
-        } else {
-            format!("{ms} ms")
-        };
-        let retries: u32 = jobs.iter().map(|job| job.attempts.saturating_sub(1)).sum::<u32>() + last.key.revision;
-        let mut codes: Vec<&str> = status
-            .jobs
-            .iter()
-            .filter(|job| job.key.stage == stage)
-            .flat_map(|job| job.faults.iter().map(|fault| fault.code.code()))
-            .collect();
-        codes.dedup();
-        let again = if retries > 0 {
-            format!(" ({}{}{})", plural_retry(retries), if codes.is_empty() { "" } else { ": " }, codes.join(", "))
-        } else {
-            String::new()
-        };
-        parts.push(format!("{stage} {mark} {what}{again}"));
-    }
-    parts.join("   ")
-}
-
-fn plural_retry(count: u32) -> String {
-    if count == 1 { "1 retry".to_owned() } else { plural(count as usize, "retrie") }
 }

@@ -11,6 +11,7 @@ use socrates_offline::{Card, catalog};
 use crate::args::ScenariosVerb;
 use crate::exit::Complaint;
 use crate::play::{Played, play};
+use crate::progress::Progress;
 use crate::talk::Talk;
 
 /// Does a `scenarios` verb.
@@ -271,7 +272,12 @@ fn failing(played: &Played) -> Option<String> {
 }
 
 /// Plays one card with seeds `1..=seeds` over the locations in turn.
-pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) -> Result<Rate, Complaint> {
+pub(crate) async fn rated(
+    card: &'static Card,
+    places: &[Location],
+    seeds: u64,
+    played: &mut dyn FnMut(),
+) -> Result<Rate, Complaint> {
     let mut rate = Rate { locations: places.iter().map(|place| place.name.clone()).collect(), ..Rate::default() };
     let mut waiting = tokio::task::JoinSet::new();
     for seed in 1..=seeds {
@@ -281,9 +287,10 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
         waiting.spawn(async move { (seed, play(&asked, &place, seed).await) });
     }
     while let Some(done) = waiting.join_next().await {
-        let (seed, played) = done.map_err(|why| Complaint::input(format!("a run ended: {why}"), ""))?;
+        let (seed, outcome) = done.map_err(|why| Complaint::input(format!("a run ended: {why}"), ""))?;
+        played();
         rate.runs += 1;
-        if let Ok(Played { report, .. }) = &played {
+        if let Ok(Played { report, .. }) = &outcome {
             if is_realised(report) {
                 rate.late += usize::from(report.verdict == Verdict::RealisedLate);
                 rate.success += usize::from(report.success);
@@ -291,7 +298,7 @@ pub(crate) async fn rated(card: &'static Card, places: &[Location], seeds: u64) 
                 rate.verdicts.insert(seed, format!("{} · {}", report.verdict, report.verdict_text));
             }
         }
-        let wrong = match &played {
+        let wrong = match &outcome {
             Ok(played) => failing(played),
             Err(faults) => {
                 let mut codes: Vec<&str> =
@@ -341,8 +348,15 @@ async fn rate(
          |---|---|---|---|---|---|---|---|\n",
     );
     let (mut runs, mut realised, mut rows) = (0, 0, Vec::new());
+    let mut progress = Progress::new(*talk, "playing", cards.len() * usize::try_from(seeds).unwrap_or(1));
     for card in cards {
-        let rate = rated(card, &places(card, location)?, seeds).await?;
+        let before = runs;
+        let mut played = 0;
+        let mut at = || {
+            played += 1;
+            progress.at(before + played, &card.id);
+        };
+        let rate = rated(card, &places(card, location)?, seeds, &mut at).await?;
         (runs, realised) = (runs + rate.runs, realised + rate.realised);
         let failures: Vec<String> = rate
             .failures
@@ -380,6 +394,7 @@ async fn rate(
             "late": rate.late, "success": rate.success, "wilson_low": rate.low(), "failures": rate.failures,
             "verdicts": rate.verdicts, "locations": rate.locations }));
     }
+    drop(progress);
     #[expect(clippy::cast_precision_loss, reason = "a few thousand runs")]
     let pooled = realised as f64 / runs.max(1) as f64;
     talk.line(&format!("pooled     {realised}/{runs} = {:.1} %", pooled * 100.0));
@@ -407,7 +422,7 @@ mod tests {
     async fn every_scenario_of_the_catalogue_really_happens() {
         let (mut runs, mut realised, mut lines) = (0, 0, Vec::new());
         for card in catalog() {
-            let rate = rated(card, &places(card, None).unwrap(), SEEDS).await.unwrap();
+            let rate = rated(card, &places(card, None).unwrap(), SEEDS, &mut || ()).await.unwrap();
             (runs, realised) = (runs + rate.runs, realised + rate.realised);
             if rate.realised < rate.runs {
                 lines.push(format!("{}: {} of {} {:?}", card.id, rate.realised, rate.runs, rate.failures));

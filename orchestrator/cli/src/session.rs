@@ -16,7 +16,8 @@ use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
 use crate::history::{self, History};
 use crate::prepare::Prepared;
-use crate::run::stage_line;
+use crate::progress::Progress;
+use crate::stages;
 use crate::supervise::Supervisor;
 use crate::talk::Talk;
 
@@ -216,6 +217,8 @@ async fn follow(
     // Notices hasten; the poll behind them decides.
     let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
     let mut looks_done = true;
+    let all_of_them = (before as usize).saturating_add(ids.len());
+    let mut progress = (ids.len() > 1).then(|| Progress::new(*talk, "making", all_of_them));
     loop {
         // While a person has the terminal, its lines and its Ctrl-C are theirs.
         let looking = asking.as_ref().is_some_and(|asking| asking.is_looking());
@@ -247,10 +250,10 @@ async fn follow(
         match status(bus.as_ref(), 0).await {
             Ok(reply) => {
                 last_heard = Instant::now();
-                if ids.len() > 1 {
-                    talk.passing(&format!("making     {} of {} done", reply.done, reply.total));
+                if let Some(progress) = &mut progress {
+                    progress.at(reply.done as usize, &counted(&reply.results));
                 } else if let Some(line) = reply.scenarios.first() {
-                    passing(talk, asking.as_deref(), &stage_line(line));
+                    passing(talk, asking.as_deref(), &stages::line_of(line));
                 }
                 if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
                     return all(bus.as_ref(), &ids).await;
@@ -262,6 +265,13 @@ async fn follow(
             Err(_) => {}
         }
     }
+}
+
+/// `20 realised, 3 contradicted, 1 failed`.
+fn counted(results: &std::collections::BTreeMap<String, u32>) -> String {
+    let mut rows: Vec<(&String, &u32)> = results.iter().collect();
+    rows.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    rows.iter().map(|(result, count)| format!("{count} {result}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Writes a passing line, but not over what a person types.

@@ -12,6 +12,7 @@ use socrates_model::Recording;
 
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
+use crate::progress::Progress;
 use crate::talk::Talk;
 
 /// Whether names, clock and planner are written into a film.
@@ -107,11 +108,8 @@ pub(crate) fn video(talk: &Talk, options: &VideoOptions) -> Result<(), Complaint
     };
     let film = Film::new(&bundle.location, Some(&bundle.paths), &all, &shown, film_options).map_err(wrong)?;
     let count = film.times.pictures();
-    let progress = |index: usize| {
-        if index.is_multiple_of(20) {
-            talk.passing(&format!("video      {index} of {count} pictures"));
-        }
-    };
+    let shown_so_far = std::cell::RefCell::new(Progress::new(*talk, "filming", count));
+    let progress = |index: usize| shown_so_far.borrow_mut().at(index, "");
     match (kind, ffmpeg) {
         (Kind::Mp4 | Kind::Webm, Some(program)) => {
             by_ffmpeg(&program, &film, film_options, kind, &out, &progress, &wrong)?;
@@ -121,7 +119,7 @@ pub(crate) fn video(talk: &Talk, options: &VideoOptions) -> Result<(), Complaint
             crate::files::write(&out, &gif(&film, film_options, &progress, &wrong)?)?;
         }
     }
-    talk.clear();
+    drop(shown_so_far);
     let times = film.times;
     let part = format!("{:.1} s to {:.1} s at {}×", times.from_s, times.to_s, round(times.speed));
     talk.line(&format!("wrote      {} · {:.1} s · {part}", out.display(), times.length_s()));

@@ -1,16 +1,15 @@
-//! `watch` and `status`: looking at a making from another process.
+//! `watch`: looking at a run that is being made from another process. For programs: one JSON object a line.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde_json::json;
-use socrates_link::{Bus, LinkError, Overflow, keys};
-use socrates_model::RunId;
+use serde_json::{Value, json};
+use socrates_link::{Bus, Overflow, keys};
+use socrates_model::{AgentState, EventKind, RunId, SimTime};
 use socrates_stream::{Sight, Watch};
 
-use crate::bundle;
+use crate::args::Format;
 use crate::exit::{Code, Complaint};
 use crate::process::client;
 use crate::session;
@@ -56,45 +55,41 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
                     header.seed,
                     agents.join(", ")
                 ));
+                talk.result(&json!({ "type": "run", "run": header.run, "planner": header.planner, "seed": header.seed, "agents": agents }));
             }
             Sight::Tick { tick, states } => {
                 received += 1;
                 ticks = ticks.max(tick + 1);
-                if tick % 100 == 0 {
-                    let places: Vec<String> = states
-                        .iter()
-                        .map(|state| format!("{} ({:.2}, {:.2})", state.agent_id(), state.x, state.y))
-                        .collect();
-                    talk.line(&format!(
-                        "{:>7.2} s  {}",
-                        socrates_model::SimTime::at_tick(tick).secs(),
-                        places.join("  ")
-                    ));
-                }
+                shown(talk, tick, &states, tick % 100 == 0);
             }
             Sight::Missing(range) => {
                 gaps.push((range.from, range.to));
+                let missed = format!("missed     ticks {} to {}", range.from, range.to);
                 match watch.fetch(range).await {
                     Ok(states) => {
-                        let got: std::collections::BTreeSet<u64> = states.iter().map(|state| state.tick).collect();
-                        fetched += got.len() as u64;
-                        talk.line(&format!(
-                            "missed     ticks {} to {}; {} of them fetched",
-                            range.from,
-                            range.to,
-                            got.len()
-                        ));
+                        let mut by_tick: BTreeMap<u64, Vec<AgentState>> = BTreeMap::new();
+                        for state in states {
+                            by_tick.entry(state.tick).or_default().push(state);
+                        }
+                        fetched += by_tick.len() as u64;
+                        talk.line(&format!("{missed}; {} of them fetched", by_tick.len()));
+                        talk.result(
+                            &json!({ "type": "missed", "from": range.from, "to": range.to, "fetched": by_tick.len() }),
+                        );
+                        by_tick.iter().for_each(|(tick, states)| shown(talk, *tick, states, false));
                     }
                     Err(why) => {
-                        talk.line(&format!("missed     ticks {} to {}; not fetched: {why}", range.from, range.to))
+                        talk.line(&format!("{missed}; not fetched: {why}"));
+                        talk.result(&json!({ "type": "missed", "from": range.from, "to": range.to, "fetched": 0 }));
                     }
                 }
             }
-            Sight::Event(event) => talk.line(&format!(
-                "{:>7.2} s  {}",
-                event.time.secs(),
-                serde_json::to_string(&event.kind).unwrap_or_default()
-            )),
+            Sight::Event(event) => {
+                if let Some(words) = words(&event.kind) {
+                    talk.line(&format!("{:>7.2} s  {words}", event.time.secs()));
+                }
+                talk.result(&json!({ "type": "event", "t": event.time.secs(), "event": event.kind }));
+            }
             Sight::End { ticks: all } => {
                 ticks = all;
                 break;
@@ -106,10 +101,51 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
     bus.close().await;
     talk.line(&format!("end        {ticks} ticks: {received} received, {fetched} fetched, {missing} missing"));
     talk.result(&json!({
-        "run": run, "ticks": ticks, "received": received + fetched, "live": received, "fetched": fetched,
+        "type": "end", "run": run, "ticks": ticks, "received": received + fetched, "live": received, "fetched": fetched,
         "missing_ticks": missing, "missing": lists, "gaps": gaps,
     }));
     Ok(())
+}
+
+/// One tick: an object with every agent for programs, a line now and then for people.
+fn shown(talk: &Talk, tick: u64, states: &[AgentState], said: bool) {
+    let t = SimTime::at_tick(tick).secs();
+    if said {
+        let places: Vec<String> =
+            states.iter().map(|state| format!("{} ({:.2}, {:.2})", state.agent_id(), state.x, state.y)).collect();
+        talk.line(&format!("{t:>7.2} s  {}", places.join("  ")));
+    }
+    if talk.format == Format::Json {
+        talk.result(&tick_object(tick, states));
+    }
+}
+
+/// A tick for programs.
+fn tick_object(tick: u64, states: &[AgentState]) -> Value {
+    let agent = |state: &AgentState| json!({ "id": state.agent_id(), "x": state.x, "y": state.y, "yaw": state.yaw, "vx": state.vx, "vy": state.vy, "omega": state.omega });
+    let agents: Vec<Value> = states.iter().map(agent).collect();
+    json!({ "type": "tick", "tick": tick, "t": SimTime::at_tick(tick).secs(), "agents": agents })
+}
+
+/// An event in words; nothing for what only programs want to know.
+fn words(kind: &EventKind) -> Option<String> {
+    Some(match kind {
+        EventKind::Gesture { agent, gesture } if gesture.code() > 0 => format!("{agent} gestures {gesture}"),
+        EventKind::Gesture { agent, .. } => format!("{agent} ends the gesture"),
+        EventKind::Leaf { human, leaf } => format!("{human}: {leaf}"),
+        EventKind::Sees { human, distance_m } => format!("{human} sees the robot, {distance_m:.2} m away"),
+        EventKind::Encounter { human, node, gap_s, .. } => {
+            let order = if *gap_s < 0.0 { "before" } else { "after" };
+            format!("{human} meets the robot at {node}, {:.1} s {order} it", gap_s.abs())
+        }
+        EventKind::Contact { a, b, depth_m } => format!("{a} touches {b}, {depth_m:.2} m deep"),
+        EventKind::WallContact { agent, depth_m } => format!("{agent} touches a wall, {depth_m:.2} m deep"),
+        EventKind::Door { door, open } => format!("{door} {}", if *open { "opens" } else { "closes" }),
+        EventKind::RobotArrived => "the robot is at its goal".to_owned(),
+        EventKind::Stuck { agent } => format!("{agent} makes no progress"),
+        EventKind::End { reason } => format!("the run ends: {reason}"),
+        EventKind::Node { .. } => return None,
+    })
 }
 
 /// The first run that is announced, or one that is going on.
@@ -149,58 +185,19 @@ async fn going_on(bus: &dyn Bus) -> Option<RunId> {
     RunId::new(format!("{}.{}", key.scenario, key.item)).ok()
 }
 
-/// Shows how the jobs of a folder or endpoint stand.
-pub(crate) async fn status(talk: &Talk, what: &str) -> Result<(), Complaint> {
-    if endpoint(what).is_none() {
-        return finished(talk, what);
-    }
-    let bus = connect(what).await?;
-    let mut from = 0;
-    let mut rows = Vec::new();
-    let mut first = None;
-    loop {
-        let reply = session::status(bus.as_ref(), from).await.map_err(|why: LinkError| {
-            Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment")
-                .with_code(Code::Ours)
-        })?;
-        if reply.scenarios.is_empty() {
-            first = first.or(Some(reply));
-            break;
-        }
-        from += u32::try_from(reply.scenarios.len()).unwrap_or(u32::MAX);
-        for scenario in &reply.scenarios {
-            let state = if scenario.done { scenario.result.as_str() } else { "going on" };
-            talk.line(&format!("{:<28} {state:<14} {}", scenario.id, crate::run::stage_line(scenario)));
-            rows.push(json!({ "scenario": scenario.id, "done": scenario.done, "result": scenario.result }));
-        }
-        first = first.or(Some(reply));
-    }
-    bus.close().await;
-    let (total, done, workers) =
-        first.map_or((0, 0, BTreeMap::new()), |reply| (reply.total, reply.done, reply.workers));
-    let serving: Vec<String> = workers.iter().map(|(stage, count)| format!("{count} {stage}")).collect();
-    talk.line(&format!("done       {done} of {total} · workers: {}", serving.join(", ")));
-    talk.result(&json!({ "total": total, "done": done, "workers": workers, "scenarios": rows }));
-    Ok(())
-}
+#[cfg(test)]
+mod tests {
+    use socrates_model::{HumanId, NodeId};
 
-fn finished(talk: &Talk, what: &str) -> Result<(), Complaint> {
-    if let Some(manifest) = bundle::manifest(Path::new(what)) {
-        talk.line(&format!("{:<28} {} · finished", manifest.scenario, manifest.verdict));
-        talk.result(&json!({ "total": 1, "done": 1, "scenarios": [{ "scenario": manifest.scenario, "done": true, "result": manifest.verdict }] }));
-        return Ok(());
+    use super::*;
+
+    #[test]
+    fn a_person_reads_words_and_a_program_reads_numbers() {
+        let (human, node) = (HumanId::new(1), NodeId::new("h5").unwrap());
+        let met = EventKind::Encounter { human, node, gap_s: -0.580_000_000_000_000_1, nth: 1 };
+        assert_eq!(words(&met).as_deref(), Some("human_1 meets the robot at h5, 0.6 s before it"));
+        assert_eq!(words(&EventKind::RobotArrived).as_deref(), Some("the robot is at its goal"));
+        let object = tick_object(250, &[]);
+        assert_eq!((&object["type"], object["t"].as_f64()), (&json!("tick"), Some(2.5)));
     }
-    if let Some(library) = crate::library::read(Path::new(what)) {
-        for row in &library.scenarios {
-            talk.line(&format!("{:<28} {}", row.scenario, row.verdict));
-        }
-        talk.result(
-            &json!({ "total": library.count, "done": library.scenarios.len(), "scenarios": library.scenarios }),
-        );
-        return Ok(());
-    }
-    Err(Complaint::input(
-        format!("nothing is made, or being made, in `{what}`"),
-        "name a bundle, a library, or an endpoint such as tcp/127.0.0.1:7447@main",
-    ))
 }

@@ -11,6 +11,7 @@
 //! *Never here:* a decision about a job, the bus, a clock.
 
 mod memory;
+mod peek;
 mod schema;
 mod sqlite;
 
@@ -23,6 +24,7 @@ use socrates_model::Digest;
 use socrates_orchestrator::{Row, Snapshot};
 
 pub use memory::MemoryStore;
+pub use peek::{Peek, Standing};
 pub use sqlite::{Durability, SqliteStore};
 
 /// Layout number of the tables. A store with a larger one is refused.

@@ -18,6 +18,9 @@ create table if not exists event(seq integer primary key, batch text not null, b
 create table if not exists dead(job text primary key, reason text not null) without rowid;
 ";
 
+/// The table that is made last: where it is, all are.
+pub(crate) const LAST: &str = "dead";
+
 /// How a connection works; how far a commit reaches is set apart.
 pub(crate) const PRAGMAS: &str = "
 pragma journal_mode = wal;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use reqwest::header::{CONTENT_TYPE, HeaderValue};
-use reqwest::{Response, Url};
+use reqwest::{RequestBuilder, Response, Url};
 
 use crate::chat::{ChatAnswer, ChatRequest};
 use crate::dialect::{Dialect, Learnt, Rung};
@@ -205,19 +205,8 @@ impl ChatClient {
         let call = Call { request, config: &self.config, rung };
         let url = Url::parse(&format!("{}{}", self.config.base_url, call.path()))
             .map_err(|error| ChatError::Setup { why: error.to_string() })?;
-        let mut http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(call.body().to_string());
-        if self.config.dialect == Dialect::Anthropic {
-            http = http.header("anthropic-version", ANTHROPIC_VERSION);
-        }
-        if !self.config.key.is_empty() {
-            let (name, text) = call.key_header();
-            let mut value = HeaderValue::try_from(text).map_err(|_bytes| ChatError::Setup {
-                why: "the key holds characters that no header can carry".to_owned(),
-            })?;
-            value.set_sensitive(true);
-            http = http.header(name, value);
-        }
-        let response = http.send().await.map_err(|error| self.broken(error))?;
+        let http = self.http.post(url).header(CONTENT_TYPE, "application/json").body(call.body().to_string());
+        let response = self.signed(http)?.send().await.map_err(|error| self.broken(error))?;
         let status = response.status();
         let headers = response.headers().clone();
         tracing::debug!(status = status.as_u16(), model = %self.config.model, "language model answered");
@@ -232,6 +221,37 @@ impl ChatClient {
         } else {
             Err(wire::complaint(status.as_u16(), &bytes, &headers, &self.config))
         }
+    }
+
+    /// A request with the headers that every request to the server has.
+    fn signed(&self, mut http: RequestBuilder) -> Result<RequestBuilder, ChatError> {
+        if self.config.dialect == Dialect::Anthropic {
+            http = http.header("anthropic-version", ANTHROPIC_VERSION);
+        }
+        if !self.config.key.is_empty() {
+            let (name, text) = wire::key_header(&self.config);
+            let mut value = HeaderValue::try_from(text).map_err(|_bytes| ChatError::Setup {
+                why: "the key holds characters that no header can carry".to_owned(),
+            })?;
+            value.set_sensitive(true);
+            http = http.header(name, value);
+        }
+        Ok(http)
+    }
+
+    /// Reads something small from below the base address: status and body.
+    pub(crate) async fn get(&self, path: &str, limit: Duration) -> Result<(u16, Vec<u8>), ChatError> {
+        let url = Url::parse(&format!("{}{path}", self.config.base_url))
+            .map_err(|error| ChatError::Setup { why: error.to_string() })?;
+        let response =
+            self.signed(self.http.get(url).timeout(limit))?.send().await.map_err(|error| self.broken(error))?;
+        let status = response.status().as_u16();
+        Ok((status, self.read(response).await?))
+    }
+
+    /// How it was set up.
+    pub(crate) const fn config(&self) -> &ClientConfig {
+        &self.config
     }
 
     /// The body, counted as it comes: a length in a header is only a claim.

@@ -22,6 +22,7 @@ pub mod estimate;
 pub mod form;
 pub mod key;
 pub mod limits;
+pub mod models;
 pub mod probe;
 
 pub mod base64;

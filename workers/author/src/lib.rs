@@ -37,4 +37,4 @@ pub use faulty::FaultyAuthor;
 pub use job::{Desk, JobAnswer, JobRefusal, Papers};
 pub use socrates_llm::{Limits, Rate};
 
-pub use settings::{Keys, Server, author_for, probe};
+pub use settings::{Keys, Server, author_for, check, probe};

@@ -1,9 +1,11 @@
 //! Which author a setting means.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::Duration;
 
 use async_trait::async_trait;
+use socrates_llm::models::Has;
 use socrates_llm::probe::Probe;
 use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learnt, Rung};
 use socrates_model::FaultCode;
@@ -54,6 +56,8 @@ impl Keys {
 
 /// Model of `auto` with a key where none is named.
 pub const DEFAULT_MODEL: &str = "gpt-4o";
+/// Models that a message names at most.
+const NAMED: usize = 12;
 /// Settings that are taken, for messages.
 pub const ALLOWED: &str = "auto, offline, openai:<model>, anthropic:<model>, gemini:<model>, vllm:<model>, ollama:<model>, \
                            llamacpp:<model>, lmstudio:<model>, cassette:<folder>, record:<folder>=<author>, \
@@ -147,6 +151,42 @@ pub async fn probe(setting: &str, keys: &Keys) -> Result<Probe, AskError> {
     client.probe().await.map_err(|error| ask_error(&error))
 }
 
+/// Looks whether the author of a setting can be asked: a key where one is needed, a folder of recordings that is there, a server
+/// that answers and has the model. What a server does not say stops nobody.
+///
+/// # Errors
+/// [`AskError`], as [`author_for`] and as asking would end.
+pub async fn check(setting: &str, keys: &Keys) -> Result<(), AskError> {
+    drop(author_for(setting, keys, Style::default())?);
+    let mut asked = setting.trim();
+    loop {
+        let (kind, rest) = asked.split_once(':').unwrap_or((asked, ""));
+        match (kind, kind.parse::<Dialect>()) {
+            ("cassette", _) if !Path::new(rest).is_dir() => {
+                let message = format!("`{asked}`: there is no folder `{rest}`; `record:{rest}=<author>` records one");
+                return Err(AskError::new(FaultCode::JRequest, message));
+            }
+            // A recorder asks somebody; a replay asks only what was not recorded.
+            ("record", _) => asked = rest.split_once('=').map_or("", |(_, inner)| inner.trim()),
+            (_, Ok(dialect)) => return has_model(dialect, rest, keys).await,
+            (_, Err(_no_dialect)) => return Ok(()),
+        }
+    }
+}
+
+async fn has_model(dialect: Dialect, model: &str, keys: &Keys) -> Result<(), AskError> {
+    let client = ChatClient::new(config(dialect, model, keys)?).map_err(|error| ask_error(&error))?;
+    match client.has_model().await.map_err(|error| ask_error(&error))? {
+        Has::Yes | Has::Unsaid => Ok(()),
+        Has::No(others) => {
+            let shown: Vec<&str> = others.iter().map(String::as_str).take(NAMED).collect();
+            let more = if others.len() > shown.len() { ", …" } else { "" };
+            let there = if shown.is_empty() { String::new() } else { format!("; it has: {}{more}", shown.join(", ")) };
+            Err(AskError::new(FaultCode::TAuth, format!("the server of `{dialect}` has no model `{model}`{there}")))
+        }
+    }
+}
+
 fn server(dialect: Dialect, model: &str, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
     let llm = Llm::new(config(dialect, model, keys)?, style, keys.max_tokens.unwrap_or(MAX_TOKENS))?;
     Ok(Box::new(llm))
@@ -211,6 +251,24 @@ mod tests {
         let server = Server { key: None, url: Some("http://127.0.0.1:1/v1".into()) };
         let local = Keys { servers: BTreeMap::from([(Dialect::OpenAi, server)]), ..Keys::default() };
         assert_eq!(name("openai:tiny", &local), Ok("openai:tiny".to_owned()));
+    }
+
+    #[tokio::test]
+    async fn what_cannot_be_asked_is_known_before_it_is_asked() {
+        let code = async |setting: &str, keys: &Keys| check(setting, keys).await.map_err(|error| error.code);
+        let none = Keys::default();
+        for setting in ["offline", "auto", "replay:no/such/folder=offline", "record:no/such/folder=offline"] {
+            assert_eq!(code(setting, &none).await, Ok(()), "{setting}");
+        }
+        for setting in ["openai:m", "record:x=anthropic:m", "replay:x=gemini:m"] {
+            assert_eq!(code(setting, &none).await, Err(FaultCode::TAuth), "{setting}");
+        }
+        assert_eq!(code("cassette:no/such/folder", &none).await, Err(FaultCode::JRequest));
+        assert_eq!(code("gpt", &none).await, Err(FaultCode::JRequest));
+        let server = Server { key: None, url: Some("http://127.0.0.1:1/v1".into()) };
+        let gone = Keys { servers: BTreeMap::from([(Dialect::Vllm, server)]), ..Keys::default() };
+        assert_eq!(code("record:x=vllm:m", &gone).await, Err(FaultCode::TNet));
+        assert_eq!(code("replay:x=vllm:m", &gone).await, Ok(()), "everything may be recorded");
     }
 
     #[test]

@@ -10,14 +10,18 @@ use socrates_stats::{Z_95, wilson};
 
 use super::spec::Spec;
 use crate::prepare::Prepared;
+use crate::progress::Progress;
+use crate::talk::Talk;
 
 /// What stands over every table and in every line.
 const STAMP: &str = "injected faults, not a model's";
 
 /// Asks the offline author for every scenario and puts every fault into every answer.
-pub(super) async fn table(cases: &[(Prepared, u64)]) -> Confusion {
+pub(super) async fn table(talk: &Talk, cases: &[(Prepared, u64)]) -> Confusion {
     let mut all = Vec::new();
-    for (prepared, seed) in cases {
+    let mut progress = Progress::new(*talk, "asking", cases.len());
+    for (index, (prepared, seed)) in cases.iter().enumerate() {
+        progress.at(index, "");
         let papers =
             Papers::first(prepared.request.clone(), prepared.reading.clone(), prepared.location.clone(), *seed);
         all.extend(answers(&Offline, &papers).await);

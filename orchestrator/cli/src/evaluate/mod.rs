@@ -71,6 +71,10 @@ pub(crate) async fn evaluate(talk: &Talk, cli: &Cli, config: &Config, verb: &Eva
         talk.result(&json!({ "out": options.out.display().to_string(), "arms": [] }));
         return Ok(());
     }
+    // Before the first arm: hours are lost where the last one turns out to have no key.
+    for arm in &spec.arms {
+        crate::authors::check(&config.clone().with(&flags_of(arm))?, [arm.author.as_str()]).await?;
+    }
     let mut done: Vec<report::Done<'_>> = Vec::new();
     for (number, arm) in (1..).zip(&spec.arms) {
         let work = options.out.join(".socrates").join(format!("arm-{number}"));
@@ -162,7 +166,7 @@ impl Maker<'_> {
             .iter()
             .map(|case| Ok((self.prepare(&offline, case, self.config)?, case.seed)))
             .collect::<Result<Vec<_>, Complaint>>()?;
-        let table = confusion::table(&prepared).await;
+        let table = confusion::table(self.talk, &prepared).await;
         let shown = self.options.spec.display().to_string();
         let page = self.options.out.join("confusion.md");
         files::write(&self.options.out.join("confusion.csv"), confusion::csv(&table).as_bytes())?;

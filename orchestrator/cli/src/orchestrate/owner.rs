@@ -58,6 +58,8 @@ struct Waiting {
 pub(super) struct Owner {
     state: State,
     started: Instant,
+    /// Scenarios that were done when it began.
+    done_before: usize,
     writer: mpsc::Sender<Commit>,
     asks: BTreeMap<Token, Ask>,
     next: Token,
@@ -66,7 +68,8 @@ pub(super) struct Owner {
 
 impl Owner {
     pub(super) fn new(state: State, started: Instant, writer: mpsc::Sender<Commit>) -> Self {
-        Self { state, started, writer, asks: BTreeMap::new(), next: 0, waiting: VecDeque::new() }
+        let done_before = state.counts().1;
+        Self { state, started, done_before, writer, asks: BTreeMap::new(), next: 0, waiting: VecDeque::new() }
     }
 
     fn now(&self) -> Millis {
@@ -114,7 +117,9 @@ impl Owner {
         let mut leaving = None;
         let event = match question {
             Question::Status(about) => {
-                let reply = status(&self.state, &about, self.now());
+                let mut reply = status(&self.state, &about, self.now());
+                reply.serving_ms = self.now();
+                reply.done_before = u32::try_from(self.done_before).unwrap_or(u32::MAX);
                 // Behind the rows it speaks of, as every answer.
                 let said = Said { replies: vec![Reply { ask, say: Say::Status(reply) }], ..Said::default() };
                 return self.send(Commit { rows: Vec::new(), said }).await;

@@ -23,6 +23,16 @@ pub(crate) struct Call<'a> {
     pub(crate) rung: Rung,
 }
 
+/// Name and value of the header that carries the key.
+pub(crate) fn key_header(config: &ClientConfig) -> (&'static str, String) {
+    let key = config.key.secret();
+    match config.dialect.wire() {
+        Wire::Chat => ("authorization", format!("Bearer {key}")),
+        Wire::Messages => ("x-api-key", key.to_owned()),
+        Wire::Generate => ("x-goog-api-key", key.to_owned()),
+    }
+}
+
 impl Call<'_> {
     /// Where it goes, after the base address.
     pub(crate) fn path(&self) -> String {
@@ -30,16 +40,6 @@ impl Call<'_> {
             Wire::Chat => "/chat/completions".to_owned(),
             Wire::Messages => "/v1/messages".to_owned(),
             Wire::Generate => format!("/v1beta/models/{}:generateContent", self.config.model),
-        }
-    }
-
-    /// Name and value of the header that carries the key.
-    pub(crate) fn key_header(&self) -> (&'static str, String) {
-        let key = self.config.key.secret();
-        match self.config.dialect.wire() {
-            Wire::Chat => ("authorization", format!("Bearer {key}")),
-            Wire::Messages => ("x-api-key", key.to_owned()),
-            Wire::Generate => ("x-goog-api-key", key.to_owned()),
         }
     }
 

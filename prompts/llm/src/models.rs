@@ -1,0 +1,124 @@
+//! Whether a server has a model, asked before anything is made with it: a question without tokens.
+
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::client::ChatClient;
+use crate::dialect::{Dialect, Wire};
+use crate::error::ChatError;
+use crate::wire;
+
+/// Longest wait for the answer: a server that is slow here may still answer the real questions.
+const LIMIT: Duration = Duration::from_secs(10);
+
+/// What a server says of a model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Has {
+    /// It has it.
+    Yes,
+    /// It has others; empty where it names none.
+    No(Vec<String>),
+    /// It does not say, or what it says need not hold.
+    Unsaid,
+}
+
+impl ChatClient {
+    /// Asks the server whether it has the model.
+    ///
+    /// # Errors
+    /// [`ChatError::Unreachable`] where nobody answers, [`ChatError::Key`] where the key is refused; whatever else a server does
+    /// is [`Has::Unsaid`].
+    pub async fn has_model(&self) -> Result<Has, ChatError> {
+        let (dialect, model) = (self.config().dialect, self.model());
+        let path = match dialect.wire() {
+            Wire::Chat => "/models".to_owned(),
+            Wire::Messages => format!("/v1/models/{model}"),
+            Wire::Generate => format!("/v1beta/models/{model}"),
+        };
+        let (status, body) = match self.get(&path, LIMIT).await {
+            Ok(answer) => answer,
+            Err(error @ (ChatError::Unreachable { .. } | ChatError::Setup { .. })) => return Err(error),
+            Err(error) => {
+                tracing::debug!(%error, "the server does not tell its models");
+                return Ok(Has::Unsaid);
+            }
+        };
+        match status {
+            // A key that may ask but not list is answered with 403 by some.
+            401 => Err(wire::complaint(status, &body, &reqwest::header::HeaderMap::new(), self.config())),
+            200 if dialect.wire() == Wire::Chat => Ok(self.listed(&body)),
+            200 => Ok(Has::Yes),
+            // A server that names the model has looked for it; others answer any unknown address with 404.
+            404 if dialect.wire() != Wire::Chat && String::from_utf8_lossy(&body).contains(model) => {
+                Ok(Has::No(Vec::new()))
+            }
+            _ => Ok(Has::Unsaid),
+        }
+    }
+
+    /// What a list of models says.
+    fn listed(&self, body: &[u8]) -> Has {
+        let list: Value = serde_json::from_slice(body).unwrap_or_default();
+        let rows = list.get("data").and_then(Value::as_array).into_iter().flatten();
+        let names: Vec<String> = rows.filter_map(|row| Some(row.get("id")?.as_str()?.to_owned())).collect();
+        let model = self.model();
+        if names.iter().any(|name| name == model || name.strip_suffix(":latest") == Some(model)) {
+            return Has::Yes;
+        }
+        let dialect = self.config().dialect;
+        // One serves whatever model it was started with under any name; somebody else's server before others may know more
+        // than it lists.
+        let whole = match dialect {
+            Dialect::LlamaCpp => false,
+            Dialect::OpenAi => self.config().base_url == dialect.default_url(),
+            Dialect::Vllm | Dialect::Ollama | Dialect::LmStudio | Dialect::Anthropic | Dialect::Gemini => true,
+        };
+        if names.is_empty() || !whole { Has::Unsaid } else { Has::No(names) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::client::ClientConfig;
+    use crate::key::ApiKey;
+    use crate::server::Served;
+
+    async fn asked(dialect: Dialect, model: &str, status: u16, body: &str) -> (Result<Has, ChatError>, String) {
+        let server = Served::once(status, &[], body).await;
+        let client = ChatClient::new(ClientConfig::new(dialect, &server.url, ApiKey::new("secret"), model)).unwrap();
+        let has = client.has_model().await;
+        (has, server.seen().await.head)
+    }
+
+    #[tokio::test]
+    async fn a_model_is_there_or_the_others_are_named() {
+        let list = r#"{"data":[{"id":"small"},{"id":"llama:latest"}]}"#;
+        let (has, head) = asked(Dialect::Vllm, "small", 200, list).await;
+        assert_eq!(has.unwrap(), Has::Yes);
+        assert!(head.starts_with("GET /v1/models ") && head.to_lowercase().contains("bearer secret"), "{head}");
+        assert_eq!(asked(Dialect::Ollama, "llama", 200, list).await.0.unwrap(), Has::Yes);
+        let others = Has::No(vec!["small".to_owned(), "llama:latest".to_owned()]);
+        assert_eq!(asked(Dialect::Vllm, "smal", 200, list).await.0.unwrap(), others);
+        // These take names that they do not list.
+        for dialect in [Dialect::LlamaCpp, Dialect::OpenAi] {
+            assert_eq!(asked(dialect, "any", 200, list).await.0.unwrap(), Has::Unsaid, "{dialect}");
+        }
+        let (has, head) = asked(Dialect::Anthropic, "c-1", 404, r#"{"error":{"message":"model: c-1"}}"#).await;
+        assert_eq!(has.unwrap(), Has::No(Vec::new()));
+        assert!(head.starts_with("GET /v1/v1/models/c-1 ") && head.to_lowercase().contains("x-api-key"), "{head}");
+    }
+
+    #[tokio::test]
+    async fn what_a_server_does_not_say_stops_nobody_but_a_refused_key_does() {
+        for (status, body) in [(404, "not found"), (403, "no"), (500, "oh"), (200, "{}"), (200, "words")] {
+            assert_eq!(asked(Dialect::Vllm, "m", status, body).await.0.unwrap(), Has::Unsaid, "{status} {body}");
+        }
+        let refused = asked(Dialect::Vllm, "m", 401, r#"{"error":{"message":"wrong key"}}"#).await.0;
+        assert!(matches!(refused, Err(ChatError::Key { status: 401, .. })), "{refused:?}");
+        let gone = Served::gone().await;
+        let client = ChatClient::new(ClientConfig::new(Dialect::Vllm, &gone.url, ApiKey::new(""), "m")).unwrap();
+        assert!(matches!(client.has_model().await, Err(ChatError::Unreachable { .. })));
+    }
+}
