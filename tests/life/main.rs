@@ -9,8 +9,10 @@ mod live;
 mod models;
 mod originals;
 mod pages;
+mod readme;
 mod repairs;
 mod requests;
+mod tables;
 mod training;
 
 use std::path::Path;

@@ -33,10 +33,12 @@ mod figures;
 mod files;
 mod golden;
 mod history;
+mod index;
 mod labels;
 mod library;
 mod map;
 mod mutations;
+mod new_request;
 #[cfg(test)]
 mod online;
 mod orchestrate;
@@ -103,7 +105,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
     match &cli.verb {
         Verb::Demo(options) => run::demo(talk, cli, config, options).await,
         Verb::Run { requests, options } => run::run(talk, cli, config, requests, options).await,
-        Verb::New { file, location } => done(explain::new(talk, file, location)),
+        Verb::New { file, location } => done(new_request::new(talk, file, location).await),
         Verb::Read { request } => {
             let prepared = prepare::prepare(request, None, config)?;
             run::print_reading(talk, &prepared);
@@ -126,7 +128,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
         Verb::Score(options) => done(again::score(talk, options)),
         Verb::Watch { what, run } => done(watch::watch(talk, what, run.as_deref()).await),
         Verb::Status { what } => done(watch::status(talk, what).await),
-        Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),
+        Verb::Explain { code } => done(explain::explain(talk, code)),
         Verb::Doctor => done(explain::doctor(talk, config)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),

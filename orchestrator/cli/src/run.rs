@@ -252,14 +252,20 @@ async fn batch(
             None => conclude(&dir, want.prepared, want.seed, status, &made)
                 .map(|bundle| (bundle.manifest.verdict, bundle.proposal)),
         };
-        let (verdict, repeats) = match made {
-            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal)),
+        let (verdict, repeats, reason) = match made {
+            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal), String::new()),
             Err(why) => {
                 talk.warn(&format!("{}: {why}", want.id));
-                ("failed".to_owned(), None)
+                (
+                    crate::index::FAILED.to_owned(),
+                    None,
+                    std::iter::once(why.what).chain(why.causes).collect::<Vec<_>>().join("; "),
+                )
             }
         };
-        rows.push(library::Row { scenario: want.id.clone(), bundle: dir.display().to_string(), verdict, repeats });
+        let request = want.prepared.name.clone();
+        let bundle = dir.display().to_string();
+        rows.push(library::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
     }
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
