@@ -93,8 +93,10 @@ async fn template(name: &str, location: &Location) -> String {
         }
     }
     // A map of one place, or without a name for any, has a task without a place.
-    let chosen =
-        chosen.unwrap_or_else(|| Wording { task: "Deliver a parcel".to_owned(), story: STORIES[STORIES.len() - 1] });
+    let chosen = chosen.unwrap_or_else(|| Wording {
+        task: "Deliver a parcel".to_owned(),
+        story: STORIES.last().copied().unwrap_or_default(),
+    });
     let named: Vec<&str> = places.keys().map(String::as_str).collect();
     fill(name, &chosen, &named.join(", "))
 }
