@@ -47,7 +47,7 @@ fn a_bundle_holds_everything_and_can_be_moved() {
         assert!(bundle.join(file).metadata().is_ok_and(|meta| meta.len() > 20), "{file}");
     }
     let agents = std::fs::read_to_string(bundle.join("agents.csv")).unwrap();
-    assert!(agents.starts_with("t,id,x,y,yaw,v,gesture,leaf"));
+    assert!(agents.starts_with("planner,seed,t,id,x,y,yaw,v,gesture,leaf"));
     let page = std::fs::read_to_string(bundle.join("report.html")).unwrap();
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
     assert!(!bundle.join(".socrates").exists(), "the work folder was left");

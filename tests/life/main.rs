@@ -12,9 +12,11 @@ mod live;
 mod models;
 mod originals;
 mod pages;
+mod readme;
 mod repairs;
 mod requests;
 mod strangers;
+mod tables;
 mod training;
 
 use std::path::Path;

@@ -39,6 +39,7 @@ pub mod fault;
 pub mod job;
 pub mod schema;
 pub mod wire;
+pub mod words;
 
 pub use nalgebra;
 

@@ -26,6 +26,8 @@ pub struct BatchEntry<'a> {
     pub folder: &'a str,
     /// Its id.
     pub scenario: &'a str,
+    /// The earlier scenario of the page that it repeats.
+    pub repeats: Option<&'a str>,
     /// What the user gave.
     pub request: &'a Request,
     /// The reading in one line.
@@ -71,7 +73,7 @@ impl BatchPage {
             .filter(|_| self.rows.len() < PICTURES)
             .map(|recording| picture(entry.location, entry.paths, recording, self.places.number(entry.location)));
         self.rows.push(json!({
-            "folder": entry.folder, "scenario": entry.scenario, "title": entry.proposal.title,
+            "folder": entry.folder, "scenario": entry.scenario, "repeats": entry.repeats, "title": entry.proposal.title,
             "reading": entry.reading_line, "context": entry.request.social_context, "task": entry.request.task,
             "rough": entry.request.rough_scenario, "location": entry.location.name, "place": entry.proposal.place.name(),
             "pattern": entry.proposal.pattern, "humans": entry.proposal.humans.len(), "author": entry.proposal.author,
@@ -100,6 +102,12 @@ impl BatchPage {
     #[must_use]
     pub fn len(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Scenarios added so far that repeat no earlier one.
+    #[must_use]
+    pub fn distinct(&self) -> usize {
+        self.rows.iter().filter(|row| row.get("repeats").is_none_or(Value::is_null)).count()
     }
 
     /// Whether no scenario was added.
@@ -176,6 +184,7 @@ mod tests {
             page.add(&BatchEntry {
                 folder: text,
                 scenario: text,
+                repeats: (page.len() > 1).then_some(text),
                 request: &request,
                 reading_line: text,
                 location: &location,
@@ -215,6 +224,17 @@ mod tests {
         let html = page("hall", 7, 1);
         assert_eq!(html.matches("id=\"floor-").count(), 1);
         assert_eq!(data(&html)["rows"].as_array().unwrap().len(), 7);
+    }
+
+    #[test]
+    fn a_row_says_what_it_repeats_and_the_page_counts_distinct_scenarios() {
+        let html = page("hall", 5, 1);
+        let rows = data(&html)["rows"].as_array().unwrap().clone();
+        let repeats: Vec<&Value> = rows.iter().map(|row| &row["repeats"]).collect();
+        assert!(repeats[0].is_null() && repeats[4] == "hall", "{repeats:?}");
+        let mut page = BatchPage::default();
+        page.add_failed("odd", "no author");
+        assert_eq!(page.distinct(), 1);
     }
 
     #[test]

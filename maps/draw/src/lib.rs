@@ -33,6 +33,7 @@ pub mod run;
 pub mod series;
 pub mod svg;
 mod template;
+pub mod track_page;
 
 pub use annotated::annotated_map;
 pub use batch::{BatchEntry, BatchPage, Figures};
@@ -44,3 +45,4 @@ pub use label_page::LabelPage;
 pub use page::{Page, ProvenanceRow, StageRow};
 pub use png::{PngError, png_at_dpi, png_from_svg};
 pub use run::run_picture;
+pub use track_page::{FigureRow, TrackPage};

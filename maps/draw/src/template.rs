@@ -85,6 +85,8 @@ mod tests {
             include_str!("web/batch.js"),
             include_str!("web/labels.html"),
             include_str!("web/labels.js"),
+            include_str!("web/tracks.html"),
+            include_str!("web/tracks.js"),
         ];
         for part in parts {
             let part = part.replace("http://www.w3.org/2000/svg", "");

@@ -1,18 +1,24 @@
 //! `simulate` and `score`: a bundle again, or tracks of one's own.
 
 mod lines;
+mod options;
 pub(crate) mod tracks;
+
+pub(crate) use options::ScoreOptions;
 
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use socrates_model::{Recording, Report, RunId};
+use socrates_draw::{FigureRow, TrackPage};
+use socrates_model::{MetricValue, Recording, Report, RunId};
 use socrates_scoring::Evidence;
+use socrates_scoring::metrics::{KEY_FIGURES, in_words, key_figures};
+use socrates_stream::csv::RunChoice;
 
-use crate::again::tracks::Known;
-use crate::args::ScoreOptions;
+use crate::again::tracks::{Known, Scored};
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
+use crate::files;
 use crate::play::{self, Made};
 use crate::prepare::load_location;
 use crate::talk::Talk;
@@ -94,7 +100,7 @@ pub(crate) fn score(talk: &Talk, options: &ScoreOptions) -> Result<(), Complaint
         if options.tells() {
             return Err(Complaint::input(
                 "a bundle knows its location, goal, radius and groups",
-                "these flags are for tracks of your own: name a CSV or an MCAP file",
+                "these flags are for tracks of your own: name a CSV or an MCAP file; the page of a bundle is its report.html",
             ));
         }
         return score_bundle(talk, what);
@@ -111,25 +117,67 @@ pub(crate) fn score(talk: &Talk, options: &ScoreOptions) -> Result<(), Complaint
         goal: options.goal,
         radius_m: options.radius,
         speed_mps: options.speed,
-        groups: options.groups.iter().map(|group| group.0.clone()).collect(),
+        groups: options.groups.clone(),
+        robot: options.robot.clone(),
+        run: RunChoice { planner: options.planner.clone(), seed: options.seed },
     };
     let scored = tracks::score(&what.display().to_string(), &bytes, &known)?;
-    for told in &scored.told {
-        talk.warn(told);
-    }
     let report = &scored.report;
-    for metric in &report.metrics {
-        let value = metric
-            .value
-            .map_or_else(|| format!("n/a ({})", metric.note), |value| format!("{value:.3} {}", metric.unit));
-        talk.line(&format!("{:<34} {value}", metric.id));
+    for metric in key_figures(report) {
+        talk.line(format!("{:<20} {:<12} {}", metric.id, in_words(metric), metric.note).trim_end());
     }
-    talk.line(&format!("verdict    {} · {}", report.verdict, report.verdict_text));
+    let page = options.out.as_deref().map(|out| write_tracks(out, what, &known, &scored)).transpose()?;
+    match (&options.out, &page) {
+        (Some(out), Some(page)) => {
+            talk.line(&format!("table      {}", out.join(METRICS).display()));
+            talk.line(&format!("look       {}", page.display()));
+        }
+        _ => talk.line(&format!(
+            "more       {} metrics; --out FOLDER writes them as a table, and a page that plays the tracks",
+            report.metrics.len()
+        )),
+    }
+    // What looks wrong comes last, where it is read.
+    for told in &scored.told {
+        talk.line(&format!("warning    {told}"));
+    }
     talk.result(&json!({
-        "verdict": report.verdict, "metrics": values(report), "missing": missing(report), "told": scored.told,
-        "recording_hash": scored.recording.hash(),
+        "verdict": null, "metrics": values(report), "key": KEY_FIGURES, "missing": missing(report), "told": scored.told,
+        "recording_hash": scored.recording.hash(), "page": page.map(|page| page.display().to_string()),
     }));
     Ok(())
+}
+
+/// Name of the table of metrics.
+const METRICS: &str = "metrics.csv";
+
+/// Writes the page of tracks and their metrics, and hands back where the page is.
+fn write_tracks(out: &Path, what: &Path, known: &Known, scored: &Scored) -> Result<PathBuf, Complaint> {
+    let row = |metric: &MetricValue| FigureRow {
+        name: metric.id.clone(),
+        value: in_words(metric),
+        better: match metric.direction.signum() {
+            1 => "more is better",
+            -1 => "less is better",
+            _ => "",
+        },
+        note: metric.note.clone(),
+    };
+    let title = what.file_name().map_or_else(|| what.display().to_string(), |name| name.to_string_lossy().into_owned());
+    let page = TrackPage {
+        title: &title,
+        location: known.location.as_ref(),
+        goal: scored.goal,
+        recording: &scored.recording,
+        report: &scored.report,
+        key: &key_figures(&scored.report).map(row).collect::<Vec<_>>(),
+        all: &scored.report.metrics.iter().map(row).collect::<Vec<_>>(),
+        told: &scored.told,
+    };
+    files::write(&out.join(METRICS), bundle::metrics([&scored.report]).as_bytes())?;
+    let file = out.join("report.html");
+    files::write(&file, page.html().as_bytes())?;
+    Ok(file)
 }
 
 fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {

@@ -75,7 +75,7 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
     let bytes = socrates_stream::mcap::write(&recording, location.as_ref())
         .map_err(|why| Complaint::input(why.to_string(), ""))?;
     files::write(&dir.join("recording.mcap"), &bytes)?;
-    files::write(&dir.join("agents.csv"), socrates_stream::csv::write_agents(&recording).as_bytes())?;
+    files::write(&dir.join("agents.csv"), socrates_stream::csv::write_agents(&[&recording]).as_bytes())?;
     let mut look = dir.join("agents.csv");
     if let Some(location) = &location {
         let title = format!("{name} · {} · {}", profile.name(), location.name);

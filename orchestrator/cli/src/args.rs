@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::again::ScoreOptions;
+
 /// From a few sentences and a map to a social-navigation scenario that is simulated, checked and scored.
 #[derive(Debug, Parser)]
 #[command(
@@ -129,10 +131,10 @@ pub(crate) enum Verb {
         #[arg(long)]
         all: bool,
     },
-    /// Explain a fault code, such as G-DISC, or a metric; without one, list the codes.
+    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
     Explain {
-        /// Fault code, metric such as `ttc_min`, or `metrics` for the list of all metrics.
-        code: Option<String>,
+        /// Fault code, metric such as `ttc_min`, or word such as `encounter gap`; `metrics` and `words` list all of them.
+        code: Vec<String>,
     },
     /// Check what this machine can do, and say what is missing.
     Doctor,
@@ -263,39 +265,6 @@ pub(crate) struct RunOptions {
     /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
     #[arg(long)]
     pub(crate) ask: bool,
-}
-
-/// Options of `score`: all but the first are for tracks of one's own.
-#[derive(Debug, Clone, Args)]
-pub(crate) struct ScoreOptions {
-    /// Bundle folder, CSV or MCAP file.
-    pub(crate) what: PathBuf,
-    /// Location for tracks of your own: a shipped name or a folder.
-    #[arg(long)]
-    pub(crate) location: Option<String>,
-    /// Goal of the robot on the map, m; default: columns `goal_x` and `goal_y`, or where it said that it arrived.
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = crate::again::tracks::point)]
-    pub(crate) goal: Option<socrates_model::Point>,
-    /// Radius of the robot, m; default: as recorded, 0.25 for a CSV.
-    #[arg(long, value_name = "M")]
-    pub(crate) radius: Option<f64>,
-    /// Nominal speed of the robot for STL, m/s; default: as recorded, 0.8 for a CSV.
-    #[arg(long, value_name = "M/S")]
-    pub(crate) speed: Option<f64>,
-    /// People who belong together, such as `1+2,3+4`; default: the column `group`.
-    #[arg(long, value_delimiter = ',', value_parser = crate::again::tracks::group)]
-    pub(crate) groups: Vec<crate::again::tracks::Group>,
-}
-
-impl ScoreOptions {
-    /// Whether anything is said that a bundle knows by itself.
-    pub(crate) const fn tells(&self) -> bool {
-        self.location.is_some()
-            || self.goal.is_some()
-            || self.radius.is_some()
-            || self.speed.is_some()
-            || !self.groups.is_empty()
-    }
 }
 
 /// Options of `simulate`.

@@ -4,12 +4,13 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use socrates_draw::{BatchEntry, BatchPage};
-use socrates_model::Report;
+use socrates_model::{Report, ScenarioId};
 use socrates_scoring::Pool;
 
 use crate::bundle;
 use crate::exit::Complaint;
 use crate::figures;
+use crate::index::{Index, Scenario};
 use crate::library;
 use crate::progress::Progress;
 use crate::talk::Talk;
@@ -19,6 +20,8 @@ use crate::talk::Talk;
 pub(crate) struct Found {
     /// Scenarios on the page.
     pub(crate) rows: usize,
+    /// Those that repeat no earlier one.
+    pub(crate) distinct: usize,
     /// Bundles that could not be read, and why.
     pub(crate) left_out: Vec<(String, String)>,
     /// What the planners did over all of them, or why that is not put together.
@@ -41,31 +44,35 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
     Ok(names.into_iter().collect())
 }
 
-/// Writes `report.html` and `planners.csv` into a folder of bundles: those its library lists first, in their order, then the others.
+/// Writes `report.html`, `index.csv` and `planners.csv` into a folder of bundles: those its library lists first, in their order,
+/// then the others.
 pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
     let listed = library::read(root);
     let mut names: Vec<String> = Vec::new();
-    let mut failed: Vec<String> = Vec::new();
+    let mut failed: Vec<library::Row> = Vec::new();
     let found = bundles(root)?;
-    for row in listed.iter().flat_map(|library| &library.scenarios) {
+    for row in listed.into_iter().flat_map(|library| library.scenarios) {
         let name = row.scenario.to_string();
-        if found.contains(&name) { names.push(name) } else { failed.push(name) }
+        if found.contains(&name) { names.push(name) } else { failed.push(row) }
     }
     let known: BTreeSet<String> = names.iter().cloned().collect();
     names.extend(found.into_iter().filter(|name| !known.contains(name)));
     if names.is_empty() && failed.is_empty() {
         return Err(none(root));
     }
-    let mut page = BatchPage::default();
+    let (mut page, mut index, mut repeats) = (BatchPage::default(), Index::default(), library::Repeats::default());
     let mut left_out = Vec::new();
     let mut reports = Vec::new();
     let mut progress = Progress::new(*talk, "reading", names.len());
-    for (index, name) in names.into_iter().enumerate() {
-        progress.at(index, "");
-        match add(&mut page, root, &name) {
-            Ok(found) => reports.push((name, found)),
+    for (done, name) in names.into_iter().enumerate() {
+        progress.at(done, "");
+        match add(&mut page, &mut index, &mut repeats, root, &name) {
+            // What repeats another scenario is no evidence of its own.
+            Ok(Some(found)) => reports.push((name, found)),
+            Ok(None) => {}
             Err(why) => {
                 page.add_failed(&name, &why.what);
+                index.add_failed(Scenario { request: "", location: "", repeats: false, path: &name }, &why.what);
                 left_out.push((name, why.what));
             }
         }
@@ -83,24 +90,44 @@ pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
             drop(std::fs::remove_file(root.join(figures::FILE)));
         }
     }
-    for name in &failed {
-        page.add_failed(name, "no bundle could be made");
+    for row in &failed {
+        let why = if row.reason.is_empty() { "no bundle could be made" } else { &row.reason };
+        page.add_failed(row.scenario.as_str(), why);
+        index.add_failed(Scenario { request: &row.request, location: "", repeats: false, path: "" }, why);
     }
+    index.write(root)?;
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let html = page.html(&title.unwrap_or_else(|| "Scenarios".to_owned()));
     crate::files::write(&root.join("report.html"), html.as_bytes())?;
-    Ok(Found { rows: page.len(), left_out, figures })
+    Ok(Found { rows: page.len(), distinct: page.distinct(), left_out, figures })
 }
 
-/// Adds a bundle to the page and hands back its reports.
-fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<Vec<Report>, Complaint> {
+/// Adds a bundle to page and table and hands back its reports; none where it repeats an earlier one.
+fn add(
+    page: &mut BatchPage,
+    index: &mut Index,
+    repeats: &mut library::Repeats,
+    root: &Path,
+    name: &str,
+) -> Result<Option<Vec<Report>>, Complaint> {
     let dir = root.join(name);
     // One recording at a time: a library is larger than the memory of a laptop.
     let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
     let reports = bundle::reports(&dir, &bundle.manifest)?;
+    // Folders are unique where ids need not be.
+    let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
+    let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
+    let earlier = repeats.of(&id, &bundle.proposal);
+    let request = match bundle.manifest.request.as_str() {
+        "" => bundle.manifest.scenario.as_str(),
+        request => request,
+    };
+    let scenario = Scenario { request, location: &bundle.location.name, repeats: earlier.is_some(), path: name };
+    index.add(scenario, &reports);
     page.add(&BatchEntry {
         folder: name,
         scenario: &bundle.manifest.scenario,
+        repeats: earlier.as_ref().map(ScenarioId::as_str),
         request: &bundle.request,
         reading_line: &socrates_offline::summary(&bundle.reading),
         location: &bundle.location,
@@ -109,7 +136,7 @@ fn add(page: &mut BatchPage, root: &Path, name: &str) -> Result<Vec<Report>, Com
         reports: &reports,
         recording: bundle.runs.first().map(|(recording, _)| recording),
     });
-    Ok(reports)
+    Ok(earlier.is_none().then_some(reports))
 }
 
 /// What is said of a folder without bundles.

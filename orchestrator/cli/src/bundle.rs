@@ -42,6 +42,9 @@ pub(crate) struct Manifest {
     pub(crate) format: u32,
     /// Scenario id.
     pub(crate) scenario: String,
+    /// Name of the request it was made from; empty in bundles from before it was kept.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(crate) request: String,
     /// Base seed.
     pub(crate) seed: u64,
     /// Digest of the request and everything it names: the same wish has the same one.
@@ -165,8 +168,9 @@ pub(crate) fn write(
     out.put("run.svg", svg.as_bytes())?;
     out.put("run.png", &socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()))?)?;
     out.put("story.txt", story(&title, &proposal, report).as_bytes())?;
-    out.put("metrics.csv", metrics(&runs).as_bytes())?;
-    out.put("agents.csv", socrates_stream::csv::write_agents(recording).as_bytes())?;
+    out.put("metrics.csv", metrics(runs.iter().map(|(_, report)| report)).as_bytes())?;
+    let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
+    out.put("agents.csv", socrates_stream::csv::write_agents(&recordings).as_bytes())?;
     let request_text = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
     out.put("request.toml", request_text.as_bytes())?;
     for (name, bytes) in &prepared.location_files {
@@ -186,6 +190,7 @@ pub(crate) fn write(
     let manifest = Manifest {
         format: socrates_model::FORMAT,
         scenario: status.id.to_string(),
+        request: prepared.name.clone(),
         seed,
         wish: wish(prepared, seed),
         verdict,
@@ -380,9 +385,14 @@ fn story(title: &str, proposal: &Proposal, report: &Report) -> String {
     text
 }
 
-fn metrics(runs: &[(Recording, Report)]) -> String {
-    let mut text = "planner,seed,metric,value,unit,direction,note,version,thresholds\n".to_owned();
-    for (_, report) in runs {
+/// Columns of `metrics.csv`: one row per run and metric.
+pub(crate) const METRIC_COLUMNS: [&str; 9] =
+    ["planner", "seed", "metric", "value", "unit", "direction", "note", "version", "thresholds"];
+
+/// Every metric of these runs as a table.
+pub(crate) fn metrics<'a>(reports: impl IntoIterator<Item = &'a Report>) -> String {
+    let mut text = METRIC_COLUMNS.join(",") + "\n";
+    for report in reports {
         for metric in &report.metrics {
             let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
             let note = metric.note.replace('"', "'");

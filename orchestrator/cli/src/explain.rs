@@ -1,4 +1,4 @@
-//! `explain`, `config`, `doctor`, `new`, `open`: verbs that run nothing.
+//! `explain`, `config`, `doctor`, `open`: verbs that run nothing.
 
 use std::path::Path;
 
@@ -13,6 +13,10 @@ use crate::talk::Talk;
 
 /// The word for the list of metrics.
 const METRICS: &str = "metrics";
+/// The word for the glossary.
+const WORDS: &str = "words";
+/// So many words are proposed for one that is not known.
+const NEAR: usize = 5;
 
 /// Prints the list of metrics: for each its unit, whether it is known while a run goes on, and what it is.
 fn metrics(talk: &Talk) {
@@ -54,41 +58,101 @@ fn metric(talk: &Talk, family: &Family, sheet: &Sheet) {
     }));
 }
 
-/// Prints the page of a code or of a metric, or the list of codes or metrics.
-pub(crate) fn explain(talk: &Talk, code: Option<&str>) -> Result<(), Complaint> {
-    if code == Some(METRICS) {
-        metrics(talk);
-        return Ok(());
-    }
-    let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
-    if let Some((family, sheet)) = sheets.find(|(_, sheet)| Some(sheet.id) == code) {
-        metric(talk, family, sheet);
-        return Ok(());
-    }
-    let Some(code) = code else {
-        for code in FaultCode::ALL {
-            talk.line(&format!("{:<11} {}", code.code(), code.about()));
+/// Prints the glossary: every word with the beginning of what it means.
+fn words(talk: &Talk) {
+    let all = socrates_model::words::words();
+    let mut section = "";
+    for word in &all {
+        if word.section != section {
+            section = word.section;
+            talk.line(section);
         }
-        talk.result(&json!({ "codes": FaultCode::ALL.iter().map(|code| code.code()).collect::<Vec<_>>() }));
-        return Ok(());
-    };
-    let code: FaultCode = code.parse().map_err(|bad: socrates_model::ids::BadId| {
-        let wanted = bad.found.to_ascii_uppercase();
-        let near: Vec<&str> = FaultCode::ALL
-            .iter()
-            .map(|code| code.code())
-            .filter(|code| wanted.get(..2) == code.get(..2))
-            .take(8)
-            .collect();
-        let hint = if near.is_empty() {
-            format!("`socrates explain` lists every code, `socrates explain {METRICS}` every metric")
-        } else {
-            format!("codes of this kind: {}", near.join(", "))
-        };
-        Complaint::input(bad.to_string(), hint)
-    })?;
-    talk.line(code.page().trim_end());
-    talk.result(&json!({ "code": code.code(), "about": code.about(), "page": code.page() }));
+        let first = word.about.split_inclusive(". ").next().unwrap_or(word.about);
+        talk.line(&format!("  {:<22} {}", word.names.first().unwrap_or(&""), first.trim_end()));
+    }
+    talk.result(&json!({
+        "words": all.iter().map(|word| json!({ "word": word.names.first(), "also": word.names.get(1..), "section": word.section, "about": word.about })).collect::<Vec<_>>(),
+    }));
+}
+
+/// What there is a page for.
+enum Page {
+    Metric(&'static Family, &'static Sheet),
+    Fault(FaultCode),
+    Word(socrates_model::words::Word),
+}
+
+/// The page of a metric, a code or a word, whatever its case and with blanks for `_`.
+fn page(text: &str) -> Option<Page> {
+    let id = text.trim().trim_matches('`').to_lowercase().replace([' ', '-'], "_");
+    let mut sheets = CATALOG.iter().flat_map(|family| family.sheets.iter().map(move |sheet| (family, sheet)));
+    let metric = sheets.find(|(_, sheet)| sheet.id == id).map(|(family, sheet)| Page::Metric(family, sheet));
+    let code = || text.trim().to_uppercase().parse().ok().map(Page::Fault);
+    metric.or_else(code).or_else(|| socrates_model::words::word(text).map(Page::Word))
+}
+
+/// What is nearest to a word that nobody knows.
+fn near(text: &str) -> Vec<String> {
+    let wanted = text.to_lowercase().replace(['_', '-'], " ");
+    let words = socrates_model::words::words();
+    let known = FaultCode::ALL.iter().map(|code| code.code().to_owned());
+    let known = known.chain(CATALOG.iter().flat_map(|family| family.sheets).map(|sheet| sheet.id.to_owned()));
+    let known = known.chain(words.iter().flat_map(|word| &word.names).map(|name| (*name).to_owned()));
+    let mut all: Vec<(f64, String)> = known
+        .map(|name| (strsim::jaro_winkler(&name.to_lowercase().replace(['_', '-'], " "), &wanted), name))
+        .filter(|(alike, _)| *alike > 0.75)
+        .collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0).then_with(|| a.1.cmp(&b.1)));
+    all.into_iter().map(|(_, name)| name).take(NEAR).collect()
+}
+
+/// Prints the page of a code, a metric or a word, or a list of them.
+pub(crate) fn explain(talk: &Talk, what: &[String]) -> Result<(), Complaint> {
+    let what = what.join(" ");
+    match what.as_str() {
+        "" => {
+            for code in FaultCode::ALL {
+                talk.line(&format!("{:<11} {}", code.code(), code.about()));
+            }
+            talk.line(&format!("`socrates explain {METRICS}` lists the metrics, `socrates explain {WORDS}` the words"));
+            talk.result(&json!({ "codes": FaultCode::ALL.iter().map(|code| code.code()).collect::<Vec<_>>() }));
+            return Ok(());
+        }
+        METRICS => {
+            metrics(talk);
+            return Ok(());
+        }
+        WORDS => {
+            words(talk);
+            return Ok(());
+        }
+        _ => {}
+    }
+    match page(&what) {
+        Some(Page::Metric(family, sheet)) => metric(talk, family, sheet),
+        Some(Page::Fault(code)) => {
+            talk.line(code.page().trim_end());
+            talk.result(&json!({ "code": code.code(), "about": code.about(), "page": code.page() }));
+        }
+        Some(Page::Word(word)) => {
+            talk.line(&format!("{} ({})", word.names.join(" · "), word.section.to_lowercase()));
+            talk.line(word.about);
+            talk.result(
+                &json!({ "word": word.names.first(), "also": word.names.get(1..), "section": word.section, "about": word.about }),
+            );
+        }
+        None => {
+            let near = near(&what);
+            let lists = format!(
+                "`socrates explain` lists every code, `socrates explain {METRICS}` every metric, `socrates explain {WORDS}` every word"
+            );
+            let hint = if near.is_empty() { lists } else { format!("near: {}; {lists}", near.join(", ")) };
+            return Err(Complaint::input(
+                format!("`{what}` is neither a code nor a metric nor a word of the program"),
+                hint,
+            ));
+        }
+    }
     Ok(())
 }
 
@@ -123,24 +187,6 @@ pub(crate) fn config(talk: &Talk, config: &Config, part: Option<&str>) -> Result
     let map: serde_json::Map<String, serde_json::Value> =
         lines.iter().map(|(key, value, origin)| (key.clone(), json!({ "value": value, "origin": origin }))).collect();
     talk.result(&json!({ "config": map }));
-    Ok(())
-}
-
-/// Writes a commented request.
-pub(crate) fn new(talk: &Talk, file: &Path, location: &str) -> Result<(), Complaint> {
-    if file.exists() {
-        return Err(Complaint::input(
-            format!("`{}` exists already", file.display()),
-            "choose another name; nothing was written",
-        ));
-    }
-    crate::prepare::load_location(location, Path::new("."))?;
-    let text = include_str!("request.toml").replace("LOCATION", location);
-    std::fs::write(file, text)
-        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", file.display()), "check the folder"))?;
-    talk.line(&format!("wrote      {}", file.display()));
-    talk.line(&format!("next       socrates read {}", crate::files::shell(file)));
-    talk.result(&json!({ "request": file.display().to_string() }));
     Ok(())
 }
 
@@ -230,4 +276,101 @@ fn tempfile_ok() -> bool {
 fn shm_free_mib() -> Option<u64> {
     let out = std::process::Command::new("df").args(["-m", "--output=avail", "/dev/shm"]).output().ok()?;
     String::from_utf8(out.stdout).ok()?.lines().nth(1)?.trim().parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::Verdict;
+
+    use super::*;
+
+    const WEB: [&str; 4] = [
+        include_str!("../../../maps/draw/src/web/page.html"),
+        include_str!("../../../maps/draw/src/web/batch.html"),
+        include_str!("../../../maps/draw/src/web/tracks.html"),
+        include_str!("../../../maps/draw/src/page.rs"),
+    ];
+    const SCRIPTS: [&str; 3] = [
+        include_str!("../../../maps/draw/src/web/page.js"),
+        include_str!("../../../maps/draw/src/web/batch.js"),
+        include_str!("../../../maps/draw/src/web/tracks.js"),
+    ];
+
+    /// What stands between these two marks, wherever they do.
+    fn between<'a>(text: &'a str, from: &'a str, to: &'a str) -> impl Iterator<Item = &'a str> {
+        text.split(from).skip(1).filter_map(move |rest| rest.split_once(to).map(|(inside, _)| inside))
+    }
+
+    /// Headings of the pages: of sections, of folded parts, of columns, and of what stands beside a value.
+    fn headings() -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for text in WEB {
+            for (from, to) in [("<h2", "</h2>"), ("<dt", "</dt>"), ("<th", "</th>"), ("<summary", "</summary>")] {
+                let inside = between(text, from, to).filter_map(|rest| rest.split_once('>'));
+                found.extend(inside.map(|(_, words)| words.split('<').next().unwrap_or_default().trim().to_owned()));
+            }
+        }
+        for script in SCRIPTS {
+            for from in
+                ["heading(table, [", "heading(at(\"runs\"), [", "heading(at(\"metrics\"), [", "for (const name of [\""]
+            {
+                for list in between(script, from, "]") {
+                    let whole = if from.ends_with('"') { format!("\"{list}") } else { list.to_owned() };
+                    found.extend(whole.split('"').skip(1).step_by(2).map(str::to_owned));
+                }
+            }
+        }
+        found.retain(|words| !words.is_empty() && !words.contains(['{', '$', '(']));
+        found.into_iter().map(|words| words.trim_end_matches(", median").to_owned()).collect()
+    }
+
+    #[test]
+    fn every_word_of_output_pages_and_tables_has_a_page() {
+        let mut needed: Vec<String> = headings();
+        assert!(needed.len() > 40, "{needed:?}");
+        let verdicts = [
+            Verdict::Realised,
+            Verdict::RealisedLate,
+            Verdict::NotTriggered,
+            Verdict::Contradicted,
+            Verdict::Invalid,
+            Verdict::RobotPrevented,
+        ];
+        needed.extend(verdicts.map(|verdict| verdict.name().to_owned()));
+        needed.push(crate::index::FAILED.to_owned());
+        let serde_name = |value: serde_json::Value| value.as_str().unwrap().to_owned();
+        use socrates_model::ClauseRole;
+        use socrates_model::report::Standing;
+        needed.extend([ClauseRole::Setup, ClauseRole::Outcome].map(|role| serde_name(json!(role))));
+        let standings =
+            [Standing::Holds, Standing::Late, Standing::NotTriggered, Standing::Fails, Standing::NotApplicable];
+        needed.extend(standings.map(|standing| serde_name(json!(standing))));
+        needed.extend(socrates_stream::csv::AGENT_COLUMNS.map(str::to_owned));
+        needed.extend(crate::index::Index::default().csv().trim().split(',').map(str::to_owned));
+        needed.extend(crate::bundle::METRIC_COLUMNS.map(str::to_owned));
+        let pool = socrates_scoring::pool(&[]).unwrap();
+        needed.extend(pool.csv().trim().split(',').map(str::to_owned));
+        needed.extend(
+            ["encounter gap", "setup clause", "surface distance", "center distance", "promised by", "c7", "f1"]
+                .map(str::to_owned),
+        );
+        needed.extend(
+            ["auto-time-human_1", "auto-meet-human_2-2", "auto-group_1", "auto-humans", "auto-start-human_1"]
+                .map(str::to_owned),
+        );
+        needed.extend(socrates_planners::names().iter().map(|name| (*name).to_owned()));
+        let without: Vec<&String> = needed.iter().filter(|word| page(word).is_none()).collect();
+        assert!(without.is_empty(), "`explain` knows nothing of {without:?}: add them to bus/model/words.md");
+    }
+
+    #[test]
+    fn a_word_that_nobody_knows_is_answered_with_near_ones() {
+        let talk = Talk::new(Format::Json);
+        assert!(explain(&talk, &["encounter".to_owned(), "gap".to_owned()]).is_ok());
+        let why = explain(&talk, &["contradictd".to_owned()]).unwrap_err();
+        assert!(why.hint.contains("near: contradicted"), "{}", why.hint);
+        let why = explain(&talk, &["G-DISK".to_owned()]).unwrap_err();
+        assert!(why.hint.contains("G-DISC"), "{}", why.hint);
+        assert!(explain(&talk, &["g-disc".to_owned()]).is_ok());
+    }
 }

@@ -2,14 +2,14 @@
 
 use serde_json::json;
 use socrates_draw::Figures;
+use socrates_scoring::metrics::KEY_FIGURES;
 use socrates_scoring::{Cell, Pool, PooledRun, Ranking, pool};
 
 use crate::exit::Complaint;
 use crate::talk::Talk;
 
-/// Figures that are shown; `planners.csv` has all.
-const SHOWN: [&str; 6] =
-    ["success", "human_collisions", "human_distance_min", "space_compliance", "time_to_goal", "stalled_time"];
+/// Said in place of an order.
+const NOT_COMPARED: &str = "not compared: no run that all planners have";
 /// Name of the table beside the page.
 pub(crate) const FILE: &str = "planners.csv";
 
@@ -50,8 +50,20 @@ fn order(pool: &Pool, ranking: &Ranking) -> String {
         text.push_str(planner);
         before = now;
     }
+    if ranking.scenarios < pool.scenarios {
+        text.push_str(&format!(" · over the {} of {} scenarios that all ran", ranking.scenarios, pool.scenarios));
+    }
     let tau = ranking.tau.map_or_else(String::new, |tau| format!(" · tau {tau:.2} over {}", ranking.parts));
     text + &tau
+}
+
+/// The order by a metric, or that there is none; `None` where nobody is to be compared.
+fn ordered(pool: &Pool, metric: &str) -> Option<String> {
+    let ranking = pool.ranking(metric).map(|ranking| order(pool, ranking));
+    let have = |planner: &&str| pool.overall(planner, metric).is_some_and(|cell| cell.values > 0);
+    let neutral = socrates_scoring::metrics::sheet(metric).is_none_or(|sheet| sheet.direction.sign() == 0);
+    let several = planners(pool).iter().filter(|planner| have(planner)).count() > 1;
+    ranking.or_else(|| (several && !neutral).then(|| NOT_COMPARED.to_owned()))
 }
 
 /// The table of the page.
@@ -60,22 +72,22 @@ pub(crate) fn table(pool: &Pool) -> Figures {
     let head = std::iter::once("figure").chain(planners.iter().copied()).chain(["order"]).map(str::to_owned).collect();
     let row = |metric: &str| {
         let cells = planners.iter().map(|planner| pool.overall(planner, metric).map_or_else(String::new, told));
-        let order = pool.ranking(metric).map_or_else(String::new, |ranking| order(pool, ranking));
+        let order = ordered(pool, metric).unwrap_or_default();
         std::iter::once(metric.replace('_', " ")).chain(cells).chain([order]).collect()
     };
-    Figures { head, rows: SHOWN.iter().map(|metric| row(metric)).collect(), thresholds: pool.thresholds.clone() }
+    Figures { head, rows: KEY_FIGURES.iter().map(|metric| row(metric)).collect(), thresholds: pool.thresholds.clone() }
 }
 
 /// Prints the figures, one line per metric and planner.
 pub(crate) fn print(talk: &Talk, pool: &Pool) {
-    for metric in SHOWN {
+    for metric in KEY_FIGURES {
         for planner in planners(pool) {
             if let Some(cell) = pool.overall(planner, metric) {
                 talk.line(&format!("figure     {metric} · {planner}: {}", told(cell)));
             }
         }
-        if let Some(ranking) = pool.ranking(metric) {
-            talk.line(&format!("order      {metric}: {}", order(pool, ranking)));
+        if let Some(order) = ordered(pool, metric) {
+            talk.line(&format!("order      {metric}: {order}"));
         }
     }
 }
@@ -97,10 +109,10 @@ pub(crate) fn result(pool: &Pool) -> serde_json::Value {
         .rankings
         .iter()
         .map(|ranking| {
-            json!({ "metric": ranking.metric.id, "planners": ranking.planners, "tau": ranking.tau, "parts": ranking.parts })
+            json!({ "metric": ranking.metric.id, "planners": ranking.planners, "scenarios": ranking.scenarios, "tau": ranking.tau, "parts": ranking.parts })
         })
         .collect();
-    json!({ "thresholds": pool.thresholds, "cells": cells, "rankings": rankings })
+    json!({ "thresholds": pool.thresholds, "scenarios": pool.scenarios, "cells": cells, "rankings": rankings })
 }
 
 #[cfg(test)]
@@ -188,5 +200,16 @@ mod tests {
         reports[1].1[0].thresholds = "mine-2".to_owned();
         let why = of(&reports).unwrap_err();
         assert!(why.what.contains("`b` with far and seed 1") && why.what.contains("`mine-2`"), "{}", why.what);
+    }
+
+    #[test]
+    fn planners_that_ran_other_scenarios_are_not_put_in_an_order() {
+        let mut reports = batch();
+        reports[0].1.retain(|report| report.planner != "near");
+        let some = of(&reports).unwrap();
+        let row = |pool: &Pool| table(pool).rows.iter().find(|row| row[0] == "human distance min").unwrap()[3].clone();
+        assert!(row(&some).contains("over the 1 of 2 scenarios that all ran"), "{}", row(&some));
+        reports[1].1.retain(|report| report.planner == "near");
+        assert_eq!(row(&of(&reports).unwrap()), NOT_COMPARED);
     }
 }

@@ -56,21 +56,7 @@ pub(crate) fn shell(path: &Path) -> String {
 
 /// Cells of a line of a CSV table, without the blanks round them; in quotes a comma is a comma and two quotes are one.
 pub(crate) fn cells(line: &str) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if quoted && letters.peek() == Some(&'"') => {
-                cells.last_mut().into_iter().for_each(|cell| cell.push('"'));
-                letters.next();
-            }
-            '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
-            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
-        }
-    }
-    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
+    socrates_stream::csv::cells(line, ',')
 }
 
 /// The hash of the running program, which tells two builds of one version apart; `None` where it cannot be read.

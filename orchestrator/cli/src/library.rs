@@ -24,6 +24,9 @@ const FILE: &str = "library.json";
 pub(crate) struct Row {
     /// Which.
     pub(crate) scenario: ScenarioId,
+    /// Name of its request.
+    #[serde(default)]
+    pub(crate) request: String,
     /// Its folder.
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
@@ -85,28 +88,89 @@ impl Repeats {
     }
 }
 
+/// Scenarios by verdict, the most frequent first: `12 realised · 3 contradicted`.
+fn counted<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+    let mut verdicts = BTreeMap::<&str, u64>::new();
+    rows.for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
+    let mut verdicts: Vec<(&str, u64)> = verdicts.into_iter().collect();
+    verdicts.sort_by_key(|(verdict, count)| (std::cmp::Reverse(*count), *verdict));
+    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
+    words.join(" · ")
+}
+
+impl Library {
+    /// Scenarios that repeat no earlier one.
+    pub(crate) fn distinct(&self) -> impl Iterator<Item = &Row> {
+        self.scenarios.iter().filter(|row| row.repeats.is_none())
+    }
+
+    /// What is in it, in lines: how many were made, and how many different ones those are.
+    fn told(&self) -> Vec<String> {
+        let mut lines =
+            vec![format!("made       {} of {} · {}", self.scenarios.len(), self.count, counted(self.scenarios.iter()))];
+        let repeats = self.scenarios.iter().filter(|row| row.repeats.is_some()).count();
+        if repeats > 0 {
+            lines.push(format!("distinct   {} · {}", self.distinct().count(), counted(self.distinct())));
+            lines.push(format!(
+                "repeats    {repeats} repeat an earlier proposal (P-DUP): a share of the distinct ones is what counts"
+            ));
+        }
+        lines
+    }
+}
+
 /// Prints what a library holds.
 pub(crate) fn finish(talk: &Talk, options: &RunOptions, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
     let library = read(root)
         .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
     let mut verdicts = BTreeMap::<&str, u64>::new();
-    for row in &library.scenarios {
-        *verdicts.entry(row.verdict.as_str()).or_default() += 1;
+    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
+    for line in library.told() {
+        talk.line(&line);
     }
-    let realised = verdicts.get("realised").copied().unwrap_or(0);
-    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
-    talk.line(&format!("made       {} of {} · {}", library.scenarios.len(), library.count, words.join(" · ")));
-    let again = library.scenarios.iter().filter(|row| row.repeats.is_some()).count();
-    if again > 0 {
-        talk.line(&format!("alike      {again} repeat an earlier proposal (P-DUP); the request leaves little open"));
-    }
+    talk.line(&format!("table      {}", root.join(crate::index::FILE).display()));
     talk.line(&format!("look       {}", root.join("report.html").display()));
     talk.line(&format!("next       {}", crate::next::after_batch(root, &library)));
-    let whole = realised == library.count;
+    let whole = verdicts.get("realised").copied().unwrap_or(0) == library.count;
     talk.result(&json!({
         "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
         "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+        "distinct": library.distinct().count(), "index": root.join(crate::index::FILE).display().to_string(),
         "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
     }));
     Ok(if options.require == "any" || whole { Code::Ok } else { Code::NotRealised })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distinct_scenarios_are_counted_beside_all() {
+        let row = |name: &str, verdict: &str, repeats: Option<&str>| Row {
+            scenario: ScenarioId::new(name).unwrap(),
+            request: "hall".to_owned(),
+            bundle: name.to_owned(),
+            verdict: verdict.to_owned(),
+            reason: String::new(),
+            repeats: repeats.map(|other| ScenarioId::new(other).unwrap()),
+        };
+        let mut library = Library {
+            wish: Digest::of(b"wish"),
+            count: 4,
+            readings: Vec::new(),
+            scenarios: vec![
+                row("a", "realised", None),
+                row("b", "realised", Some("a")),
+                row("c", "realised", Some("a")),
+                row("d", "contradicted", None),
+            ],
+        };
+        let told = library.told();
+        assert_eq!(told[0], "made       4 of 4 · 3 realised · 1 contradicted");
+        assert_eq!(told[1], "distinct   2 · 1 contradicted · 1 realised");
+        assert!(told[2].starts_with("repeats    2 repeat"), "{told:?}");
+        library.scenarios.iter_mut().for_each(|row| row.repeats = None);
+        assert_eq!(library.told().len(), 1, "nothing is said of repeats where there are none");
+    }
 }

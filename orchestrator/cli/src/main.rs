@@ -34,11 +34,13 @@ mod files;
 mod folder;
 mod golden;
 mod history;
+mod index;
 mod labels;
 mod library;
 mod many;
 mod map;
 mod mutations;
+mod new_request;
 mod next;
 #[cfg(test)]
 mod online;
@@ -119,7 +121,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
     match &cli.verb {
         Verb::Demo(options) => run::demo(talk, cli, config, options).await,
         Verb::Run { requests, options } => run::run(talk, cli, config, requests, options).await,
-        Verb::New { file, location } => done(explain::new(talk, file, location)),
+        Verb::New { file, location } => done(new_request::new(talk, file, location).await),
         Verb::Read { request } => {
             let prepared = prepare::prepare(request, None, config)?;
             run::print_reading(talk, &prepared);
@@ -149,7 +151,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
             };
             done(standing::status(talk, what, listed).await)
         }
-        Verb::Explain { code } => done(explain::explain(talk, code.as_deref())),
+        Verb::Explain { code } => done(explain::explain(talk, code)),
         Verb::Doctor => done(explain::doctor(talk, config)),
         Verb::Config { part } => done(explain::config(talk, config, part.as_deref())),
         Verb::Map { verb } => done(map::map(talk, verb)),

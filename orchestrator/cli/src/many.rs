@@ -100,11 +100,12 @@ fn rows(talk: &Talk, root: &Path, wanted: &[Wanted<'_>], made: &Made) -> Vec<lib
             Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal), String::new()),
             Err(why) => {
                 talk.warn(&format!("{}: {why}", want.id));
-                ("failed".to_owned(), None, why.short())
+                (crate::index::FAILED.to_owned(), None, why.short())
             }
         };
+        let request = want.prepared.name.clone();
         let bundle = dir.display().to_string();
-        rows.push(library::Row { scenario: want.id.clone(), bundle, verdict, reason, repeats });
+        rows.push(library::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
     }
     rows
 }

@@ -8,7 +8,7 @@ use socrates_scoring::fidelity::Signals;
 use socrates_scoring::metrics::{Online, Scene, measure};
 use socrates_scoring::{Sample, Tracks};
 
-use crate::again::tracks::{Known, score};
+use crate::again::tracks::{Group, Known, score};
 use crate::config::Config;
 use crate::mutations::{Scenario, evidence, realised, shipped};
 
@@ -84,9 +84,16 @@ async fn every_metric_of_a_shipped_scenario_is_the_same_at_ten_and_at_a_hundred_
             goal: scenario.made.paths.robot.last().and_then(|id| graph.node(id)).map(|node| node.at),
             radius_m: Some(robot.radius_m),
             speed_mps: Some(robot.speed_mps),
-            groups: scenario.made.proposal.groups.iter().map(|group| group.members.clone()).collect(),
+            groups: scenario
+                .made
+                .proposal
+                .groups
+                .iter()
+                .map(|group| Group(group.members.iter().map(ToString::to_string).collect()))
+                .collect(),
+            ..Known::default()
         };
-        let table = socrates_stream::csv::write_agents(run);
+        let table = socrates_stream::csv::write_agents(&[run]);
         let scored = score("agents.csv", table.as_bytes(), &known).unwrap();
         let metrics = scored.report.metrics.into_iter().filter(|metric| !metric.id.starts_with("hunav."));
         let found = metrics.map(|metric| (metric.id, metric.value)).collect();

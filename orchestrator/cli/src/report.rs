@@ -36,18 +36,25 @@ pub(crate) fn report(talk: &Talk, what: &Path) -> Result<(), Complaint> {
     if bundle::manifest(what).is_none() {
         let found = batch::write(talk, what)?;
         let page = what.join("report.html");
-        talk.line(&format!("scenarios  {}", found.rows));
+        let repeats = found.rows - found.distinct;
+        let of_them = if repeats > 0 {
+            format!(" · {} distinct, {repeats} repeat one of them", found.distinct)
+        } else {
+            String::new()
+        };
+        talk.line(&format!("scenarios  {}{of_them}", found.rows));
         for (name, why) in &found.left_out {
             talk.line(&format!("left out   {name}: {why}"));
         }
         if let Ok(pool) = &found.figures {
             figures::print(talk, pool);
         }
+        talk.line(&format!("table      {}", what.join(crate::index::FILE).display()));
         talk.line(&format!("look       {}", page.display()));
         let left_out: Vec<_> = found.left_out.iter().map(|(name, why)| json!({ "name": name, "why": why })).collect();
         let figures = found.figures.as_ref().ok().map(figures::result);
         talk.result(&json!({
-            "page": page.display().to_string(), "scenarios": found.rows, "left_out": left_out, "figures": figures,
+            "page": page.display().to_string(), "scenarios": found.rows, "distinct": found.distinct, "left_out": left_out, "figures": figures,
         }));
         return found.figures.map(|_| ());
     }

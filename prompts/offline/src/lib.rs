@@ -143,6 +143,7 @@ pub use answer::Offline;
 pub use card::{Card, catalog};
 pub use edit::{Draft, Edited, edit, settled};
 pub use summary::summary;
+pub use understand::CONTEXT_NOTE;
 
 /// Name of this author, as artifacts spell it.
 pub const NAME: &str = "offline/1";

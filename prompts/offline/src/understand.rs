@@ -381,6 +381,9 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
     }
 }
 
+/// Said of every request with a social context.
+pub const CONTEXT_NOTE: &str = "of the social context, only roles and pace are used";
+
 /// Words that want a deed more than once; what somebody does is played once.
 const OFTEN: &[&str] =
     &["again and again", "over and over", "time and again", "repeatedly", "several times", "many times"];
@@ -477,7 +480,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
         reading.notes.push("no rough scenario: a pattern that fits the map is drawn by the seed".to_owned());
     }
     if !request.social_context.trim().is_empty() {
-        reading.notes.push("of the social context, only roles and pace are used".to_owned());
+        reading.notes.push(CONTEXT_NOTE.to_owned());
     }
     reading.problems.dedup();
 }

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Runs without a value are counted apart and never as 0. Figures made with different thresholds or formulas are
-//! refused and not averaged.
+//! refused and not averaged. Planners are compared only over what all of them ran, the same scenario with the same
+//! seed; where there is no such run they are not ranked.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +28,8 @@ pub struct PooledRun<'a> {
 /// One figure of the table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// Scenario; empty for all of them together.
+    /// Scenario; empty for all of them together: those runs that all planners with a value have, or where there are none,
+    /// all runs of the planner.
     pub scenario: String,
     /// Planner.
     pub planner: String,
@@ -48,8 +50,10 @@ pub struct Cell {
 pub struct Ranking {
     /// Metric.
     pub metric: &'static Sheet,
-    /// Planners, the best first, by the figure over all scenarios.
+    /// Planners, the best first, by the figure over the runs that all of them have.
     pub planners: Vec<String>,
+    /// Scenarios that all of them ran; of other scenarios nothing counts.
+    pub scenarios: usize,
     /// Mean of Kendall's tau-b between the order over all parts and that of each part: 1 when every part ranks them
     /// alike. Parts are scenarios where there are several, else seeds. `None` where no two parts rank anybody.
     pub tau: Option<f64>,
@@ -62,6 +66,8 @@ pub struct Ranking {
 pub struct Pool {
     /// Signature of the thresholds of all of them.
     pub thresholds: String,
+    /// Scenarios there are.
+    pub scenarios: usize,
     /// Figures, by metric in report order, then scenario (all together first), then planner.
     pub cells: Vec<Cell>,
     /// Rankings in report order; empty with fewer than two planners.
@@ -173,12 +179,13 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
     let planners: BTreeSet<&str> = runs.iter().map(|run| run.report.planner.as_str()).collect();
     let (mut cells, mut rankings) = (Vec::new(), Vec::new());
     for metric in crate::metrics::sheets() {
+        let shared = Shared::of(metric, runs, &planners);
         // All together first; one scenario is all of them.
         let parts = std::iter::once(None).chain(scenarios.iter().copied().map(Some).filter(|_| scenarios.len() > 1));
         for part in parts {
             for planner in &planners {
                 let own = |run: &&PooledRun<'_>| {
-                    run.report.planner == *planner && part.is_none_or(|scenario| run.scenario == scenario)
+                    run.report.planner == *planner && part.map_or_else(|| shared.counts(run), |one| run.scenario == one)
                 };
                 let count = runs.iter().filter(own).count();
                 if count == 0 {
@@ -197,9 +204,46 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
                 });
             }
         }
-        rankings.extend(ranking(metric, runs, &planners, scenarios.len() > 1));
+        rankings.extend(ranking(metric, runs, &shared));
     }
-    Ok(Pool { thresholds, cells, rankings })
+    Ok(Pool { thresholds, scenarios: scenarios.len(), cells, rankings })
+}
+
+/// The runs over which planners are compared by one metric.
+struct Shared<'r> {
+    /// Planners that have a value at all: who never has one, such as the run without a robot, is not compared.
+    planners: BTreeSet<&'r str>,
+    /// Scenario and seed of the runs that all of them have.
+    keys: BTreeSet<(&'r str, u64)>,
+}
+
+impl<'r> Shared<'r> {
+    fn of(metric: &Sheet, runs: &'r [PooledRun<'r>], planners: &BTreeSet<&'r str>) -> Self {
+        let planners: BTreeSet<&str> = planners
+            .iter()
+            .copied()
+            .filter(|planner| !values(of_planner(runs, planner), metric.id).is_empty())
+            .collect();
+        let keys = planners.iter().copied().map(|planner| of_planner(runs, planner).map(key).collect::<BTreeSet<_>>());
+        let keys = keys.reduce(|all, own| all.intersection(&own).copied().collect()).unwrap_or_default();
+        Self { planners, keys }
+    }
+
+    /// Whether a run counts where all scenarios are taken together.
+    fn counts(&self, run: &PooledRun<'_>) -> bool {
+        let compared = self.planners.contains(run.report.planner.as_str()) && !self.keys.is_empty();
+        !compared || self.keys.contains(&key(run))
+    }
+}
+
+/// The runs of a planner.
+fn of_planner<'r>(runs: &'r [PooledRun<'r>], planner: &'r str) -> impl Iterator<Item = &'r PooledRun<'r>> {
+    runs.iter().filter(move |run| run.report.planner == planner)
+}
+
+/// What two planners have in common where they ran the same.
+fn key<'r>(run: &PooledRun<'r>) -> (&'r str, u64) {
+    (run.scenario, run.report.seed)
 }
 
 /// Scores of the planners by one metric, larger is better; `None` unless everybody has one.
@@ -212,36 +256,26 @@ fn scores(metric: &Sheet, runs: &[&PooledRun<'_>], planners: &BTreeSet<&str>) ->
     planners.iter().map(one).collect()
 }
 
-fn ranking(
-    metric: &'static Sheet,
-    runs: &[PooledRun<'_>],
-    planners: &BTreeSet<&str>,
-    by_scenario: bool,
-) -> Option<Ranking> {
-    if metric.direction == Direction::Neutral {
+fn ranking(metric: &'static Sheet, runs: &[PooledRun<'_>], shared: &Shared<'_>) -> Option<Ranking> {
+    if metric.direction == Direction::Neutral || shared.planners.len() < 2 {
         return None;
     }
-    let all: Vec<&PooledRun<'_>> = runs.iter().collect();
-    // Who never has a value, such as the run without a robot, is not ranked.
-    let planners: BTreeSet<&str> = planners
-        .iter()
-        .copied()
-        .filter(|planner| scores(metric, &all, &BTreeSet::from([*planner])).is_some())
-        .collect();
-    let whole = scores(metric, &all, &planners).filter(|_| planners.len() > 1)?;
-    let mut order: Vec<(&str, f64)> = planners.iter().copied().zip(whole.iter().copied()).collect();
+    let all: Vec<&PooledRun<'_>> = runs.iter().filter(|run| shared.keys.contains(&key(run))).collect();
+    let whole = scores(metric, &all, &shared.planners)?;
+    let mut order: Vec<(&str, f64)> = shared.planners.iter().copied().zip(whole.iter().copied()).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(b.0)));
+    let scenarios = all.iter().map(|run| run.scenario).collect::<BTreeSet<_>>().len();
     let mut parts: BTreeMap<(&str, u64), Vec<&PooledRun<'_>>> = BTreeMap::new();
-    for run in runs {
-        let key = if by_scenario { (run.scenario, 0) } else { ("", run.report.seed) };
-        parts.entry(key).or_default().push(run);
+    for run in all {
+        let part = if scenarios > 1 { (run.scenario, 0) } else { ("", run.report.seed) };
+        parts.entry(part).or_default().push(run);
     }
     let taus: Vec<f64> =
-        parts.values().filter_map(|part| kendall_tau(&whole, &scores(metric, part, &planners)?).ok()).collect();
+        parts.values().filter_map(|part| kendall_tau(&whole, &scores(metric, part, &shared.planners)?).ok()).collect();
     #[expect(clippy::cast_precision_loss, reason = "parts of a batch are far below 2^53")]
     let tau = (taus.len() > 1).then(|| taus.iter().sum::<f64>() / taus.len() as f64);
     let planners = order.into_iter().map(|(planner, _)| planner.to_owned()).collect();
-    Some(Ranking { metric, planners, tau, parts: taus.len() })
+    Some(Ranking { metric, planners, scenarios, tau, parts: taus.len() })
 }
 
 impl Pool {
@@ -381,5 +415,31 @@ mod tests {
         reports.iter_mut().for_each(|(_, report)| report.thresholds.clear());
         assert_eq!(pooled(&reports).unwrap().thresholds, "");
         assert!(pooled(&[]).unwrap().cells.is_empty());
+    }
+
+    #[test]
+    fn planners_are_compared_only_over_what_all_of_them_ran() {
+        // Alone in an easy scenario, `near` would be the one that keeps its distance.
+        let mut reports = batch();
+        for seed in 1..=9 {
+            reports.push(("easy".to_owned(), report("near", seed, 0.8, 6.0)));
+        }
+        reports.push(("a".to_owned(), report("near", 77, 0.8, 6.0)));
+        let found = pooled(&reports).unwrap();
+        let ranking = found.ranking("human_distance_min").unwrap();
+        assert_eq!(
+            (ranking.planners.as_slice(), ranking.scenarios),
+            (["wide".to_owned(), "near".to_owned()].as_slice(), 3)
+        );
+        assert_eq!(found.scenarios, 4);
+        let overall = |planner: &str| found.overall(planner, "human_distance_min").unwrap().runs;
+        assert_eq!((overall("near"), overall("wide")), (15, 15), "the seed that only one ran counts neither");
+        let easy = found.cells.iter().find(|cell| cell.scenario == "easy" && cell.metric.id == "human_distance_min");
+        assert_eq!(easy.unwrap().runs, 9, "the scenario has its own figures all the same");
+        // Nothing in common: no order, and each has the figures of its own runs.
+        let apart = [("a".to_owned(), report("near", 1, 0.8, 1.0)), ("b".to_owned(), report("wide", 1, 0.8, 2.0))];
+        let found = pooled(&apart).unwrap();
+        assert!(found.ranking("human_distance_min").is_none());
+        assert_eq!(found.overall("near", "human_distance_min").unwrap().runs, 1);
     }
 }

@@ -1,8 +1,10 @@
 //! Tracks as comma-separated text: for spreadsheets, and from other people's recordings.
 
+mod ids;
 mod plain;
 
-pub use plain::{Plain, plain};
+pub use ids::{Named, named};
+pub use plain::{Plain, RunChoice, plain};
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -53,32 +55,38 @@ const ABSENT: u16 = 1;
 /// Slower than this no heading is taken from the motion, m/s.
 const STILL_MPS: f64 = 0.05;
 
-/// The states of a recording, ten times a second: `t,id,x,y,yaw,v,gesture,leaf`.
+/// Columns of a table of agents, in order.
+pub const AGENT_COLUMNS: [&str; 10] = ["planner", "seed", "t", "id", "x", "y", "yaw", "v", "gesture", "leaf"];
+
+/// The states of all these recordings, one after another, ten times a second, with [`AGENT_COLUMNS`].
 #[must_use]
-pub fn write_agents(recording: &Recording) -> String {
-    write_agents_at(recording, Rate::TenHertz)
+pub fn write_agents(recordings: &[&Recording]) -> String {
+    write_agents_at(recordings, Rate::TenHertz)
 }
 
 /// As [`write_agents`], at a rate of choice.
 #[must_use]
-pub fn write_agents_at(recording: &Recording, rate: Rate) -> String {
-    let mut text = String::from("t,id,x,y,yaw,v,gesture,leaf\n");
-    for tick in (0..recording.ticks()).step_by(rate.stride()) {
-        for state in recording.tick(tick) {
-            let leaf = recording.header.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
-            // Writing to a string cannot fail.
-            let _infallible = writeln!(
-                text,
-                "{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{}",
-                SimTime::at_tick(state.tick).secs(),
-                state.agent_id(),
-                state.x,
-                state.y,
-                state.yaw,
-                state.speed(),
-                state.gesture(),
-                quoted(leaf),
-            );
+pub fn write_agents_at(recordings: &[&Recording], rate: Rate) -> String {
+    let mut text = AGENT_COLUMNS.join(",") + "\n";
+    for recording in recordings {
+        let run = format!("{},{}", quoted(&recording.header.planner), recording.header.seed);
+        for tick in (0..recording.ticks()).step_by(rate.stride()) {
+            for state in recording.tick(tick) {
+                let leaf = recording.header.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
+                // Writing to a string cannot fail.
+                let _infallible = writeln!(
+                    text,
+                    "{run},{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{}",
+                    SimTime::at_tick(state.tick).secs(),
+                    state.agent_id(),
+                    state.x,
+                    state.y,
+                    state.yaw,
+                    state.speed(),
+                    state.gesture(),
+                    quoted(leaf),
+                );
+            }
         }
     }
     text
@@ -88,6 +96,26 @@ pub fn write_agents_at(recording: &Recording, rate: Rate) -> String {
 #[must_use]
 pub fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+}
+
+/// Cells of a line, without the blanks round them; in quotes a separator is text and two quotes are one.
+#[must_use]
+pub fn cells(line: &str, separator: char) -> Vec<String> {
+    let mut cells = vec![String::new()];
+    let mut within_quotes = false;
+    let mut letters = line.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '"' if within_quotes && letters.peek() == Some(&'"') => {
+                cells.last_mut().into_iter().for_each(|cell| cell.push('"'));
+                letters.next();
+            }
+            '"' => within_quotes = !within_quotes,
+            _ if letter == separator && !within_quotes => cells.push(String::new()),
+            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
+        }
+    }
+    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
 }
 
 /// One line of a track file.
@@ -197,11 +225,8 @@ struct Columns {
 
 impl Columns {
     fn read(line: usize, head: &str) -> Result<Self, StreamError> {
-        let names: Vec<String> = head
-            .trim_start_matches('\u{feff}')
-            .split(',')
-            .map(|name| name.trim().trim_matches('"').to_lowercase())
-            .collect();
+        let names: Vec<String> =
+            cells(head.trim_start_matches('\u{feff}'), ',').iter().map(|name| name.to_lowercase()).collect();
         let find = |name: &str| names.iter().position(|found| found == name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
@@ -223,11 +248,11 @@ impl Columns {
     }
 
     fn fix(&self, line: usize, text: &str) -> Result<(AgentId, Fix), StreamError> {
-        let cells: Vec<&str> = text.split(',').map(|cell| cell.trim().trim_matches('"')).collect();
+        let cells = cells(text, ',');
         let cell = |at: usize, name: &str| {
             cells
                 .get(at)
-                .copied()
+                .map(String::as_str)
                 .ok_or_else(|| bad(line, &format!("column `{name}` is missing; the line has {} cells", cells.len())))
         };
         let number = |at: usize, name: &str| {
@@ -253,7 +278,7 @@ impl Columns {
             Some(gesture) => gesture.parse::<Gesture>().map_err(|why| bad(line, &why.to_string()))?,
             None => Gesture::None,
         };
-        let there = self.leaf.and_then(|at| cells.get(at)).is_none_or(|leaf| *leaf != ABSENT_LEAF);
+        let there = self.leaf.and_then(|at| cells.get(at)).is_none_or(|leaf| leaf != ABSENT_LEAF);
         let (t, x, y) = (number(self.t, "t")?, number(self.x, "x")?, number(self.y, "y")?);
         Ok((agent, Fix { t, x, y, yaw, gesture, there }))
     }
@@ -378,7 +403,7 @@ mod tests {
         for state in first.frames.iter_mut().filter(|state| state.agent == 2 && away(state.tick)) {
             state.flags = AgentState::flags(state.agent_id(), Gesture::None, ABSENT);
         }
-        let again = read_tracks(&write_agents_at(&first, Rate::Every)).unwrap();
+        let again = read_tracks(&write_agents_at(&[&first], Rate::Every)).unwrap();
         let leaves = |recording: &Recording| recording.frames.iter().map(AgentState::leaf).collect::<Vec<_>>();
         assert_eq!(leaves(&again), leaves(&first));
     }
@@ -386,12 +411,12 @@ mod tests {
     #[test]
     fn what_is_written_is_read_again() {
         let first = read_tracks("t,id,x,y,yaw\n0,0,0,0,0\n2,0,2,0,1\n0,1,5,5,0\n2,1,5,3,0\n").unwrap();
-        let again = read_tracks(&write_agents_at(&first, Rate::Every)).unwrap();
+        let again = read_tracks(&write_agents_at(&[&first], Rate::Every)).unwrap();
         assert_eq!(again.ticks(), first.ticks());
         for (a, b) in first.frames.iter().zip(&again.frames) {
             assert!((a.x - b.x).abs() < 1e-3 && (a.y - b.y).abs() < 1e-3 && (a.yaw - b.yaw).abs() < 1e-3);
         }
-        assert_eq!(write_agents(&first).lines().count(), 1 + 2 * 21);
+        assert_eq!(write_agents(&[&first]).lines().count(), 1 + 2 * 21);
     }
 
     #[test]

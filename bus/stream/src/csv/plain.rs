@@ -5,8 +5,9 @@
 //! | `;` or tabs between the cells, with them decimal commas | commas, decimal points |
 //! | times since 1970, in s, ms, µs or ns | seconds from the first line on |
 //! | a line with an empty or NaN number, or one that is cut | a gap: an empty line, so that the others keep their number |
+//! | columns `planner` and `seed` with several runs | the lines of one of them |
 
-use super::{bad, quoted};
+use super::{bad, cells, quoted};
 use crate::error::StreamError;
 
 /// Times from here on are counted from 1970 and not from the beginning of a run: 1973 in s.
@@ -28,11 +29,20 @@ pub struct Plain {
     pub notes: Vec<String>,
 }
 
+/// Which run of a table of several is meant; what is not said is as in the table's first line.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct RunChoice {
+    /// Its planner.
+    pub planner: Option<String>,
+    /// Its seed.
+    pub seed: Option<u64>,
+}
+
 /// Makes a table plain. What cannot be read at all is left as it is, for [`super::read_tracks`] to name.
 ///
 /// # Errors
-/// [`StreamError::Csv`] where most lines have no numbers.
-pub fn plain(text: &str) -> Result<Plain, StreamError> {
+/// [`StreamError::Csv`] where most lines have no numbers, or the run that is meant is not in the table.
+pub fn plain(text: &str, choice: &RunChoice) -> Result<Plain, StreamError> {
     let text = text.trim_start_matches('\u{feff}');
     let mut notes = Vec::new();
     let Some((head_at, head)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
@@ -55,6 +65,7 @@ pub fn plain(text: &str) -> Result<Plain, StreamError> {
             }
         }
     }
+    notes.extend(one_run(&mut rows, head_at, choice)?);
     let gaps = gaps(&mut rows, head_at, &numbers)?;
     notes.extend(gaps);
     if let Some(time) = time {
@@ -70,19 +81,6 @@ pub fn plain(text: &str) -> Result<Plain, StreamError> {
 /// What is between the cells: a comma wherever the head has one.
 fn separator(head: &str) -> char {
     [',', ';', '\t'].into_iter().find(|separator| head.contains(*separator)).unwrap_or(',')
-}
-
-fn cells(line: &str, separator: char) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut quoted = false;
-    for letter in line.chars() {
-        match letter {
-            '"' => quoted = !quoted,
-            _ if letter == separator && !quoted => cells.push(String::new()),
-            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
-        }
-    }
-    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
 }
 
 /// Empties the lines in which a number is missing.
@@ -120,6 +118,67 @@ fn gaps(rows: &mut [Vec<String>], head_at: usize, numbers: &[usize]) -> Result<V
     Ok(notes)
 }
 
+/// Empties the lines of all runs but one, where columns tell several apart.
+fn one_run(rows: &mut [Vec<String>], head_at: usize, choice: &RunChoice) -> Result<Option<String>, StreamError> {
+    let asked = [("planner", choice.planner.clone()), ("seed", choice.seed.map(|seed| seed.to_string()))];
+    let said = asked.iter().all(|(_, wanted)| wanted.is_some());
+    let mut columns: Vec<(usize, &str, Option<String>)> = Vec::new();
+    for (name, wanted) in asked {
+        let column = rows.get(head_at).and_then(|head| head.iter().position(|cell| cell.to_lowercase() == name));
+        match (column, wanted) {
+            (Some(at), wanted) => columns.push((at, name, wanted)),
+            (None, Some(wanted)) => {
+                let why = format!("the {name} `{wanted}` is meant, and the head has no column `{name}`");
+                return Err(bad(head_at + 1, &why));
+            }
+            (None, None) => {}
+        }
+    }
+    // A line that is cut belongs to no run; it is told as a gap.
+    let run = |row: &Vec<String>| -> Option<Vec<String>> {
+        columns.iter().map(|(at, ..)| row.get(*at).filter(|cell| !cell.is_empty()).cloned()).collect()
+    };
+    let named = |run: &[String]| -> String {
+        let cells = run.iter().zip(&columns).map(|(cell, (_, name, _))| match *name {
+            "seed" => format!("seed {cell}"),
+            _ => cell.clone(),
+        });
+        cells.collect::<Vec<_>>().join(" ")
+    };
+    // In order of appearance.
+    let mut runs: Vec<Vec<String>> = Vec::new();
+    for row in rows.iter().skip(head_at + 1) {
+        if let Some(found) = run(row)
+            && !runs.contains(&found)
+        {
+            runs.push(found);
+        }
+    }
+    let fits = |found: &&Vec<String>| {
+        found.iter().zip(&columns).all(|(cell, (_, _, wanted))| wanted.as_ref().is_none_or(|wanted| wanted == cell))
+    };
+    if columns.is_empty() || runs.is_empty() {
+        return Ok(None);
+    }
+    let Some(chosen) = runs.iter().find(fits) else {
+        let have: Vec<String> = runs.iter().take(TOLD).map(|run| named(run)).collect();
+        let more = if runs.len() > TOLD { format!(" and {} more", runs.len() - TOLD) } else { String::new() };
+        let wanted = columns.iter().filter_map(|(_, name, wanted)| Some(format!("{name} {}", wanted.as_ref()?)));
+        let wanted = wanted.collect::<Vec<_>>().join(" and ");
+        return Err(bad(head_at + 1, &format!("there is no run of {wanted}; the table has {}{more}", have.join(", "))));
+    };
+    if runs.len() < 2 {
+        return Ok(None);
+    }
+    for row in rows.iter_mut().skip(head_at + 1) {
+        if run(row).is_some_and(|found| found != *chosen) {
+            row.clear();
+        }
+    }
+    let others = if said { "" } else { "; --planner and --seed choose another" };
+    Ok(Some(format!("the table holds {} runs: that of {} is read{others}", runs.len(), named(chosen))))
+}
+
 /// Times since 1970 become seconds from the first on.
 fn since_begin(rows: &mut [Vec<String>], head_at: usize, time: usize) -> Option<String> {
     let value = |row: &Vec<String>| row.get(time)?.parse::<f64>().ok();
@@ -143,7 +202,7 @@ mod tests {
     const TABLE: &str = "t,id,x,y\n0.0,robot,0.0,0.5\n0.1,robot,0.1,0.5\n0.2,robot,0.2,0.5\n0.3,robot,0.3,0.5\n";
 
     fn same_as_the_table(text: &str, note: &str) {
-        let made = plain(text).unwrap();
+        let made = plain(text, &RunChoice::default()).unwrap();
         assert!(made.notes.iter().any(|found| found.contains(note)), "{:?}", made.notes);
         let (found, wanted) = (read_tracks(&made.text).unwrap(), read_tracks(TABLE).unwrap());
         assert_eq!(found.ticks(), wanted.ticks());
@@ -154,8 +213,8 @@ mod tests {
 
     #[test]
     fn a_plain_table_stays_as_it_is() {
-        assert_eq!(plain(TABLE).unwrap(), Plain { text: TABLE.to_owned(), notes: vec![] });
-        assert!(plain("").unwrap().notes.is_empty());
+        assert_eq!(plain(TABLE, &RunChoice::default()).unwrap(), Plain { text: TABLE.to_owned(), notes: vec![] });
+        assert!(plain("", &RunChoice::default()).unwrap().notes.is_empty());
     }
 
     #[test]
@@ -181,9 +240,37 @@ mod tests {
         same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,nan,0.5"), "line 3 has `nan` for a number");
         same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,,0.5"), "line 3 has an empty number");
         same_as_the_table(&format!("{TABLE}0.4,rob"), "line 6 is cut off: taken as a gap");
-        let most = plain("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n").unwrap_err().to_string();
+        let most = plain("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n", &RunChoice::default()).unwrap_err().to_string();
         assert!(most.contains("line 2") && most.contains("2 of 3 lines"), "{most}");
         // A word is not a gap.
-        assert!(read_tracks(&plain("t,id,x,y\n0,1,one,2\n1,1,1,2\n").unwrap().text).is_err());
+        assert!(read_tracks(&plain("t,id,x,y\n0,1,one,2\n1,1,1,2\n", &RunChoice::default()).unwrap().text).is_err());
+    }
+
+    #[test]
+    fn one_run_of_a_table_of_several_is_read_and_it_is_said_which() {
+        let text = "planner,seed,t,id,x,y\nreference,1,0,robot,0,0\nreference,1,1,robot,1,0\nreference,2,0,robot,5,0\n\
+                    reference,2,1,robot,6,0\nmine,1,0,robot,8,0\nmine,1,1,robot,9,0\n";
+        let first_x = |choice: &RunChoice| {
+            let made = plain(text, choice).unwrap();
+            (read_tracks(&made.text).unwrap().tick(0)[0].x, made.notes.join(" "))
+        };
+        let (x, note) = first_x(&RunChoice::default());
+        assert!(
+            x.abs() < 1e-9 && note.contains("3 runs: that of reference seed 1") && note.contains("--seed"),
+            "{note}"
+        );
+        let of = |planner: Option<&str>, seed: Option<u64>| RunChoice { planner: planner.map(str::to_owned), seed };
+        assert!((first_x(&of(None, Some(2))).0 - 5.0).abs() < 1e-9);
+        let (x, note) = first_x(&of(Some("mine"), Some(1)));
+        assert!((x - 8.0).abs() < 1e-9 && !note.contains("--seed"), "{note}");
+        let why = plain(text, &of(Some("mine"), Some(7))).unwrap_err().to_string();
+        assert!(
+            why.contains(
+                "no run of planner mine and seed 7; the table has reference seed 1, reference seed 2, mine seed 1"
+            ),
+            "{why}"
+        );
+        let why = plain(TABLE, &of(None, Some(1))).unwrap_err().to_string();
+        assert!(why.contains("no column `seed`"), "{why}");
     }
 }

@@ -23,12 +23,13 @@
   const number = (v, unit) => (v === null || v === undefined ? "n/a" : v.toFixed(2) + " " + unit);
 
   function summary() {
-    const whole = rows.length, good = rows.filter((r) => r.verdict === "realised").length;
-    at("sum").textContent = count(data.rows.length, "scenario") + (whole === data.rows.length ? "" : `, ${whole} shown`) + ` · ${good} realised` + (whole ? ` · ${wilson(good, whole)}` : "");
+    // What repeats an earlier scenario is no evidence of its own: shares are of distinct ones.
+    const single = rows.filter((r) => !r.repeats), whole = single.length, good = single.filter((r) => r.verdict === "realised").length, again = rows.length - whole;
+    at("sum").textContent = count(data.rows.length, "scenario") + (rows.length === data.rows.length ? "" : `, ${rows.length} shown`) + (again ? ` · ${whole} distinct, ${again} repeat one of them` : "") + ` · ${good} realised` + (whole ? ` · ${wilson(good, whole)}` : "");
     const bar = at("shares"), legend = at("shares-legend");
     bar.textContent = ""; legend.textContent = "";
     for (const verdict of ORDER) {
-      const n = rows.filter((r) => r.verdict === verdict).length;
+      const n = single.filter((r) => r.verdict === verdict).length;
       if (!n) continue;
       const part = word("span", "", bar);
       part.style.cssText = `width:${100 * n / whole}%;background:${VERDICTS[verdict][0]}`;
@@ -42,8 +43,14 @@
     const head = word("tr", "", word("thead", "", table));
     for (const name of ["planner", "runs", "realised", "success", "contacts per run", "smallest distance, median", "time to goal, median"]) word("th", name, head).scope = "col";
     const body = word("tbody", "", table), planners = new Map();
-    for (const row of rows) for (const run of row.runs) {
-      if (run.planner === "none") continue;
+    // Planners stand side by side over what all of them ran, the same scenario with the same seed.
+    const names = new Set(single.flatMap((r) => r.runs.map((x) => x.planner)).filter((name) => name !== "none"));
+    const all = (row, run) => [...names].every((name) => row.runs.some((x) => x.planner === name && x.seed === run.seed));
+    const shared = single.some((row) => row.runs.some((run) => all(row, run)));
+    const left = single.reduce((n, row) => n + (shared ? row.runs.filter((run) => run.planner !== "none" && !all(row, run)).length : 0), 0);
+    at("planners-left").textContent = names.size < 2 ? "" : !shared ? " No run is one that all planners have: do not compare these lines." : left ? ` ${count(left, "run")} that not all planners have ${left === 1 ? "is" : "are"} left out.` : "";
+    for (const row of single) for (const run of row.runs) {
+      if (run.planner === "none" || (shared && !all(row, run))) continue;
       if (!planners.has(run.planner)) planners.set(run.planner, []);
       planners.get(run.planner).push(run);
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::{AgentId, HumanId, Location, Point, Recording, Report};
 use socrates_scoring::Evidence;
-use socrates_stream::csv::{HUMAN_RADIUS_M, ROBOT_RADIUS_M, ROBOT_SPEED_MPS};
+use socrates_stream::csv::{HUMAN_RADIUS_M, Named, ROBOT_RADIUS_M, ROBOT_SPEED_MPS, RunChoice};
 use socrates_stream::{StreamError, mcap};
 
 use super::lines;
@@ -21,7 +21,11 @@ pub(crate) struct Known {
     pub(crate) goal: Option<Point>,
     pub(crate) radius_m: Option<f64>,
     pub(crate) speed_mps: Option<f64>,
-    pub(crate) groups: Vec<Vec<HumanId>>,
+    pub(crate) groups: Vec<Group>,
+    /// The id of the robot in the file, where it is neither `robot` nor 0.
+    pub(crate) robot: Option<String>,
+    /// Which run of a table of several.
+    pub(crate) run: RunChoice,
 }
 
 /// A recording with its report.
@@ -29,8 +33,21 @@ pub(crate) struct Known {
 pub(crate) struct Scored {
     pub(crate) recording: Recording,
     pub(crate) report: Report,
+    /// Where the robot wants to go, as far as it is known.
+    pub(crate) goal: Option<Point>,
     /// What looks wrong, what was mended, and what was assumed, in sentences.
     pub(crate) told: Vec<String>,
+}
+
+/// So many ids are told with their new names.
+const RENAMED: usize = 6;
+
+/// A file as it was read.
+struct Read {
+    recording: Recording,
+    goal: Option<Point>,
+    groups: Vec<Vec<HumanId>>,
+    named: Named,
 }
 
 /// Reads and scores the bytes of a file.
@@ -40,26 +57,19 @@ pub(crate) struct Scored {
 pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Complaint> {
     let mut told = Vec::new();
     let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
-    let mut known = known.clone();
-    let mut recording =
-        if is_mcap { ours(name, bytes, &mut told)? } else { table(name, bytes, &mut known, &mut told)? };
+    let Read { mut recording, goal, groups, named } =
+        if is_mcap { ours(name, bytes, known, &mut told)? } else { table(name, bytes, known, &mut told)? };
+    let goal = known.goal.or(goal);
+    let groups = if known.groups.is_empty() { groups } else { members(&known.groups, &recording, &named, &mut told) };
     if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
         return Err(Complaint::input(
             format!("the robot's radius cannot be {radius} m"),
-            format!("--radius takes metres from {} to {}", RADII_M.start(), RADII_M.end()),
+            format!("--radius takes meters from {} to {}", RADII_M.start(), RADII_M.end()),
         ));
     }
     for info in recording.header.agents.iter_mut().filter(|info| info.agent == AgentId::Robot) {
         info.radius_m = known.radius_m.unwrap_or(info.radius_m);
         info.speed_mps = known.speed_mps.unwrap_or(info.speed_mps);
-    }
-    for who in known
-        .groups
-        .iter()
-        .flatten()
-        .filter(|id| !recording.header.agents.iter().any(|info| info.agent == AgentId::Human(**id)))
-    {
-        told.push(format!("--groups names {}, who is not in the recording", AgentId::Human(*who)));
     }
     told.extend(socrates_scoring::doubts(&recording, known.location.as_ref()));
     let tracks = socrates_scoring::Tracks::read(&recording).map_err(|why| {
@@ -69,23 +79,53 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
         )
     })?;
     if !is_mcap && tracks.robot.is_some() {
-        told.extend(assumed(&known));
+        told.extend(assumed(known));
     }
-    let evidence = Evidence {
-        location: known.location.as_ref(),
-        goal: known.goal,
-        groups: &known.groups,
-        ..Evidence::of(&recording)
-    };
+    told.extend(renamed(&named));
+    if tracks.robot.is_none() {
+        let ids: Vec<String> = named.agents.keys().take(RENAMED).map(|id| format!("`{id}`")).collect();
+        let ids = if ids.is_empty() { String::new() } else { format!(" among {}", ids.join(", ")) };
+        told.push(format!("there is no robot{ids}: --robot ID says who it is; figures of a robot have no value"));
+    }
+    let evidence = Evidence { location: known.location.as_ref(), goal, groups: &groups, ..Evidence::of(&recording) };
     let report = socrates_scoring::score(&evidence);
-    let goal = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
-    if tracks.robot.is_some() && !goal {
+    let arrives = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
+    if tracks.robot.is_some() && !arrives {
         told.push(
             "the robot's goal is not known: success, SPL and whatever asks for it have no value, and standing at the end is not counted as freezing; --goal X,Y tells it"
                 .to_owned(),
         );
     }
-    Ok(Scored { recording, report, told })
+    Ok(Scored { recording, report, goal, told })
+}
+
+/// Whom the file calls otherwise than the figures do.
+fn renamed(named: &Named) -> Option<String> {
+    let all = || named.names.iter().map(|(agent, id)| format!("`{id}` is {agent}"));
+    let more = named.names.len().saturating_sub(RENAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    (!named.names.is_empty()).then(|| format!("names: {}{more}", all().take(RENAMED).collect::<Vec<_>>().join(", ")))
+}
+
+/// The people of the groups that the user names.
+fn members(groups: &[Group], recording: &Recording, named: &Named, told: &mut Vec<String>) -> Vec<Vec<HumanId>> {
+    let there = |agent: AgentId| recording.header.agents.iter().any(|info| info.agent == agent);
+    let mut found = Vec::new();
+    for Group(ids) in groups {
+        let mut group = Vec::new();
+        for id in ids {
+            match named.agent(id).or_else(|| agent(id).filter(|agent| there(*agent))) {
+                Some(AgentId::Human(id)) => group.push(id),
+                Some(AgentId::Robot) => told.push(format!("--groups names `{id}`, which is the robot")),
+                None => told.push(format!("--groups names `{id}`, who is not in the recording")),
+            }
+        }
+        // Whoever is left alone is no group.
+        if group.len() > 1 {
+            found.push(group);
+        }
+    }
+    found
 }
 
 /// What is taken where nothing is said.
@@ -100,7 +140,13 @@ fn assumed(known: &Known) -> Option<String> {
     Some(format!("assumed: {}", parts.join(", ")))
 }
 
-fn ours(name: &str, bytes: &[u8], told: &mut Vec<String>) -> Result<Recording, Complaint> {
+fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
+    if known.robot.is_some() || known.run != RunChoice::default() {
+        return Err(Complaint::input(
+            format!("`{name}` holds one run and names its robot"),
+            "--robot, --planner and --seed are for tables",
+        ));
+    }
     let rest = mcap::read_rest(bytes).map_err(|why| {
         let hint = match &why {
             StreamError::Foreign { .. } => {
@@ -122,27 +168,30 @@ fn ours(name: &str, bytes: &[u8], told: &mut Vec<String>) -> Result<Recording, C
             rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
         told.push(format!("{why}: scored up to {last:.2} s"));
     }
-    Ok(rest.recording)
+    Ok(Read { recording: rest.recording, goal: None, groups: Vec::new(), named: Named::default() })
 }
 
-fn table(name: &str, bytes: &[u8], known: &mut Known, told: &mut Vec<String>) -> Result<Recording, Complaint> {
+fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
     let bad = |why: String| {
         Complaint::input(
             format!("`{name}`: {why}"),
-            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, metres and radians; id is `robot`, `human_1`, …",
+            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; --robot ID says who is the robot where no id is `robot`",
         )
     };
     let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
-    let plain = socrates_stream::csv::plain(text).map_err(|why| bad(why.to_string()))?;
+    let plain = socrates_stream::csv::plain(text, &known.run).map_err(|why| bad(why.to_string()))?;
     told.extend(plain.notes);
-    let recording = socrates_stream::csv::read_tracks(&plain.text).map_err(|why| bad(why.to_string()))?;
+    let named = socrates_stream::csv::named(&plain.text, known.robot.as_deref()).map_err(|why| bad(why.to_string()))?;
+    let mut recording = socrates_stream::csv::read_tracks(&named.text).map_err(|why| bad(why.to_string()))?;
+    // What looks wrong is told with the ids of the file.
     told.extend(lines::doubts(plain.text.as_bytes())?);
-    let columns = Columns::read(&plain.text);
-    known.goal = known.goal.or(columns.goal);
-    if known.groups.is_empty() {
-        known.groups = columns.groups;
+    for info in &mut recording.header.agents {
+        if let Some(id) = named.names.get(&info.agent) {
+            info.role.clone_from(id);
+        }
     }
-    Ok(recording)
+    let Columns { goal, groups } = Columns::read(&named.text);
+    Ok(Read { recording, goal, groups, named })
 }
 
 /// What columns beside the tracks tell: `goal_x` and `goal_y` of the robot, `group` of people.
@@ -204,23 +253,21 @@ pub(crate) fn point(text: &str) -> Result<Point, String> {
     Ok(Point::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
 }
 
-/// `1+2` as the people of one group.
+/// `1+2` or `ped1+ped2` as the people of one group.
 ///
 /// # Errors
 /// What is no such group.
 pub(crate) fn group(text: &str) -> Result<Group, String> {
-    let wrong = || format!("`{text}` is no group; groups are numbers of people, such as 1+2,3+4");
-    let one = |id: &str| match agent(id.trim()) {
-        Some(AgentId::Human(id)) => Ok(id),
-        Some(AgentId::Robot) | None => Err(wrong()),
-    };
-    let members: Vec<HumanId> = text.split('+').map(one).collect::<Result<_, _>>()?;
-    if members.len() < 2 { Err(wrong()) } else { Ok(Group(members)) }
+    let members: Vec<String> = text.split('+').map(|id| id.trim().to_owned()).collect();
+    if members.len() < 2 || members.iter().any(String::is_empty) {
+        return Err(format!("`{text}` is no group; groups are ids of people, such as 1+2,ped3+ped4"));
+    }
+    Ok(Group(members))
 }
 
-/// People who belong together.
+/// Ids of people who belong together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Group(pub(crate) Vec<HumanId>);
+pub(crate) struct Group(pub(crate) Vec<String>);
 
 #[cfg(test)]
 mod tests;

@@ -19,6 +19,7 @@ mod grid;
 mod groups;
 mod hunav;
 mod intrusion;
+mod key;
 mod near_misses;
 mod online;
 mod passing;
@@ -46,6 +47,7 @@ mod zones;
 
 use socrates_model::{MetricValue, Missing};
 
+pub use key::{KEY_FIGURES, in_words, key_figures};
 pub use online::{Online, Setting};
 pub use scene::Scene;
 pub use table::csv;

@@ -36,7 +36,7 @@ fn asked(place: Location) -> Known {
     Known {
         location: Some(place),
         goal: Some(point("6,0").unwrap()),
-        groups: vec![group("2+3").unwrap().0],
+        groups: vec![group("2+3").unwrap()],
         ..Known::default()
     }
 }
@@ -121,6 +121,57 @@ fn another_programs_recording_is_told_by_its_topics() {
 fn points_and_groups_are_read() {
     assert_eq!(point(" 31.5,-2"), Ok(Point::new(31.5, -2.0)));
     assert!(point("31.5").is_err() && point("a,b").is_err() && point("nan,1").is_err());
-    assert_eq!(group("1+human_4").unwrap().0, [HumanId::new(1), HumanId::new(4)]);
-    assert!(group("1").is_err() && group("robot+1").is_err() && group("0+1").is_err());
+    assert_eq!(group("1+human_4").unwrap().0, ["1", "human_4"]);
+    assert!(group("1").is_err() && group("1+").is_err());
+}
+
+#[test]
+fn anyones_ids_are_read_with_the_robot_that_the_user_names() {
+    let tracker = |_: usize, line: &str| {
+        line.replace("robot", "base_link")
+            .replace("human_1", "ped17")
+            .replace("human_2", "ped2")
+            .replace("human_3", "ped3")
+    };
+    let own = of(&table(|_, line| line.to_owned()), &asked(floor()));
+    let mut known = asked(floor());
+    known.robot = Some("base_link".to_owned());
+    known.groups = vec![group("ped2+ped3").unwrap()];
+    let theirs = of(&table(tracker), &known);
+    assert_eq!(values(&own), values(&theirs));
+    assert!(tells(&theirs, "`base_link` is robot") && tells(&theirs, "`ped17` is human_17"), "{:?}", theirs.told);
+    let role = |scored: &Scored, n| {
+        scored.recording.header.agents.iter().find(|a| a.agent.number() == n).unwrap().role.clone()
+    };
+    assert_eq!(role(&theirs, 17), "ped17");
+    // Without a robot, people have their figures and it is said how the robot is named.
+    known.robot = None;
+    let nobody = of(&table(tracker), &known);
+    assert!(tells(&nobody, "there is no robot among `base_link`, `ped17`"), "{:?}", nobody.told);
+    known.robot = Some("base_lnik".to_owned());
+    let why = score("t.csv", table(tracker).as_bytes(), &known).unwrap_err().to_string();
+    assert!(why.contains("no `base_lnik`") && why.contains("`base_link`"), "{why}");
+    known = asked(floor());
+    known.groups = vec![group("1+robot").unwrap(), group("2+9").unwrap()];
+    let odd = of(&table(|_, line| line.to_owned()), &known);
+    assert!(
+        tells(&odd, "`robot`, which is the robot") && tells(&odd, "`9`, who is not in the recording"),
+        "{:?}",
+        odd.told
+    );
+}
+
+/// All values, the names of agents apart.
+fn values(scored: &Scored) -> Vec<(String, Option<f64>)> {
+    scored.report.metrics.iter().map(|metric| (metric.id.clone(), metric.value)).collect()
+}
+
+#[test]
+fn one_run_of_a_table_of_all_runs_is_scored() {
+    let text = table(|k, line| if k == 0 { format!("planner,seed,{line}") } else { format!("mine,3,{line}") });
+    let slow = text.lines().skip(1).map(|line| line.replacen("mine,3", "mine,4", 1)).collect::<Vec<_>>().join("\n");
+    let both = of(&format!("{text}{slow}\n"), &Known::default());
+    assert!(tells(&both, "2 runs: that of mine seed 3"), "{:?}", both.told);
+    assert!(!tells(&both, "is there twice"), "{:?}", both.told);
+    assert_eq!(values(&both), values(&of(&text, &Known::default())));
 }

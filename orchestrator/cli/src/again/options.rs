@@ -1,0 +1,54 @@
+//! Options of `score`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Options of `score`: all but the first are for tracks of one's own.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct ScoreOptions {
+    /// Bundle folder, CSV or MCAP file.
+    pub(crate) what: PathBuf,
+    /// Location for tracks of your own: a shipped name or a folder.
+    #[arg(long)]
+    pub(crate) location: Option<String>,
+    /// Goal of the robot on the map, m; default: columns `goal_x` and `goal_y`, or where it said that it arrived.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = super::tracks::point)]
+    pub(crate) goal: Option<socrates_model::Point>,
+    /// Radius of the robot, m; default: as recorded, 0.25 for a CSV.
+    #[arg(long, value_name = "M")]
+    pub(crate) radius: Option<f64>,
+    /// Nominal speed of the robot for STL, m/s; default: as recorded, 0.8 for a CSV.
+    #[arg(long, value_name = "M/S")]
+    pub(crate) speed: Option<f64>,
+    /// People who belong together, such as `1+2,ped3+ped4`; default: the column `group`.
+    #[arg(long, value_delimiter = ',', value_parser = super::tracks::group)]
+    pub(crate) groups: Vec<super::tracks::Group>,
+    /// Id of the robot in a table, such as `base_link`; default: `robot` or 0. All other ids are people.
+    #[arg(long, value_name = "ID")]
+    pub(crate) robot: Option<String>,
+    /// Planner of the run that is meant, in a table of several runs; default: that of its first line.
+    #[arg(long)]
+    pub(crate) planner: Option<String>,
+    /// Seed of the run that is meant, in a table of several runs.
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Folder for a page with a player and every metric as a table.
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+}
+
+impl ScoreOptions {
+    /// Whether anything is said that a bundle knows by itself.
+    pub(crate) const fn tells(&self) -> bool {
+        self.location.is_some()
+            || self.goal.is_some()
+            || self.radius.is_some()
+            || self.speed.is_some()
+            || self.robot.is_some()
+            || self.planner.is_some()
+            || self.seed.is_some()
+            || self.out.is_some()
+            || !self.groups.is_empty()
+    }
+}
