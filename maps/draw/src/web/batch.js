@@ -1,13 +1,14 @@
 (() => {
-  const { make, word, plain } = player;
+  const { make, word, words, plain } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const VERDICTS = { // color, sign
     realised: ["#00795c", "✔"], realised_late: ["#56b4e9", "✔"], not_triggered: ["#e69f00", "✘"], contradicted: ["#d55e00", "✘"],
     robot_prevented: ["#cc79a7", "✘"], invalid: ["#767d87", "✘"], failed: ["#1f2328", "✘"],
   };
-  const ORDER = Object.keys(VERDICTS), STEP = 60;
-  let shown = STEP, rows = data.rows;
+  const ROBOT = "#0072B2";
+  const ORDER = Object.keys(VERDICTS), STEP = 30;
+  let page = 0, whole = false, rows = data.rows, folds = new Map();
   const count = (n, one) => n + " " + one + (n === 1 ? "" : "s");
 
   // 95 % interval of a share (Wilson), in percent.
@@ -41,7 +42,7 @@
     const table = at("planners"); table.textContent = "";
     if (data.figures && data.figures.why) { at("planners-note").textContent = data.figures.why; return; }
     const head = word("tr", "", word("thead", "", table));
-    for (const name of ["planner", "runs", "realised", "success", "contacts per run", "smallest distance, median", "time to goal, median"]) word("th", name, head).scope = "col";
+    for (const name of ["planner", "runs", "realised", "success", "contacts per run", "smallest surface distance, median", "time to goal, median"]) word("th", name, head).scope = "col";
     const body = word("tbody", "", table), planners = new Map();
     // Planners stand side by side over what all of them ran, the same scenario with the same seed.
     const names = new Set(single.flatMap((r) => r.runs.map((x) => x.planner)).filter((name) => name !== "none"));
@@ -90,23 +91,26 @@
     for (const [color, points] of picture.tracks) {
       make("polyline", { points, fill: "none", stroke: color, "stroke-width": 2.5, "vector-effect": "non-scaling-stroke", "stroke-linejoin": "round", "stroke-linecap": "round" }, svg);
       const last = points.split(" ").pop().split(",");
-      make("circle", { cx: last[0], cy: last[1], r: W / 90, fill: color, stroke: "#fff", "stroke-width": 1, "vector-effect": "non-scaling-stroke" }, svg);
+      const r = W / 50, look = { fill: color, stroke: "#fff", "stroke-width": 1, "vector-effect": "non-scaling-stroke" };
+      if (color === ROBOT) make("rect", { x: last[0] - r, y: last[1] - r, width: 2 * r, height: 2 * r, rx: r * 0.3, ...look }, svg);
+      else make("circle", { cx: last[0], cy: last[1], r, ...look }, svg);
     }
   }
 
+  const address = (row) => row.folder.split("/").map(encodeURIComponent).join("/") + "/report.html";
   function item(row) {
-    const node = word("li", ""), href = row.folder === undefined ? null : row.folder.split("/").map(encodeURIComponent).join("/") + "/report.html";
+    const node = word("li", ""), href = row.folder === undefined ? null : address(row);
     if (href) { const link = word("a", "", node); link.href = href; link.tabIndex = -1; thumbnail(row, link); } else word("span", "", node, "thumb");
     const middle = word("div", "", node), title = word("h3", "", middle);
     if (href) { const link = word("a", row.title || row.scenario, title); link.href = href; } else title.textContent = row.scenario;
     word("span", row.scenario, title, "tag");
-    if (row.reading) word("p", row.reading, middle);
+    if (row.reading) words("p", row.reading, middle);
     if (row.rough || row.context) { const said = word("p", "", middle, "quiet said"); word("q", (row.rough || row.context + " · " + row.task).trim(), said); }
     if (row.location) word("p", [row.location, plain(row.place), plain(row.pattern), count(row.humans, "human"), row.author].join(" · "), middle, "quiet");
     const side = word("div", "", node), [color, sign] = VERDICTS[row.verdict] || ["#1f2328", "–"];
     const verdict = word("p", sign + " " + plain(row.verdict), side, "verdict-word");
     verdict.style.borderColor = color;
-    if (row.why) word("p", row.why, side, "bad"); else if (row.told) word("p", row.told, side, "quiet");
+    if (row.why) words("p", row.why, side, "bad"); else if (row.told) words("p", row.told, side, "quiet");
     const planners = new Map();
     for (const run of row.runs) { if (!planners.has(run.planner)) planners.set(run.planner, []); planners.get(run.planner).push(run); }
     for (const [planner, runs] of planners) {
@@ -115,12 +119,30 @@
       for (const run of runs.slice(0, 24)) {
         const box = word(href ? "a" : "span", run.verdict.startsWith("realised") ? (run.success || planner === "none" ? "✔" : "◐") : "✘", line);
         if (href) box.href = href + "#run=" + encodeURIComponent(planner + "-" + run.seed);
-        box.title = `seed ${run.seed}: ${plain(run.verdict)}` + (planner === "none" ? "" : run.success ? ", robot arrived without a collision" : ", robot without success") + (run.distance === null ? "" : `, smallest distance ${run.distance.toFixed(2)} m`);
+        box.title = `seed ${run.seed}: ${plain(run.verdict)}` + (planner === "none" ? "" : run.success ? ", robot arrived without a collision" : ", robot without success") + (run.distance === null ? "" : `, smallest surface distance ${run.distance.toFixed(2)} m`);
         box.style.color = (VERDICTS[run.verdict] || ["#1f2328"])[0];
       }
       if (runs.length > 24) line.append(` and ${runs.length - 24} more`);
     }
+    const again = folds.get(row) || [];
+    if (again.length) fold(again, middle);
     return node;
+  }
+  // Scenarios that repeat this one: a line each, written when they are first looked at.
+  function fold(again, parent) {
+    const box = word("details", "", parent, "fold"), sum = word("summary", count(again.length, "repeat") + " of this scenario", box);
+    const differs = again.filter((r) => r.verdict !== again[0].verdict).length > 0;
+    sum.append(" · " + (differs ? ORDER.map((v) => [v, again.filter((r) => r.verdict === v).length]).filter(([, n]) => n).map(([v, n]) => n + " " + plain(v)).join(", ") : plain(again[0].verdict)));
+    box.addEventListener("toggle", () => {
+      if (!box.open || box.querySelector("ul")) return;
+      const list = word("ul", "", box);
+      for (const row of again) {
+        const line = word("li", "", list), [color, sign] = VERDICTS[row.verdict] || ["#1f2328", "–"];
+        const name = word(row.folder === undefined ? "span" : "a", row.scenario, line);
+        if (row.folder !== undefined) name.href = address(row);
+        word("span", ` ${sign} ${plain(row.verdict)}`, line).style.color = color;
+      }
+    });
   }
 
   const searched = (row) => [row.scenario, row.title, row.reading, row.context, row.task, row.rough, row.pattern, row.location].join(" ").toLowerCase();
@@ -133,15 +155,52 @@
     rows = data.rows.filter((row) => tests.every((test) => test(row)));
     const key = LEAST[at("order").value];
     if (key) rows = rows.map((row) => [key(row), row]).sort((a, b) => (a[0] < b[0] ? -1 : a[0] > b[0] ? 1 : 0)).map(([, row]) => row);
-    shown = STEP;
+    page = 0;
     summary(); list();
   }
+  // What repeats a scenario that is listed stands folded below it.
+  function folded() {
+    folds = new Map();
+    if (at("fold").value) return rows;
+    const first = new Map(rows.filter((r) => !r.repeats).flatMap((r) => [[r.folder, r], [r.scenario, r]]));
+    return rows.filter((row) => {
+      const of = row.repeats ? first.get(row.repeats) : undefined;
+      if (!of) return true;
+      if (!folds.has(of)) folds.set(of, []);
+      folds.get(of).push(row);
+      return false;
+    });
+  }
   function list() {
-    const box = at("rows"); box.textContent = "";
-    for (const row of rows.slice(0, shown)) box.appendChild(item(row));
+    const box = at("rows"), listed = folded(), pages = Math.max(1, Math.ceil(listed.length / STEP));
+    box.textContent = "";
+    page = Math.max(0, Math.min(page, pages - 1));
+    const from = whole ? 0 : page * STEP, to = whole ? listed.length : Math.min(from + STEP, listed.length);
+    for (const row of listed.slice(from, to)) box.appendChild(item(row));
+    at("part").textContent = listed.length > to - from ? `${from + 1} to ${to} of ${listed.length}` : "";
+    turn(pages);
     if (!rows.length) word("li", data.rows.length ? "nothing fits these filters" : "there is no scenario in this folder", box, "quiet");
-    at("more").hidden = rows.length <= shown;
-    at("more").textContent = `show ${Math.min(STEP, rows.length - shown)} more of ${rows.length - shown}`;
+  }
+  // Buttons for the first, the last and the pages around this one.
+  function turn(pages) {
+    const nav = at("pages"); nav.textContent = "";
+    nav.hidden = whole || pages < 2;
+    const button = (text, to, name) => {
+      const b = word("button", text, nav);
+      b.type = "button"; b.setAttribute("aria-label", name);
+      if (to === page && name.startsWith("page")) b.setAttribute("aria-current", "page");
+      b.disabled = to < 0 || to >= pages;
+      b.addEventListener("click", () => { page = to; list(); at("filters").scrollIntoView({ block: "start" }); });
+    };
+    button("‹", page - 1, "previous page");
+    let last = -1;
+    for (let i = 0; i < pages; i++) {
+      if (i > 0 && i < pages - 1 && Math.abs(i - page) > 2) continue;
+      if (i - last > 1) word("span", "…", nav);
+      button(String(i + 1), i, "page " + (i + 1));
+      last = i;
+    }
+    button("›", page + 1, "next page");
   }
   function options(id, key) {
     const select = at(id), found = new Map();
@@ -155,8 +214,10 @@
   at("words").addEventListener("input", filter);
   at("filters").addEventListener("submit", (e) => e.preventDefault());
   at("clear").addEventListener("click", () => { at("filters").reset(); filter(); });
-  at("more").addEventListener("click", () => { shown += STEP; list(); });
-  addEventListener("beforeprint", () => { shown = Infinity; list(); });
+  at("fold-of").hidden = !data.rows.some((r) => r.repeats);
+  at("fold").addEventListener("change", () => { page = 0; list(); });
+  addEventListener("beforeprint", () => { whole = true; list(); });
+  addEventListener("afterprint", () => { whole = false; list(); });
   figures();
   filter();
 })();

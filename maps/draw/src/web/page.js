@@ -1,5 +1,5 @@
 (() => {
-  const { View, Clock, keys, make, word, words, plain, secs, seconds } = player;
+  const { View, Clock, keys, make, word, words, put, plain, secs, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const MARKS = { // color, path around 0 0, words of the legend
@@ -18,11 +18,17 @@
   const ZONES = [["zone_intimate", "#b3400b", "intimate"], ["zone_personal", "#e69f00", "personal"],
     ["zone_social", "#56b4e9", "social"], ["zone_public", "#cfd6de", "public"]];
   const STANDINGS = { holds: ["✔", ""], late: ["✔", "late"], not_triggered: ["✘", "not triggered"], fails: ["✘", "fails"], not_applicable: ["–", "not judged"] };
-  const PLOTS = [ // series, title, unit, largest value shown, lines with names
-    { id: "distance", title: "distance to the nearest human, surface to surface", unit: "m", top: 4, lines: [[0.45, "intimate"], [1.2, "personal"]] },
-    { id: "speed", title: "speed of the robot", unit: "m/s", top: null, lines: [] },
-    { id: "ttc", title: "time to collision at constant velocity", unit: "s", top: 8, lines: [[3, "exposed"]] },
+  // Series, title, unit, largest value shown, value from which the scale is another one, lines with names.
+  const PLOTS = [
+    { id: "distance", title: "surface distance to the nearest human", unit: "m", top: null, bend: 4, lines: [[0.45, "intimate"], [1.2, "personal"]] },
+    { id: "speed", title: "speed of the robot", unit: "m/s", top: null, bend: null, lines: [] },
+    { id: "ttc", title: "time to collision at constant velocity, up to 8 s", unit: "s", top: 8, bend: null, lines: [[3, "exposed"]] },
   ];
+  // Part of a plot's height that is left for values beyond its bend.
+  const BEYOND = 0.3;
+  // What a metric is called here; its distances are between surfaces.
+  const NAMES = { human_distance_min: "smallest surface distance to a human" };
+  const named = (m) => NAMES[m.id] || plain(m.id);
   const LANES = 14;
   const good = (c) => c.standing === "holds" || c.standing === "late", judged = (c) => c.standing !== "not_applicable";
   const hold = (r) => r.verdict.startsWith("realised");
@@ -63,8 +69,8 @@
     at("gap").title = run.gaps;
     at("robot").textContent = run.planner === "none" ? "no robot" : run.success ? "arrived, no collision" : "no success";
     at("planner").textContent = run.planner; at("seed").textContent = run.seed; at("simulated").textContent = secs(run.simulated);
-    at("verdict-text").textContent = run.verdict_text;
-    at("robot-text").textContent = "Robot: " + run.robot_text;
+    put(at("verdict-text"), run.verdict_text);
+    put(at("robot-text"), "Robot: " + run.robot_text);
     at("first-name").textContent = run.name;
     view.load(run);
     fillLists();
@@ -171,30 +177,45 @@
 
   function drawPlots() {
     const box = at("plots"); box.textContent = "";
-    const ax = axis(), h = 104, low = 8;
+    const ax = axis(), low = 8;
     for (const plot of PLOTS) {
       const mine = run.series[plot.id], theirs = other ? other.series[plot.id] : [];
       const known = [...mine, ...theirs].filter((v) => v !== null);
       const frame = word("div", "", box, "plot"), head = word("p", plot.title, frame, "quiet"), value = word("b", "", head);
       if (!known.length) { word("span", plot.id === "ttc" ? "never on a collision course" : "nothing to measure", head); continue; }
-      const svg = make("svg", { viewBox: `0 0 ${ax.width} ${h + 2}`, height: h + 2, role: "img", "aria-label": plot.title }, frame);
-      grid(svg, ax, h);
       const most = Math.min(plot.top || Infinity, Math.max(...known) * 1.08, 1e6) || 1, least = Math.min(0, ...known);
-      const y = (v) => h - low - (Math.min(v, most) - least) / Math.max(most - least, 1e-9) * (h - 2 * low);
-      const step = [0.1, 0.2, 0.5, 1, 2, 5, 10].find((s) => (most - least) / s <= 4) || 20;
-      for (let v = Math.ceil(least / step) * step; v <= most + 1e-9; v += step) {
+      // Far values matter less than near ones: beyond the bend the scale is coarser, and marked as such.
+      const bend = plot.bend !== null && most > plot.bend * 1.25 ? plot.bend : null, h = bend === null ? 104 : 150, room = h - 2 * low;
+      const svg = make("svg", { viewBox: `0 0 ${ax.width} ${h + 2}`, height: h + 2, role: "img", "aria-label": plot.title }, frame);
+      if (bend !== null) make("rect", { x: ax.left, y: 0, width: ax.right - ax.left, height: low + BEYOND * room, fill: "#f3f5f8", class: "beyond" }, svg);
+      grid(svg, ax, h);
+      const y = (v) => {
+        const value = Math.min(v, most);
+        if (bend === null) return h - low - (value - least) / Math.max(most - least, 1e-9) * room;
+        const near = (Math.min(value, bend) - least) / (bend - least) * (1 - BEYOND), far = Math.max(value - bend, 0) / (most - bend) * BEYOND;
+        return h - low - (near + far) * room;
+      };
+      const step = [0.1, 0.2, 0.5, 1, 2, 5, 10].find((s) => ((bend || most) - least) / s <= 4) || 20;
+      const ticks = [];
+      for (let v = Math.ceil(least / step) * step; v <= (bend || most) + 1e-9; v += step) ticks.push(v);
+      if (bend !== null) ticks.push(Math.floor(most));
+      for (const v of ticks) {
         make("line", { x1: ax.left, x2: ax.right, y1: y(v), y2: y(v), stroke: "#eceff2" }, svg);
-        make("text", { x: ax.left - 6, y: y(v) + 4, "font-size": 12, "text-anchor": "end", fill: "#5b636e" }, svg).textContent = +v.toFixed(1) + " " + plot.unit;
+        make("text", { x: ax.left - 8, y: y(v) + 4, "font-size": 12, "text-anchor": "end", fill: "#5b636e" }, svg).textContent = +v.toFixed(1) + " " + plot.unit;
       }
-      const named = [];
+      if (bend !== null) {
+        make("path", { d: `M${ax.left - 5} ${y(bend) - 1}l10 -4m-10 -1l10 -4`, stroke: "#5b636e", "stroke-width": 1.4, fill: "none", class: "bend" }, svg);
+        make("text", { x: ax.right, y: 11, "font-size": 11, "text-anchor": "end", fill: "#5b636e" }, svg).textContent = "coarser above " + bend + " " + plot.unit;
+      }
+      const lines = [];
       for (const [v, name] of plot.lines) if (v > least && v < most) {
         make("line", { x1: ax.left, x2: ax.right, y1: y(v), y2: y(v), stroke: "#b3400b", "stroke-width": 1, "stroke-dasharray": "2 4" }, svg);
-        named.push(() => make("text", { x: ax.right, y: y(v) - 3, "font-size": 11, "text-anchor": "end", fill: "#b3400b", stroke: "#fff", "stroke-width": 3, "paint-order": "stroke" }, svg).textContent = name + " " + v + " " + plot.unit);
+        lines.push(() => make("text", { x: ax.right, y: y(v) - 3, "font-size": 11, "text-anchor": "end", fill: "#b3400b", stroke: "#fff", "stroke-width": 3, "paint-order": "stroke" }, svg).textContent = name + " " + v + " " + plot.unit);
       }
       const curve = (r, values, look) => {
         let d = "", pen = false;
         values.forEach((v, i) => {
-          // What is beyond the scale is not drawn; a single sample is a dot.
+          // What is beyond the largest value shown is not drawn; a single sample is a dot.
           if (v === null || v > most) { pen = false; return; }
           d += (pen ? "L" : "M") + (ax.left + i / r.hz * ax.k).toFixed(1) + " " + y(v).toFixed(1) + (pen ? "" : "h.01");
           pen = true;
@@ -203,7 +224,7 @@
       };
       if (other) curve(other, theirs, { stroke: "#d55e00", "stroke-width": 1.6, "stroke-dasharray": "6 4" });
       curve(run, mine, { stroke: "#0072b2", "stroke-width": 2 });
-      for (const write of named) write();
+      for (const write of lines) write();
       if (plot.id !== "speed") {
         let i = -1;
         mine.forEach((v, j) => { if (v !== null && (i < 0 || v < mine[i])) i = j; });
@@ -293,7 +314,7 @@
       const m = run.metrics.find((x) => x.id === id);
       if (!m) continue;
       const row = word("tr", "", top);
-      word("th", plain(m.id), row).scope = "row";
+      word("th", named(m), row).scope = "row";
       word("td", value(m), row, "n").title = m.note || "";
       word("td", better(m), row, "quiet");
     }
@@ -302,9 +323,17 @@
     if (parts.every(([m]) => m && m.value !== null)) {
       word("div", "Time in each zone of the nearest person", zones, "quiet").style.marginTop = "12px";
       const bar = word("div", "", zones, "bar");
+      const shares = whole(parts.map(([m]) => m.value));
       for (const [m, color] of parts) { const piece = word("div", "", bar); piece.style.cssText = `width:${m.value}%;background:${color}`; }
-      for (const [m, color, name] of parts) { const s = word("span", "", zones); word("i", "", s).style.background = color; s.append(`${name} ${m.value.toFixed(0)} %`); }
+      parts.forEach(([, color, name], i) => { const s = word("span", "", zones); word("i", "", s).style.background = color; s.append(`${name} ${shares[i]} %`); });
     }
+  }
+  // Whole numbers that add up as the shares do: the largest rests are rounded up.
+  function whole(shares) {
+    const down = shares.map(Math.floor), missing = Math.round(shares.reduce((a, b) => a + b, 0)) - down.reduce((a, b) => a + b, 0);
+    const order = shares.map((v, i) => [v - down[i], i]).sort((a, b) => b[0] - a[0]).map(([, i]) => i);
+    order.slice(0, Math.max(0, missing)).forEach((i) => { down[i] += 1; });
+    return down;
   }
   const better = (m) => (m.direction > 0 ? "more is better" : m.direction < 0 ? "less is better" : "");
   function value(m) {
@@ -322,7 +351,7 @@
   }
 
   function fillOnce() {
-    const body = heading(at("runs"), ["run", "verdict", "encounter gap", "success", "time to goal", "smallest distance"]);
+    const body = heading(at("runs"), ["run", "verdict", "encounter gap", "success", "time to goal", "smallest surface distance"]);
     const beside = at("beside");
     word("option", "nothing", beside).value = "-1";
     data.runs.forEach((r, i) => {
@@ -340,9 +369,9 @@
     const all = heading(at("metrics"), ["metric", ...data.runs.map((r) => r.name), "", "note"]);
     for (const m of data.runs.length ? data.runs[0].metrics : []) {
       const row = word("tr", "", all);
-      word("th", plain(m.id), row).scope = "row";
+      word("th", named(m), row).scope = "row";
       for (const r of data.runs) word("td", value(r.metrics.find((x) => x.id === m.id)), row);
-      word("td", better(m), row, "quiet"); word("td", m.note || "", row, "quiet");
+      word("td", better(m), row, "quiet"); words("td", m.note || "", row, "quiet");
     }
   }
   // The next mark of the time line in a direction.

@@ -6,6 +6,10 @@ const player = (() => {
   // Above this many agents names would hide the crowd and whole trails would slow it down.
   const CROWD = 24;
   const TRAIL_SECS = 4;
+  const WALL = "#3b3f46";
+  // Where a name may stand around somebody, the best first: above, below, beside, the corners, and those again a little apart.
+  const AROUND = [[0, -1], [0, 1], [1, 0], [-1, 0], [1, -1], [-1, -1], [1, 1], [-1, 1]];
+  const APART = [0, 14, 30];
   const plain = (text) => text.replace(/_/g, " ");
   const secs = (t) => t.toFixed(1) + " s";
   const make = (tag, attrs, parent) => {
@@ -21,12 +25,15 @@ const player = (() => {
     if (parent) parent.appendChild(node);
     return node;
   };
-  // Text in which `names` are set as code.
-  const words = (tag, text, parent) => {
-    const node = word(tag, "", parent);
-    text.split("`").forEach((part, i) => { if (part) node.appendChild(i % 2 ? word("code", part) : document.createTextNode(part)); });
+  // Puts a text in which `names` are set as code into a node; a sign that has no second one stays as it is.
+  const put = (node, text) => {
+    const parts = text.split("`");
+    node.textContent = "";
+    if (parts.length % 2 === 0) { node.textContent = text; return node; }
+    parts.forEach((part, i) => { if (part) node.appendChild(i % 2 ? word("code", part) : document.createTextNode(part)); });
     return node;
   };
+  const words = (tag, text, parent, look) => put(word(tag, "", parent, look), text);
   const seconds = (run) => Math.max(0, ...run.agents.map((a) => a.track.length / 4 - 1)) / run.hz;
   // Where somebody is between two samples: x, y, heading, gesture; null who is not there. Tracks are x y in tenths, heading in hundredths.
   function state(track, at) {
@@ -42,10 +49,18 @@ const player = (() => {
     return [(track[a] + (track[b] - track[a]) * u) / 10, (track[a + 1] + (track[b + 1] - track[a + 1]) * u) / 10, track[a + 2] / 100 + turn * u, track[a + 3]];
   }
 
+  // The walls of a place as boxes: the floor is drawn of them.
+  function boxes(place) {
+    const floor = document.getElementById("floor-" + place.index), paths = floor ? [...floor.querySelectorAll("path")] : [];
+    const path = paths.find((p) => p.getAttribute("fill") === WALL);
+    return path ? [...path.getAttribute("d").matchAll(/M([-\d.]+) ([-\d.]+)h([-\d.]+)v([-\d.]+)/g)].map((m) => m.slice(1, 5).map(Number)) : [];
+  }
+  const shared = (a, b) => Math.max(0, Math.min(a[0] + a[2], b[0] + b[2]) - Math.max(a[0], b[0])) * Math.max(0, Math.min(a[1] + a[3], b[1] + b[3]) - Math.max(a[1], b[1]));
+
   // One map with one run on it. `box` is what it shows, in the drawing units of the place.
   class View {
     constructor(svg, place) {
-      this.svg = svg; this.place = place; this.run = null; this.shapes = []; this.doors = [];
+      this.svg = svg; this.place = place; this.run = null; this.shapes = []; this.doors = []; this.walls = boxes(place); this.near = [];
       svg.textContent = "";
       svg.setAttribute("role", "img");
       make("use", { href: "#floor-" + place.index }, svg);
@@ -90,7 +105,10 @@ const player = (() => {
         s.grow = Math.max(1, (this.crowd ? 3 : 6) * k / s.agent.radius);
         s.ring.setAttribute("r", s.agent.radius * 1.7 * s.grow);
         s.name.setAttribute("font-size", 14 * k); s.name.setAttribute("stroke-width", 4 * k); s.says.setAttribute("font-size", 14 * k);
+        s.wide = s.name.textContent ? s.name.getComputedTextLength() + 4 * k : 0;
+        s.spot = 0;
       }
+      this.near = this.walls.filter((wall) => shared(wall, box) > 0);
       const bar = this.bar; bar.textContent = "";
       const metres = [0.5, 1, 2, 5, 10, 20, 50].find((m) => m * this.place.px_per_m / k >= 50) || 100;
       const x = box[0] + 14 * k, y = box[1] + box[3] - 14 * k, w = metres * this.place.px_per_m;
@@ -98,9 +116,29 @@ const player = (() => {
       make("path", { d: `M${x} ${y - 4 * k}v${8 * k}M${x} ${y}h${w}M${x + w} ${y - 4 * k}v${8 * k}`, stroke: "#5b636e", "stroke-width": 2 * k, fill: "none" }, bar);
       make("text", { x: x + w + 7 * k, y: y + 4 * k, "font-size": 12 * k, fill: "#3b3f46" }, bar).textContent = metres + " m";
     }
+    // The box for the words of somebody: off walls, bodies and other words, inside the picture, and where it was before unless
+    // another place is much better.
+    label(s, [x, y], rim, [w, h], bodies, taken, index) {
+      const k = this.k, places = [];
+      for (const apart of APART) for (const [across, down] of AROUND) {
+        const both = across && down ? 0.7 : 1, reach = (rim + (2 + apart) * k) * both;
+        places.push([x + across * (reach + w / 2) - w / 2, y + down * (reach + h / 2) - h / 2, w, h]);
+      }
+      const cost = (box, order) => {
+        const hidden = bodies.reduce((sum, body, i) => sum + shared(box, body) * (i === index ? 1 : 3), 0) + taken.reduce((sum, other) => sum + 3 * shared(box, other), 0);
+        const dark = this.near.reduce((sum, wall) => sum + shared(box, wall), 0), outside = w * h - shared(box, this.box);
+        return hidden + 2 * dark + 20 * outside + (order * 1.5 + (order === s.spot ? 0 : 40)) * k * k;
+      };
+      let best = 0, least = Infinity;
+      places.forEach((box, order) => { const c = cost(box, order); if (c < least - 1e-9) { least = c; best = order; } });
+      s.spot = best;
+      taken.push(places[best]);
+      return places[best];
+    }
     show(now) {
       if (!this.run || !this.box) return;
-      const hz = this.run.hz, at = now * hz, k = this.k, places = this.shapes.map((s) => state(s.agent.track, at));
+      const hz = this.run.hz, at = now * hz, k = this.k, places = this.shapes.map((s) => state(s.agent.track, at)), taken = [];
+      const bodies = places.map((p, i) => { const r = p ? this.shapes[i].agent.radius * this.shapes[i].grow : 0; return p ? [p[0] - r, p[1] - r, 2 * r, 2 * r] : [0, 0, 0, 0]; });
       this.shapes.forEach((s, index) => {
         const track = s.agent.track, p = places[index];
         s.group.setAttribute("visibility", p ? "visible" : "hidden");
@@ -109,17 +147,19 @@ const player = (() => {
         s.group.setAttribute("transform", `translate(${x} ${y})`);
         s.turned.setAttribute("transform", `rotate(${-yaw * 180 / Math.PI}) scale(${s.grow})`);
         s.ring.setAttribute("opacity", said ? 1 : 0);
-        const rim = said ? r * 1.7 : r, high = (said ? 44 : 20) * k, half = 16 * k;
-        // The name stands above, and below where it would hide somebody or leave the picture.
-        const hides = (from, to) => !this.crowd && places.some((o, j) => o && j !== index && Math.abs(o[0] - x) < half + r && o[1] + r > from && o[1] - r < to);
-        const below = y - rim - high < this.box[1] || (hides(y - rim - high, y - rim) && !hides(y + rim, y + rim + high) && y + rim + high < this.box[1] + this.box[3]);
-        s.name.setAttribute("y", below ? rim + 15 * k : -rim - 5 * k);
+        const rim = said ? r * 1.7 : r;
         s.says.textContent = said;
         s.bubble.setAttribute("opacity", said ? 1 : 0);
-        if (said) {
-          const base = below ? rim + 37 * k : -rim - 28 * k, w = s.says.getComputedTextLength() + 14 * k;
-          s.says.setAttribute("y", base);
-          for (const [key, value] of Object.entries({ x: -w / 2, y: base - 16 * k, width: w, height: 22 * k, rx: 5 * k })) s.bubble.setAttribute(key, value);
+        if (s.wide || said) {
+          const w = said ? s.says.getComputedTextLength() + 14 * k : 0, label = this.label(s, [x, y], rim, [Math.max(s.wide, w), (s.wide ? 16 * k : 0) + (said ? 24 * k : 0)], bodies, taken, index);
+          const [left, top, wide, high] = label, below = top + high / 2 > y, middle = left + wide / 2 - x;
+          s.name.setAttribute("x", middle); s.says.setAttribute("x", middle);
+          s.name.setAttribute("y", (below ? top + 13 * k : top + high - 3 * k) - y);
+          if (said) {
+            const edge = (below ? top + high - 23 * k : top + k) - y;
+            s.says.setAttribute("y", edge + 16 * k);
+            for (const [key, value] of Object.entries({ x: middle - w / 2, y: edge, width: w, height: 22 * k, rx: 5 * k })) s.bubble.setAttribute(key, value);
+          }
         }
         const last = Math.min(Math.floor(at + 1e-6), track.length / 4 - 1);
         const first = this.crowd && s.agent.number !== 0 ? Math.max(0, last - Math.round(TRAIL_SECS * hz)) : 0;
@@ -172,5 +212,5 @@ const player = (() => {
     // After a click the keys belong to the player again.
     addEventListener("click", (e) => { if (e.detail > 0 && e.target.closest("button") && document.activeElement) document.activeElement.blur(); });
   }
-  return { SAYS, View, Clock, keys, make, word, words, plain, secs, seconds };
+  return { SAYS, View, Clock, keys, make, word, words, put, plain, secs, seconds };
 })();
