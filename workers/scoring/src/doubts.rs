@@ -53,7 +53,7 @@ fn apart(tracks: &Tracks) -> Vec<String> {
     }
     for human in &tracks.humans {
         if robot.beside(human).next().is_none() {
-            found.push(format!("{} is never recorded together with the robot: it counts for nothing", human.agent));
+            found.push(format!("{} is never recorded together with the robot: they count for nothing", human.agent));
         }
     }
     found
