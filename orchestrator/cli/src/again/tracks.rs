@@ -136,7 +136,8 @@ fn table(name: &str, bytes: &[u8], known: &mut Known, told: &mut Vec<String>) ->
     let plain = socrates_stream::csv::plain(text).map_err(|why| bad(why.to_string()))?;
     told.extend(plain.notes);
     let recording = socrates_stream::csv::read_tracks(&plain.text).map_err(|why| bad(why.to_string()))?;
-    told.extend(lines::doubts(plain.text.as_bytes())?);
+    let of_file = |why: Complaint| Complaint { what: format!("`{name}`: {}", why.what), ..why };
+    told.extend(lines::doubts(plain.text.as_bytes()).map_err(of_file)?);
     let columns = Columns::read(&plain.text);
     known.goal = known.goal.or(columns.goal);
     if known.groups.is_empty() {
