@@ -4,11 +4,13 @@
 mod asking;
 mod bad_input;
 mod bundles;
+mod doors;
 mod evaluations;
 mod live;
 mod models;
 mod originals;
 mod pages;
+mod release;
 mod repairs;
 mod requests;
 mod training;

@@ -525,6 +525,8 @@ pub(crate) enum DevVerb {
         /// HuNavSim agents files.
         agents: Vec<PathBuf>,
     },
+    /// Let damaged inputs in at every door: each must be read or refused with the name of its file.
+    Fuzz(crate::fuzz::FuzzOptions),
     /// Measure the main job on this machine.
     Bench {
         /// Runs to take the median of.

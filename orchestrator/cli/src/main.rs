@@ -31,6 +31,7 @@ mod explain;
 mod figure;
 mod figures;
 mod files;
+mod fuzz;
 mod golden;
 mod history;
 mod labels;
