@@ -128,13 +128,13 @@ fn in_words(rules: &[Rule], id: HumanId, question: &Question) -> String {
             .iter()
             .map(|rule| {
                 let when: Vec<String> = rule.when.iter().map(socrates_model::Trigger::phrase).collect();
-                format!("{} it {}", when.join(" and "), rule.act.phrase())
+                format!("{} {}", when.join(" and "), rule.act.they())
             })
             .collect();
         if parts.is_empty() {
-            "walks its path".to_owned()
+            "walks their path".to_owned()
         } else {
-            format!("{}; otherwise it walks its path", parts.join("; "))
+            format!("{}; otherwise they walk their path", parts.join("; "))
         }
     })
 }

@@ -78,6 +78,24 @@ impl Action {
     }
 }
 
+impl Action {
+    /// The action in words of a person who was named before: `they follow the robot`.
+    #[must_use]
+    pub fn they(&self) -> String {
+        match self {
+            Self::Navigate => "they walk on".to_owned(),
+            Self::FollowRobot => "they follow the robot".to_owned(),
+            Self::FollowHuman(id) => format!("they follow {id}"),
+            Self::RunAway => "they run away from the robot".to_owned(),
+            Self::GiveWay => "they give way to the robot".to_owned(),
+            Self::Block => "they block the robot".to_owned(),
+            Self::LookAtRobot => "they stop and look at the robot".to_owned(),
+            Self::Approach => "they come up to the robot".to_owned(),
+            Self::StandStill => "they stand still".to_owned(),
+        }
+    }
+}
+
 impl Trigger {
     /// A robot that was never nearer than this has not passed anybody, m.
     pub const PASSED_WITHIN_M: f64 = 4.0;
@@ -145,20 +163,20 @@ impl Trigger {
         }
     }
 
-    /// The trigger in words: `when it sees the robot within 5 m`.
+    /// The trigger in words: `when they see the robot within 5 m`.
     #[must_use]
     pub fn phrase(&self) -> String {
         match self {
             Self::Always => "from the start".to_owned(),
-            Self::RobotVisible(m) => format!("when it sees the robot within {m} m"),
+            Self::RobotVisible(m) => format!("when they see the robot within {m} m"),
             Self::RobotNear(m) => format!("when the robot is within {m} m"),
-            Self::RobotBlocking(m) => format!("when the robot is in its way within {m} m"),
+            Self::RobotBlocking(m) => format!("when the robot is in their way within {m} m"),
             Self::RobotMoving => "while the robot moves".to_owned(),
             Self::RobotStopped => "while the robot stands".to_owned(),
             Self::RobotPassed => "once the robot has passed".to_owned(),
             Self::RobotSays(gesture) => format!("when the robot says {gesture}"),
             Self::HumanSays(id, gesture) => format!("when {id} says {gesture}"),
-            Self::GoalReached => "at its goal".to_owned(),
+            Self::GoalReached => "at their goal".to_owned(),
             Self::AtEncounter => "at the encounter".to_owned(),
             Self::AfterSecs(s) => format!("after {s} s"),
         }
@@ -186,12 +204,12 @@ pub struct Rule {
 }
 
 impl Rule {
-    /// The rule in words: `when the robot is within 2 m it gives way to the robot and says PROCEED`.
+    /// The rule in words: `when the robot is within 2 m they give way to the robot and say PROCEED`.
     #[must_use]
     pub fn phrase(&self) -> String {
         let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
-        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and says {gesture}"));
-        format!("{} it {}{gesture}", when.join(" and "), self.act.phrase())
+        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
+        format!("{} {}{gesture}", when.join(" and "), self.act.they())
     }
 }
 

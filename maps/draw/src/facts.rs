@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(
             told(json!({ "reacts": { "human": "human_2", "rule": {
                 "when": [{ "robot_visible": 5.0 }], "act": "run_away", "for_s": 4.0 } } })),
-            "human_2 runs away from the robot for 4 s when it sees the robot within 5 m"
+            "human_2 runs away from the robot for 4 s when they see the robot within 5 m"
         );
         assert_eq!(
             told(json!({ "group": { "group": 1, "members": ["human_1", "human_2"] } })),

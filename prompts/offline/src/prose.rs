@@ -37,14 +37,14 @@ pub(crate) fn behavior(
     text
 }
 
-/// A rule as a sentence: `When it sees the robot within 3 m it stops and looks at the robot, for 5 s.`
+/// A rule as a sentence: `When they see the robot within 3 m they stop and look at the robot for 5 s.`
 pub(crate) fn sentence(rule: &Rule) -> String {
     let when: Vec<String> = rule.when.iter().map(Trigger::phrase).collect();
     let mut text = when.join(" and ");
-    text.push_str(" it ");
-    text.push_str(&rule.act.phrase());
+    text.push(' ');
+    text.push_str(&rule.act.they());
     if let Some(gesture) = rule.gesture {
-        text.push_str(&format!(" and gestures {gesture}"));
+        text.push_str(&format!(" and gesture {gesture}"));
     }
     if let Some(secs) = rule.for_s {
         text.push_str(&format!(" for {secs} s"));

@@ -534,7 +534,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
     }
     for (i, human) in reading.humans.iter().enumerate() {
         if human.summary.is_empty() && request.rough_scenario.is_some() {
-            reading.notes.push(format!("nothing is said of what human_{} does; it walks its way", i + 1));
+            reading.notes.push(format!("nothing is said of what human_{} does; they walk their path", i + 1));
         }
     }
     if request.rough_scenario.is_none() {

@@ -74,11 +74,11 @@ pub fn describe(human: HumanId, rules: &[Rule]) -> String {
         sentences.push(format!("{sentence}."));
     }
     sentences.push(if rules.is_empty() {
-        format!("{} walks along its path.", capital(&human.to_string()))
+        format!("{} walks along their path.", capital(&human.to_string()))
     } else if rules.iter().any(rules::is_endless) {
-        "It does nothing else.".to_owned()
+        "They do nothing else.".to_owned()
     } else {
-        "Otherwise it walks along its path.".to_owned()
+        "Otherwise they walk along their path.".to_owned()
     });
     sentences.join(" ")
 }

@@ -255,8 +255,8 @@ fn the_rules_are_told_in_words() {
     }];
     assert_eq!(
         describe(me(), &rules),
-        "When it sees the robot within 5 m, human_1 stops and looks at the robot and says WAIT for 5 s. \
-         Otherwise it walks along its path."
+        "When they see the robot within 5 m, human_1 stops and looks at the robot and says WAIT for 5 s. \
+         Otherwise they walk along their path."
     );
 }
 
