@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_person_may_meet_the_robot_twice_where_both_paths_come_twice() {
-        // The robot goes by the centre to the north and back, then on to the east.
+        // The robot goes by the center to the north and back, then on to the east.
         let twice = |paths: &mut Paths, meets: &[&str]| {
             paths.robot = nodes(&["w_2", "w_1", "n_center", "n_1", "n_2", "n_1", "n_center", "e_1", "e_2"]);
             paths.humans.insert(HumanId::new(1), nodes(&["s_1", "n_center", "s_1", "n_center", "w_1", "w_2"]));

@@ -159,7 +159,7 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: crate::chat::LibraryVerb,
     },
-    /// List, show and rate the canonical scenarios of the catalogue.
+    /// List, show and rate the canonical scenarios of the catalog.
     Scenarios {
         /// What to do.
         #[command(subcommand)]
@@ -185,7 +185,7 @@ pub(crate) enum Verb {
     Orchestrator(OrchestratorOptions),
 }
 
-/// Verbs on the catalogue.
+/// Verbs on the catalog.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ScenariosVerb {
     /// List every scenario.

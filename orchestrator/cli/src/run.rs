@@ -339,7 +339,7 @@ pub(crate) fn stage_line(status: &ScenarioStatus) -> String {
         let Some(last) = jobs.iter().max_by_key(|job| job.key.revision) else { continue };
         let mark = match last.state.as_str() {
             "succeeded" => "✔",
-            "failed" | "dead" | "cancelled" | "canceled" => "✘",
+            "failed" | "dead" | "canceled" => "✘",
             _ => "…",
         };
         let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();

@@ -46,7 +46,7 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
     if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
         return Err(Complaint::input(
             format!("the robot's radius cannot be {radius} m"),
-            format!("--radius takes metres from {} to {}", RADII_M.start(), RADII_M.end()),
+            format!("--radius takes meters from {} to {}", RADII_M.start(), RADII_M.end()),
         ));
     }
     for info in recording.header.agents.iter_mut().filter(|info| info.agent == AgentId::Robot) {
@@ -129,7 +129,7 @@ fn table(name: &str, bytes: &[u8], known: &mut Known, told: &mut Vec<String>) ->
     let bad = |why: String| {
         Complaint::input(
             format!("`{name}`: {why}"),
-            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, metres and radians; id is `robot`, `human_1`, …",
+            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; id is `robot`, `human_1`, …",
         )
     };
     let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
@@ -199,7 +199,7 @@ fn agent(id: &str) -> Option<AgentId> {
 /// # Errors
 /// What is no such point.
 pub(crate) fn point(text: &str) -> Result<Point, String> {
-    let wrong = || format!("`{text}` is no point; it is X,Y in metres on the map, such as 31.5,-2");
+    let wrong = || format!("`{text}` is no point; it is X,Y in meters on the map, such as 31.5,-2");
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     Ok(Point::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))

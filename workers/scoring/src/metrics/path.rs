@@ -82,7 +82,7 @@ pub(super) const FAMILY: Family = Family {
             direction: Direction::Down,
             needs: ROBOT,
             source: "Menger curvature, as in Arena",
-            about: "mean Menger curvature 4 A / (a b c) of points half a metre of way apart",
+            about: "mean Menger curvature 4 A / (a b c) of points half a meter of way apart",
         },
     ],
     thresholds: &[("step_m", STEP_M)],
