@@ -27,8 +27,8 @@ fn a_bundle_that_was_changed_by_hand_is_refused_with_file_line_and_key() {
     assert_eq!(plain.code, 0, "{}", plain.err);
     let key = |from: &'static str, to: &'static str| move |text: &str| text.replacen(from, to, 1);
     for (file, from, to, words) in [
-        ("details/paths.json", "\"nodes\": [", "\"nodes\": [7,", vec!["details/paths.json", "nodes[0]", "line "]),
-        ("details/paths.json", "\"nodes\"", "\"knots\"", vec!["details/paths.json", "knots", "line "]),
+        ("details/paths.json", "\"robot\": [", "\"robot\": [7,", vec!["details/paths.json", "robot[0]", "line "]),
+        ("details/paths.json", "\"encounters\"", "\"meetings\"", vec!["details/paths.json", "meetings", "line "]),
         (
             "details/proposal.json",
             "\"humans\": [",
@@ -44,8 +44,8 @@ fn a_bundle_that_was_changed_by_hand_is_refused_with_file_line_and_key() {
         ),
         (
             "details/location.json",
-            "\"resolution_m\":",
-            "\"resolution_m\":0.0000",
+            "\"resolution_m\": 0.",
+            "\"resolution_m\": -0.",
             vec!["details/location.json", "resolution_m"],
         ),
         ("details/behaviors.json", "{", "", vec!["details/behaviors.json", "line "]),

@@ -8,7 +8,7 @@
 
 mod read;
 
-pub(crate) use read::{changed, manifest, read, read_some, reports};
+pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -21,6 +21,11 @@ pub(crate) fn manifest(dir: &Path) -> Option<Manifest> {
     serde_json::from_str(&std::fs::read_to_string(dir.join(MANIFEST)).ok()?).ok()
 }
 
+/// Whether a folder is a finished bundle, be its manifest good or damaged.
+pub(crate) fn is_bundle(dir: &Path) -> bool {
+    dir.join(MANIFEST).exists()
+}
+
 /// Reads a finished bundle back, here or wherever it was moved to.
 pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
     read_some(dir, |_, _| true)
@@ -125,8 +130,9 @@ fn json<T: DeserializeOwned>(path: &Path) -> Result<T, Complaint> {
 }
 
 fn wrong(path: &Path, key: &str, why: &str) -> Complaint {
-    // `.` is the path of the whole file.
-    let at = if key == "." { String::new() } else { format!("`{key}`: ") };
+    // `.` is the path of the whole file, and `.?` a place within a key that has no name yet.
+    let key = key.trim_end_matches(".?");
+    let at = if matches!(key, "." | "?") { String::new() } else { format!("`{key}`: ") };
     Complaint::input(format!("`{}`: {at}{why}", path.display()), HINT)
 }
 
