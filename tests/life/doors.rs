@@ -87,11 +87,11 @@ fn damaged_inputs_at_every_door_are_read_or_refused_by_name() {
     assert_eq!(finished.code, 0, "{}\n{}", finished.out, finished.err);
     let doors = finished.json()["doors"].as_array().unwrap().clone();
     assert!(doors.len() >= 14, "{doors:?}");
-    for door in &doors {
-        // Neither all good nor all bad: the damage is neither nothing nor everything.
-        assert!(door["refused"].as_u64().unwrap() > 0 || door["door"] == "edits", "{door}");
-        assert!(door["read"].as_u64().unwrap() > 0 || door["door"] == "recordings", "{door}");
-    }
+    // Neither all good nor all bad: the damage is neither nothing nor everything.
+    let sum = |word: &str| doors.iter().map(|door| door[word].as_u64().unwrap()).sum::<u64>();
+    let (read, refused, inputs) = (sum("read"), sum("refused"), sum("inputs"));
+    assert_eq!(read + refused, inputs, "{doors:?}");
+    assert!(read * 20 > inputs && refused * 5 > inputs, "{read} read, {refused} refused of {inputs}");
 }
 
 #[test]
