@@ -14,6 +14,11 @@ const DOOR_SLACK_M: f64 = 0.35;
 /// Largest time, s, or distance, m, that a door may be given; a run lasts at most as long.
 const DOOR_VALUE_MAX: f64 = 600.0;
 
+/// Sizes of a cell, m.
+pub(crate) const CELL_M: std::ops::RangeInclusive<f64> = 0.001..=10.0;
+/// Largest coordinate of a map's origin, m, and yaw, rad.
+pub(crate) const ORIGIN_MAX: f64 = 1e7;
+
 /// Every problem of a location that can be seen from its parts together; soft faults are warnings.
 ///
 /// Nodes on free floor, edges (with their via points) on free floor, one connected graph, types that
@@ -21,6 +26,10 @@ const DOOR_VALUE_MAX: f64 = 600.0;
 #[must_use]
 pub fn check(location: &Location) -> Vec<Fault> {
     let mut faults = Vec::new();
+    if !measures(&location.grid, &mut faults) {
+        // Everything below walks over the cells between two points.
+        return faults;
+    }
     grid_problems(&location.grid, &mut faults);
     let on_wall = node_problems(location, &mut faults);
     edge_problems(location, &on_wall, &mut faults);
@@ -29,6 +38,22 @@ pub fn check(location: &Location) -> Vec<Fault> {
         door_problems(location, index, door, &mut faults);
     }
     faults
+}
+
+/// Whether the grid lies somewhere, in cells of some size: bounds as for `map.yaml`.
+fn measures(grid: &Grid, faults: &mut Vec<Fault>) -> bool {
+    let before = faults.len();
+    let mut fault = |message: String| faults.push(Fault::new(FaultCode::MValue, "grid", message));
+    if !CELL_M.contains(&grid.resolution_m) {
+        let (least, most) = (CELL_M.start(), CELL_M.end());
+        fault(format!("`resolution_m` is {:e}; allowed: {least} to {most} m", grid.resolution_m));
+    }
+    for (key, value) in [("x", grid.origin.x), ("y", grid.origin.y), ("yaw", grid.origin.yaw)] {
+        if !(-ORIGIN_MAX..=ORIGIN_MAX).contains(&value) {
+            fault(format!("`origin.{key}` is {value:e}; allowed: -{ORIGIN_MAX} to {ORIGIN_MAX}"));
+        }
+    }
+    faults.len() == before
 }
 
 fn grid_problems(grid: &Grid, faults: &mut Vec<Fault>) {

@@ -73,7 +73,7 @@ impl DistanceField {
 
     /// The nearest wall point in each of `n` equal angular sectors within `reach_m`, in sector order.
     ///
-    /// Sector 0 is centred on the map's +x direction and the others follow counter-clockwise; a sector
+    /// Sector 0 is centered on the map's +x direction and the others follow counter-clockwise; a sector
     /// without a wall within reach gives no point. Only surfaces that face the point count. With `n = 8`
     /// and 3 m these are the wall points of the native social forces.
     #[must_use]

@@ -3,6 +3,7 @@
 use serde_norway::Value;
 use socrates_model::{Cell, Fault, FaultCode, Grid, Pose};
 
+use crate::check::{CELL_M, ORIGIN_MAX};
 use crate::image::Picture;
 use crate::read::{MAP, stays_inside};
 
@@ -114,7 +115,7 @@ pub(crate) fn read(bytes: &[u8], faults: &mut Vec<Fault>, warnings: &mut Vec<Str
     }
     let mut reader = Reader { value: &value, at: &at, faults };
     let image = reader.image();
-    let resolution_m = reader.number("resolution", None, "0.001 to 10 m per pixel", |m| (0.001..=10.0).contains(&m));
+    let resolution_m = reader.number("resolution", None, "0.001 to 10 m per pixel", |m| CELL_M.contains(&m));
     let origin = reader.origin();
     let negate = reader.negate();
     let share = |v: f64| (0.0..=1.0).contains(&v);
@@ -200,13 +201,14 @@ impl<At: Fn(&str) -> String> Reader<'_, At> {
     }
 
     fn origin(&mut self) -> Option<Pose> {
-        let allowed = "[x, y, yaw] of the lower left corner, m and rad";
+        let allowed = "[x, y, yaw] of the lower left corner, m and rad, from -10000000 to 10000000";
         let Some(value) = self.value.get("origin") else {
             self.missing("origin", allowed);
             return None;
         };
-        let numbers: Option<Vec<f64>> =
-            value.as_sequence().map(|parts| parts.iter().filter_map(Value::as_f64).filter(|n| n.is_finite()).collect());
+        let numbers: Option<Vec<f64>> = value
+            .as_sequence()
+            .map(|parts| parts.iter().filter_map(Value::as_f64).filter(|n| n.abs() <= ORIGIN_MAX).collect());
         match numbers.as_deref() {
             Some([x, y, yaw]) if value.as_sequence().is_some_and(|parts| parts.len() == 3) => {
                 Some(Pose::new(*x, *y, *yaw))

@@ -11,7 +11,7 @@ use crate::layer::{Layer, Raster};
 
 /// Clearance beyond the radius from which on a way is not made dearer, m. About one person's width.
 const COMFORT_M: f64 = 0.5;
-/// How much dearer a metre along the wall is than one in the open.
+/// How much dearer a meter along the wall is than one in the open.
 const WALL_COST: f64 = 1.0;
 /// Shortcuts that fail one after another before the smoothing moves on.
 const PATIENCE: usize = 12;
@@ -59,7 +59,7 @@ pub fn shortest_path(
     Some(way)
 }
 
-/// Cost of a metre at this clearance.
+/// Cost of a meter at this clearance.
 fn price(clearance_m: f64, radius_m: f64) -> f64 {
     1.0 + WALL_COST * (1.0 - (clearance_m - radius_m) / COMFORT_M).clamp(0.0, 1.0)
 }

@@ -56,7 +56,7 @@ impl Faces {
         faces
     }
 
-    /// Joins equal neighbours along one cell border into pieces and files them.
+    /// Joins equal neighbors along one cell border into pieces and files them.
     fn collect(
         &mut self,
         length: usize,

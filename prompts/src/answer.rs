@@ -113,10 +113,10 @@ mod tests {
         let mut value = serde_json::to_value(proposal()).unwrap();
         value["place"] = json!("moon");
         value["humans"][1]["relation"] = json!("sideways");
-        value["robot"]["colour"] = json!("red");
+        value["robot"]["color"] = json!("red");
         let faults = parse_proposal(&value.to_string(), &asked()).unwrap_err();
         let places: Vec<&str> = faults.iter().map(|fault| fault.at.as_str()).collect();
-        assert_eq!(places, ["$.humans[1].relation", "$.place", "$.robot.colour"]);
+        assert_eq!(places, ["$.humans[1].relation", "$.place", "$.robot.color"]);
         assert!(faults[1].message.contains("\"intersection\"") && faults[1].message.contains("found `\"moon\"`"));
     }
 

@@ -10,7 +10,7 @@
 //! the names of the question in it, and a reader that turns text into a typed artifact or into faults that name the
 //! position. A style chooses how much is explained and in which form is answered; the reader takes every form.
 //! Tables in the prompts (triggers, actions, gestures, nodes) are made from the types and the node
-//! catalogue, so that they cannot drift from what the readers take.
+//! catalog, so that they cannot drift from what the readers take.
 //!
 //! *Never here:* a call of a model, a file, a check against map or request, an invented default answer.
 

@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn a_word_that_means_nothing_is_answered_with_those_that_do() {
         for (key, word) in
-            [("prompt.paths", "edges"), ("prompt.colour", "red"), ("prompt.variants", "9"), ("prompt.variants", "0")]
+            [("prompt.paths", "edges"), ("prompt.color", "red"), ("prompt.variants", "9"), ("prompt.variants", "0")]
         {
             let fault = Style::from_settings(&settings(&[(key, word)])).unwrap_err();
             assert!(fault.at.contains(key) && fault.message.contains("allowed: "), "{fault}");

@@ -212,7 +212,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_node_that_authors_are_told_of_is_in_the_catalogue() {
+    fn every_node_that_authors_are_told_of_is_in_the_catalog() {
         let text = table(true);
         for tag in TAGS {
             assert!(sheet(tag).is_some() && text.contains(&format!("- {tag} (")), "{tag}");

@@ -1,6 +1,8 @@
 //! The house rules, each as a test.
 #![cfg(test)]
 
+mod spelling;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

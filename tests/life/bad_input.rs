@@ -39,7 +39,7 @@ fn wrong_requests_are_refused_with_the_value_and_a_hint() {
             vec!["P-LANG"],
         ),
         ("long", with(&long), vec!["bytes"]),
-        ("key", format!("{WAREHOUSE}\ncolour = \"red\"\n"), vec!["colour"]),
+        ("key", format!("{WAREHOUSE}\ncolor = \"red\"\n"), vec!["color"]),
         ("place", WAREHOUSE.replace("\"warehouse\"", "\"atlantis\""), vec!["atlantis", "warehouse"]),
         (
             "planner",
@@ -75,9 +75,9 @@ fn wrong_locations_are_refused_with_file_and_value() {
     });
     refused(folder.path(), "cut-request", &cut, &["M-IMAGE"]);
     let key = broken("key", &|file, bytes| {
-        Some(if file == "map.yaml" { format!("{}colour: red\n", text(bytes)).into_bytes() } else { bytes })
+        Some(if file == "map.yaml" { format!("{}color: red\n", text(bytes)).into_bytes() } else { bytes })
     });
-    refused(folder.path(), "key-request", &key, &["M-KEY", "colour"]);
+    refused(folder.path(), "key-request", &key, &["M-KEY", "color"]);
     let dangling = broken("dangling", &|file, bytes| {
         Some(if file == "scene_graph.json" {
             let mut graph: serde_json::Value = serde_json::from_slice(&bytes).unwrap();

@@ -49,7 +49,7 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, location: &Location) -> 
         let met = human.relation == Relation::Staying || human.relation == Relation::Static && left;
         if !met && path.is_some() && paths.encounter_of(human.id).is_none() {
             let shared = path.map(|nodes| shared(nodes, &paths.robot)).unwrap_or_default();
-            let message = format!("has no encounter; nodes it shares with the robot: {}", list(shared));
+            let message = format!("has no encounter; nodes they share with the robot: {}", list(shared));
             faults.push(Fault::new(FaultCode::GMeet, human.id, message));
         }
     }
@@ -69,9 +69,9 @@ fn meets(encounter: &Encounter, human: &HumanProposal, paths: &Paths, location: 
         return None;
     }
     let where_missing = match (on_robot, on_human) {
-        (true, _) => "is not on its own path".to_owned(),
+        (true, _) => "is not on their own path".to_owned(),
         (false, true) => "is not on the robot's path".to_owned(),
-        (false, false) => "is on neither its own nor the robot's path".to_owned(),
+        (false, false) => "is on neither their own nor the robot's path".to_owned(),
     };
     let shared = shared(own, &paths.robot);
     let hint = if shared.is_empty() {
@@ -103,7 +103,7 @@ fn again(place: usize, human: &HumanProposal, paths: &Paths, location: &Location
     };
     let Some(robot_step) = visit.robot_step else { return later("the robot's", &paths.robot, before.robot_step) };
     if visit.human_step.is_none() {
-        return later("its own", own, before.human_step);
+        return later("their own", own, before.human_step);
     }
     let way_m = location.graph.length_m(paths.robot.get(before.robot_step?..=robot_step)?);
     (way_m < APART_M).then(|| {
@@ -325,7 +325,7 @@ mod tests {
 
     #[test]
     fn a_person_may_meet_the_robot_twice_where_both_paths_come_twice() {
-        // The robot goes by the centre to the north and back, then on to the east.
+        // The robot goes by the center to the north and back, then on to the east.
         let twice = |paths: &mut Paths, meets: &[&str]| {
             paths.robot = nodes(&["w_2", "w_1", "n_center", "n_1", "n_2", "n_1", "n_center", "e_1", "e_2"]);
             paths.humans.insert(HumanId::new(1), nodes(&["s_1", "n_center", "s_1", "n_center", "w_1", "w_2"]));

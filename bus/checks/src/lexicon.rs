@@ -5,7 +5,7 @@
 //! for something that can be simulated.
 
 /// What a human can do, for messages.
-pub(crate) const ABILITIES: &str = "walk its path, stand still, stop and look at the robot, follow the robot or another human, \
+pub(crate) const ABILITIES: &str = "walk their path, stand still, stop and look at the robot, follow the robot or another human, \
      run away from the robot, give way, block the robot, come up to the robot, and make the gestures WAIT, PROCEED, \
      ACKNOWLEDGED, EXCUSE_ME, FOLLOW_ME";
 

@@ -1,6 +1,6 @@
 //! P-VERIFY: limits of a clause that are so loose, or so tight, that it tells nothing.
 //!
-//! Each number of each predicate has a range. Its ends lie well outside what the catalogue and people ask for, and inside what
+//! Each number of each predicate has a range. Its ends lie well outside what the catalog and people ask for, and inside what
 //! still says something: whoever is `within 1000 m` of the robot has not met it.
 
 use std::f64::consts::PI;
@@ -17,9 +17,9 @@ const BEYOND_M: f64 = 0.5;
 const LASTS_S: (f64, f64) = (0.2, 600.0);
 /// Who reacts does so at most so long after it could, s; what it does before that comes on top.
 const REACTS_S: f64 = 15.0;
-/// The loosest group, m from its centre.
+/// The loosest group, m from its center.
 const SPREAD_M: f64 = 4.0;
-/// More people than fit on a square metre.
+/// More people than fit on a square meter.
 const CROWD_PER_M2: f64 = 8.0;
 /// A band of courses wider than this leaves hardly one out, degrees.
 const BAND_DEG: f64 = 120.0;
@@ -36,7 +36,7 @@ struct Limit {
     unit: &'static str,
 }
 
-const fn metres(name: &'static str, value: f64, range: (f64, f64)) -> Limit {
+const fn meters(name: &'static str, value: f64, range: (f64, f64)) -> Limit {
     Limit { name, value, range, unit: " m" }
 }
 
@@ -89,25 +89,25 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
     match predicate {
         Predicate::Meets { human, within_m } => {
             let most = MEET_M.max(reach_m(*human, proposal) + BEYOND_M);
-            vec![metres("within_m", *within_m, (0.5, most))]
+            vec![meters("within_m", *within_m, (0.5, most))]
         }
         Predicate::MeetsAgain { nth, within_m, .. } => {
-            vec![plain("nth", f64::from(*nth), (2.0, 20.0)), metres("within_m", *within_m, (0.5, MEET_M))]
+            vec![plain("nth", f64::from(*nth), (2.0, 20.0)), meters("within_m", *within_m, (0.5, MEET_M))]
         }
-        Predicate::HiddenUntil { within_m, .. } => vec![metres("within_m", *within_m, (0.5, DISTANCE_M.1))],
+        Predicate::HiddenUntil { within_m, .. } => vec![meters("within_m", *within_m, (0.5, DISTANCE_M.1))],
         Predicate::StartsAt { within_m, .. } | Predicate::Reaches { within_m, .. } => {
-            vec![metres("within_m", *within_m, (0.1, 4.0))]
+            vec![meters("within_m", *within_m, (0.1, 4.0))]
         }
         // Whoever stops on the way leaves a long gap.
         Predicate::Crosses { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 12.0))],
         Predicate::OnTime { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 10.0))],
         Predicate::Ahead { within_m, for_s: time, .. } => {
-            vec![metres("within_m", *within_m, (0.5, 12.0)), for_s(*time)]
+            vec![meters("within_m", *within_m, (0.5, 12.0)), for_s(*time)]
         }
         Predicate::Follows { gap_m: [least, most], for_s: time, .. } => vec![
-            metres("gap_m, smallest,", *least, (0.0, 6.0)),
-            metres("gap_m, largest,", *most, (0.5, 8.0)),
-            metres("gap_m, largest less smallest,", most - least, (0.0, 8.0)),
+            meters("gap_m, smallest,", *least, (0.0, 6.0)),
+            meters("gap_m, largest,", *most, (0.5, 8.0)),
+            meters("gap_m, largest less smallest,", most - least, (0.0, 8.0)),
             for_s(*time),
         ],
         Predicate::Abreast { for_s: time, .. }
@@ -117,7 +117,7 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::StandsStill { for_s: time, .. } => vec![for_s(*time)],
         Predicate::Flow { count, within_m, angle_deg: [least, most] } => vec![
             plain("count", f64::from(*count), (1.0, f64::INFINITY)),
-            metres("within_m", *within_m, (0.5, 12.0)),
+            meters("within_m", *within_m, (0.5, 12.0)),
             plain("angle_deg, smallest,", *least, (0.0, 180.0)),
             plain("angle_deg, largest,", *most, (0.0, 180.0)),
             plain("angle_deg, largest less smallest,", most - least, (0.0, BAND_DEG)),
@@ -126,37 +126,37 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             // At least somebody is in the disc.
             plain("per_m2, smallest,", *least, (0.5 / (PI * radius_m * radius_m).max(0.1), CROWD_PER_M2)),
             plain("per_m2, largest less smallest,", most - least, (0.0, CROWD_PER_M2)),
-            metres("radius_m", *radius_m, (0.5, 8.0)),
+            meters("radius_m", *radius_m, (0.5, 8.0)),
             for_s(*time),
         ],
         Predicate::Surrounds { count, within_m, for_s: time } => vec![
             plain("count", f64::from(*count), (1.0, f64::INFINITY)),
-            metres("within_m", *within_m, (0.5, 8.0)),
+            meters("within_m", *within_m, (0.5, 8.0)),
             for_s(*time),
         ],
         Predicate::Converges { within_m, within_s } => {
-            vec![metres("within_m", *within_m, (0.5, MEET_M)), secs("within_s", *within_s, (0.2, 15.0))]
+            vec![meters("within_m", *within_m, (0.5, MEET_M)), secs("within_s", *within_s, (0.2, 15.0))]
         }
         Predicate::Queues { gap_m: [least, most], .. } => vec![
-            metres("gap_m, smallest,", *least, (0.0, 3.0)),
-            metres("gap_m, largest less smallest,", most - least, (0.0, 3.0)),
+            meters("gap_m, smallest,", *least, (0.0, 3.0)),
+            meters("gap_m, largest less smallest,", most - least, (0.0, 3.0)),
         ],
-        Predicate::RunsAway { by_m, .. } => vec![metres("by_m", *by_m, (0.3, 10.0))],
+        Predicate::RunsAway { by_m, .. } => vec![meters("by_m", *by_m, (0.3, 10.0))],
         Predicate::Reacts { human, when, within_s, .. } => {
             let mut found = vec![secs("within_s", *within_s, (0.1, REACTS_S + busy_s(*human, proposal)))];
-            found.extend(when.iter().filter_map(Trigger::distance_m).map(|m| metres("when, distance,", m, DISTANCE_M)));
+            found.extend(when.iter().filter_map(Trigger::distance_m).map(|m| meters("when, distance,", m, DISTANCE_M)));
             found
         }
         Predicate::RobotObeys { within_s, .. } => vec![secs("within_s", *within_s, (0.1, REACTS_S))],
         Predicate::DoorOpens { robot_m: [least, most], .. } => vec![
-            metres("robot_m, smallest,", *least, (0.0, DISTANCE_M.1)),
-            metres("robot_m, largest,", *most, (0.0, DISTANCE_M.1)),
-            metres("robot_m, largest less smallest,", most - least, (0.0, DISTANCE_M.1)),
+            meters("robot_m, smallest,", *least, (0.0, DISTANCE_M.1)),
+            meters("robot_m, largest,", *most, (0.0, DISTANCE_M.1)),
+            meters("robot_m, largest less smallest,", most - least, (0.0, DISTANCE_M.1)),
         ],
         Predicate::Formation { spread_m, .. } | Predicate::WalksTogether { spread_m, .. } => {
-            vec![metres("spread_m", *spread_m, (0.2, SPREAD_M))]
+            vec![meters("spread_m", *spread_m, (0.2, SPREAD_M))]
         }
-        Predicate::RobotKeeps { min_m } => vec![metres("min_m", *min_m, (0.01, 5.0))],
+        Predicate::RobotKeeps { min_m } => vec![meters("min_m", *min_m, (0.01, 5.0))],
         Predicate::Humans { .. }
         | Predicate::HeadOn { .. }
         | Predicate::Overtakes { .. }

@@ -83,7 +83,10 @@ fn groups(proposal: &Proposal) -> Vec<Fault> {
                     let own = human.group.map_or_else(|| "none".to_owned(), |id| id.0.to_string());
                     bad(
                         member.to_string(),
-                        format!("is a member of {}, but its own `group` says {own}; expected {}", group.id, group.id.0),
+                        format!(
+                            "is a member of {}, but their own `group` says {own}; expected {}",
+                            group.id, group.id.0
+                        ),
                     );
                 }
                 Some(_) => {}
@@ -182,7 +185,7 @@ fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
         .filter(|id| *id != human.id && !tied(*id))
         .map(|id| {
             let message = format!(
-                "the behavior depends on {id}; it may only follow another human or react to its gesture, as a rule \
+                "the behavior depends on {id}; they may only follow another human or react to their gesture, as a rule \
                  (`follow_human`, `human_says`). Otherwise speak of {} and the robot alone",
                 human.id
             );

@@ -35,12 +35,12 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
     match human.relation {
         // Who stands at first and goes on later has a way for that.
         Relation::Static => (nodes.len() != 1 && !sets_off(human)).then(|| {
-            format!("its path has {} nodes; who stands has one, the encounter {}", nodes.len(), list(meeting))
+            format!("their path has {} nodes; who stands has one, the encounter {}", nodes.len(), list(meeting))
         }),
         Relation::Staying => {
             let start = nodes.first()?;
             if nodes.len() != 1 {
-                Some(format!("its path has {} nodes; who stays inside has one", nodes.len()))
+                Some(format!("their path has {} nodes; who stays inside has one", nodes.len()))
             } else if !is_inside(location, start) {
                 Some(format!("`{start}` is not inside a room or elevator; inside are {}", list(inside_nodes(location))))
             } else {
@@ -51,11 +51,11 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
             let start = nodes.first()?;
             if !is_inside(location, start) {
                 Some(format!(
-                    "it starts at `{start}`, which is not inside a room or elevator; inside are {}",
+                    "they start at `{start}`, which is not inside a room or elevator; inside are {}",
                     list(inside_nodes(location))
                 ))
             } else if location.door_of(start).is_some_and(|door| nodes.iter().all(|node| door.inside.contains(node))) {
-                Some("its path never leaves through the door".to_owned())
+                Some("their path never leaves through the door".to_owned())
             } else {
                 None
             }
@@ -79,7 +79,7 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
                 let free: Vec<NodeId> =
                     graph.neighbors(meeting).into_iter().filter(|node| !robot_arms.contains(&node)).collect();
                 format!(
-                    "uses at `{meeting}` only the robot's own edges; it should come from or go to one of {}",
+                    "uses at `{meeting}` only the robot's own edges; they should come from or go to one of {}",
                     list(free)
                 )
             })
@@ -103,12 +103,12 @@ fn same_way(relation: Relation, nodes: &[NodeId], robot: &[NodeId], meeting: Opt
     let (start, met) = (place(nodes.first()), place(meeting));
     match relation {
         Relation::Behind if start.zip(met).is_some_and(|(start, met)| start >= met && start > 0) => Some(format!(
-            "starts at {}, at or after the encounter {}; it should start behind the robot",
+            "starts at {}, at or after the encounter {}; they should start behind the robot",
             list(nodes.first()),
             list(meeting)
         )),
         Relation::Ahead if start == Some(0) => {
-            Some(format!("starts at {}, where the robot starts; it should start further on", list(nodes.first())))
+            Some(format!("starts at {}, where the robot starts; they should start further on", list(nodes.first())))
         }
         Relation::Frontal
         | Relation::Behind

@@ -138,7 +138,7 @@ fn lengths(paths: &Paths, proposal: &Proposal, graph: &SceneGraph) -> Vec<Fault>
         let length_m = graph.length_m(nodes);
         if nodes.len() < 2 || length_m < least_m {
             let message = format!(
-                "has a path of {} nodes and {length_m:.1} m, but it moves (`{}`); at least 2 nodes and {least_m} m are needed",
+                "has a path of {} nodes and {length_m:.1} m, but they move (`{}`); at least 2 nodes and {least_m} m are needed",
                 nodes.len(),
                 human.relation.name()
             );

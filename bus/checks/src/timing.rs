@@ -41,7 +41,7 @@ pub(crate) fn check(paths: &Paths, proposal: &Proposal, graph: &SceneGraph) -> V
         if least_s > robot_s + WINDOW_S {
             let message = format!(
                 "is at `{}` after {usual_s:.0} s ({human_m:.1} m; at the fastest {least_s:.0} s), the robot after {robot_s:.0} s \
-                 ({robot_m:.1} m); start it nearer, or the robot further away",
+                 ({robot_m:.1} m); start them nearer, or the robot further away",
                 encounter.node
             );
             faults.push(Fault::new(FaultCode::GTime, encounter.human, message));

@@ -166,9 +166,9 @@ mod tests {
             v: u32,
             kind: &'a str,
             body: u32,
-            colour: Vec<(u8, &'a str)>,
+            color: Vec<(u8, &'a str)>,
         }
-        let bytes = rmp_serde::to_vec_named(&Newer { v: 1, kind: "n", body: 7, colour: vec![(1, "x")] }).unwrap();
+        let bytes = rmp_serde::to_vec_named(&Newer { v: 1, kind: "n", body: 7, color: vec![(1, "x")] }).unwrap();
         let read = decode::<u32>("n", &bytes).unwrap();
         assert_eq!((read.body, read.epoch, read.sender.as_str()), (7, 0, ""));
     }

@@ -37,7 +37,7 @@ pub struct Clause {
     pub predicate: Predicate,
 }
 
-/// What a clause tests. Distances are centre to centre in m, times in s.
+/// What a clause tests. Distances are center to center in m, times in s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Predicate {
@@ -130,7 +130,7 @@ pub enum Predicate {
         /// Smallest and largest angle between course and heading, 0 (same way) to 180 (oncoming).
         angle_deg: [f64; 2],
     },
-    /// So many people per square metre are in the disc about the robot, for `for_s` without a break.
+    /// So many people per square meter are in the disc about the robot, for `for_s` without a break.
     Density {
         /// Smallest and largest density, people per m².
         per_m2: [f64; 2],
@@ -250,21 +250,21 @@ pub enum Predicate {
     Formation {
         /// The group.
         group: GroupId,
-        /// Largest distance of a member from the centre.
+        /// Largest distance of a member from the center.
         spread_m: f64,
     },
     /// The group walks together, spread at most `spread_m` for 80 % of the time before the encounter.
     WalksTogether {
         /// The group.
         group: GroupId,
-        /// Largest distance of a member from the centre.
+        /// Largest distance of a member from the center.
         spread_m: f64,
     },
-    /// The group stands in a line, each with its neighbour at a gap in a range, until the robot is within 3 m.
+    /// The group stands in a line, each with its neighbor at a gap in a range, until the robot is within 3 m.
     Queues {
         /// The group.
         group: GroupId,
-        /// Smallest and largest gap between neighbours.
+        /// Smallest and largest gap between neighbors.
         gap_m: [f64; 2],
     },
     /// One clause is first seen before another.

@@ -25,7 +25,7 @@ pub enum FailureClass {
     WorkerDeath,
     /// The job kills its worker or cannot be decoded.
     Poison,
-    /// Cannot get better by itself: missing map, wrong configuration, unauthorised.
+    /// Cannot get better by itself: missing map, wrong configuration, unauthorized.
     Permanent,
 }
 

@@ -1,4 +1,4 @@
-//! Geometry in the map frame: metres, radians, x to the right, y up.
+//! Geometry in the map frame: meters, radians, x to the right, y up.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -62,7 +62,7 @@ impl SceneGraph {
         self.edges.iter().find(|edge| edge.from == *a && edge.to == *b || edge.from == *b && edge.to == *a)
     }
 
-    /// Neighbours of a node, in file order.
+    /// Neighbors of a node, in file order.
     #[must_use]
     pub fn neighbors(&self, id: &NodeId) -> Vec<NodeId> {
         let mut found = Vec::new();

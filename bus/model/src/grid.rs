@@ -50,7 +50,7 @@ impl Grid {
 
     /// World point of a pixel position (continuous; pixel (0, 0) is the top left corner of the image).
     ///
-    /// `y = oy + (H - py) * res`, turned by the origin's yaw: right for maps that are not centred too.
+    /// `y = oy + (H - py) * res`, turned by the origin's yaw: right for maps that are not centered too.
     #[must_use]
     pub fn world_from_pixel(&self, px: f64, py: f64) -> Point {
         #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 rows")]

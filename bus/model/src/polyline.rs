@@ -10,7 +10,7 @@ pub struct Polyline {
 }
 
 impl Polyline {
-    /// The way through these points; points nearer than a millimetre to the one before are left out.
+    /// The way through these points; points nearer than a millimeter to the one before are left out.
     #[must_use]
     pub fn new(points: &[Point]) -> Self {
         let mut way = Self::default();

@@ -115,7 +115,7 @@ pub struct ReadHuman {
 pub struct Reading {
     /// Format number, see [`crate::FORMAT`].
     pub format: u32,
-    /// Card id of the pattern the text was recognised as, if any.
+    /// Card id of the pattern the text was recognized as, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
     /// Humans; empty for an unguided request.

@@ -170,7 +170,7 @@ pub struct Report {
     pub score: f64,
     /// Clauses, setup first.
     pub clauses: Vec<ClauseResult>,
-    /// Metrics in catalogue order.
+    /// Metrics in catalog order.
     pub metrics: Vec<MetricValue>,
     /// Profile and signature of the thresholds that the metrics used, such as `standard-1f3a9c2e8b07`; empty in reports
     /// from before there was one. Reports with different ones are not pooled.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, HumanId};
 
-/// Something a human can notice. Distances are centre to centre, m.
+/// Something a human can notice. Distances are center to center, m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Trigger {
@@ -230,7 +230,7 @@ pub enum RobotWhen {
 }
 
 impl RobotWhen {
-    /// Within this distance ahead of the robot a human blocks it, m: it stops more than a metre before whoever stands in its way.
+    /// Within this distance ahead of the robot a human blocks it, m: it stops more than a meter before whoever stands in its way.
     pub const BLOCKED_M: f64 = 1.6;
     /// Up to this angle from where it faces a human is ahead of it, rad.
     pub const AHEAD_RAD: f64 = 0.8;

@@ -1,7 +1,7 @@
 //! What workers, clients and the orchestrator say to each other (`spec/orchestration` §1.3).
 //!
 //! Bodies only; the envelope and its encoding live in `link`. Unknown fields are ignored and new
-//! fields have defaults, so that neighbours one version apart understand each other.
+//! fields have defaults, so that neighbors one version apart understand each other.
 
 use std::collections::BTreeMap;
 

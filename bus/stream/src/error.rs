@@ -37,6 +37,8 @@ pub enum StreamError {
     Read {
         /// Length of the file, bytes.
         len: usize,
+        /// Whether it ends before it is whole.
+        cut: bool,
         /// What is wrong.
         why: String,
     },

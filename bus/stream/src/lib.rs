@@ -11,6 +11,7 @@
 //!
 //! *Never here:* the wall clock, a decision about a run, MessagePack of a frame.
 
+mod bounds;
 mod error;
 pub use error::StreamError;
 

@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use socrates_model::recording::{AgentState, Event, Recording, RecordingHeader};
 use socrates_model::{Digest, FORMAT, Location, SimTime};
 
+use crate::bounds;
 use crate::error::StreamError;
 use crate::shelf::records;
 
@@ -38,6 +39,10 @@ const MAX_RECORD: usize = 256 * 1024 * 1024;
 const MAX_TOPICS: usize = 12;
 /// Most states that are read: an hour with forty agents is 14.4 million.
 const MAX_STATES: usize = 32 * 1024 * 1024;
+/// Most events that are read: a run of an hour has some thousands.
+const MAX_EVENTS: usize = 4 * 1024 * 1024;
+/// Most bytes of messages that are unpacked: 32 million states and ten pictures of them a second.
+const MAX_UNPACKED: usize = 8 * 1024 * 1024 * 1024;
 
 /// The last message of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -150,16 +155,20 @@ pub struct Rest {
 /// # Errors
 /// As [`read`], where not even two ticks are there or what is there contradicts itself.
 pub fn read_rest(bytes: &[u8]) -> Result<Rest, StreamError> {
-    let mut parts = Parts::default();
-    let why = match parts.fill(bytes) {
+    // A chunk that was damaged is dropped whole. One that was cut is good up to the cut, but its checksum is not.
+    let (mut parts, mut filled) = Parts::read(bytes, Chunks::Whole);
+    if let Err(StreamError::Read { cut: true, .. }) = filled {
+        (parts, filled) = Parts::read(bytes, Chunks::UpToTheCut);
+    }
+    let why = match filled {
         Ok(()) if parts.end.is_some() || parts.header.is_none() => {
             return Ok(Rest { recording: parts.whole()?, cut: None });
         }
         Ok(()) => "the file was cut off".to_owned(),
-        Err(StreamError::Read { len, why }) => {
+        Err(StreamError::Read { len, cut, why }) => {
             let agents = parts.header.as_ref().map_or(usize::MAX, |header| header.agents.len());
             if parts.frames.len() / 2 < agents {
-                return Err(StreamError::Read { len, why });
+                return Err(StreamError::Read { len, cut, why });
             }
             format!("the file is cut off or damaged: {why}")
         }
@@ -169,7 +178,7 @@ pub fn read_rest(bytes: &[u8]) -> Result<Rest, StreamError> {
         Some(header) if parts.frames.len() / 2 >= header.agents.len() => {
             Ok(Rest { recording: Recording { header, frames: parts.frames, events: parts.events }, cut: Some(why) })
         }
-        Some(_) | None => Err(StreamError::Read { len: bytes.len(), why }),
+        Some(_) | None => Err(StreamError::Read { len: bytes.len(), cut: true, why }),
     }
 }
 
@@ -187,9 +196,18 @@ pub fn begins(bytes: &[u8]) -> bool {
 /// [`StreamError::Read`] for bytes that are no MCAP file or are cut, [`StreamError::NotWhole`] for a file that lacks
 /// something, has states in a wrong order or another hash than it was written with.
 pub fn read(bytes: &[u8]) -> Result<Recording, StreamError> {
-    let mut parts = Parts::default();
-    parts.fill(bytes)?;
+    let (parts, filled) = Parts::read(bytes, Chunks::Whole);
+    filled?;
     parts.whole()
+}
+
+/// What must be there of a chunk before its messages count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Chunks {
+    /// All of it, with the right checksum.
+    Whole,
+    /// What comes before the end of the file.
+    UpToTheCut,
 }
 
 #[derive(Default)]
@@ -200,6 +218,8 @@ struct Parts {
     end: Option<End>,
     /// Topics of others, with their schemas.
     others: BTreeMap<String, String>,
+    /// Bytes of all messages so far.
+    unpacked: usize,
 }
 
 fn not_whole(why: impl Into<String>) -> StreamError {
@@ -207,16 +227,29 @@ fn not_whole(why: impl Into<String>) -> StreamError {
 }
 
 impl Parts {
+    /// What a file holds, and why no more of it.
+    fn read(bytes: &[u8], chunks: Chunks) -> (Self, Result<(), StreamError>) {
+        let mut parts = Self::default();
+        let filled = parts.fill(bytes, chunks);
+        (parts, filled)
+    }
+
     /// Takes every message of a file; what came before an error is kept.
-    fn fill(&mut self, bytes: &[u8]) -> Result<(), StreamError> {
-        let failed = |why: String| StreamError::Read { len: bytes.len(), why };
-        let mut options =
-            LinearReaderOptions::default().with_record_length_limit(MAX_RECORD).with_validate_chunk_crcs(true);
+    fn fill(&mut self, bytes: &[u8], chunks: Chunks) -> Result<(), StreamError> {
+        let failed = |why: &McapError| StreamError::Read {
+            len: bytes.len(),
+            cut: matches!(why, McapError::UnexpectedEof),
+            why: why.to_string(),
+        };
+        let mut options = LinearReaderOptions::default()
+            .with_record_length_limit(MAX_RECORD)
+            .with_validate_chunk_crcs(true)
+            .with_prevalidate_chunk_crcs(chunks == Chunks::Whole);
         options.validate_data_section_crc = true;
         let mut reader = MessageReader::new_with_options(options);
         let mut rest = bytes;
         while let Some(event) = reader.next_event() {
-            match event.map_err(|why| failed(why.to_string()))? {
+            match event.map_err(|why| failed(&why))? {
                 MessageReadEvent::ReadRequest(wanted) => {
                     // Never more memory than the file has bytes, whatever its lengths claim.
                     let (given, left) = rest.split_at(wanted.min(rest.len()));
@@ -227,6 +260,10 @@ impl Parts {
                     rest = left;
                 }
                 MessageReadEvent::Message(message) => {
+                    self.unpacked = self.unpacked.saturating_add(message.data.len());
+                    if self.unpacked > MAX_UNPACKED {
+                        return Err(not_whole(format!("its messages have more than {MAX_UNPACKED} bytes")));
+                    }
                     if !self.take(&message.channel.topic, &message.data)? && self.others.len() < MAX_TOPICS {
                         let schema = message.channel.schema.as_ref().map_or("no schema", |schema| schema.name.as_str());
                         self.others.entry(message.channel.topic.clone()).or_insert_with(|| schema.to_owned());
@@ -249,10 +286,25 @@ impl Parts {
                         header.format
                     )));
                 }
+                if self.header.is_some() {
+                    return Err(not_whole("it has two headers"));
+                }
+                if let Some(why) = bounds::header(&header) {
+                    return Err(not_whole(why));
+                }
                 self.header = Some(header);
             }
             AGENTS => self.tick(data)?,
-            EVENTS => self.events.push(serde_json::from_slice(data).map_err(unread)?),
+            EVENTS => {
+                let event: Event = serde_json::from_slice(data).map_err(unread)?;
+                if let Some(why) = bounds::event(&event) {
+                    return Err(not_whole(why));
+                }
+                if self.events.len() >= MAX_EVENTS {
+                    return Err(not_whole(format!("it has more than {MAX_EVENTS} events")));
+                }
+                self.events.push(event);
+            }
             END => self.end = Some(serde_json::from_slice(data).map_err(unread)?),
             _other => return Ok(false),
         }
@@ -273,6 +325,9 @@ impl Parts {
         }
         if let Some(state) = states.iter().find(|state| state.tick != tick as u64) {
             return Err(not_whole(format!("tick {} stands where tick {tick} is due", state.tick)));
+        }
+        if let Some(why) = states.iter().find_map(bounds::state) {
+            return Err(not_whole(why));
         }
         if self.frames.len() >= MAX_STATES {
             return Err(not_whole(format!("it has more than {MAX_STATES} states")));

@@ -24,7 +24,7 @@ pub(crate) struct Look {
     names: bool,
     /// Whether humans are too many for names and long trails.
     crowd: bool,
-    /// Pixels per metre.
+    /// Pixels per meter.
     px_per_m: f64,
     /// Least radius of an agent, px.
     least_px: f64,

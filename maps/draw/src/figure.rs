@@ -11,7 +11,7 @@ use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
 
-/// Points of a printer in a millimetre.
+/// Points of a printer in a millimeter.
 const PT_PER_MM: f64 = 72.0 / 25.4;
 /// Letters on the map and in the legend, pt: what journals ask for at least in a figure.
 const TEXT_PT: f64 = 7.0;
@@ -45,7 +45,7 @@ pub enum FigureError {
     },
 }
 
-/// The figure as SVG, its width in millimetres. Of the first run everybody is drawn, of further runs only the robot.
+/// The figure as SVG, its width in millimeters. Of the first run everybody is drawn, of further runs only the robot.
 /// The camera is that of `all` runs of the scenario.
 ///
 /// # Errors
@@ -299,8 +299,8 @@ fn draw_legend(svg: &mut Svg, entries: &[Entry], columns: usize, width: f64, top
     let line = TEXT_PT * 1.5;
     // A thin outline gives the light letters body in print.
     let style = format!("font-size=\"{TEXT_PT}\" fill=\"{0}\" stroke=\"{0}\" stroke-width=\"0.15\"", palette::INK);
-    let metres = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|m| m * px_per_m >= 22.0).unwrap_or(100.0);
-    let (y, w) = (top + line * 0.75, metres * px_per_m);
+    let meters = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0].into_iter().find(|m| m * px_per_m >= 22.0).unwrap_or(100.0);
+    let (y, w) = (top + line * 0.75, meters * px_per_m);
     svg.raw(&format!(
         "<path d=\"M1 {0:.2}v4M1 {1:.2}h{w:.2}M{2:.2} {0:.2}v4\" stroke=\"{3}\" stroke-width=\"0.8\" fill=\"none\"/>",
         y - 2.0,
@@ -308,7 +308,7 @@ fn draw_legend(svg: &mut Svg, entries: &[Entry], columns: usize, width: f64, top
         1.0 + w,
         palette::INK
     ));
-    svg.text((w + 4.0, y + TEXT_PT * 0.35), &format!("{metres} m"), &style);
+    svg.text((w + 4.0, y + TEXT_PT * 0.35), &format!("{meters} m"), &style);
     let mut parts = vec![
         (Sign::Start, "start".to_owned()),
         (Sign::End, "end".to_owned()),

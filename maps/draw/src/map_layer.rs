@@ -9,7 +9,7 @@ use crate::label::Area;
 use crate::palette;
 use crate::svg::Svg;
 
-/// Part of the map that is shown and its scale: world metres to picture pixels.
+/// Part of the map that is shown and its scale: world meters to picture pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Cell columns and rows that are shown: first column, first row, columns, rows.
@@ -106,8 +106,8 @@ impl Frame {
 
     /// Picture length of a world length.
     #[must_use]
-    pub fn len(&self, location: &Location, metres: f64) -> f64 {
-        metres / location.grid.resolution_m * self.scale
+    pub fn len(&self, location: &Location, meters: f64) -> f64 {
+        meters / location.grid.resolution_m * self.scale
     }
 }
 

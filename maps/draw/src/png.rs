@@ -115,10 +115,10 @@ fn encode(pixels: &tiny_skia::Pixmap, dpi: Option<f32>) -> Result<Vec<u8>, PngEr
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a positive number of pixels per metre"
+            reason = "a positive number of pixels per meter"
         )]
-        let per_metre = (dpi / 0.0254).round() as u32;
-        encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_metre, yppu: per_metre, unit: png::Unit::Meter }));
+        let per_meter = (dpi / 0.0254).round() as u32;
+        encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_meter, yppu: per_meter, unit: png::Unit::Meter }));
     }
     let mut writer = encoder.write_header().map_err(wrong)?;
     writer.write_image_data(&colors).map_err(wrong)?;

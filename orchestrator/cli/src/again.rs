@@ -73,19 +73,15 @@ pub(crate) fn simulate(
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "runs": rows }));
     if differ > 0 {
-        return Err(Complaint::input(
-            format!("{differ} recordings differ from the bundle's"),
-            "the bundle was made by another version, or was changed by hand",
-        )
-        .with_code(Code::Ours));
+        return Err(differs(&bundle, &format!("{differ} recordings differ from the bundle's")));
     }
     Ok(())
 }
 
 /// One run of a bundle's scenario.
-fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
+pub(crate) fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
     let name = format!("{}.{planner}-{seed}", bundle.manifest.scenario);
-    let run = RunId::new(name).map_err(|bad| Complaint::input(bad.to_string(), "the bundle is damaged"))?;
+    let run = RunId::new(name).map_err(|bad| Complaint::input(bad.to_string(), "choose another `--planner`"))?;
     let made =
         Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
     play::simulate(&bundle.request, &bundle.location, made, run, planner, seed).map_err(|faults| {
@@ -223,13 +219,24 @@ fn score_bundle(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "verdict": bundle.manifest.verdict, "runs": rows }));
     if differ > 0 {
-        return Err(Complaint::input(
-            format!("{differ} reports differ from the bundle's"),
-            "the bundle was made by another version, or was changed by hand",
-        )
-        .with_code(Code::Ours));
+        return Err(differs(&bundle, &format!("{differ} reports differ from the bundle's")));
     }
     Ok(())
+}
+
+/// Results that are not the bundle's: the fault of whoever changed a file, else of the program.
+fn differs(bundle: &Bundle, what: &str) -> Complaint {
+    let changed = bundle::changed(bundle);
+    if changed.is_empty() {
+        let hint = "no file of the bundle was changed: another version of the program made it, or this one has a fault";
+        return Complaint::input(what, hint).with_code(Code::Ours);
+    }
+    let mut complaint = Complaint::input(
+        format!("{what}: files were changed after it was made"),
+        "`socrates run BUNDLE/request.toml` makes a bundle of what they say now",
+    );
+    complaint.causes = changed.iter().map(|name| bundle.dir.join(name).display().to_string()).collect();
+    complaint
 }
 
 /// Why metrics have no value, by id.

@@ -127,14 +127,15 @@ pub(crate) fn convert(talk: &Talk, path: &Path, to: Option<&str>, out: Option<&P
 }
 
 /// An agents file with its name in messages.
-fn read(path: &Path) -> Result<(String, AgentsFile), Complaint> {
+pub(crate) fn read(path: &Path) -> Result<(String, AgentsFile), Complaint> {
     let file = path.display().to_string();
     let text = files::text(path, MAX_BYTES, "name a HuNavSim agents file")?;
     let agents = AgentsFile::read(&text, &file).map_err(|problems| listed(&file, &problems))?;
     Ok((file, agents))
 }
 
-fn listed(file: &str, problems: &[Problem]) -> Complaint {
+/// The problems of an agents file.
+pub(crate) fn listed(file: &str, problems: &[Problem]) -> Complaint {
     let mut complaint = Complaint::input(
         format!("`{file}` has {}", plural(problems.len(), "problem")),
         "the README of `workers/simulation/hunav` describes agents files",

@@ -58,7 +58,7 @@ pub(crate) fn agreement(talk: &Talk, labels: &Path, bundles: &[PathBuf]) -> Resu
     if unknown.len() == labels.iter().map(|label| &label.run).collect::<BTreeSet<_>>().len() {
         let known: Vec<&str> = verdicts.keys().map(String::as_str).take(8).collect();
         return Err(Complaint::input(
-            "no labelled run is in the bundles",
+            "no labeled run is in the bundles",
             format!("runs there: {}", if known.is_empty() { "none".to_owned() } else { known.join(", ") }),
         ));
     }
@@ -133,7 +133,7 @@ fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
             answers: [answer("simulable")?, answer("appropriate")?, answer("as_asked")?],
         };
         if !seen.insert((label.run.clone(), label.rater.clone())) {
-            return Err(bad(index + 1, format!("`{}` has labelled `{}` twice", label.rater, label.run)));
+            return Err(bad(index + 1, format!("`{}` has labeled `{}` twice", label.rater, label.run)));
         }
         found.push(label);
     }

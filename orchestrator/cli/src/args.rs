@@ -167,7 +167,7 @@ pub(crate) enum Verb {
         #[command(subcommand)]
         verb: crate::chat::LibraryVerb,
     },
-    /// List, show and rate the canonical scenarios of the catalogue.
+    /// List, show and rate the canonical scenarios of the catalog.
     Scenarios {
         /// What to do.
         #[command(subcommand)]
@@ -508,6 +508,8 @@ pub(crate) enum DevVerb {
         /// HuNavSim agents files.
         agents: Vec<PathBuf>,
     },
+    /// Let damaged inputs in at every door: each must be read or refused with the name of its file.
+    Fuzz(crate::fuzz::FuzzOptions),
     /// Measure the main job on this machine.
     Bench {
         /// Runs to take the median of.

@@ -12,8 +12,8 @@ use crate::prepare::{prepare_text, scenario_id};
 use crate::session::{Wanted, make};
 use crate::talk::Talk;
 
-/// The request that is made again and again.
-const REQUEST: &str = include_str!("bench.toml");
+/// The request that is made again and again: one that is realised, so that the whole way is measured.
+const REQUEST: &str = include_str!("../../../maps/warehouse/scenarios/group.toml");
 /// Scenarios that are made one after the other by the same processes.
 const SERIES: u64 = 14;
 /// The first of them warm the processes up and are not counted.
@@ -63,7 +63,7 @@ fn whole(runs: u32, folder: &Path) -> Result<(Vec<f64>, serde_json::Value), Comp
     for number in 0..runs.max(1) + 1 {
         let started = Instant::now();
         let out = std::process::Command::new(&program)
-            .args(["run", "--require", "any", "--format", "json", "--out"])
+            .args(["run", "--require", "realised", "--format", "json", "--out"])
             .arg(folder.join(number.to_string()))
             .arg(&request)
             .output()

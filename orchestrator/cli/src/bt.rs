@@ -119,7 +119,7 @@ fn check(talk: &Talk, file: &Path, library: Library, wrong: &mut Vec<String>) ->
 }
 
 /// A tree, by the library that was asked for, or the first that takes it.
-fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint> {
+pub(crate) fn load(file: &Path, library: Option<&str>) -> Result<(Tree, Library), Complaint> {
     let bytes = files::bytes(file, MAX_BYTES, "name a tree in BehaviorTree.CPP XML")?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let includes = |path: &str| including(folder, path);

@@ -6,6 +6,10 @@
 //!          behaviors.json behaviors/*.xml recordings/<planner>-<seed>.mcap reports/<planner>-<seed>.json
 //! ```
 
+mod read;
+
+pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports};
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -93,11 +97,6 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
         members.insert("looked_at".to_owned(), json!(true));
     }
     Digest::of(text.to_string().as_bytes())
-}
-
-/// Reads the manifest of a finished bundle.
-pub(crate) fn manifest(dir: &Path) -> Option<Manifest> {
-    serde_json::from_str(&std::fs::read_to_string(dir.join("details/manifest.json")).ok()?).ok()
 }
 
 /// Where artifacts are read from.
@@ -212,75 +211,6 @@ pub(crate) fn write(
     out.put_outside("report.html", crate::report::page(&bundle, &stages, &prepared.author).as_bytes())?;
     out.put_outside("details/manifest.json", pretty(&bundle.manifest)?.as_bytes())?;
     Ok(bundle)
-}
-
-/// Reads a finished bundle back, here or wherever it was moved to.
-pub(crate) fn read(dir: &Path) -> Result<Bundle, Complaint> {
-    read_some(dir, |_, _| true)
-}
-
-/// The same with some of its runs only, chosen by their place in the manifest and what it says of them.
-pub(crate) fn read_some(dir: &Path, wanted: impl Fn(usize, &RunEntry) -> bool) -> Result<Bundle, Complaint> {
-    let manifest = manifest(dir).ok_or_else(|| {
-        Complaint::input(
-            format!("`{}` is no finished bundle: details/manifest.json is missing or broken", dir.display()),
-            "`socrates run` makes one; the same command again finishes an unfinished one",
-        )
-    })?;
-    let load = |name: &str| -> Result<String, Complaint> {
-        let path = dir.join("details").join(name);
-        std::fs::read_to_string(&path).map_err(|why| {
-            Complaint::input(
-                format!("cannot read `{}`: {why}", path.display()),
-                "the bundle is damaged; run its request.toml again",
-            )
-        })
-    };
-    let request_text = std::fs::read_to_string(dir.join("request.toml")).map_err(|why| {
-        Complaint::input(
-            format!("cannot read `{}`: {why}", dir.join("request.toml").display()),
-            "the bundle is damaged",
-        )
-    })?;
-    let request: Request = toml::from_str(&request_text)
-        .map_err(|why| Complaint::input(format!("request.toml of the bundle: {why}"), "the bundle is damaged"))?;
-    let mut runs = Vec::new();
-    for (_, entry) in manifest.runs.iter().enumerate().filter(|(index, entry)| wanted(*index, entry)) {
-        let item = format!("{}-{}", entry.planner, entry.seed);
-        let path = dir.join(format!("details/recordings/{item}.mcap"));
-        let bytes = std::fs::read(&path).map_err(|why| {
-            Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged")
-        })?;
-        let recording = socrates_stream::mcap::read(&bytes)
-            .map_err(|why| Complaint::input(format!("`{}`: {why}", path.display()), "the bundle is damaged"))?;
-        runs.push((recording, parse("report", &load(&format!("reports/{item}.json"))?)?));
-    }
-    Ok(Bundle {
-        dir: dir.to_path_buf(),
-        manifest,
-        request,
-        location: parse("location", &load("location.json")?)?,
-        reading: parse("reading", &load("reading.json")?)?,
-        proposal: parse("proposal", &load("proposal.json")?)?,
-        paths: parse("paths", &load("paths.json")?)?,
-        behaviors: parse("behaviors", &load("behaviors.json")?)?,
-        runs,
-    })
-}
-
-/// The reports of all runs of a bundle, without their recordings.
-pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Complaint> {
-    manifest
-        .runs
-        .iter()
-        .map(|entry| {
-            let path = dir.join(format!("details/reports/{}-{}.json", entry.planner, entry.seed));
-            let text = std::fs::read_to_string(&path).map_err(|why| {
-                Complaint::input(format!("cannot read `{}`: {why}", path.display()), "the bundle is damaged")
-            })?;
-            parse("report", &text)
-        })
-        .collect()
 }
 
 struct Writer {

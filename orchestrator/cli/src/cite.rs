@@ -75,8 +75,8 @@ fn paragraph(bundle: &Bundle, asked: u32, program: Option<&str>) -> String {
         " Proposal, paths and behaviors were written by {author}{tries}, base seed {}. It takes place in the location `{}` ({:.0} m by {:.0} m at {} m per cell, {} nodes) with {}{}.",
         manifest.seed,
         bundle.location.name,
-        metres(bundle.location.grid.width, bundle.location.grid.resolution_m),
-        metres(bundle.location.grid.height, bundle.location.grid.resolution_m),
+        meters(bundle.location.grid.width, bundle.location.grid.resolution_m),
+        meters(bundle.location.grid.height, bundle.location.grid.resolution_m),
         bundle.location.grid.resolution_m,
         bundle.location.graph.nodes.len(),
         count(proposal.humans.len(), "human"),
@@ -237,7 +237,7 @@ fn bibtex(bundle: &Bundle) -> String {
     )
 }
 
-fn metres(cells: usize, resolution_m: f64) -> f64 {
+fn meters(cells: usize, resolution_m: f64) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
     let cells = cells as f64;
     cells * resolution_m

@@ -39,6 +39,7 @@ impl Config {
             flatten("", &parse(&text, &found.display().to_string())?, &found.display().to_string(), &mut layer);
             for (key, entry) in layer {
                 known(&values, &key, &found.display().to_string())?;
+                same_kind(&values, &key, &entry)?;
                 values.insert(key, entry);
             }
         }
@@ -133,6 +134,26 @@ fn known(values: &BTreeMap<String, (toml::Value, String)>, key: &str, origin: &s
     Err(Complaint::input(format!("{origin}: unknown configuration key `{key}`"), format!("allowed keys: {all}")))
 }
 
+/// A file has the kinds of the built-in values: a text where a number is due would be read as 0.
+fn same_kind(
+    values: &BTreeMap<String, (toml::Value, String)>,
+    key: &str,
+    (value, origin): &(toml::Value, String),
+) -> Result<(), Complaint> {
+    let Some((due, _)) = values.get(key) else { return Ok(()) };
+    let is_whole = matches!((due, value), (toml::Value::Float(_), toml::Value::Integer(_)));
+    // Counts are whole numbers from 0.
+    let is_negative = value.as_integer().is_some_and(|number| number < 0);
+    if (due.same_type(value) || is_whole) && !is_negative {
+        return Ok(());
+    }
+    let (found, kind) = (value.type_str(), due.type_str());
+    Err(Complaint::input(
+        format!("{origin}: `{key}` is `{value}`, {found}"),
+        format!("it takes {kind}, such as `{due}`; `socrates config` prints the manual"),
+    ))
+}
+
 fn typed(
     values: &BTreeMap<String, (toml::Value, String)>,
     key: &str,
@@ -173,5 +194,19 @@ mod tests {
         assert!(why.to_string().contains("wrokers"));
         let why = Config::load(None, env(), &["supervisor.workers=two".to_owned()]).unwrap_err();
         assert!(why.to_string().contains("a whole number"));
+    }
+
+    #[test]
+    fn a_file_with_a_text_for_a_number_is_refused_with_its_name_and_key() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("socrates.toml");
+        for (text, words) in [
+            ("[supervisor]\nworkers = \"two\"\n", ["socrates.toml", "supervisor.workers", "two"]),
+            ("[supervisor]\nworkers = -2\n", ["socrates.toml", "supervisor.workers", "-2"]),
+        ] {
+            std::fs::write(&file, text).unwrap();
+            let why = Config::load(Some(&file), std::iter::empty(), &[]).unwrap_err().to_string();
+            assert!(words.iter().all(|word| why.contains(word)), "{why}");
+        }
     }
 }

@@ -12,10 +12,13 @@ use crate::config::Config;
 use crate::exit::Complaint;
 use crate::talk::Talk;
 
+/// Largest table of prices that is read, bytes.
+const MAX_PRICES_BYTES: u64 = 4 * 1024 * 1024;
+
 /// Prices of one model, per million tokens.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Price {
+pub(crate) struct Price {
     input: f64,
     /// Of input that came from the server's cache; without one, as other input.
     #[serde(default)]
@@ -155,10 +158,10 @@ pub(crate) fn check_limit(config: &Config, author: &str) -> Result<(), Complaint
     ))
 }
 
-fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
+/// Prices by model.
+pub(crate) fn read_prices(file: &Path) -> Result<BTreeMap<String, Price>, Complaint> {
     let hint = "each table is a model: [\"gpt-4o\"] with input, output, perhaps cached_input, currency, valid_from";
-    let text = std::fs::read_to_string(file)
-        .map_err(|why| Complaint::input(format!("cannot read the prices `{}`: {why}", file.display()), hint))?;
+    let text = crate::files::text(file, MAX_PRICES_BYTES, hint)?;
     let prices: BTreeMap<String, Price> = toml::from_str(&text)
         .map_err(|why| Complaint::input(format!("`{}` is no table of prices: {why}", file.display()), hint))?;
     for (model, price) in &prices {

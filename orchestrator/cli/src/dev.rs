@@ -15,6 +15,9 @@ use crate::mutations;
 use crate::talk::Talk;
 use crate::traces;
 
+/// Largest file of the published tool that is read, bytes.
+const MAX_IMPORT_BYTES: u64 = 64 * 1024 * 1024;
+
 /// Does a `dev` verb.
 pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb) -> Result<(), Complaint> {
     match verb {
@@ -29,6 +32,7 @@ pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb)
         DevVerb::Mutations { requests, seeds, all } => mutations::mutations(talk, config, requests, *seeds, *all).await,
         DevVerb::Agreement { labels, bundles } => agreement::agreement(talk, labels, bundles),
         DevVerb::Golden { agents } => crate::golden::golden(talk, config, agents).await,
+        DevVerb::Fuzz(options) => crate::fuzz::fuzz(talk, config, options),
         DevVerb::Bench { runs } => bench::bench(talk, cli, config, *runs).await,
     }
 }
@@ -46,16 +50,19 @@ fn schema(talk: &Talk, artifact: &str) -> Result<(), Complaint> {
     Ok(())
 }
 
-fn import(talk: &Talk, file: &Path) -> Result<(), Complaint> {
-    let text = std::fs::read_to_string(file).map_err(|why| {
-        Complaint::input(format!("cannot read `{}`: {why}", file.display()), "name a JSON file of the published tool")
-    })?;
-    let found = socrates_export::socrates_json::read(&text).map_err(|why| {
+/// What a file of the published tool holds.
+pub(crate) fn imported(file: &Path) -> Result<socrates_export::socrates_json::Imported, Complaint> {
+    let text = crate::files::text(file, MAX_IMPORT_BYTES, "name a JSON file of the published tool")?;
+    socrates_export::socrates_json::read(&text).map_err(|why| {
         Complaint::input(
             format!("`{}`: {why}", file.display()),
             "the forms are scenario, trajectory, trees and combined",
         )
-    })?;
+    })
+}
+
+fn import(talk: &Talk, file: &Path) -> Result<(), Complaint> {
+    let found = imported(file)?;
     let object = json!({ "proposal": found.proposal, "paths": found.paths, "behaviors": found.behaviors });
     talk.line(&serde_json::to_string_pretty(&object).unwrap_or_default());
     talk.result(&object);

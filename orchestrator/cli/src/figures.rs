@@ -156,13 +156,13 @@ mod tests {
     }
 
     fn batch() -> Vec<(String, Vec<Report>)> {
-        let of = |planner: &str, seed: u64, metres: Option<f64>| {
+        let of = |planner: &str, seed: u64, meters: Option<f64>| {
             let moves = (planner != "none").then_some(0.6);
             let goal = moves.map(|_| 1.0);
             report(
                 planner,
                 seed,
-                [("robot_speed_mean", "m/s", moves), ("human_distance_min", "m", metres), ("success", "0/1", goal)],
+                [("robot_speed_mean", "m/s", moves), ("human_distance_min", "m", meters), ("success", "0/1", goal)],
             )
         };
         let scenario = |name: &str, more: f64| {

@@ -63,8 +63,9 @@ pub(crate) fn cells(line: &str) -> Vec<String> {
 pub(crate) fn program_hash() -> Option<String> {
     static HASH: std::sync::OnceLock<Option<String>> = std::sync::OnceLock::new();
     let read = || {
-        let bytes = std::fs::read(std::env::current_exe().ok()?).ok()?;
-        Some(socrates_model::Digest::of(&bytes).to_string())
+        // Block by block: the program is larger than everything else that this process holds.
+        let program = std::fs::File::open(std::env::current_exe().ok()?).ok()?;
+        Some(socrates_model::Digest::of_reader(program).ok()?.to_string())
     };
     HASH.get_or_init(read).clone()
 }

@@ -32,6 +32,7 @@ mod figure;
 mod figures;
 mod files;
 mod folder;
+mod fuzz;
 mod golden;
 mod history;
 mod index;

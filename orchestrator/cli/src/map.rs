@@ -1,13 +1,18 @@
 //! `map`: list, check, draw, generate.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::json;
 
 use crate::args::MapVerb;
 use crate::exit::Complaint;
+use crate::files;
 use crate::prepare::{load_location, plural};
 use crate::talk::Talk;
+
+/// Largest floor plan that is read, bytes.
+const MAX_PLAN_BYTES: u64 = 4 * 1024 * 1024;
 
 /// Does a `map` verb.
 pub(crate) fn map(talk: &Talk, verb: &MapVerb) -> Result<(), Complaint> {
@@ -80,20 +85,17 @@ fn draw(talk: &Talk, name: &str, out: &Path) -> Result<(), Complaint> {
     Ok(())
 }
 
+/// The files of a location that a floor plan describes.
+pub(crate) fn generated(plan: &Path) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
+    let hint = "see maps/README.md for the form of a floor plan";
+    let text = files::text(plan, MAX_PLAN_BYTES, hint)?;
+    socrates_maps::generate(&text).map_err(|faults| {
+        Complaint::faults(format!("the floor plan `{}` is not usable", plan.display()), &faults, hint)
+    })
+}
+
 fn generate(talk: &Talk, plan: &Path, out: &Path) -> Result<(), Complaint> {
-    let text = std::fs::read_to_string(plan).map_err(|why| {
-        Complaint::input(
-            format!("cannot read `{}`: {why}", plan.display()),
-            "see maps/README.md for the form of a floor plan",
-        )
-    })?;
-    let files = socrates_maps::generate(&text).map_err(|faults| {
-        Complaint::faults(
-            format!("the floor plan `{}` is not usable", plan.display()),
-            &faults,
-            "see maps/README.md for the form of a floor plan",
-        )
-    })?;
+    let files = generated(plan)?;
     let cannot = |path: &Path, why: std::io::Error| {
         Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
     };

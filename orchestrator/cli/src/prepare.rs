@@ -129,12 +129,13 @@ pub(crate) fn prepare_text(
     for planner in &request.robot.planners {
         if !known.contains(&planner.as_str()) {
             return Err(Complaint::input(
-                format!("J-PLANNER `robot.planners`: there is no planner `{planner}`"),
+                format!("J-PLANNER the request `{shown}`: `robot.planners`: there is no planner `{planner}`"),
                 format!("planners: {}", known.join(", ")),
             ));
         }
     }
-    let (mut location, location_files) = load_location(&request.location, folder)?;
+    let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
+    let (mut location, location_files) = load_location(&request.location, folder).map_err(of_request)?;
     if let Some(description) = &request.location_description {
         location.description.clone_from(description);
     }
@@ -162,7 +163,7 @@ pub(crate) fn prepare_text(
             pins.insert(role.to_owned(), read_pin(role, &folder.join(pinned))?);
         }
     }
-    let (author, mut author_note) = choose_author(&request.run.author, config)?;
+    let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     crate::cost::check_limit(config, &author)?;
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.

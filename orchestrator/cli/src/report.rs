@@ -33,7 +33,7 @@ pub(crate) fn page(bundle: &Bundle, stages: &[StageRow], author: &str) -> String
 
 /// Writes the page of a bundle, or the page of a folder of bundles.
 pub(crate) fn report(talk: &Talk, what: &Path) -> Result<(), Complaint> {
-    if bundle::manifest(what).is_none() {
+    if !bundle::is_bundle(what) {
         let found = batch::write(talk, what)?;
         let page = what.join("report.html");
         let repeats = found.rows - found.distinct;

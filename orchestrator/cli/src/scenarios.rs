@@ -1,4 +1,4 @@
-//! `scenarios`: the catalogue of canonical scenarios, and how often each of them really happens.
+//! `scenarios`: the catalog of canonical scenarios, and how often each of them really happens.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -419,7 +419,7 @@ mod tests {
 
     #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
     #[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
-    async fn every_scenario_of_the_catalogue_really_happens() {
+    async fn every_scenario_of_the_catalog_really_happens() {
         let (mut runs, mut realised, mut lines) = (0, 0, Vec::new());
         for card in catalog() {
             let rate = rated(card, &places(card, None).unwrap(), SEEDS, &mut || ()).await.unwrap();

@@ -6,7 +6,7 @@ use reqwest::header::{CONTENT_TYPE, HeaderValue};
 use reqwest::{RequestBuilder, Response, Url};
 
 use crate::chat::{ChatAnswer, ChatRequest};
-use crate::dialect::{Dialect, Learnt, Rung};
+use crate::dialect::{Dialect, Learned, Rung};
 use crate::error::ChatError;
 use crate::key::ApiKey;
 use crate::limits;
@@ -35,7 +35,7 @@ pub struct ClientConfig {
     /// The one rung to use; without one, the dialect's ladder from the top, or from where it was left.
     pub rung: Option<Rung>,
     /// Where rungs are remembered.
-    pub learnt: Learnt,
+    pub learned: Learned,
     /// Whether the server knows `max_tokens` only. Default false for api.openai.com, true elsewhere.
     pub old_token_limit: bool,
     /// Whether the proxy of the environment is used. Default false.
@@ -57,7 +57,7 @@ impl ClientConfig {
             timeout: Duration::from_secs(90),
             max_bytes: 2 * 1024 * 1024,
             rung: None,
-            learnt: Learnt::default(),
+            learned: Learned::default(),
             old_token_limit: !base_url.contains("api.openai.com"),
             proxy: false,
             plain_http: false,
@@ -129,7 +129,7 @@ impl ChatClient {
             match self.call(request, rung).await {
                 Ok(mut answer) => {
                     if request.schema.is_some() {
-                        self.config.learnt.keep(&server, rung);
+                        self.config.learned.keep(&server, rung);
                     }
                     answer.steps = steps;
                     return Ok(answer);
@@ -160,7 +160,7 @@ impl ChatClient {
             ladder.retain(|rung| *rung != Rung::Grammar);
             ladder.insert(0, Rung::Grammar);
         }
-        let known = self.config.learnt.rung(server).and_then(|rung| ladder.iter().position(|step| *step == rung));
+        let known = self.config.learned.rung(server).and_then(|rung| ladder.iter().position(|step| *step == rung));
         ladder.split_off(known.unwrap_or(0))
     }
 

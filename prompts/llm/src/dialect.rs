@@ -185,11 +185,11 @@ impl FromStr for Dialect {
     }
 }
 
-/// What was learnt of servers in this process: the rung on which each has answered. Clones share it.
+/// What was learned of servers in this process: the rung on which each has answered. Clones share it.
 #[derive(Debug, Clone, Default)]
-pub struct Learnt(Arc<Mutex<BTreeMap<String, Rung>>>);
+pub struct Learned(Arc<Mutex<BTreeMap<String, Rung>>>);
 
-impl Learnt {
+impl Learned {
     /// The rung of a server and model, if it has answered before.
     #[must_use]
     pub fn rung(&self, server: &str) -> Option<Rung> {

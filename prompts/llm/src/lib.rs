@@ -3,7 +3,7 @@
 //! ```text
 //! ChatRequest ──► ChatClient ──HTTP──► server        (errors: ChatError, each with what to wait for)
 //!      │            │ Dialect: whose server it is · Wire: Chat Completions, Messages, generateContent
-//!      │            └ Rung: how far it enforces the form of the answer, learnt by what it refuses
+//!      │            └ Rung: how far it enforces the form of the answer, learned by what it refuses
 //!      └────────► Cassette (one file per exchange, found by the BLAKE3 of the request)
 //! ```
 //!
@@ -37,7 +37,7 @@ mod server;
 pub use cassette::{Cassette, CassetteError};
 pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 pub use client::{ChatClient, ClientConfig};
-pub use dialect::{Dialect, Learnt, Rung, UnknownName, Wire};
+pub use dialect::{Dialect, Learned, Rung, UnknownName, Wire};
 pub use error::ChatError;
 pub use key::ApiKey;
 pub use limits::{Limits, Rate};

@@ -482,6 +482,8 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         }
     };
     out.sort_unstable();
+    // `the second and human_2` is one person.
+    out.dedup();
     if out.is_empty() {
         return desk.refuse(&wish.quote, "means nobody who is there");
     }

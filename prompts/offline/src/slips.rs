@@ -105,7 +105,7 @@ const NO_SLIPS: &[&str] = &[
     "loin", "snag", "brat", "pros", "gaol", "tires", "tiers",
 ];
 
-/// The only word of the tables that has the same letters, two neighbours swapped: `whne`, `corsses`. Of words as short as
+/// The only word of the tables that has the same letters, two neighbors swapped: `whne`, `corsses`. Of words as short as
 /// names are, only those that every text has: `Lena` is no `lean`.
 fn swapped(text: &str) -> Option<&'static str> {
     if NO_SLIPS.contains(&text) || !text.bytes().all(|b| b.is_ascii_lowercase()) {

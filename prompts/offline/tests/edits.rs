@@ -408,3 +408,21 @@ fn a_wish_is_done_whole_or_not_at_all_and_words_left_out_are_named_as_such() {
     let last = edit(&ask, &again.draft, "the nurse walks slower");
     assert!(last.done.is_empty() && last.not_done[0].message.contains("0.3 to 1.8 m/s"), "{last:?}");
 }
+
+#[test]
+fn somebody_who_is_named_twice_is_removed_once() {
+    let rough = "Three people are in the corridor: a nurse, a visitor and a porter. They walk towards the robot.";
+    let (ask, before) = draft("hospital", rough);
+    let ids =
+        |draft: &Draft| draft.proposal.humans.iter().map(|human| human.id).collect::<std::collections::BTreeSet<_>>();
+    for words in [
+        "add a thi human_2, then remove person first",
+        "remove human_2 and human_2",
+        "remove the second person and human_2",
+        "remove human_3, the third and the porter",
+    ] {
+        let after = edit(&ask, &before, words);
+        assert_eq!(ids(&after.draft).len(), after.draft.proposal.humans.len(), "{words}");
+        assert!(!after.draft.proposal.humans.is_empty(), "{words}");
+    }
+}

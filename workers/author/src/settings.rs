@@ -7,7 +7,7 @@ use std::time::Duration;
 use async_trait::async_trait;
 use socrates_llm::models::Has;
 use socrates_llm::probe::Probe;
-use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learnt, Rung};
+use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learned, Rung};
 use socrates_model::FaultCode;
 use socrates_prompts::{Question, Style, Telling};
 
@@ -44,8 +44,8 @@ pub struct Keys {
     pub max_tokens: Option<u32>,
     /// Whether plain HTTP may go to other machines.
     pub plain_http: bool,
-    /// What was learnt of servers; clones share it.
-    pub learnt: Learnt,
+    /// What was learned of servers; clones share it.
+    pub learned: Learned,
 }
 
 impl Keys {
@@ -206,7 +206,7 @@ fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, As
     }
     let mut config = ClientConfig::new(dialect, url, key, model);
     config.rung = keys.rung;
-    config.learnt = keys.learnt.clone();
+    config.learned = keys.learned.clone();
     config.plain_http = keys.plain_http;
     if let Some(timeout) = keys.timeout {
         config.timeout = timeout;

@@ -105,7 +105,7 @@ fn flat(nodes: &[Node], document: &Document) -> Flat {
             asks_world: is_asked
                 && node.leaf > 0
                 && node.sheet.library != Library::BuiltIn
-                && node.sheet.role.is_catalogued(),
+                && node.sheet.role.is_cataloged(),
             is_guarded: node.guards.is_some(),
             is_decorator: node.sheet.kind == Kind::Decorator,
         });

@@ -74,7 +74,7 @@ pub fn describe(human: HumanId, rules: &[Rule]) -> String {
         sentences.push(format!("{sentence}."));
     }
     sentences.push(if rules.is_empty() {
-        format!("{} walks along its path.", capital(&human.to_string()))
+        format!("{} walks along their path.", capital(&human.to_string()))
     } else if rules.iter().any(rules::is_endless) {
         "They do nothing else.".to_owned()
     } else {

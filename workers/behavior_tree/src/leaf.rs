@@ -19,7 +19,7 @@ pub struct LeafCall<'a> {
 }
 
 impl LeafCall<'_> {
-    /// Tag, as the catalogue spells it.
+    /// Tag, as the catalog spells it.
     #[must_use]
     pub const fn tag(&self) -> &'static str {
         self.sheet.tag

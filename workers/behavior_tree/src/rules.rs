@@ -58,7 +58,7 @@ fn values(human: HumanId, trigger: &Trigger, at: &str, faults: &mut Vec<Fault>) 
         }
         Trigger::HumanSays(id, _) => {
             if *id == human {
-                faults.push(Fault::new(FaultCode::BRange, at, format!("{human} cannot wait for its own gesture")));
+                faults.push(Fault::new(FaultCode::BRange, at, format!("{human} cannot wait for their own gesture")));
             }
         }
         Trigger::Always

@@ -240,15 +240,15 @@ pub(crate) enum Role {
     Says,
     /// Changes the goal or the blackboard.
     Quiet,
-    /// A leaf of the catalogue that only [`World::leaf`](crate::World::leaf) can tick.
+    /// A leaf of the catalog that only [`World::leaf`](crate::World::leaf) can tick.
     World,
-    /// Not in the catalogue.
+    /// Not in the catalog.
     Foreign,
 }
 
 impl Role {
-    /// Whether the catalogue knows the node.
-    pub(crate) const fn is_catalogued(self) -> bool {
+    /// Whether the catalog knows the node.
+    pub(crate) const fn is_cataloged(self) -> bool {
         !matches!(self, Self::Foreign)
     }
 

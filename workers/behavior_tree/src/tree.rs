@@ -70,7 +70,7 @@ pub(crate) struct Node {
 impl Node {
     /// The tag, of a foreign leaf as the document spells it.
     pub(crate) fn document_tag(&self) -> &str {
-        if self.sheet.role.is_catalogued() { self.sheet.tag } else { &self.tag }
+        if self.sheet.role.is_cataloged() { self.sheet.tag } else { &self.tag }
     }
 }
 
@@ -330,7 +330,7 @@ impl Tree {
             .nodes
             .iter()
             .map(|node| node.sheet)
-            .filter(|sheet| sheet.role.is_catalogued() && !crate::nodes::is_known_to(sheet.tag, library))
+            .filter(|sheet| sheet.role.is_cataloged() && !crate::nodes::is_known_to(sheet.tag, library))
             .map(|sheet| sheet.tag)
             .collect();
         tags.sort_unstable();

@@ -50,7 +50,7 @@ pub trait World {
     /// Makes a gesture that lasts until the next one; [`Gesture::None`] takes it back.
     fn gesture(&mut self, gesture: Gesture);
 
-    /// Ticks a leaf of the catalogue in this world's own meaning; `None` leaves it to the native one. In trees read
+    /// Ticks a leaf of the catalog in this world's own meaning; `None` leaves it to the native one. In trees read
     /// with [`Meaning::World`](crate::Meaning::World) it is asked for every condition and action, timers included,
     /// but not for control flow, decorators and the leaves of BehaviorTree.CPP itself; in others never. A leaf
     /// without a native meaning that gets `None` fails, and
@@ -58,10 +58,10 @@ pub trait World {
     fn leaf(&mut self, _call: &mut LeafCall<'_>) -> Option<Status> {
         None
     }
-    /// A leaf of the catalogue that was running is stopped.
+    /// A leaf of the catalog that was running is stopped.
     fn leaf_halted(&mut self, _call: &mut LeafCall<'_>) {}
 
-    /// Ticks a leaf that is not in the catalogue (see [`Options::foreign`](crate::Options)).
+    /// Ticks a leaf that is not in the catalog (see [`Options::foreign`](crate::Options)).
     fn foreign(&mut self, _leaf: u16) -> Status {
         Status::Failure
     }

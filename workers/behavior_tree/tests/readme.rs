@@ -1,4 +1,4 @@
-//! The catalogue in the page of this crate is the catalogue.
+//! The catalog in the page of this crate is the catalog.
 #![cfg(test)]
 
 use std::fs;
@@ -6,8 +6,8 @@ use std::fs;
 use socrates_bt::{CATALOG, DIALECTS, NodeSheet, RARE};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
-const FROM: &str = "<!-- catalogue: as the test `readme` writes it -->\n";
-const TO: &str = "<!-- end of the catalogue -->";
+const FROM: &str = "<!-- catalog: as the test `readme` writes it -->\n";
+const TO: &str = "<!-- end of the catalog -->";
 
 fn rows(sheets: &[&NodeSheet], text: &mut String) {
     text.push_str("| node | kind | children | ports (default) | what it does |\n|---|---|---|---|---|\n");
@@ -42,7 +42,7 @@ fn rows(sheets: &[&NodeSheet], text: &mut String) {
     }
 }
 
-fn catalogue() -> String {
+fn catalog() -> String {
     let mut text = String::from("\n### Ours: BehaviorTree.CPP, the SocRATES fork, and our own nodes\n\n");
     rows(CATALOG, &mut text);
     text.push_str("\n### Rare nodes of BehaviorTree.CPP, read and ticked but offered to nobody\n\n");
@@ -62,13 +62,13 @@ fn split(page: &str) -> (&str, &str, &str) {
 }
 
 #[test]
-fn the_page_lists_the_catalogue() {
+fn the_page_lists_the_catalog() {
     let page = fs::read_to_string(PAGE).unwrap();
     let (before, listed, after) = split(&page);
-    if listed != catalogue() {
+    if listed != catalog() {
         // The page as it should be lies beside the built tests, ready to be copied.
         let right = concat!(env!("CARGO_TARGET_TMPDIR"), "/README.md");
-        fs::write(right, format!("{before}{}{after}", catalogue())).unwrap();
-        panic!("the catalogue of the page is out of date; copy {right} over it");
+        fs::write(right, format!("{before}{}{after}", catalog())).unwrap();
+        panic!("the catalog of the page is out of date; copy {right} over it");
     }
 }

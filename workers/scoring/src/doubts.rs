@@ -53,7 +53,7 @@ fn apart(tracks: &Tracks) -> Vec<String> {
     }
     for human in &tracks.humans {
         if robot.beside(human).next().is_none() {
-            found.push(format!("{} is never recorded together with the robot: it counts for nothing", human.agent));
+            found.push(format!("{} is never recorded together with the robot: they count for nothing", human.agent));
         }
     }
     found
@@ -72,14 +72,14 @@ fn pace(track: &Track) -> Option<String> {
     let middle = *speeds.get(speeds.len() / 2)?;
     if middle > FAST_MPS {
         return Some(format!(
-            "{} moves at {middle:.0} m/s: positions are expected in metres and times in seconds, not in pixels, centimetres or milliseconds",
+            "{} moves at {middle:.0} m/s: positions are expected in meters and times in seconds, not in pixels, centimeters or milliseconds",
             track.agent
         ));
     }
     let (first, last) = (track.samples.first()?, track.samples.last()?);
     let reach = track.samples.iter().map(|s| (s.at - first.at).norm()).fold(0.0, f64::max);
     (last.t - first.t > 60.0 && reach > 0.0 && reach < TINY_M).then(|| {
-        format!("{} moves {reach:.3} m in {:.0} s: are positions in kilometres?", track.agent, last.t - first.t)
+        format!("{} moves {reach:.3} m in {:.0} s: are positions in kilometers?", track.agent, last.t - first.t)
     })
 }
 

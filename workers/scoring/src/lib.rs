@@ -10,7 +10,7 @@
 //! report. What is missing (a map, a proposal, velocities) makes single figures not applicable with
 //! a note; it never becomes 0.
 //!
-//! *Never here:* a wall clock, a random number, a model that decides, a judgement of the setting by
+//! *Never here:* a wall clock, a random number, a model that decides, a judgment of the setting by
 //! what the robot made of it.
 
 mod circle;

@@ -84,7 +84,7 @@ fn a_first_meeting_is_not_made_good_by_the_second() {
 }
 
 #[test]
-fn paths_without_the_second_encounter_cannot_realise_it() {
+fn paths_without_the_second_encounter_cannot_realize_it() {
     let mut one = case();
     one.ways.encounters.truncate(1);
     let report = one.judge(&recording(&[robot(), human(20.5)], 34.0, 0.01));

@@ -190,6 +190,10 @@ impl Series {
         // The time below a level rises with the level.
         while high - low > fine.max(1e-12) {
             let middle = f64::midpoint(low, high);
+            if middle <= low || middle >= high {
+                // Neighbors among floats: between large values there is nothing finer.
+                break;
+            }
             if self.time_below(middle) < wanted { low = middle } else { high = middle }
         }
         Some(high)

@@ -257,7 +257,7 @@ impl Columns {
         };
         let number = |at: usize, name: &str| {
             let text = cell(at, name)?;
-            // Beyond a million metres or seconds a track is an error of units.
+            // Beyond a million meters or seconds a track is an error of units.
             text.parse::<f64>().ok().filter(|value| value.abs() < 1e6).ok_or_else(|| {
                 let shown: String = text.chars().take(40).collect();
                 bad(line, &format!("`{shown}` in column `{name}` is not a number between -1000000 and 1000000"))

@@ -117,3 +117,40 @@ fn viewers_find_pictures_ten_times_a_second() {
     assert_eq!(last["entities"][1]["cylinders"][0]["pose"]["position"]["y"], 3.0);
     assert_eq!(scenes.last().unwrap().channel.schema.as_ref().unwrap().name, "foxglove.SceneUpdate");
 }
+
+/// Bytes of a recording in which one number was changed before it was written.
+fn with(change: impl Fn(&mut Recording)) -> Vec<u8> {
+    let mut recording = recording();
+    change(&mut recording);
+    write(&recording, None).unwrap()
+}
+
+#[test]
+fn numbers_that_nobody_can_walk_are_refused_with_agent_tick_and_value() {
+    let cases: [(Vec<u8>, &[&str]); 6] = [
+        (with(|recording| recording.frames[7].y = 2.1e265), &["human_1", "y", "2.1e265", "tick 3"]),
+        (with(|recording| recording.frames[4].x = f64::NAN), &["robot", "x", "NaN", "tick 2"]),
+        (with(|recording| recording.frames[0].vx = -1e9), &["robot", "vx", "-1e9"]),
+        (with(|recording| recording.header.step_s = 1e300), &["step_s"]),
+        (with(|recording| recording.header.agents[1].radius_m = -1.0), &["radius_m", "human_1", "-1"]),
+        (with(|recording| recording.events[2].time = SimTime::from_nanos(u64::MAX)), &["event", "e10 s"]),
+    ];
+    for (bytes, words) in cases {
+        for error in [read(&bytes).unwrap_err().to_string(), read_rest(&bytes).unwrap_err().to_string()] {
+            assert!(words.iter().all(|word| error.contains(word)), "{words:?} in {error}");
+        }
+    }
+}
+
+#[test]
+fn a_damaged_chunk_is_dropped_whole_and_a_cut_one_is_read_up_to_the_cut() {
+    let recording = recording();
+    let mut bytes = write(&recording, None).unwrap();
+    // Magic, header record, then the first chunk: its checksum stands 24 bytes into it.
+    let header = u64::from_le_bytes(bytes[9..17].try_into().unwrap()) as usize;
+    let chunk = 17 + header;
+    assert_eq!(bytes[chunk], 6);
+    bytes[chunk + 9 + 24] ^= 1;
+    let error = read_rest(&bytes).unwrap_err().to_string();
+    assert!(error.contains("crc") || error.contains("CRC"), "{error}");
+}

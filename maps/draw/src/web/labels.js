@@ -82,7 +82,7 @@
   }
   function progress() {
     const done = data.runs.filter(whole).length;
-    at("progress").textContent = `${done} of ${data.runs.length} labelled`;
+    at("progress").textContent = `${done} of ${data.runs.length} labeled`;
     at("bar").firstElementChild.style.width = 100 * done / data.runs.length + "%";
     at("table").value = csv(); at("export").disabled = !done;
   }

@@ -110,11 +110,11 @@ const player = (() => {
       }
       this.near = this.walls.filter((wall) => shared(wall, box) > 0);
       const bar = this.bar; bar.textContent = "";
-      const metres = [0.5, 1, 2, 5, 10, 20, 50].find((m) => m * this.place.px_per_m / k >= 50) || 100;
-      const x = box[0] + 14 * k, y = box[1] + box[3] - 14 * k, w = metres * this.place.px_per_m;
+      const meters = [0.5, 1, 2, 5, 10, 20, 50].find((m) => m * this.place.px_per_m / k >= 50) || 100;
+      const x = box[0] + 14 * k, y = box[1] + box[3] - 14 * k, w = meters * this.place.px_per_m;
       make("rect", { x: x - 6 * k, y: y - 12 * k, width: w + 52 * k, height: 20 * k, fill: "#fff", opacity: 0.85, rx: 3 * k }, bar);
       make("path", { d: `M${x} ${y - 4 * k}v${8 * k}M${x} ${y}h${w}M${x + w} ${y - 4 * k}v${8 * k}`, stroke: "#5b636e", "stroke-width": 2 * k, fill: "none" }, bar);
-      make("text", { x: x + w + 7 * k, y: y + 4 * k, "font-size": 12 * k, fill: "#3b3f46" }, bar).textContent = metres + " m";
+      make("text", { x: x + w + 7 * k, y: y + 4 * k, "font-size": 12 * k, fill: "#3b3f46" }, bar).textContent = meters + " m";
     }
     // The box for the words of somebody: off walls, bodies and other words, inside the picture, and where it was before unless
     // another place is much better.

@@ -184,7 +184,8 @@ fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Res
     let named = socrates_stream::csv::named(&plain.text, known.robot.as_deref()).map_err(|why| bad(why.to_string()))?;
     let mut recording = socrates_stream::csv::read_tracks(&named.text).map_err(|why| bad(why.to_string()))?;
     // What looks wrong is told with the ids of the file.
-    told.extend(lines::doubts(plain.text.as_bytes())?);
+    let of_file = |why: Complaint| Complaint { what: format!("`{name}`: {}", why.what), ..why };
+    told.extend(lines::doubts(plain.text.as_bytes()).map_err(of_file)?);
     for info in &mut recording.header.agents {
         if let Some(id) = named.names.get(&info.agent) {
             info.role.clone_from(id);
@@ -247,7 +248,7 @@ fn agent(id: &str) -> Option<AgentId> {
 /// # Errors
 /// What is no such point.
 pub(crate) fn point(text: &str) -> Result<Point, String> {
-    let wrong = || format!("`{text}` is no point; it is X,Y in metres on the map, such as 31.5,-2");
+    let wrong = || format!("`{text}` is no point; it is X,Y in meters on the map, such as 31.5,-2");
     let (x, y) = text.split_once(',').ok_or_else(wrong)?;
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
     Ok(Point::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))

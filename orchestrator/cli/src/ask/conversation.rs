@@ -521,7 +521,7 @@ impl Conversation<'_> {
         }
     }
 
-    /// What a person writes by hand wins over what the request was read as: wishes that it does not fulfil are given up, aloud.
+    /// What a person writes by hand wins over what the request was read as: wishes that it does not fulfill are given up, aloud.
     fn give_up(&mut self, version: &mut Version) {
         let location = &self.look.question.location;
         let refusals = |facts: &[socrates_model::Fact]| {

@@ -36,7 +36,7 @@ fn items(case: &Case<'_>) -> Wrong {
     let near = (0..case.robot.len())
         .find(|tick| members.iter().any(|states| (states[*tick].point() - case.robot[*tick].point()).norm() <= 3.0));
     let Some(near) = near else { return vec!["S5: the robot never comes within 3 m".to_owned()] };
-    // S1 and S2: about one centre, neighbours apart, facing it, standing until the robot is near.
+    // S1 and S2: about one center, neighbors apart, facing it, standing until the robot is near.
     let (mut facing, mut all) = (0, 0);
     let (mut widest, mut moved) = ((0.0, 0), (0.0, 0));
     let (mut closest, mut loosest) = (f64::INFINITY, 0.0_f64);
@@ -56,19 +56,19 @@ fn items(case: &Case<'_>) -> Wrong {
         }
     }
     check(&mut wrong, widest.0 <= 1.5, || {
-        format!("S1: a member {:.2} m from the centre at {:.1} s", widest.0, secs(widest.1))
+        format!("S1: a member {:.2} m from the center at {:.1} s", widest.0, secs(widest.1))
     });
     check(&mut wrong, closest >= 0.6 && loosest <= 1.6, || {
-        format!("S1: neighbours {closest:.2} to {loosest:.2} m apart")
+        format!("S1: neighbors {closest:.2} to {loosest:.2} m apart")
     });
-    check(&mut wrong, facing * 10 >= all * 8, || format!("S1: {facing} of {all} looks go to the centre"));
+    check(&mut wrong, facing * 10 >= all * 8, || format!("S1: {facing} of {all} looks go to the center"));
     check(&mut wrong, moved.0 < STOPPED_MPS, || {
         format!("S2: a member at {:.2} m/s at {:.1} s", moved.0, secs(moved.1))
     });
-    // S3: the centre near the intended way.
+    // S3: the center near the intended way.
     let middle = center(near);
     let off = case.on_way(&middle).1;
-    check(&mut wrong, off <= 1.5, || format!("S3: the centre is {off:.2} m from the robot's way"));
+    check(&mut wrong, off <= 1.5, || format!("S3: the center is {off:.2} m from the robot's way"));
     // S4: there is a way round outside of where they stand, not much longer than the direct one.
     let place = &case.scenario.prepared.location;
     let radius = case.scenario.run.header.agents[0].radius_m;

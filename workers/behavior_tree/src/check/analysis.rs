@@ -164,9 +164,8 @@ fn double_motion(cases: &Cases<'_>) -> Vec<Fault> {
         }
     }
     let told = found.iter().map(|(leaves, (case, acts))| {
-        let done: Vec<String> = acts.iter().map(|(action, _)| action.phrase()).collect();
-        let message =
-            format!("two motions in one tick, {}: it {}; allowed: one", cases.words(case), done.join(" and "));
+        let done: Vec<String> = acts.iter().map(|(action, _)| action.they()).collect();
+        let message = format!("two motions in one tick, {}: {}; allowed: one", cases.words(case), done.join(" and "));
         let second = leaves.get(1).copied().unwrap_or(0);
         Fault::new(FaultCode::BMove2, leaf_at(cases.tree, second), message)
     });

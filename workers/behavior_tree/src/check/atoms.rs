@@ -34,7 +34,7 @@ impl Atom {
     /// In words.
     pub(super) fn phrase(&self, tree: &Tree, holds: bool) -> String {
         match (self, holds) {
-            (Self::GoalHere, _) => format!("{} at a goal of its path", if holds { "while" } else { "while not" }),
+            (Self::GoalHere, _) => format!("{} at a goal of their path", if holds { "while" } else { "while not" }),
             (Self::World(trigger), true) => trigger.phrase(),
             (Self::World(trigger), false) => format!("not {}", trigger.phrase()),
             (Self::Timer(_, secs), true) => format!("after the timer of {secs} s"),

@@ -198,15 +198,15 @@ impl<'a> Cases<'a> {
         let foreign = has_foreign(self.tree);
         let acts = |case: &Case, tick: usize| case.acts.get(tick).cloned().unwrap_or_default();
         if let Some((case, tick)) = self.simplest(|case, tick| acts(case, tick).len() > 1) {
-            let done: Vec<String> = acts(case, tick).iter().map(|(action, _)| action.phrase()).collect();
+            let done: Vec<String> = acts(case, tick).iter().map(|(action, _)| action.they()).collect();
             let message =
-                format!("two motions in one tick, {}: it {}; allowed: one", self.words(case), done.join(" and "));
+                format!("two motions in one tick, {}: {}; allowed: one", self.words(case), done.join(" and "));
             faults.push(Fault::new(FaultCode::BMove2, &at, message));
         }
         let is_still = |case: &Case, tick: usize| acts(case, tick).is_empty() && case.goals.get(tick) == Some(&false);
         if !foreign && let Some((case, _)) = self.simplest(is_still) {
             let message = format!(
-                "no motion runs, {}: it would freeze; end with the block of regular navigation, or say StandStill if that is meant",
+                "no motion runs, {}: they would freeze; end with the block of regular navigation, or say StandStill if that is meant",
                 self.words(case)
             );
             faults.push(Fault::new(FaultCode::BStill, &at, message));
@@ -259,7 +259,7 @@ impl<'a> Cases<'a> {
                 |before| format!("the sibling `{}` before it always ends first", before.name),
             );
             let hint = if node.sheet.tag == "UpdateGoal" {
-                "; outside RegularNavTree ask IsPathDone, not IsGoalReached, or it stops at its first goal"
+                "; outside RegularNavTree ask IsPathDone, not IsGoalReached, or they stop at their first goal"
             } else {
                 ""
             };

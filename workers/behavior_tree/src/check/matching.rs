@@ -39,29 +39,29 @@ pub(super) fn check(cases: &Cases<'_>, ctx: &CheckContext<'_>) -> Vec<Fault> {
 /// The first thing in which the tree differs from a rule.
 fn mismatch(cases: &Cases<'_>, rules: &[Rule], rule: &Rule) -> Option<(FaultCode, String)> {
     let differs = |message: String| Some((FaultCode::BMatch, message));
-    let act = rule.act.phrase();
+    let act = rule.act.they();
     // To take the next goal of the path is a part of walking along it.
     let takes_goal = |case: &Case, tick: usize| rule.act == Action::Navigate && case.goals.get(tick) == Some(&true);
     let does = |case: &Case, tick: usize| {
         takes_goal(case, tick) || case.acts.get(tick).is_some_and(|acts| acts.iter().any(|(act, _)| *act == rule.act))
     };
     if cases.simplest(does).is_none() {
-        return differs(format!("{}, it {act}: the tree never does that", when(rule)));
+        return differs(format!("{}, {act}: the tree never does that", when(rule)));
     }
     let never_asked: Vec<String> =
         asked(rule).filter(|trigger| holds(cases, trigger, &[]).is_none()).map(Trigger::phrase).collect();
     if !never_asked.is_empty() {
-        return differs(format!("it {act} {}: the tree never asks for that", never_asked.join(" and ")));
+        return differs(format!("{act} {}: the tree never asks for that", never_asked.join(" and ")));
     }
     let all_hold =
         |rule: &Rule, case: &Case| asked(rule).all(|trigger| holds(cases, trigger, &case.truth).unwrap_or(false));
     if cases.simplest(|case, tick| does(case, tick) && all_hold(rule, case)).is_none() {
-        return differs(format!("{}, it {act}: the tree does not do that then", when(rule)));
+        return differs(format!("{}, {act}: the tree does not do that then", when(rule)));
     }
     if let Some(gesture) = rule.gesture.filter(|gesture| *gesture != Gesture::None) {
         let says = |case: &Case, tick: usize| case.gestures.get(tick).and_then(|made| made.last()) == Some(&gesture);
         if cases.simplest(|case, tick| does(case, tick) && all_hold(rule, case) && says(case, tick)).is_none() {
-            return differs(format!("{}, it {act} and says {gesture}: the tree does not say it then", when(rule)));
+            return differs(format!("{}, {act} and say {gesture}: the tree does not say it then", when(rule)));
         }
     }
     if let Some(found) = duration(cases, rule, &does) {
@@ -75,11 +75,11 @@ fn mismatch(cases: &Cases<'_>, rules: &[Rule], rule: &Rule) -> Option<(FaultCode
     let surplus = cases
         .simplest(|case, tick| does(case, tick) && !same_act().any(|other| all_hold(other, case) || other.latched));
     if let Some((case, _)) = surplus {
-        return differs(format!("it {act} only {}; the tree also does it {}", when(rule), cases.words(case)));
+        return differs(format!("{act} only {}; the tree also does it {}", when(rule), cases.words(case)));
     }
     if rule.latched && cases.simplest(|case, tick| does(case, tick) && !all_hold(rule, case)).is_none() {
         return differs(format!(
-            "once started, it {act} even when the trigger has passed; put the conditions under a Latch"
+            "once started, {act} even when the trigger has passed; put the conditions under a Latch"
         ));
     }
     None
@@ -88,7 +88,7 @@ fn mismatch(cases: &Cases<'_>, rules: &[Rule], rule: &Rule) -> Option<(FaultCode
 /// Whether a time limit is there and limits.
 fn duration(cases: &Cases<'_>, rule: &Rule, does: &impl Fn(&Case, usize) -> bool) -> Option<(FaultCode, String)> {
     let secs = rule.for_s?;
-    let act = rule.act.phrase();
+    let act = rule.act.they();
     let timers: Vec<usize> = cases
         .atoms
         .iter()
@@ -97,7 +97,7 @@ fn duration(cases: &Cases<'_>, rule: &Rule, does: &impl Fn(&Case, usize) -> bool
         .map(|(place, _)| place)
         .collect();
     if timers.is_empty() {
-        return Some((FaultCode::BMatch, format!("it {act} for {secs} s: the tree has no timer of {secs} s")));
+        return Some((FaultCode::BMatch, format!("{act} for {secs} s: the tree has no timer of {secs} s")));
     }
     // Walking goes on when its time is over: it is also what is done otherwise.
     if rule.act == Action::Navigate {
@@ -113,7 +113,7 @@ fn duration(cases: &Cases<'_>, rule: &Rule, does: &impl Fn(&Case, usize) -> bool
         return None;
     }
     let message = format!(
-        "it {act} for {secs} s: the timer does not limit that; put it under an Inverter, after the conditions and before the action"
+        "{act} for {secs} s: the timer does not limit that; put it under an Inverter, after the conditions and before the action"
     );
     Some((FaultCode::BTimer, message))
 }

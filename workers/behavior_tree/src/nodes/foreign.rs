@@ -1,4 +1,4 @@
-//! Leaves that the catalogue does not know: ticked through [`World::foreign`](crate::World).
+//! Leaves that the catalog does not know: ticked through [`World::foreign`](crate::World).
 
 use crate::sheet::{Arity, Kind, Library, NodeSheet, Role};
 use crate::status::Status;

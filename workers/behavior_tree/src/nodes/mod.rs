@@ -1,4 +1,4 @@
-//! The catalogue: one file per kind of node. A new kind is a new file and a line in [`CATALOG`].
+//! The catalog: one file per kind of node. A new kind is a new file and a line in [`CATALOG`].
 
 mod again;
 mod always;
@@ -169,7 +169,7 @@ pub fn is_known_to(tag: &str, library: Library) -> bool {
     sheet_in(tag, library).is_some()
 }
 
-/// The sheets a library has, in catalogue order.
+/// The sheets a library has, in catalog order.
 fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
     let ours = CATALOG.iter().copied().filter(move |sheet| match library {
         Library::Native => true,
@@ -182,7 +182,7 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
     ours.chain(RARE.iter().copied()).chain(theirs)
 }
 
-/// Sheets a library knows, in catalogue order: what a prompt may offer.
+/// Sheets a library knows, in catalog order: what a prompt may offer.
 #[must_use]
 pub fn known_to(library: Library) -> Vec<&'static NodeSheet> {
     sheets_of(library).collect()

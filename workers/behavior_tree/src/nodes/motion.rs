@@ -15,7 +15,7 @@ pub(super) const REGULAR_NAV: NodeSheet = NodeSheet {
     library: Library::HunavSim1_0,
     arity: Arity::NONE,
     ports: &[PortSheet::OWN, PortSheet::STEP],
-    about: "walks along its path",
+    about: "walks along their path",
     role: Role::Moves(|_| Some(Action::Navigate)),
     tick,
     halt: halt_leaf,

@@ -98,7 +98,7 @@ fn kept(marks: &[Mark], for_s: f64, what: &str, near: bool) -> Finding {
     finding.shifted(longest - for_s)
 }
 
-/// So many people per square metre about the robot for some time.
+/// So many people per square meter about the robot for some time.
 pub(super) fn density(signals: &Signals<'_>, per_m2: [f64; 2], radius_m: f64, for_s: f64) -> Finding {
     if let Some(found) = alone(signals) {
         return found;

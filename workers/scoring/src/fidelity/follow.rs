@@ -58,7 +58,7 @@ pub(super) fn gaps(leader: &Track, follower: &Track) -> Vec<Gap> {
     found
 }
 
-/// Way travelled up to each sample, m.
+/// Way traveled up to each sample, m.
 #[must_use]
 pub(super) fn arcs(samples: &[Sample]) -> Vec<f64> {
     let mut arc = 0.0;

@@ -13,11 +13,11 @@ use crate::tracks::{Sample, Track};
 const NEAR_M: f64 = 3.0;
 /// People settle into their places in the first moments, s.
 const SETTLE_SECS: f64 = 0.5;
-/// Share of member-time that must face the centre (`spec/case_studies` G.S1), and of time together (clause text).
+/// Share of member-time that must face the center (`spec/case_studies` G.S1), and of time together (clause text).
 const SHARE: f64 = 0.8;
 /// Somebody farther from the line of a queue does not stand in it, m.
 const OFF_LINE_M: f64 = 0.6;
-/// A queue may bend: from end to end it is at least this share of the way from neighbour to neighbour.
+/// A queue may bend: from end to end it is at least this share of the way from neighbor to neighbor.
 const STRAIGHT_SHARE: f64 = 0.7;
 /// A formation may be broken for this share of the time before it is not one.
 const BROKEN_SHARE: f64 = 0.05;
@@ -111,7 +111,7 @@ pub(super) fn formation(signals: &Signals<'_>, group: GroupId, spread_m: f64) ->
         before.iter().filter(|m| m.spread_m > spread_m || m.fastest_mps > STANDING_MPS).map(|m| m.t).collect();
     let facing = share(before.iter().map(|m| m.facing).sum(), before.len() * members);
     let text = format!(
-        "{group}: spread {worst:.2} m (at most {spread_m:.1} m), {:.0} % facing its centre, until the robot is near at {:.1} s",
+        "{group}: spread {worst:.2} m (at most {spread_m:.1} m), {:.0} % facing its center, until the robot is near at {:.1} s",
         facing * 100.0,
         arrival.t
     );
@@ -136,7 +136,7 @@ pub(super) fn walks_together(signals: &Signals<'_>, group: GroupId, spread_m: f6
     let near = before.iter().filter(|m| m.spread_m <= spread_m).count();
     let together = share(near, before.len());
     let text = format!(
-        "{group}: within {spread_m:.1} m of its centre for {:.0} % of the {:.1} s before the encounter, {way:.1} m walked",
+        "{group}: within {spread_m:.1} m of its center for {:.0} % of the {:.1} s before the encounter, {way:.1} m walked",
         together * 100.0,
         nearest.t
     );

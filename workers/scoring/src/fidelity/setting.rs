@@ -124,7 +124,7 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Fi
             return Finding::not_applicable("there is no encounter, or no map to tell where it is");
         };
         let Some(t) = arrival(track, at, f64::INFINITY) else {
-            return Finding::never(-1.0, vec![], format!("{agent} is never at its encounter"));
+            return Finding::never(-1.0, vec![], format!("{agent} is never at the encounter"));
         };
         times.push(t);
     }

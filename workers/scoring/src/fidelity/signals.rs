@@ -26,7 +26,7 @@ pub struct Moment {
     pub robot: Sample,
     /// The human.
     pub human: Sample,
-    /// Distance of the centres, m.
+    /// Distance of the centers, m.
     pub distance_m: f64,
     /// How far the human is ahead of the robot along its heading, m; negative behind.
     pub ahead_m: f64,

@@ -21,7 +21,7 @@ pub(super) struct Mark {
     pub t: f64,
     /// Margin.
     pub margin: f64,
-    /// Way travelled so far by whoever has to move, m; constant where nobody has to.
+    /// Way traveled so far by whoever has to move, m; constant where nobody has to.
     pub arc_m: f64,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Held {
     pub first_s: Option<f64>,
 }
 
-/// Best stretch of `for_s` over all in which at least `travel_m` were travelled: the largest of the
+/// Best stretch of `for_s` over all in which at least `travel_m` were traveled: the largest of the
 /// smallest margins, `F (H[0, for_s] margin)`. `None` when no stretch is that long.
 pub(super) fn held(marks: impl IntoIterator<Item = Mark>, for_s: f64, travel_m: f64) -> Option<Held> {
     let marks: Vec<Mark> = marks.into_iter().collect();

@@ -19,7 +19,7 @@ pub(super) const FAMILY: Family = Family {
             direction: Direction::Down,
             needs: PEOPLE,
             source: "Kirby 2010, asymmetric Gaussian: sigma ahead max(2 v, 0.5) m, to the side 2/3, behind 1/2 of it",
-            about: "integral over time of the largest of the people's Gaussians (1 at the person) at the robot's centre",
+            about: "integral over time of the largest of the people's Gaussians (1 at the person) at the robot's center",
         },
         Sheet {
             id: "contact_energy_max",

@@ -76,7 +76,7 @@ mod tests {
     use crate::metrics::tests::{at_both_rates, value_of};
 
     #[test]
-    fn passing_a_standing_person_at_one_metre_leaves_the_offset_less_both_radii() {
+    fn passing_a_standing_person_at_one_meter_leaves_the_offset_less_both_radii() {
         let walks = || vec![Walk::robot(-4., 0., 0.8, 0.), Walk::human(1, 0., 1., 0., 0.)];
         at_both_rates(&walks, 10.0, "human_distance_min", 1.0 - 0.53, 0.001);
     }

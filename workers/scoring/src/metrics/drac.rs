@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn the_deceleration_is_that_of_stopping_in_the_gap() {
-        // After 2 s: centres 2.53 m apart, gap 2 m, closing at 1 m/s: 1 / 4 m/s².
+        // After 2 s: centers 2.53 m apart, gap 2 m, closing at 1 m/s: 1 / 4 m/s².
         let run = recording(&[Walk::robot(0., 0., 1., 0.), Walk::human(1, 4.53, 0., 0., 0.)], 2.0, 0.1);
         assert!((value(&run, "drac_max").unwrap() - 0.25).abs() < 1e-6);
         assert_eq!(value(&run, "speed_near_people"), None);

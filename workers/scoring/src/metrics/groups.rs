@@ -28,7 +28,7 @@ pub(super) const FAMILY: Family = Family {
         of_group(
             "o_space_seconds",
             "s",
-            "Kendon 1990 (F-formation); centre from the members' positions and headings",
+            "Kendon 1990 (F-formation); center from the members' positions and headings",
             "time with the robot's disc in a standing group's o-space: the circle about the point nearest to all lines of sight that touches the members' discs",
         ),
         of_group(
@@ -47,13 +47,13 @@ pub(super) const FAMILY: Family = Family {
             "group_splits",
             "count",
             "Truong and Ngo 2017, as crossings between members",
-            "crossings of the line between two members nearer than 2.5 m to each other by the robot's centre",
+            "crossings of the line between two members nearer than 2.5 m to each other by the robot's center",
         ),
         of_group(
             "relation_disturbance",
             "s",
             "Okal and Arras 2016, relation disturbance, in seconds",
-            "sum over pairs of members of the time with the robot's centre beside their line, nearer than 0.6 m",
+            "sum over pairs of members of the time with the robot's center beside their line, nearer than 0.6 m",
         ),
         of_group(
             "p_space_seconds",

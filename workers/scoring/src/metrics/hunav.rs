@@ -15,7 +15,7 @@ use crate::tracks::{Sample, Track, Tracks};
 const TOUCH_M: f64 = 0.02;
 /// Radius of the goal that upstream forces, m.
 const GOAL_M: f64 = 0.2;
-/// How far ahead of its members a group's centre is taken, m.
+/// How far ahead of its members a group's center is taken, m.
 const STRIDE_M: f64 = 1.5;
 /// Bounds of the zones about a person, m (Hall 1966).
 const ZONES_M: [f64; 4] = [0.0, 0.45, 1.2, 3.6];
@@ -77,7 +77,7 @@ pub(super) const FAMILY: Family = Family {
             "m",
             Direction::Neutral,
             PEOPLE,
-            "largest centre distance less the robot's radius alone: the human's is not subtracted",
+            "largest center distance less the robot's radius alone: the human's is not subtracted",
         ),
         sheet(
             "hunav.intimate_space_intrusions",
@@ -105,18 +105,18 @@ pub(super) const FAMILY: Family = Family {
             "%",
             Direction::Down,
             GROUPS,
-            "share of samples with the robot's surface 0 to 0.45 m from a group's centre: the mean of points 1.5 m ahead of each member",
+            "share of samples with the robot's surface 0 to 0.45 m from a group's center: the mean of points 1.5 m ahead of each member",
         ),
         sheet("hunav.group_personal_space_intrusions", "%", Direction::Down, GROUPS, "the same for 0.45 to 1.2 m"),
         sheet("hunav.group_social_space_intrusions", "%", Direction::Down, GROUPS, "the same for 1.2 to 3.6 m"),
         sheet("hunav.completed", "0/1", Direction::Up, GOAL, "1 when the last sample is within 0.2 m of the goal"),
-        sheet("hunav.minimum_distance_to_target", "m", Direction::Down, GOAL, "smallest centre distance to the goal"),
+        sheet("hunav.minimum_distance_to_target", "m", Direction::Down, GOAL, "smallest center distance to the goal"),
         sheet(
             "hunav.final_distance_to_target",
             "m",
             Direction::Down,
             GOAL,
-            "centre distance to the goal at the last sample",
+            "center distance to the goal at the last sample",
         ),
         sheet(
             "hunav.robot_on_person_collision",
@@ -167,7 +167,7 @@ pub(super) const FAMILY: Family = Family {
             "m/s",
             Direction::Neutral,
             PEOPLE,
-            "mean speed of the human whose centre is nearest",
+            "mean speed of the human whose center is nearest",
         ),
         sheet(
             "hunav.social_force_on_agents",
@@ -254,7 +254,7 @@ fn zones(values: &[f64]) -> [f64; 3] {
     found
 }
 
-/// Smallest distance of the robot's surface from a group's centre at every sample; groups as the evidence names them.
+/// Smallest distance of the robot's surface from a group's center at every sample; groups as the evidence names them.
 fn group_distances(scene: &Scene<'_>, tracks: &Tracks, robot: &Track) -> Vec<f64> {
     let groups: Vec<Vec<&Track>> =
         scene.groups().iter().map(|group| group.iter().filter_map(|id| tracks.human(*id)).collect()).collect();

@@ -31,7 +31,7 @@ pub(super) const FAMILY: Family = Family {
             direction: Direction::Down,
             needs: NEEDS,
             source: "Okal and Arras 2016, anisotropic, b = 1, lambda = 0.4, r = 0.9, a = 1.2 m",
-            about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the centre distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
+            about: "sum over humans of the time with d < a e^((r - d) / b) (lambda + (1 - lambda)(1 + cos phi) / 2), d the center distance and phi the angle off the person's heading: a robot in front intrudes from farther away",
         },
     ],
     thresholds: &[("intimate_m", HALL_M[0]), ("personal_m", HALL_M[1]), ("social_m", HALL_M[2])],
@@ -99,7 +99,7 @@ mod tests {
     use crate::metrics::tests::value;
 
     #[test]
-    fn two_people_at_one_metre_count_twice_and_the_front_reaches_farther() {
+    fn two_people_at_one_meter_count_twice_and_the_front_reaches_farther() {
         let stand = |yaw: f64, n: u32| Walk::human(n, 1.4, if n == 1 { 0.0 } else { 1.2 }, 0., 0.).facing(yaw);
         let pi = std::f64::consts::PI;
         let two = recording(&[Walk::robot(0., 0., 0., 0.), stand(0., 1), stand(0., 2)], 10.0, 0.1);

@@ -1,4 +1,4 @@
-//! Metrics: how well the robot did. A catalogue of families, one file each.
+//! Metrics: how well the robot did. A catalog of families, one file each.
 //!
 //! Every value is independent of the recording's sampling rate: all are taken on one even 0.1 s grid of positions, with
 //! velocities by differences (`grid`), times and shares on the piecewise-linear curve over it. Robot metrics are taken
@@ -243,7 +243,7 @@ pub const CATALOG: &[Family] = &[
     hunav::FAMILY,
 ];
 
-/// Version of the catalogue: it changes when a formula does, so that figures of different versions are not mixed.
+/// Version of the catalog: it changes when a formula does, so that figures of different versions are not mixed.
 pub const VERSION: u32 = 3;
 
 /// Version of what nothing else is said of: 2 since everything is taken on one even grid.

@@ -299,7 +299,7 @@ impl Run {
         }
     }
 
-    /// Values of every family, by its place in the catalogue.
+    /// Values of every family, by its place in the catalog.
     fn values(&self, setting: &Setting<'_>, arrived_s: Option<f64>) -> Vec<Vec<Measured>> {
         let end = End {
             setting,

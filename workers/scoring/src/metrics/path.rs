@@ -82,14 +82,17 @@ pub(super) const FAMILY: Family = Family {
             direction: Direction::Down,
             needs: ROBOT,
             source: "Menger curvature, as in Arena",
-            about: "mean Menger curvature 4 A / (a b c) of points half a metre of way apart",
+            about: "mean Menger curvature 4 A / (a b c) of points half a meter of way apart",
         },
     ],
     thresholds: &[("step_m", STEP_M)],
     measure: Measure::Online(Begin(|_| Box::new(Way::default()))),
 };
 
-/// Points of a path, half a metre of way apart.
+/// A step longer than this is a jump of the recording and no way, m: nobody covers it between two samples.
+const JUMP_M: f64 = 1000.0;
+
+/// Points of a path, half a meter of way apart.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Spaced {
     way_m: f64,
@@ -105,6 +108,11 @@ impl Spaced {
         // The point at the very length, not the sample after it: else the spacing would follow the grid.
         if let Some(from) = self.before.replace(at) {
             let step = (at - from).norm();
+            if step > JUMP_M {
+                // Points every half meter of a jump would be a walk as long as the jump, and a curve of none of them.
+                *self = Self { before: Some(at), ..Self::default() };
+                return;
+            }
             while self.way_m + step >= self.next_m && step > 0.0 {
                 let point = from + (at - from) * ((self.next_m - self.way_m) / step);
                 self.next_m += 0.5;

@@ -95,7 +95,7 @@ mod tests {
         let walks = || vec![robot(), Walk::human(1, -3., 0.1, 1., 0.)];
         let behind = (0.53_f64.powi(2) - 0.01).sqrt();
         at_both_rates(&walks, 9.0, "post_encroachment_time", 3.0 - 2.0 * behind, 0.05);
-        // The nearest points of the two ways lie anywhere on the way: a millimetre does not matter.
+        // The nearest points of the two ways lie anywhere on the way: a millimeter does not matter.
         let moved = || vec![robot(), Walk::human_through(1, &[(0., -3., 0.101), (9., 6., 0.099)])];
         at_both_rates(&moved, 9.0, "post_encroachment_time", 3.0 - 2.0 * behind, 0.05);
     }

@@ -27,13 +27,13 @@ pub(super) const FAMILY: Family = Family {
             "curvature_normalized",
             "1",
             "Arena, normalized_curvature",
-            "mean of Menger curvature times the length of both sides, of points half a metre of way apart",
+            "mean of Menger curvature times the length of both sides, of points half a meter of way apart",
         ),
         sheet(
             "roughness",
             "1",
             "Arena, roughness",
-            "mean of 2 A / c^2 of the triangles of points half a metre of way apart, A the area and c the long side",
+            "mean of 2 A / c^2 of the triangles of points half a meter of way apart, A the area and c the long side",
         ),
         sheet("angle_over_length", "rad/m", "Arena, angle_over_length", "changes of heading over the path length"),
         sheet(
@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn a_circle_has_closed_forms() {
-        // Radius 2 m, points half a metre of way apart: an angle of 0.25 between neighbours.
+        // Radius 2 m, points half a meter of way apart: an angle of 0.25 between neighbors.
         let circle = || vec![Walk::circle(2.0, 20.0)];
         let (side, long) = (4.0 * 0.125_f64.sin(), 4.0 * 0.25_f64.sin());
         at_both_rates(&circle, 19.9, "curvature_normalized", side, 0.01 * side);

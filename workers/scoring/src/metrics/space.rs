@@ -98,7 +98,7 @@ mod tests {
     use crate::metrics::tests::at_both_rates;
 
     #[test]
-    fn the_share_that_is_not_kept_is_the_chord_of_half_a_metre() {
+    fn the_share_that_is_not_kept_is_the_chord_of_half_a_meter() {
         let walks = || vec![Walk::robot(-6., 0., 0.8, 0.), Walk::human(1, 0., 0.8, 0., 0.)];
         let chord = 2.0 * (1.03_f64 * 1.03 - 0.64).sqrt() / 0.8 / 15.0;
         at_both_rates(&walks, 15.0, "space_compliance", 1.0 - chord, 0.001);

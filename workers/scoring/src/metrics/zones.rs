@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn zone_times_past_a_standing_person_are_those_of_the_chord() {
-        // Offset 0.8 m, radii 0.53 m together: centres nearer than 1.73 m over 2 √(1.73² - 0.8²) m at 0.8 m/s.
+        // Offset 0.8 m, radii 0.53 m together: centers nearer than 1.73 m over 2 √(1.73² - 0.8²) m at 0.8 m/s.
         let walks = || vec![Walk::robot(-6., 0., 0.8, 0.), Walk::human(1, 0., 0.8, 0., 0.)];
         let chord = |limit: f64| 100.0 * 2.0 * (((limit + 0.53) * (limit + 0.53)) - 0.64_f64).sqrt() / 0.8 / 15.0;
         at_both_rates(&walks, 15.0, "zone_intimate", chord(0.45), 0.1);

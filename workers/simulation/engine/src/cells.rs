@@ -14,7 +14,7 @@ const CORNER_M: f64 = 1e-12;
 pub(crate) struct Cells {
     width: i32,
     height: i32,
-    /// Cells per metre.
+    /// Cells per meter.
     per_m: f64,
     origin: Point,
     cos: f64,
@@ -45,7 +45,7 @@ impl Cells {
         (along * self.per_m, f64::from(self.height) - up * self.per_m)
     }
 
-    /// Cells per metre along a unit direction of the map frame.
+    /// Cells per meter along a unit direction of the map frame.
     pub(crate) fn direction(&self, heading: &Vector) -> (f64, f64) {
         let along = heading.x * self.cos + heading.y * self.sin;
         let up = heading.y * self.cos - heading.x * self.sin;
@@ -80,7 +80,7 @@ impl Cells {
             return 0.0;
         }
         let (mut column, mut row) = (whole(from.0), whole(from.1));
-        // Metres per cell; infinite along an axis that the ray does not move on.
+        // Meters per cell; infinite along an axis that the ray does not move on.
         let (per_column, per_row) = (1.0 / step.0, 1.0 / step.1);
         loop {
             let gap = i32::from(self.gap(column, row));

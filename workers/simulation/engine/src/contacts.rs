@@ -1,7 +1,7 @@
 //! Contacts: nobody overlaps anybody, a wall or a closed door.
 //!
 //! rapier2d's narrow phase finds depth and normal. It works in f32, so every pair is handed to it in a
-//! local frame around the first body; corrections below a tenth of a millimetre are left out, because
+//! local frame around the first body; corrections below a tenth of a millimeter are left out, because
 //! they would only be rounding.
 
 use rapier2d::math::Pose;
@@ -180,7 +180,7 @@ fn disc_segment(body: &Body, from: &Point, to: &Point) -> Option<(f64, Vector)> 
 
 #[expect(
     clippy::cast_possible_truncation,
-    reason = "rapier works in f32; the frame is local, so a metre keeps 7 digits"
+    reason = "rapier works in f32; the frame is local, so a meter keeps 7 digits"
 )]
 const fn narrow(value: f64) -> f32 {
     value as f32

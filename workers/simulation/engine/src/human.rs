@@ -101,7 +101,7 @@ pub(crate) struct Human {
     pub(crate) nearest_robot_m: f64,
     /// Whether it ever walked.
     pub(crate) started: bool,
-    /// Where it walked, a point every decimetre.
+    /// Where it walked, a point every decimeter.
     pub(crate) trail: Polyline,
     /// What it noticed when it last looked round.
     pub(crate) notice: Notice,

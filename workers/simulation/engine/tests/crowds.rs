@@ -84,7 +84,7 @@ struct Worst {
     wall_m: f64,
 }
 
-/// How deep a disc is in a wall surface; the clearance is interpolated and a centimetre off in corners.
+/// How deep a disc is in a wall surface; the clearance is interpolated and a centimeter off in corners.
 fn in_wall_m(floor: &Floor, at: &Point, radius_m: f64) -> f64 {
     if floor.clearance_m(at) > radius_m + 0.1 {
         return 0.0;

@@ -8,7 +8,7 @@ use socrates_engine::{BEAMS, Disc, scan_shapes};
 use socrates_model::{Point, Pose, Vector};
 
 const RANGE_M: f64 = 12.0;
-/// rapier works in f32: a few micrometres at 12 m, more where a beam meets a wall at a slant.
+/// rapier works in f32: a few micrometers at 12 m, more where a beam meets a wall at a slant.
 const TOLERANCE_M: f64 = 2e-4;
 /// Beams with more room than this for rounding say nothing.
 const GRAZING_M: f64 = 0.01;

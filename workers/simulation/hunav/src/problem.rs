@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn only_close_names_are_suggested() {
         assert_eq!(nearest("raduis", ["radius", "max_vel"]), Some("radius"));
-        assert_eq!(nearest("colour", ["radius", "max_vel"]), None);
+        assert_eq!(nearest("color", ["radius", "max_vel"]), None);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub const CATALOG: &[PlannerSheet] = &[
     PlannerSheet { name: NO_ROBOT, about: "no robot at all: the twin run", make: None },
 ];
 
-/// Names in catalogue order.
+/// Names in catalog order.
 #[must_use]
 pub fn names() -> Vec<&'static str> {
     CATALOG.iter().map(|sheet| sheet.name).collect()
@@ -54,7 +54,7 @@ pub fn make(name: &str, mission: &Mission) -> Result<Option<Box<dyn RobotDriver>
     Ok(sheet.make.map(|make| make(mission)))
 }
 
-/// The fault for a name that is not in the catalogue.
+/// The fault for a name that is not in the catalog.
 #[must_use]
 pub fn unknown(name: &str) -> Fault {
     let message = format!("there is no planner `{name}`; allowed: {}", names().join(", "));

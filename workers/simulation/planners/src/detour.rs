@@ -21,7 +21,7 @@ const FAR: f64 = 1.6;
 const FAR_M: f64 = 1.0;
 /// Nearer than this to a body's surface is dear, m.
 const SOFT_GAP_M: f64 = 0.65;
-/// How much dearer a metre is on the left of the way, 1 m off it.
+/// How much dearer a meter is on the left of the way, 1 m off it.
 const KEEP_RIGHT: f64 = 0.3;
 /// Nearer than this to a wall is dear, m.
 const WALL_SOFT_M: f64 = 0.25;
@@ -74,7 +74,7 @@ impl Window<'_> {
         join(column, row)
     }
 
-    /// Cost of a metre in a cell; `None` where the robot cannot be.
+    /// Cost of a meter in a cell; `None` where the robot cannot be.
     fn weight(&mut self, cell: usize) -> Option<f64> {
         if let Some(Some(known)) = self.weights.get(cell) {
             return *known;

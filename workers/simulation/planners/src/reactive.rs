@@ -126,7 +126,7 @@ impl RobotDriver for Reactive {
             return Command { waiting: true, ..Command::default() };
         }
         if left < 1.0 && self.ground.straight(&at, &end, 0.0) {
-            // The last metre is driven straight: the window looks farther than that.
+            // The last meter is driven straight: the window looks farther than that.
             let last = Polyline::new(&[at, end]);
             let share = safe_share(seen, &last, 0.0, &self.robot, 0.1);
             return steer(seen, &last, 0.0, share * self.robot.v_max_mps, &self.robot);

@@ -18,7 +18,7 @@ const RATE_HZ: f64 = 20.0;
 const REPLAN_S: f64 = 0.25;
 /// A plan is wanted where somebody is nearer to the way than this (surface to surface), m.
 const WANTED_GAP_M: f64 = 0.45;
-/// A way round people may be so many times as long as the way, and a metre.
+/// A way round people may be so many times as long as the way, and a meter.
 const FARTHEST: f64 = 1.6;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;

@@ -84,7 +84,7 @@ pub fn scenario(
     }
 }
 
-/// Runs a setup with a planner of the catalogue.
+/// Runs a setup with a planner of the catalog.
 pub fn run(mut setup: Setup, planner: &str) -> Recording {
     planner.clone_into(&mut setup.planner);
     let graph = &setup.location.graph;

@@ -196,7 +196,7 @@ impl World for Mind<'_> {
     }
 
     fn act(&mut self, action: &Action, _leaf: u16) {
-        // Every motion is answered as a leaf; this is for one that a newer catalogue adds.
+        // Every motion is answered as a leaf; this is for one that a newer catalog adds.
         if matches!(action, Action::StandStill) {
             Mind::act(self, "StandStill", Deed::Stand);
         }
