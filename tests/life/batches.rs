@@ -24,11 +24,11 @@ fn bad_requests_of_a_folder_are_named_and_the_others_are_made() {
     let requests = folder.path().join("all of them");
     write(&requests.join("good.toml"), WAREHOUSE);
     write(&requests.join("moon.toml"), &WAREHOUSE.replace("\"warehouse\"", "\"moon\""));
-    write(&requests.join("typo.toml"), &format!("{WAREHOUSE}\ncolour = \"red\"\n"));
+    write(&requests.join("typo.toml"), &format!("{WAREHOUSE}\ncolor = \"red\"\n"));
     let args = ["--format", "json", "run", "all of them", "--out", "library", "--require", "any"];
     let finished = socrates(folder.path(), "mixed", &args);
     assert_eq!(finished.code, 2, "{}\n{}", finished.err, finished.out);
-    for word in ["moon.toml", "there is no location `moon`", "typo.toml", "colour", "2 of 3 requests cannot be run"] {
+    for word in ["moon.toml", "there is no location `moon`", "typo.toml", "color", "2 of 3 requests cannot be run"] {
         assert!(finished.err.contains(word), "`{word}` is missing in\n{}", finished.err);
     }
     let told = finished.json();

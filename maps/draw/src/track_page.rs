@@ -89,7 +89,7 @@ fn open_floor(recording: &Recording) -> Location {
     let (wide, high) = (high.x - low.x + 2.0 * ROOM_M, high.y - low.y + 2.0 * ROOM_M);
     let resolution_m = (wide.max(high) / CELLS).max(0.01);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive and at most CELLS")]
-    let cells = |metres: f64| ((metres / resolution_m).ceil() as usize).max(1);
+    let cells = |meters: f64| ((meters / resolution_m).ceil() as usize).max(1);
     let (width, height) = (cells(wide), cells(high));
     let grid = Grid {
         width,

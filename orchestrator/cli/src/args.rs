@@ -201,7 +201,7 @@ impl Verb {
     }
 }
 
-/// Verbs on the catalogue.
+/// Verbs on the catalog.
 #[derive(Debug, Subcommand)]
 pub(crate) enum ScenariosVerb {
     /// List every scenario.

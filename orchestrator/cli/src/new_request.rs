@@ -161,10 +161,10 @@ fn trips(location: &Location, places: &BTreeMap<String, Vec<NodeId>>) -> Vec<(St
     for start in &names {
         for goal in names.iter().filter(|goal| *goal != start) {
             let (Some(from), Some(to)) = (places.get(*start), places.get(*goal)) else { continue };
-            let metres = apart(from, to);
+            let meters = apart(from, to);
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "millimeters on a map")]
-            let spare = ((FAR_M - metres).abs().min(1e9) * 1e3) as u64;
-            found.push(((rank(from) + rank(to), metres < NEAR_M, spare), (*start).clone(), (*goal).clone()));
+            let spare = ((FAR_M - meters).abs().min(1e9) * 1e3) as u64;
+            found.push(((rank(from) + rank(to), meters < NEAR_M, spare), (*start).clone(), (*goal).clone()));
         }
     }
     found.sort();

@@ -115,7 +115,7 @@ fn impossible(story: &mut Story, narrow: bool) {
         };
         said.extend(person.rules.iter().find(touches).filter(|_| blocks).map(|read| {
             let message = format!(
-                "`{}`: the robot stops more than a metre before whoever stands in its way; ask for {} m or more",
+                "`{}`: the robot stops more than a meter before whoever stands in its way; ask for {} m or more",
                 read.quote,
                 STOPS_BEFORE_M + 0.4
             );
