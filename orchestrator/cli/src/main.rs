@@ -89,7 +89,7 @@ fn main() -> ExitCode {
         Ok(code) => code,
         // A child tells its supervisor, who tells the person once.
         Err(complaint) if cli.verb.is_tied() => {
-            talk.to_supervisor(&complaint.object());
+            talk.last_word(&complaint.object());
             if complaint.code == Code::Input { Code::Stuck } else { complaint.code }
         }
         Err(complaint) => {

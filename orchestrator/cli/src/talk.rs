@@ -60,7 +60,7 @@ impl Talk {
     }
 
     /// The last word of a child, for the supervisor at the other end of its standard output.
-    pub(crate) fn to_supervisor(&self, object: &serde_json::Value) {
+    pub(crate) fn last_word(&self, object: &serde_json::Value) {
         drop(writeln!(std::io::stdout(), "{object}"));
     }
 

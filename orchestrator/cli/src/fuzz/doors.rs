@@ -276,7 +276,7 @@ fn open_plan(_kit: &Kit, folder: &Path, sample: &Sample, _bytes: &[u8], _chance:
 
 fn tables(kit: &Kit) -> Vec<Sample> {
     kit.recording()
-        .map(|recording| sample("tracks.csv", socrates_stream::csv::write_agents(recording)))
+        .map(|recording| sample("tracks.csv", socrates_stream::csv::write_agents(&[recording])))
         .into_iter()
         .collect()
 }
