@@ -93,7 +93,7 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
         }
         EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),
         EventKind::Sees { human, distance_m } => {
-            mark(human.number(), "sees", format!("{human} sees the robot, {distance_m:.1} m between centers"))
+            mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m, center to center"))
         }
         EventKind::Encounter { human, .. } => mark(human.number(), "encounter", recording.encounter_words(event)?),
         EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
