@@ -110,6 +110,8 @@ const HOMES: &[(&str, &[&str])] = &[
     ("rapier2d", &["workers/simulation/engine"]),
     ("petgraph", &["bus/model", "orchestrator"]),
     ("resvg", &["maps/draw"]),
+    ("krilla", &["maps/draw"]),
+    ("krilla-svg", &["maps/draw"]),
     ("png", &["maps", "maps/draw"]),
     ("rusqlite", &["orchestrator/store"]),
     ("clap", &["orchestrator/cli"]),

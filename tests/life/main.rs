@@ -10,6 +10,7 @@ mod evaluations;
 mod folders;
 mod leaving;
 mod live;
+mod looks;
 mod models;
 mod originals;
 mod pages;

@@ -9,6 +9,7 @@
 //!
 //! *Never here:* product code.
 
+pub mod browser;
 pub mod program;
 
 pub use tempfile;

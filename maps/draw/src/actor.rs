@@ -4,6 +4,7 @@ use socrates_model::{AgentState, EventKind, Gesture, Location, Recording};
 
 use crate::label::{Area, text_width};
 use crate::map_layer::Frame;
+use crate::marks::draw_body;
 use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
@@ -12,6 +13,10 @@ use crate::svg::Svg;
 const CROWD: usize = 24;
 /// Length of a trail, s; it fades.
 const TRAIL_SECS: f64 = 4.0;
+/// Radius of the ring around whoever says something, in their own.
+pub(crate) const RING: f64 = 1.5;
+/// Cost of a wall behind words, where a body or other words cost 1.
+const WALL_COST: f64 = 0.4;
 /// Pieces of a fading trail.
 const PIECES: u8 = 6;
 
@@ -38,11 +43,16 @@ pub(crate) fn text_px(height_px: f64) -> f64 {
 }
 
 impl Look {
-    /// The look of a recording on a picture of this height at this scale.
-    pub(crate) fn new(recording: &Recording, px_per_m: f64, height_px: f64, names: bool, bounds: Area) -> Self {
+    /// The look of a recording at this scale, with nobody of a smaller radius than this, and letters of this height, px.
+    pub(crate) fn new(
+        recording: &Recording,
+        (px_per_m, least_px): (f64, f64),
+        text_px: f64,
+        names: bool,
+        bounds: Area,
+    ) -> Self {
         let crowd = recording.header.agents.len() > CROWD;
-        let least_px = if crowd { height_px / 140.0 } else { height_px / 72.0 };
-        Self { text_px: text_px(height_px), names, crowd, px_per_m, least_px, bounds }
+        Self { text_px, names, crowd, px_per_m, least_px, bounds }
     }
 
     /// Whether an agent's name is written.
@@ -87,7 +97,7 @@ pub(crate) fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame, reco
     }
 }
 
-/// Draws trails, then everybody with the robot on top, then names and what is said.
+/// Draws trails, then everybody with the robot on top, then names and what is said, off the walls where there is room.
 pub(crate) fn draw_everybody(
     svg: &mut Svg,
     location: &Location,
@@ -95,6 +105,7 @@ pub(crate) fn draw_everybody(
     recording: &Recording,
     now_s: f64,
     look: &Look,
+    walls: &[Area],
 ) {
     let there = There::of(recording);
     let states: Vec<AgentState> = moment(recording, now_s).iter().filter(|state| there.is(state)).copied().collect();
@@ -107,15 +118,13 @@ pub(crate) fn draw_everybody(
     }
     for state in states.iter().rev() {
         let at = frame.px(location, &state.point());
-        draw_body(svg, at, state, radius(state));
+        draw_agent(svg, at, state, radius(state));
     }
-    let mut taken: Vec<(f64, f64, f64, f64)> = states
-        .iter()
-        .map(|state| {
-            let ((x, y), r) = (frame.px(location, &state.point()), radius(state));
-            (x - r, y - r, 2.0 * r, 2.0 * r)
-        })
-        .collect();
+    let mut taken: Vec<(Area, f64)> = walls.iter().map(|wall| (*wall, WALL_COST)).collect();
+    taken.extend(states.iter().map(|state| {
+        let ((x, y), r) = (frame.px(location, &state.point()), radius(state));
+        (Area { x: x - r, y: y - r, w: 2.0 * r, h: 2.0 * r }, 1.0)
+    }));
     for state in &states {
         let at = frame.px(location, &state.point());
         draw_words(svg, at, state, radius(state), look, &mut taken);
@@ -132,7 +141,7 @@ fn draw_trail(
     look: &Look,
 ) {
     let (secs, pieces) = if look.crowd && state.agent != 0 { (TRAIL_SECS / 2.0, 2) } else { (TRAIL_SECS, PIECES) };
-    let width = (look.least_px * 0.5).max(2.0);
+    let width = (look.least_px * 0.3).max(2.0);
     let there = There::of(recording);
     let place = recording.header.agents.iter().position(|info| info.agent == state.agent_id()).unwrap_or(usize::MAX);
     for piece in 0..pieces {
@@ -163,50 +172,16 @@ fn draw_trail(
     }
 }
 
-/// A robot is a square with an arrow, a human a pair of shoulders with a head that looks ahead.
-fn draw_body(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64) {
-    let color = palette::agent(state.agent);
-    let turn = -state.yaw.to_degrees();
-    svg.raw(&format!("<g transform=\"translate({:.2} {:.2}) rotate({turn:.1})\">", at.0, at.1));
+/// The body, with a ring around whoever says something.
+fn draw_agent(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64) {
     if state.gesture() != Gesture::None {
-        svg.circle((0.0, 0.0), r * 1.6, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
+        svg.circle(at, r * RING, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
     }
-    svg.raw(&body(state.agent == 0, r, color));
-    svg.raw("</g>");
-}
-
-/// The body of an agent that looks along x, around 0 0.
-pub(crate) fn body(robot: bool, r: f64, color: &str) -> String {
-    if robot {
-        return format!(
-            "<rect x=\"{0:.1}\" y=\"{0:.1}\" width=\"{1:.1}\" height=\"{1:.1}\" rx=\"{2:.1}\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\"/>\
-             <path d=\"M{3:.1} 0L{4:.1} {5:.1}L{6:.1} 0L{4:.1} -{5:.1}z\" fill=\"#ffffff\"/>",
-            -r,
-            2.0 * r,
-            r * 0.3,
-            r * 0.75,
-            -r * 0.45,
-            r * 0.55,
-            -r * 0.2
-        );
-    }
-    let (depth, nose, base, side, head) = (r * 0.74, r * 1.15, r * 0.55, r * 0.36, r * 0.36);
-    format!(
-        "<ellipse rx=\"{depth:.1}\" ry=\"{r:.1}\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\"/>\
-         <path d=\"M{nose:.1} 0L{base:.1} {side:.1}L{base:.1} -{side:.1}z\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1\"/>\
-         <circle r=\"{head:.1}\" fill=\"#ffffff\" fill-opacity=\"0.92\"/>"
-    )
+    draw_body(svg, at, state.yaw, state.agent == 0, r, palette::agent(state.agent));
 }
 
 /// Name and what is said, at the first place around the agent that is free.
-fn draw_words(
-    svg: &mut Svg,
-    at: (f64, f64),
-    state: &AgentState,
-    r: f64,
-    look: &Look,
-    taken: &mut Vec<(f64, f64, f64, f64)>,
-) {
+fn draw_words(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64, look: &Look, taken: &mut Vec<(Area, f64)>) {
     let size = look.text_px * 0.95;
     let name =
         if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };
@@ -219,7 +194,7 @@ fn draw_words(
     let letters = if name.is_empty() { 0.0 } else { size * 1.1 };
     let w = text_width(&name, size).max(if said.is_empty() { 0.0 } else { text_width(&said, size) + size * 0.9 });
     let h = bubble + letters;
-    let reach = r * if said.is_empty() { 1.0 } else { 1.6 } + 3.0;
+    let reach = r * if said.is_empty() { 1.0 } else { RING } + 3.0;
     let places = [
         (at.0 - w / 2.0, at.1 - reach - h),
         (at.0 - w / 2.0, at.1 + reach),
@@ -229,15 +204,9 @@ fn draw_words(
     // Words that would be cut at an edge are moved into the picture.
     let Area { x: left, y: top, w: wide, h: high } = look.bounds;
     let inside = |(x, y): (f64, f64)| (x.min(left + wide - w).max(left), y.min(top + high - h).max(top));
-    let covered = |place: &(f64, f64)| -> f64 {
-        taken
-            .iter()
-            .map(|(x, y, tw, th)| {
-                let across = (place.0 + w).min(x + tw) - place.0.max(*x);
-                let down = (place.1 + h).min(y + th) - place.1.max(*y);
-                if across > 0.0 && down > 0.0 { across * down } else { 0.0 }
-            })
-            .sum()
+    let covered = |(x, y): &(f64, f64)| -> f64 {
+        let area = Area { x: *x, y: *y, w, h };
+        taken.iter().map(|(other, cost)| area.overlap(other) * cost).sum()
     };
     let mut best = (f64::MAX, (at.0, at.1));
     for place in places.map(inside) {
@@ -247,7 +216,7 @@ fn draw_words(
         }
     }
     let (x, y) = best.1;
-    taken.push((x, y, w, h));
+    taken.push((Area { x, y, w, h }, 1.0));
     let middle = x + w / 2.0;
     if !said.is_empty() {
         let wide = text_width(&said, size) + size * 0.9;
@@ -279,9 +248,9 @@ mod tests {
         let location = hall("hall");
         let frame = Frame::around(&location, 640.0, 360.0, (0.0, 0.0));
         let bounds = Area { x: 0.0, y: 0.0, w: 640.0, h: 360.0 };
-        let look = Look::new(run, frame.len(&location, 1.0), 360.0, names, bounds);
+        let look = Look::new(run, (frame.len(&location, 1.0), 5.0), 11.0, names, bounds);
         let mut svg = Svg::part();
-        draw_everybody(&mut svg, &location, &frame, run, 2.0, &look);
+        draw_everybody(&mut svg, &location, &frame, run, 2.0, &look, &[]);
         svg.text_so_far()
     }
 
@@ -290,10 +259,11 @@ mod tests {
         let at = (1.0, 2.0);
         let look_at = |bounds: Area| {
             let run = walk(1);
-            let look = Look::new(&run, 30.0, 360.0, true, bounds);
-            let mut taken = vec![(at.0 - 8.0, at.1 - 8.0, 16.0, 16.0)];
+            let look = Look::new(&run, (30.0, 5.0), 11.0, true, bounds);
+            let mut taken = vec![(Area { x: at.0 - 8.0, y: at.1 - 8.0, w: 16.0, h: 16.0 }, 1.0)];
             draw_words(&mut Svg::part(), at, &state(1, 0.0, 0.0, 0.0, 0.0), 8.0, &look, &mut taken);
-            taken[1]
+            let Area { x, y, w, h } = taken[1].0;
+            (x, y, w, h)
         };
         let (x, y, w, h) = look_at(Area { x: 0.0, y: 0.0, w: 640.0, h: 360.0 });
         assert!(x >= 0.0 && y >= 0.0 && x + w <= 640.0 && y + h <= 360.0, "{x} {y}");
@@ -314,13 +284,13 @@ mod tests {
     fn a_crowd_has_no_names_but_the_robots() {
         let words = drawn(&walk(300), true);
         assert!(words.contains(">robot<") && !words.contains(">h7<"));
-        assert_eq!(words.matches("<ellipse").count(), 300);
+        assert_eq!(words.matches("<circle r=").count(), 300);
     }
 
     #[test]
     fn somebody_who_is_nowhere_is_not_drawn() {
         let run = recording(&[&[robot(1.0, 1.0, 1.0, 0.0), state(1, f64::NAN, 0.0, 0.0, 0.0)]]);
         let words = drawn(&run, true);
-        assert!(!words.contains("NaN") && !words.contains("<ellipse"));
+        assert!(!words.contains("NaN") && !words.contains("<circle r="));
     }
 }

@@ -70,7 +70,7 @@ pub fn annotated_map(location: &Location) -> String {
         let color = class_color(PlaceClass::of_type(&node.kind));
         svg.circle(at, 5.5, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
         let text = node.id.as_str();
-        let area = labels.place(at, (text_width(text, 14.0) + 4.0, 15.0), 8.0);
+        let area = labels.place_within(at, (text_width(text, 14.0) + 4.0, 15.0), 8.0, 3);
         svg.label((area.x + area.w / 2.0, area.y + 12.0), text, 14.0, ink);
     }
     draw_scale(&mut svg, location, &frame, 18.0);

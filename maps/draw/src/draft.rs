@@ -4,7 +4,7 @@ use socrates_model::{AgentId, Location, NodeId, Paths, Point};
 
 use crate::label::{Area, Labels, wrapped};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
-use crate::marks::{draw_arrow, draw_label, draw_legend, draw_line, legend_px};
+use crate::marks::{draw_arrow, draw_body, draw_label, draw_legend, draw_line, draw_start, legend_px};
 use crate::palette;
 use crate::svg::Svg;
 
@@ -62,7 +62,7 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
         labels.avoid_line(line);
     }
     for (agent, line) in lines.iter().rev() {
-        draw_ends(&mut svg, line, palette::agent(agent.number()), &mut labels);
+        draw_ends(&mut svg, line, *agent, &mut labels);
     }
     draw_encounters(&mut svg, location, &frame, paths, &mut labels);
     for (agent, line) in &lines {
@@ -81,7 +81,7 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
     draw_scale(&mut svg, location, &frame, 18.0);
     svg.text(
         (width - 20.0, frame.at.1 + h + 22.0),
-        "ring: start · disc: end · diamond: encounter · small words: nodes",
+        "outline: start · filled: end · diamond: encounter · small words: nodes",
         &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
     let role = |agent: &AgentId| roles.iter().find(|(of, _)| of == agent).map(|(_, role)| format!(" ({role})"));
@@ -129,12 +129,14 @@ fn draw_way(svg: &mut Svg, line: &[(f64, f64)], color: &str) {
     }
 }
 
-fn draw_ends(svg: &mut Svg, line: &[(f64, f64)], color: &str, labels: &mut Labels) {
+fn draw_ends(svg: &mut Svg, line: &[(f64, f64)], agent: AgentId, labels: &mut Labels) {
     const RADIUS: f64 = 8.0;
     let (Some(start), Some(end)) = (line.first(), line.last()) else { return };
-    svg.circle(*end, RADIUS, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
+    let (robot, color) = (agent == AgentId::Robot, palette::agent(agent.number()));
+    let before = line.iter().rev().find(|point| *point != end).unwrap_or(end);
+    draw_body(svg, *end, (before.1 - end.1).atan2(end.0 - before.0), robot, RADIUS, color);
     if line.len() > 1 {
-        svg.circle(*start, RADIUS, &format!("fill=\"#ffffff\" stroke=\"{color}\" stroke-width=\"3\""));
+        draw_start(svg, *start, robot, RADIUS, color, 3.0);
     }
     for (x, y) in [start, end] {
         labels.block(Area { x: x - RADIUS, y: y - RADIUS, w: RADIUS * 2.0, h: RADIUS * 2.0 });

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use socrates_model::{AgentId, EventKind, Location, Paths, Recording};
 
-use crate::film::camera;
+use crate::camera::still;
 use crate::label::{Area, Labels, text_width, wrapped};
 use crate::map_layer::{draw_doors, draw_floor, wall_areas};
+use crate::marks::{draw_body, draw_start};
 use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
@@ -65,14 +66,14 @@ pub fn figure(
         return Err(FigureError::Crowded { found: shown.len() });
     }
     let width = width_mm * PT_PER_MM;
-    let mut frame = camera(location, paths, all, (width - 1.0, width * 0.8), (0.5, 0.5));
+    let mut frame = still(location, paths, all, (width - 1.0, width * 0.8), (0.5, 0.5));
     let (w, h) = frame.size();
     // The map has the width of the column; a tall one stands in its middle.
     frame.at = ((width - w) / 2.0, 0.5);
     let entries = legend(first, shown);
     let (columns, rows) = legend_grid(&entries, width);
     #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
-    let height = h + 1.0 + TEXT_PT * 1.5 * (rows as f64 + 0.75) + TEXT_PT * 0.7;
+    let height = h + 1.0 + TEXT_PT * 1.5 * (rows as f64 + 0.75) + TEXT_PT;
     let mut svg = Svg::in_mm(width_mm, width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     svg.begin_clip(frame.at, (w, h));
@@ -113,11 +114,17 @@ pub fn figure(
     for track in &tracks {
         track.draw_ends(&mut svg, &px, &mut labels);
     }
-    draw_encounters(&mut svg, first, &px, &mut labels);
-    let marks: Vec<Mark> = tracks.iter().filter(|track| track.named).flat_map(|track| track.marks(&px)).collect();
+    let met = encounters(first, &px);
+    // A mark under the diamond of an encounter would be neither seen nor read.
+    let hidden = |at: (f64, f64)| met.iter().any(|(met, _)| (met.0 - at.0).hypot(met.1 - at.1) < 5.5);
+    let named = tracks.iter().filter(|track| track.named);
+    let marks: Vec<Mark> = named.flat_map(|track| track.marks(&px)).filter(|mark| !hidden(mark.at)).collect();
     for mark in &marks {
         svg.circle(mark.at, 1.3, &format!("fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"0.8\"", mark.color));
         labels.block(Area { x: mark.at.0 - 2.0, y: mark.at.1 - 2.0, w: 4.0, h: 4.0 });
+    }
+    for (at, color) in met {
+        draw_diamond(&mut svg, at, color, &mut labels);
     }
     // Names matter more than times: they take their places first.
     for track in tracks.iter().filter(|track| track.named && std::ptr::eq(track.run, *first)) {
@@ -201,10 +208,12 @@ impl Track<'_> {
         let mut track = self.run.track(self.agent).filter(|state| there.is(state));
         let Some(first) = track.next() else { return };
         let last = track.last().unwrap_or(first);
-        let r = if self.named { 2.6 } else { 1.2 };
+        let r = if self.named { 3.0 } else { 1.2 };
         let (from, to) = (px(first.x, first.y), px(last.x, last.y));
-        svg.circle(from, r, &format!("fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"1\"", self.color));
-        svg.circle(to, r, &format!("fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"0.6\"", self.color));
+        let robot = self.agent == AgentId::Robot;
+        draw_body(svg, to, last.yaw, robot, r, self.color);
+        let apart = (from.0 - to.0).hypot(from.1 - to.1);
+        draw_start(svg, from, robot, if apart < 2.0 * r { r * 0.6 } else { r }, self.color, 1.0);
         for (x, y) in [from, to] {
             labels.block(Area { x: x - r, y: y - r, w: 2.0 * r, h: 2.0 * r });
         }
@@ -225,34 +234,35 @@ fn mark_secs(run: &Recording) -> f64 {
 fn label(svg: &mut Svg, labels: &mut Labels, at: (f64, f64), words: &str, color: &str, gap: f64) {
     let area = labels.place(at, (text_width(words, TEXT_PT) + 1.5, TEXT_PT * 1.05), gap);
     let base = (area.x + area.w / 2.0, area.y + TEXT_PT * 0.85);
-    let common = format!("font-size=\"{TEXT_PT}\" text-anchor=\"middle\"");
-    svg.text(
-        base,
-        words,
-        &format!("{common} fill=\"#ffffff\" stroke=\"#ffffff\" stroke-width=\"2\" stroke-linejoin=\"round\""),
-    );
-    svg.text(base, words, &format!("{common} fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.25\""));
+    // One text with a rim below its letters: whoever copies it out of a PDF gets it once.
+    let style = format!("font-size=\"{TEXT_PT}\" text-anchor=\"middle\" fill=\"{color}\"");
+    let rim = "stroke=\"#ffffff\" stroke-width=\"2\" stroke-linejoin=\"round\" paint-order=\"stroke\"";
+    svg.text(base, words, &format!("{style} {rim}"));
 }
 
-/// Every encounter, where the robot was.
-fn draw_encounters(svg: &mut Svg, run: &Recording, px: &dyn Fn(f64, f64) -> (f64, f64), labels: &mut Labels) {
+/// Every encounter, where the robot was, in the color of whoever it met.
+fn encounters(run: &Recording, px: &dyn Fn(f64, f64) -> (f64, f64)) -> Vec<((f64, f64), &'static str)> {
     let mut met = BTreeMap::new();
     for event in &run.events {
         if let EventKind::Encounter { human, nth, .. } = &event.kind {
             met.entry((*human, *nth)).or_insert(event.time);
         }
     }
-    for ((human, _), time) in met {
-        let tick = usize::try_from(time.tick()).unwrap_or(usize::MAX);
-        let Some(robot) = run.tick(tick).iter().find(|state| state.agent == 0) else { continue };
-        let (x, y) = px(robot.x, robot.y);
-        let color = palette::human(human.number());
-        svg.raw(&format!(
-            "<path d=\"M{x:.2} {:.2}l3.2 3.2l-3.2 3.2l-3.2 -3.2z\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"0.6\"/>",
-            y - 3.2
-        ));
-        labels.block(Area { x: x - 3.2, y: y - 3.2, w: 6.4, h: 6.4 });
-    }
+    met.into_iter()
+        .filter_map(|((human, _), time)| {
+            let tick = usize::try_from(time.tick()).unwrap_or(usize::MAX);
+            let robot = run.tick(tick).iter().find(|state| state.agent == 0)?;
+            Some((px(robot.x, robot.y), palette::human(human.number())))
+        })
+        .collect()
+}
+
+fn draw_diamond(svg: &mut Svg, (x, y): (f64, f64), color: &str, labels: &mut Labels) {
+    svg.raw(&format!(
+        "<path d=\"M{x:.2} {:.2}l3.2 3.2l-3.2 3.2l-3.2 -3.2z\" fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"0.6\"/>",
+        y - 3.2
+    ));
+    labels.block(Area { x: x - 3.2, y: y - 3.2, w: 6.4, h: 6.4 });
 }
 
 /// One entry of the legend: color, dash, words.
@@ -342,7 +352,7 @@ enum Sign {
 }
 
 /// Room of a sign and the gap behind its words, pt.
-const SIGN_PT: f64 = 6.0;
+const SIGN_PT: f64 = 6.8;
 const GAP_PT: f64 = 5.0;
 
 fn note_width(parts: &[(Sign, String)]) -> f64 {
@@ -357,8 +367,8 @@ fn draw_note(svg: &mut Svg, right: f64, base: f64, parts: &[(Sign, String)], sty
     for (sign, words) in parts {
         let center = (x + 2.4, base - TEXT_PT * 0.33);
         match sign {
-            Sign::Start => svg.circle(center, 2.0, &ring(0.9)),
-            Sign::End => svg.circle(center, 2.3, &format!("fill=\"{ink}\"")),
+            Sign::Start => svg.circle(center, 1.9, &ring(0.9)),
+            Sign::End => svg.circle(center, 2.35, &format!("fill=\"{ink}\"")),
             Sign::Encounter => svg.raw(&format!(
                 "<path d=\"M{:.2} {:.2}l2.6 2.6l-2.6 2.6l-2.6 -2.6z\" fill=\"{ink}\"/>",
                 center.0,

@@ -1,35 +1,26 @@
-//! The film of a scenario: seen from above, the same camera for every planner.
-//!
-//! ```text
-//! shot (camera, times) ─┬─► pictures, one by one ─► ffmpeg, GIF
-//!                       └─► animated SVG
-//! ```
+//! The film of a scenario: seen from above, near enough to see people, after what happens.
 
-use socrates_model::{Action, EventKind, Location, Paths, Point, Recording};
+use socrates_model::{Action, Location, Recording, Report};
 
 use crate::actor::{self, Look, text_px};
-use crate::label::{Area, wrapped};
-use crate::map_layer::{Frame, draw_floor};
+use crate::camera::{Camera, least_px};
+use crate::film_cards::{draw_end, draw_title};
+use crate::film_times::{FIRST_SECS, Times};
+use crate::label::{Area, text_width, wrapped};
+use crate::map_layer::{draw_floor, wall_areas};
 use crate::page_data::marks;
 use crate::palette;
-use crate::play::spread;
 use crate::png::{Ground, PngError};
 use crate::svg::Svg;
 
-/// Seconds a film stands still before and after the run.
-const STILL_SECS: f64 = 1.0;
-/// Longest film, s.
-pub const LONGEST_SECS: f64 = 20.0;
 /// Most runs side by side.
 pub const PANELS: usize = 4;
 /// Seconds of the film for which a caption stands, and of the run where the film is slower.
 const CAPTION_SECS: f64 = 2.0;
 /// So many are told at once.
 const CAPTIONS: usize = 3;
-/// Height of a line of words beside the map, in heights of its letters.
-const LINE: f64 = 1.5;
-/// What begins within so long is how somebody starts, s.
-const FIRST_SECS: f64 = 0.5;
+/// Height of a line of words, in heights of its letters.
+pub(crate) const LINE: f64 = 1.5;
 
 /// How a film is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,10 +29,19 @@ pub struct FilmOptions {
     pub size: (u32, u32),
     /// Pictures per second.
     pub fps: u32,
-    /// Names, clock, planner and captions; without them a film can be shown to a person who must not know the planner.
+    /// Names, clock, planner, captions and cards; without them a film can be shown to a person who must not know the planner.
     pub labels: bool,
-    /// Simulated seconds per second; `None`: 1, or as fast as is needed to show the whole run in 20 s.
+    /// Simulated seconds per second; `None`: 1, or as fast as is needed to show all that happens in 20 s.
     pub speed: Option<f64>,
+}
+
+/// A run that a film shows, with what became of it for the card at the end.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// The run.
+    pub recording: &'a Recording,
+    /// Its report, where it has one.
+    pub report: Option<&'a Report>,
 }
 
 /// Why a film could not be made.
@@ -81,73 +81,21 @@ pub struct Film<'a> {
     /// Times and pictures of the film.
     pub times: Times,
     pub(crate) options: FilmOptions,
+    pub(crate) title: &'a str,
     ground: Ground,
     pub(crate) panels: Vec<Panel<'a>>,
-}
-
-/// Which part of the run a film shows, and how fast.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Times {
-    /// First moment of the run, s.
-    pub from_s: f64,
-    /// Last moment of the run, s.
-    pub to_s: f64,
-    /// Simulated seconds per second.
-    pub speed: f64,
-    /// Pictures per second.
-    pub fps: u32,
-}
-
-impl Times {
-    /// Length of the film, s.
-    #[must_use]
-    pub fn length_s(&self) -> f64 {
-        2.0 * STILL_SECS + (self.to_s - self.from_s) / self.speed
-    }
-
-    /// Number of pictures.
-    #[must_use]
-    pub fn pictures(&self) -> usize {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 20 s")]
-        let count = (self.length_s() * f64::from(self.fps)).round() as usize;
-        count.max(1)
-    }
-
-    /// The moment of the run that a picture shows, s.
-    #[must_use]
-    pub fn moment_s(&self, picture: usize) -> f64 {
-        #[expect(clippy::cast_precision_loss, reason = "at most some thousand pictures")]
-        let film_s = picture as f64 / f64::from(self.fps.max(1));
-        self.at_film_s(film_s)
-    }
-
-    /// The moment of the run at a time of the film, s.
-    pub(crate) fn at_film_s(&self, film_s: f64) -> f64 {
-        (self.from_s + (film_s - STILL_SECS).max(0.0) * self.speed).min(self.to_s)
-    }
-
-    /// When a moment of the run is seen first in the film, s: from the start where the run begins with it, to the end
-    /// where it comes later.
-    pub(crate) fn film_s(&self, moment_s: f64) -> f64 {
-        if moment_s <= self.from_s {
-            0.0
-        } else if moment_s >= self.to_s {
-            self.length_s()
-        } else {
-            STILL_SECS + (moment_s - self.from_s) / self.speed
-        }
-    }
 }
 
 /// One run in its part of the picture.
 #[derive(Debug)]
 pub(crate) struct Panel<'a> {
     pub(crate) recording: &'a Recording,
+    pub(crate) report: Option<&'a Report>,
     pub(crate) location: &'a Location,
-    pub(crate) frame: Frame,
+    pub(crate) camera: Camera,
     pub(crate) at: (f64, f64),
     pub(crate) size: (f64, f64),
-    /// The part with the map: above it is the clock, below it the captions.
+    /// The part with the map; above it is the clock.
     pub(crate) view: Area,
     pub(crate) title: String,
     pub(crate) look: Look,
@@ -161,94 +109,41 @@ impl Panel<'_> {
         (self.at.0 + size * 0.6, self.at.1 + size * 1.1)
     }
 
-    /// Lower left corner of a caption, the newest in the lowest row.
-    pub(crate) fn caption_at(&self, row: usize) -> (f64, f64) {
+    /// The box of a caption, the newest in the lowest row.
+    pub(crate) fn caption(&self, row: usize, words: &str) -> Area {
         let size = self.look.text_px;
         #[expect(clippy::cast_precision_loss, reason = "a few rows")]
-        let up = size * LINE * row as f64;
-        (self.at.0 + size * 0.6, self.at.1 + self.size.1 - up - size * 0.5)
+        let up = size * (LINE * row as f64 + 0.3);
+        let (w, h) = (text_width(words, size) + size * 0.8, size * LINE);
+        Area { x: self.at.0 + size * 0.3, y: self.at.1 + self.size.1 - up - h, w, h }
+    }
+
+    /// Writes a caption on a light ground: the map goes on below it.
+    pub(crate) fn draw_caption(&self, svg: &mut Svg, row: usize, words: &str) {
+        let (size, area) = (self.look.text_px, self.caption(row, words));
+        svg.rect((area.x, area.y), (area.w, area.h), "fill=\"#ffffff\" fill-opacity=\"0.88\"");
+        svg.heading((area.x + size * 0.4, area.y + size * 1.1), words, size, palette::INK);
     }
 
     /// What is told at a moment, the newest first, for so many seconds of the run.
     pub(crate) fn told(&self, now_s: f64, secs: f64) -> impl Iterator<Item = String> {
         let fresh = self.captions.iter().filter(move |(t, _)| *t <= now_s + 1e-9 && now_s - t < secs);
         let size = self.look.text_px;
-        fresh.rev().take(CAPTIONS).map(move |(_, words)| wrapped(words, self.size.0 - size * 1.2, size, 1).concat())
+        fresh.rev().take(CAPTIONS).map(move |(_, words)| wrapped(words, self.size.0 - size * 1.6, size, 1).concat())
     }
-}
-
-/// The times of a film of these runs.
-///
-/// # Errors
-/// [`FilmError::Speed`] for a speed outside 0.1 to 20.
-pub fn times(shown: &[&Recording], options: &FilmOptions) -> Result<Times, FilmError> {
-    let whole = shown.iter().map(|run| length_s(run)).fold(0.0, f64::max);
-    let room = LONGEST_SECS - 2.0 * STILL_SECS;
-    let speed = match options.speed {
-        Some(found) if !(0.1..=20.0).contains(&found) => return Err(FilmError::Speed { found }),
-        Some(speed) => speed,
-        // Rounded up to a tenth, so that it can be told in words.
-        None => ((whole / room * 10.0 - 1e-9).ceil() / 10.0).max(1.0),
-    };
-    let most = room * speed;
-    let (from_s, to_s) = if whole <= most {
-        (0.0, whole)
-    } else {
-        let middle = shown.first().map_or(whole / 2.0, |run| heart_s(run));
-        let from = (middle - most / 2.0).clamp(0.0, whole - most);
-        (from, from + most)
-    };
-    Ok(Times { from_s, to_s, speed, fps: options.fps.max(1) })
-}
-
-/// Length of a recording, s.
-fn length_s(recording: &Recording) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "a recording has fewer than 2^53 ticks")]
-    let ticks = recording.ticks().saturating_sub(1) as f64;
-    ticks * recording.header.step_s
-}
-
-/// When it happens: the first encounter, else the moment of the smallest distance between robot and human.
-fn heart_s(recording: &Recording) -> f64 {
-    let met = recording.events.iter().find(|event| matches!(event.kind, EventKind::Encounter { .. }));
-    if let Some(event) = met {
-        return event.time.secs();
-    }
-    let curve = crate::series::curves(recording, 10).distance_m;
-    let nearest = curve.iter().enumerate().filter_map(|(index, gap)| Some((index, (*gap)?)));
-    let least = nearest.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(index, _)| index);
-    #[expect(clippy::cast_precision_loss, reason = "a recording has fewer than 2^53 ticks")]
-    let ticks = least as f64 * 10.0;
-    ticks * recording.header.step_s
-}
-
-/// The camera of a scenario for a picture of this size: the same for all of its runs.
-pub(crate) fn camera(
-    location: &Location,
-    paths: Option<&Paths>,
-    all: &[&Recording],
-    size: (f64, f64),
-    at: (f64, f64),
-) -> Frame {
-    let way = paths.map(|paths| location.graph.polyline(&paths.robot)).unwrap_or_default();
-    let seen: Vec<Point> = all.iter().flat_map(|run| spread(run)).chain(way).collect();
-    let mut frame = Frame::focused(location, &seen, size.0, size.1, at);
-    // What does not fill the picture stands in its middle.
-    let (w, h) = frame.size();
-    frame.at = (at.0 + ((size.0 - w) / 2.0).max(0.0), at.1 + ((size.1 - h) / 2.0).max(0.0));
-    frame
 }
 
 impl<'a> Film<'a> {
-    /// A film of the runs `shown`, side by side, with the camera of `all` runs of the scenario.
+    /// A film of the runs `shown`, side by side, of the scenario with this title; `all` are the runs of the scenario, so that
+    /// the camera is as near in a film of each of them.
     ///
     /// # Errors
     /// [`FilmError`] when there is nothing to show, or too much, or the options are impossible.
     pub fn new(
         location: &'a Location,
-        paths: Option<&Paths>,
+        title: &'a str,
         all: &[&Recording],
-        shown: &[&'a Recording],
+        shown: &[Shown<'a>],
         options: FilmOptions,
     ) -> Result<Self, FilmError> {
         let (width, height) = options.size;
@@ -261,7 +156,8 @@ impl<'a> Film<'a> {
         if shown.len() > PANELS {
             return Err(FilmError::Crowded { found: shown.len() });
         }
-        let times = times(shown, &options)?;
+        let runs: Vec<&Recording> = shown.iter().map(|shown| shown.recording).collect();
+        let times = Times::of(&runs, &options)?;
         let (columns, rows) = match shown.len() {
             1 => (1.0, 1.0),
             2 => (2.0, 1.0),
@@ -270,33 +166,43 @@ impl<'a> Film<'a> {
         let (w, h) = (f64::from(width), f64::from(height));
         let gap = if shown.len() == 1 { 0.0 } else { 4.0 };
         let size = ((w - gap * (columns - 1.0)) / columns, (h - gap * (rows - 1.0)) / rows);
-        let mut ground = Svg::new(w, h);
-        ground.rect((0.0, 0.0), (w, h), "fill=\"#ffffff\"");
         let mut panels = Vec::new();
-        for (index, recording) in shown.iter().enumerate() {
+        for (index, shown) in shown.iter().enumerate() {
             #[expect(clippy::cast_precision_loss, reason = "at most four panels")]
             let at = ((index % 2) as f64 * (size.0 + gap), (index / 2) as f64 * (size.1 + gap));
-            let view = view(at, size, text_px(h / rows), options.labels);
-            let frame = camera(location, paths, all, (view.w, view.h), (view.x, view.y));
-            ground.rect((view.x, view.y), (view.w, view.h), &format!("fill=\"{}\"", palette::UNKNOWN));
-            draw_floor(&mut ground, location, &frame);
-            draw_edges(&mut ground, &view, options.labels);
-            let header = &recording.header;
-            let look = Look::new(recording, frame.len(location, 1.0), h / rows, options.labels, view);
+            let (view, safe) = parts(at, size, text_px(h / rows), options.labels);
+            let recording = shown.recording;
+            let camera = Camera::of(location, all, recording, (times.from_s, times.to_s), (view, safe));
+            let look = Look::new(
+                recording,
+                (camera.px_per_m(location), least_px(view.h) / 2.0),
+                text_px(h / rows),
+                options.labels,
+                safe,
+            );
+            let title = format!("{} · seed {}", recording.header.planner, recording.header.seed);
+            let mut captions = captions(recording);
+            if runs.len() > 1 {
+                // Side by side a caption says which run it is about.
+                captions.iter_mut().for_each(|(_, words)| *words = format!("{title}: {words}"));
+            }
             panels.push(Panel {
                 recording,
+                report: shown.report,
                 location,
-                frame,
+                camera,
                 at,
                 size,
                 view,
-                title: format!("{} · seed {}", header.planner, header.seed),
+                title,
                 look,
-                captions: captions(recording),
+                captions,
             });
         }
+        let mut ground = Svg::new(w, h);
+        ground.rect((0.0, 0.0), (w, h), "fill=\"#ffffff\"");
         let ground = Ground::new(&ground.finish()).map_err(FilmError::Picture)?;
-        Ok(Self { times, options, ground, panels })
+        Ok(Self { times, options, title, ground, panels })
     }
 
     /// A picture: red, green, blue, row by row.
@@ -304,28 +210,35 @@ impl<'a> Film<'a> {
     /// # Errors
     /// [`FilmError::Picture`] when it cannot be drawn.
     pub fn picture(&self, index: usize) -> Result<Vec<u8>, FilmError> {
-        self.ground.with(&self.drawing(self.times.moment_s(index))).map_err(FilmError::Picture)
+        self.ground.with(&self.drawing(self.times.picture_s(index))).map_err(FilmError::Picture)
     }
 
-    /// What moves, at a moment of the run, as SVG without the ground.
-    fn drawing(&self, now_s: f64) -> String {
+    /// The picture at a time of the film as SVG, without the white below it.
+    pub(crate) fn drawing(&self, film_s: f64) -> String {
+        let now_s = self.times.at_film_s(film_s);
         let mut svg = Svg::new(f64::from(self.options.size.0), f64::from(self.options.size.1));
-        // Doors and people outside the camera of one panel must not be seen in the next one, nor under the words; a lone
-        // panel without words is cut by the picture itself.
-        let clipped = self.panels.len() > 1 || self.options.labels;
         for (index, panel) in self.panels.iter().enumerate() {
-            if clipped {
-                svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
-                svg.rect((panel.view.x, panel.view.y), (panel.view.w, panel.view.h), "");
-                svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
-            }
-            actor::draw_doors(&mut svg, panel.location, &panel.frame, panel.recording, now_s);
-            actor::draw_everybody(&mut svg, panel.location, &panel.frame, panel.recording, now_s, &panel.look);
-            if clipped {
-                svg.raw("</g>");
-            }
+            let view = panel.view;
+            // What is outside the camera of one panel must not be seen in the next one, nor under the words.
+            svg.raw(&format!("<clipPath id=\"panel-{index}\">"));
+            svg.rect((view.x, view.y), (view.w, view.h), "");
+            svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
+            svg.rect((view.x, view.y), (view.w, view.h), &format!("fill=\"{}\"", palette::UNKNOWN));
+            let (frame, part) = (panel.camera.frame(now_s), panel.camera.part(now_s));
+            draw_floor(&mut svg, panel.location, &part);
+            actor::draw_doors(&mut svg, panel.location, &frame, panel.recording, now_s);
+            let walls = if self.options.labels { wall_areas(panel.location, &part) } else { Vec::new() };
+            actor::draw_everybody(&mut svg, panel.location, &frame, panel.recording, now_s, &panel.look, &walls);
+            svg.raw("</g>");
             if self.options.labels {
                 self.draw_words(&mut svg, panel, now_s);
+            }
+        }
+        if self.options.labels {
+            if film_s < self.times.cards_s.0 - 1e-9 {
+                draw_title(&mut svg, self);
+            } else if film_s > self.times.length_s() - self.times.cards_s.1 + 1e-9 {
+                self.panels.iter().for_each(|panel| draw_end(&mut svg, panel));
             }
         }
         svg.finish()
@@ -336,34 +249,48 @@ impl<'a> Film<'a> {
         CAPTION_SECS * self.times.speed.max(1.0)
     }
 
+    /// How fast the film goes, in words; nothing where it goes as the run did.
+    pub(crate) fn speed_words(&self) -> String {
+        if (self.times.speed - 1.0).abs() < 1e-9 {
+            return String::new();
+        }
+        format!(" ({}×)", (self.times.speed * 100.0).round() / 100.0)
+    }
+
     fn draw_words(&self, svg: &mut Svg, panel: &Panel<'_>, now_s: f64) {
-        let size = panel.look.text_px;
-        let speed = if (self.times.speed - 1.0).abs() < 1e-9 {
-            String::new()
-        } else {
-            format!(" ({}×)", (self.times.speed * 100.0).round() / 100.0)
-        };
-        svg.heading(panel.clock_at(), &format!("{} · {now_s:.1} s{speed}", panel.title), size, palette::INK);
+        let words = format!("{} · {now_s:.1} s{}", panel.title, self.speed_words());
+        svg.heading(panel.clock_at(), &words, panel.look.text_px, palette::INK);
         // The newest ones, each on a line of its own, so that what comes fast is told as well.
         for (row, words) in panel.told(now_s, self.caption_s()).enumerate() {
-            svg.heading(panel.caption_at(row), &words, size, palette::INK);
+            panel.draw_caption(svg, row, &words);
         }
     }
 }
 
-/// The part of a panel in which the map is seen: words have strips of their own, so that they hide nobody.
-fn view(at: (f64, f64), size: (f64, f64), text_px: f64, labels: bool) -> Area {
+/// The part of a panel with the map, and the part of that in which no caption can hide anybody.
+fn parts(at: (f64, f64), size: (f64, f64), text_px: f64, labels: bool) -> (Area, Area) {
+    if !labels {
+        let view = Area { x: at.0, y: at.1, w: size.0, h: size.1 };
+        return (view, view);
+    }
+    let above = text_px * (LINE + 0.1);
     #[expect(clippy::cast_precision_loss, reason = "a few captions")]
-    let (above, below) =
-        if labels { (text_px * (LINE + 0.1), text_px * (LINE * CAPTIONS as f64 + 0.2)) } else { (0.0, 0.0) };
-    Area { x: at.0, y: at.1 + above, w: size.0, h: size.1 - above - below }
+    let below = text_px * (LINE * CAPTIONS as f64 + 0.3);
+    let view = Area { x: at.0, y: at.1 + above, w: size.0, h: size.1 - above };
+    (view, Area { h: view.h - below, ..view })
 }
 
-/// Lines between the map and the strips of words: both may be white.
-pub(crate) fn draw_edges(svg: &mut Svg, view: &Area, labels: bool) {
-    for y in [view.y, view.y + view.h].into_iter().filter(|_| labels) {
-        svg.line((view.x, y), (view.x + view.w, y), &format!("stroke=\"{}\" stroke-width=\"2\"", palette::UNKNOWN));
+/// `h1` for `human_1`: as the names beside people are written.
+pub(crate) fn short_names(words: &str) -> String {
+    let mut out = String::new();
+    let mut rest = words;
+    while let Some((before, after)) = rest.split_once("human_") {
+        out.push_str(before);
+        out.push_str(if after.starts_with(|c: char| c.is_ascii_digit()) { "h" } else { "human_" });
+        rest = after;
     }
+    out.push_str(rest);
+    out
 }
 
 /// What is told at the lower edge, with times: everything that happens at one moment in one line.
@@ -382,9 +309,10 @@ fn captions(recording: &Recording) -> Vec<(f64, String)> {
         if kind == "leaf" && (words.ends_with(&walks) || t < FIRST_SECS && words.ends_with(&stands)) {
             continue;
         }
+        let words = short_names(words);
         match out.last_mut() {
             Some((last, told)) if (*last - t).abs() < 1e-9 => *told = format!("{told}, {words}"),
-            _ => out.push((t, words.to_owned())),
+            _ => out.push((t, words)),
         }
     }
     out
@@ -392,114 +320,114 @@ fn captions(recording: &Recording) -> Vec<(f64, String)> {
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::EventKind;
+
     use super::*;
-    use crate::fixture::{hall, walk};
+    use crate::fixture::{hall, report, walk};
 
     const SMALL: FilmOptions = FilmOptions { size: (320, 180), fps: 10, labels: true, speed: None };
 
-    fn at(speed: Option<f64>, seconds: usize) -> Times {
-        let mut run = walk(1);
-        let tick: Vec<_> = run.tick(0).to_vec();
-        while run.ticks() <= seconds * 100 {
-            run.frames.extend(&tick);
-        }
-        times(&[&run], &FilmOptions { speed, ..SMALL }).unwrap()
+    fn bare<'a>(runs: &[&'a Recording]) -> Vec<Shown<'a>> {
+        runs.iter().map(|recording| Shown { recording, report: None }).collect()
     }
 
-    #[test]
-    fn a_short_run_is_shown_in_real_time_and_a_long_one_faster() {
-        let short = at(None, 12);
-        assert!((short.speed - 1.0).abs() < 1e-12 && short.length_s() < 14.1);
-        let long = at(None, 60);
-        assert!((long.speed - 3.4).abs() < 1e-12, "{long:?}");
-        assert!(long.length_s() <= LONGEST_SECS && (long.to_s - 60.0).abs() < 0.02);
-    }
-
-    #[test]
-    fn a_fixed_speed_shows_the_part_where_it_happens() {
-        let part = at(Some(1.0), 60);
-        assert!(part.length_s() <= LONGEST_SECS + 1e-9);
-        // They pass each other after 3 s, so the film begins with the run.
-        assert!(part.from_s.abs() < 1e-9 && (part.to_s - 18.0).abs() < 1e-9, "{part:?}");
-    }
-
-    #[test]
-    fn a_film_stands_still_at_both_ends() {
-        let times = at(None, 6);
-        assert!((times.moment_s(0) - times.moment_s(9)).abs() < 1e-12);
-        let last = times.pictures();
-        assert!((times.moment_s(last - 1) - times.moment_s(last - 10)).abs() < 1e-12);
+    fn film<'a>(location: &'a Location, runs: &[&'a Recording], options: FilmOptions) -> Film<'a> {
+        Film::new(location, "they meet", runs, &bare(runs), options).unwrap()
     }
 
     #[test]
     fn the_same_run_gives_the_same_pictures_and_labels_can_be_left_out() {
         let (location, run) = (hall("hall"), walk(2));
-        let film = |labels: bool| {
-            let options = FilmOptions { labels, ..SMALL };
-            Film::new(&location, None, &[&run], &[&run], options).unwrap().picture(30).unwrap()
-        };
-        assert_eq!(film(true), film(true));
-        assert_eq!(film(true).len(), 320 * 180 * 3);
-        assert_ne!(film(true), film(false));
+        let picture = |labels: bool| film(&location, &[&run], FilmOptions { labels, ..SMALL }).picture(30).unwrap();
+        assert_eq!(picture(true), picture(true));
+        assert_eq!(picture(true).len(), 320 * 180 * 3);
+        assert_ne!(picture(true), picture(false));
     }
 
     #[test]
-    fn a_film_without_labels_names_no_planner() {
+    fn a_film_without_labels_names_no_planner_in_any_picture() {
         let (location, run) = (hall("hall"), walk(2));
-        let words = |labels: bool| {
-            let options = FilmOptions { labels, ..SMALL };
-            Film::new(&location, None, &[&run], &[&run], options).unwrap().drawing(2.0)
-        };
-        assert!(words(true).contains("reference") && words(true).contains("h2"));
-        assert!(!words(false).contains("reference") && !words(false).contains("h2"));
+        let words =
+            |labels: bool, film_s: f64| film(&location, &[&run], FilmOptions { labels, ..SMALL }).drawing(film_s);
+        assert!(words(true, 3.0).contains("reference") && words(true, 3.0).contains(">h2<"));
+        for film_s in [0.0, 3.0, 99.0] {
+            let words = words(false, film_s);
+            assert!(
+                !words.contains("reference") && !words.contains(">h2<") && !words.contains("they meet"),
+                "{film_s}"
+            );
+        }
     }
 
     #[test]
-    fn clock_and_captions_stand_beside_the_map_and_hide_nobody() {
+    fn a_film_begins_with_a_title_and_ends_with_the_verdict() {
+        let (location, run) = (hall("hall"), walk(2));
+        let report = report(&run, "9 of 9 setup clauses");
+        let shown = [Shown { recording: &run, report: Some(&report) }];
+        let options = FilmOptions { size: (640, 360), ..SMALL };
+        let film = Film::new(&location, "they meet", &[&run], &shown, options).unwrap();
+        let (first, middle, last) = (film.drawing(0.0), film.drawing(4.0), film.drawing(film.times.length_s() - 0.1));
+        for (words, [begins, runs, ends]) in
+            [("they meet", [true, false, false]), ("9 of 9", [false, false, true]), ("realised", [false, false, true])]
+        {
+            assert_eq!(
+                [first.contains(words), middle.contains(words), last.contains(words)],
+                [begins, runs, ends],
+                "{words}"
+            );
+        }
+        assert!(first.contains("reference · seed 1") && first.contains("h2"));
+    }
+
+    #[test]
+    fn people_are_large_and_captions_hide_nobody_who_matters() {
         let (location, mut run) = (hall("hall"), walk(2));
         let opens = |n: u64| EventKind::Door { door: format!("door {n}"), open: true };
         let time = |n: u64| socrates_model::SimTime::from_nanos(1_900_000_000 + n * 20_000_000);
         run.events = (0..4).map(|n| socrates_model::Event { time: time(n), kind: opens(n) }).collect();
-        let film = Film::new(&location, None, &[&run], &[&run], FilmOptions { size: (640, 360), ..SMALL }).unwrap();
+        let film = film(&location, &[&run], FilmOptions { size: (640, 360), ..SMALL });
         let panel = &film.panels[0];
         let size = panel.look.text_px;
         assert!(panel.clock_at().1 + 0.3 * size <= panel.view.y, "below the letters of the clock is the map");
+        assert!((panel.view.y + panel.view.h - 360.0).abs() < 1e-9, "the map reaches the lower edge");
         let told: Vec<String> = panel.told(2.0, film.caption_s()).collect();
         assert_eq!(told, ["door 3 opens", "door 2 opens", "door 1 opens"]);
-        let highest = panel.caption_at(told.len() - 1).1 - size;
-        assert!(highest >= panel.view.y + panel.view.h, "{highest}");
-        for agent in [0, 1, 2] {
-            let state = run.tick(200)[agent];
-            let (x, y) = panel.frame.px(&location, &state.point());
-            let r = panel.look.radius_px(0.3);
-            let view = panel.view;
-            assert!(x - r >= view.x && x + r <= view.x + view.w && y - r >= view.y && y + r <= view.y + view.h);
+        let highest = panel.caption(told.len() - 1, &told[2]).y;
+        for index in 0..film.times.pictures() {
+            let now_s = film.times.moment_s(index);
+            for state in actor::moment(&run, now_s) {
+                let (_, y) = panel.camera.frame(now_s).px(&location, &state.point());
+                let r = panel.look.radius_px(0.3);
+                assert!(2.0 * r >= 40.0 - 1e-6, "{r}");
+                assert!(state.agent != 0 || (y + r <= highest && y - r >= panel.view.y), "{y} at {now_s} s");
+            }
         }
-        let bare = FilmOptions { labels: false, ..SMALL };
-        let bare = Film::new(&location, None, &[&run], &[&run], bare).unwrap().panels[0].view;
-        assert_eq!((bare.w, bare.h), (320.0, 180.0));
     }
 
     #[test]
-    fn the_camera_does_not_depend_on_which_run_is_shown() {
-        let location = hall("hall");
-        let (one, other) = (walk(1), walk(3));
-        let all = [&one, &other];
-        let frame = |shown: &Recording| Film::new(&location, None, &all, &[shown], SMALL).unwrap().panels[0].frame;
-        assert_eq!(frame(&one), frame(&other));
+    fn captions_use_the_names_beside_people_and_side_by_side_the_name_of_the_run() {
+        let (location, mut run) = (hall("hall"), walk(2));
+        let node = socrates_model::NodeId::new("m").unwrap();
+        let kind = EventKind::Encounter { human: socrates_model::HumanId::new(2), node, gap_s: 0.4, nth: 1 };
+        run.events = vec![socrates_model::Event { time: socrates_model::SimTime::from_nanos(3_000_000_000), kind }];
+        let one = film(&location, &[&run], SMALL);
+        assert!(one.panels[0].captions[0].1.starts_with("h2 and the robot meet"), "{:?}", one.panels[0].captions);
+        let two = film(&location, &[&run, &run], FilmOptions { size: (640, 360), ..SMALL });
+        assert!(two.panels[1].captions[0].1.starts_with("reference · seed 1: h2 and"), "{:?}", two.panels[1].captions);
+        assert_eq!(short_names("human_12 and human_x"), "h12 and human_x");
     }
 
     #[test]
     fn nobody_walks_from_one_panel_into_the_next() {
         let (location, mut run) = (hall("hall"), walk(0));
+        let still = walk(0);
         // Far to the right of the camera, in the middle of the second panel.
         for state in &mut run.frames {
             state.x += 7.0;
         }
-        let still = walk(0);
         let film = |first: &Recording| {
             let options = FilmOptions { labels: false, ..SMALL };
-            Film::new(&location, None, &[&still], &[first, &still], options).unwrap().picture(15).unwrap()
+            Film::new(&location, "", &[&still], &bare(&[first, &still]), options).unwrap().picture(15).unwrap()
         };
         let right_half = |picture: &[u8]| -> Vec<u8> {
             picture.chunks_exact(320 * 3).flat_map(|row| row.iter().skip(162 * 3).copied()).collect()
@@ -512,8 +440,7 @@ mod tests {
     fn what_cannot_be_filmed_is_refused() {
         let (location, run) = (hall("hall"), walk(0));
         let film = |shown: &[&Recording], options: FilmOptions| {
-            let all = [&run];
-            Film::new(&location, None, &all, shown, options).map(|_| ()).unwrap_err().to_string()
+            Film::new(&location, "", &[&run], &bare(shown), options).map(|_| ()).unwrap_err().to_string()
         };
         assert!(film(&[], SMALL).contains("no run"));
         assert!(film(&[&run; 5], SMALL).contains("`5` runs"));

@@ -2,10 +2,12 @@
 
 use socrates_model::{EventKind, Gesture};
 
-use crate::actor::{body, moment};
-use crate::film::{Film, Panel, draw_edges};
+use crate::actor::{RING, moment};
+use crate::film::{Film, Panel};
+use crate::film_cards::{draw_end, draw_title};
 use crate::label::text_width;
 use crate::map_layer::draw_floor;
+use crate::marks::body;
 use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
@@ -26,16 +28,39 @@ impl Film<'_> {
             svg.rect(at, size, "");
             svg.raw(&format!("</clipPath><g clip-path=\"url(#panel-{index})\">"));
             svg.rect(at, size, &format!("fill=\"{}\"", palette::UNKNOWN));
-            draw_floor(&mut svg, panel.location, &panel.frame);
-            draw_edges(&mut svg, &panel.view, self.options.labels);
+            self.follow(&mut svg, panel);
+            draw_floor(&mut svg, panel.location, &panel.camera.world());
             self.animate_doors(&mut svg, panel);
             self.animate_agents(&mut svg, panel);
-            svg.raw("</g>");
+            svg.raw("</g></g>");
             if self.options.labels {
                 self.animate_words(&mut svg, panel);
             }
         }
+        if self.options.labels {
+            let (length, (title_s, end_s)) = (self.times.length_s(), self.times.cards_s);
+            svg.raw(&format!("<g opacity=\"0\">{}", self.shown_in_film(&[(0.0, title_s)])));
+            draw_title(&mut svg, self);
+            svg.raw(&format!("</g><g opacity=\"0\">{}", self.shown_in_film(&[(length - end_s, length)])));
+            self.panels.iter().for_each(|panel| draw_end(&mut svg, panel));
+            svg.raw("</g>");
+        }
         svg.finish()
+    }
+
+    /// Opens the group in which everything lies where it is on the map, and which moves as the camera goes.
+    fn follow(&self, svg: &mut Svg, panel: &Panel<'_>) {
+        let at = |now: f64| panel.camera.frame(now).at;
+        let (x, y) = at(self.times.from_s);
+        svg.raw(&format!("<g transform=\"translate({x:.1},{y:.1})\">"));
+        if !panel.camera.is_still() {
+            let way: Vec<String> = self.samples().into_iter().map(at).map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+            svg.raw(&format!(
+                "<animateTransform attributeName=\"transform\" type=\"translate\" class=\"camera\" values=\"{}\" {}/>",
+                way.join(";"),
+                self.timing()
+            ));
+        }
     }
 
     /// Moments of the run at even steps of the film.
@@ -57,10 +82,17 @@ impl Film<'_> {
 
     /// Shows what is drawn so far in a group only within stretches of the run, s.
     fn shown_within(&self, stretches: &[(f64, f64)]) -> String {
+        let film: Vec<(f64, f64)> =
+            stretches.iter().map(|(from, to)| (self.times.film_s(*from), self.times.film_s(*to))).collect();
+        self.shown_in_film(&film)
+    }
+
+    /// The same within stretches of the film, s.
+    fn shown_in_film(&self, stretches: &[(f64, f64)]) -> String {
         let length = self.times.length_s();
         let (mut values, mut times) = (vec!["0"], vec![0.0]);
         for (from, to) in stretches {
-            let (from, to) = (self.times.film_s(*from) / length, self.times.film_s(*to) / length);
+            let (from, to) = (from / length, to / length);
             if to <= from {
                 continue;
             }
@@ -97,7 +129,7 @@ impl Film<'_> {
             let coming = moments.iter().find_map(|now| state_at(*now));
             for now in &moments {
                 let state = state_at(*now).or(if spots.is_empty() { coming } else { None });
-                let spot = state.map(|state| panel.frame.px(panel.location, &state.point()));
+                let spot = state.map(|state| panel.camera.world().px(panel.location, &state.point()));
                 let turn = state.map(|state| -state.yaw.to_degrees());
                 let before = (spots.last().copied(), turns.last().copied());
                 let Some(spot) = spot.or(before.0) else { continue };
@@ -130,7 +162,8 @@ impl Film<'_> {
             if panel.look.named(info.agent.number()) {
                 let name = info.agent.to_string().replace("human_", "h");
                 // Below whoever comes so near to the upper edge that its name would be cut.
-                let highest = spots.iter().map(|(_, y)| *y).fold(f64::INFINITY, f64::min);
+                let seen_at = spots.iter().zip(&moments).map(|((_, y), now)| y + panel.camera.frame(*now).at.1);
+                let highest = seen_at.fold(f64::INFINITY, f64::min);
                 let cut = highest - r - size * 1.4 < panel.view.y;
                 svg.label(
                     (0.0, if cut { r + size * 1.05 } else { -r - size * 0.35 }),
@@ -191,14 +224,14 @@ impl Film<'_> {
             let words = gesture.name().replace('_', " ");
             let wide = text_width(&words, size) + size * 0.9;
             svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&when)));
-            svg.circle((0.0, 0.0), r * 1.6, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
+            svg.circle((0.0, 0.0), r * RING, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
             svg.rect(
-                (-wide / 2.0, r * 1.6 + 4.0),
+                (-wide / 2.0, r * RING + 4.0),
                 (wide, size * 1.4),
                 &format!("rx=\"{:.1}\" fill=\"#fff4d6\" stroke=\"#b07a00\" stroke-width=\"1.5\"", size * 0.3),
             );
             svg.text(
-                (0.0, r * 1.6 + 4.0 + size * 1.05),
+                (0.0, r * RING + 4.0 + size * 1.05),
                 &words,
                 &format!(
                     "font-size=\"{size:.1}\" font-weight=\"700\" text-anchor=\"middle\" fill=\"{}\"",
@@ -235,8 +268,9 @@ impl Film<'_> {
                 free = *to;
             }
             shut.push((free, f64::MAX));
-            let (from, to) = (panel.frame.px(panel.location, &door.from), panel.frame.px(panel.location, &door.to));
-            let width = panel.frame.len(panel.location, 0.14).max(3.0);
+            let frame = panel.camera.world();
+            let (from, to) = (frame.px(panel.location, &door.from), frame.px(panel.location, &door.to));
+            let width = frame.len(panel.location, 0.14).max(3.0);
             for (part, when) in [(0.14, open), (0.5, shut)] {
                 let (dx, dy) = ((to.0 - from.0) * part, (to.1 - from.1) * part);
                 svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&when)));
@@ -272,7 +306,7 @@ impl Film<'_> {
         for (from, to) in changes.iter().zip(changes.iter().skip(1)).filter(|(from, to)| to > from) {
             for (row, words) in panel.told(f64::midpoint(*from, *to), secs).enumerate() {
                 svg.raw(&format!("<g opacity=\"0\">{}", self.shown_within(&[(*from, *to)])));
-                svg.heading(panel.caption_at(row), &words, size, palette::INK);
+                panel.draw_caption(svg, row, &words);
                 svg.raw("</g>");
             }
         }
@@ -300,7 +334,7 @@ fn presence(moments: &[f64], there: impl Fn(f64) -> bool) -> Option<Vec<(f64, f6
 
 #[cfg(test)]
 mod tests {
-    use crate::film::{Film, FilmOptions};
+    use crate::film::{Film, FilmOptions, Shown};
     use crate::fixture::{hall, walk};
 
     #[test]
@@ -308,7 +342,8 @@ mod tests {
         let (location, run) = (hall("hall"), walk(3));
         let film = |labels: bool| {
             let options = FilmOptions { size: (640, 360), fps: 30, labels, speed: None };
-            Film::new(&location, None, &[&run], &[&run], options).unwrap().animated_svg()
+            let shown = [Shown { recording: &run, report: None }];
+            Film::new(&location, "they meet", &[&run], &shown, options).unwrap().animated_svg()
         };
         let svg = film(true);
         assert_eq!(svg.matches("type=\"translate\"").count(), 4);
@@ -319,7 +354,8 @@ mod tests {
         // Who comes later is hidden until then.
         let late = crate::fixture::away(walk(3), 2, 0..300);
         let options = FilmOptions { size: (640, 360), fps: 30, labels: true, speed: None };
-        let shown = Film::new(&location, None, &[&late], &[&late], options).unwrap().animated_svg();
+        let shown = [Shown { recording: &late, report: None }];
+        let shown = Film::new(&location, "they meet", &[&late], &shown, options).unwrap().animated_svg();
         assert_eq!(shown.matches("<g opacity=\"0\">").count(), svg.matches("<g opacity=\"0\">").count() + 1);
         assert!(shown.contains("values=\"0;1\""));
         // It is a drawing too: what does not play it shows its beginning.

@@ -6,18 +6,22 @@
 //! Report ─► checklist ───┴─► report page (HTML, self-contained)
 //! ```
 //!
-//! *Never here:* a file, a clock, a rule of scoring; everything drawn is handed in.
+//! *Never here:* a file but the fonts of the system, a clock, a rule of scoring; everything drawn is handed in.
 
 mod actor;
 pub mod annotated;
 pub mod batch;
+pub mod camera;
 pub mod draft;
 pub mod facts;
 pub mod figure;
 pub mod film;
+mod film_cards;
 mod film_svg;
+pub mod film_times;
 #[cfg(test)]
 mod fixture;
+mod fonts;
 pub mod gif;
 pub mod label;
 pub mod label_page;
@@ -26,6 +30,7 @@ mod marks;
 pub mod page;
 mod page_data;
 pub mod palette;
+pub mod pdf;
 mod play;
 pub mod png;
 mod presence;
@@ -40,9 +45,10 @@ pub use batch::{BatchEntry, BatchPage, Figures};
 pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};
-pub use film::{Film, FilmError, FilmOptions};
+pub use film::{Film, FilmError, FilmOptions, Shown};
 pub use label_page::LabelPage;
 pub use page::{Page, ProvenanceRow, StageRow};
+pub use pdf::{PdfError, pdf_from_svg};
 pub use png::{PngError, png_at_dpi, png_from_svg};
 pub use run::run_picture;
 pub use track_page::{FigureRow, TrackPage};

@@ -21,7 +21,53 @@ pub(crate) fn draw_arrow(svg: &mut Svg, (x, y): (f64, f64), degrees: f64, color:
     ));
 }
 
-/// Words beside a place, where there is room for them.
+/// The body of an agent that looks along x, around 0 0, as the player of a page draws it: a robot is a rounded square, a
+/// human a disc, and an arrow shows where they look.
+pub(crate) fn body(robot: bool, r: f64, color: &str) -> String {
+    let rim = format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"{:.2}\"", (r * 0.12).clamp(0.6, 2.5));
+    if robot {
+        return format!(
+            "<rect x=\"{0:.2}\" y=\"{0:.2}\" width=\"{1:.2}\" height=\"{1:.2}\" rx=\"{2:.2}\" {rim}/>\
+             <path d=\"M{3:.2} 0L{4:.2} {5:.2}L{6:.2} 0L{4:.2} -{5:.2}z\" fill=\"#ffffff\"/>",
+            -r,
+            2.0 * r,
+            r * 0.3,
+            r * 0.75,
+            -r * 0.45,
+            r * 0.55,
+            -r * 0.2
+        );
+    }
+    format!(
+        "<circle r=\"{r:.2}\" {rim}/><path d=\"M{:.2} 0L{:.2} {:.2}L{:.2} -{:.2}z\" fill=\"#ffffff\"/>",
+        r * 0.85,
+        r * 0.2,
+        r * 0.4,
+        r * 0.2,
+        r * 0.4
+    )
+}
+
+/// [`body`] at a place of a drawing, turned counterclockwise from looking right, rad.
+pub(crate) fn draw_body(svg: &mut Svg, (x, y): (f64, f64), yaw: f64, robot: bool, r: f64, color: &str) {
+    svg.raw(&format!(
+        "<g transform=\"translate({x:.2} {y:.2}) rotate({:.1})\">{}</g>",
+        -yaw.to_degrees(),
+        body(robot, r, color)
+    ));
+}
+
+/// Where somebody started: the outline of their body.
+pub(crate) fn draw_start(svg: &mut Svg, (x, y): (f64, f64), robot: bool, r: f64, color: &str, width: f64) {
+    let style = format!("fill=\"#ffffff\" fill-opacity=\"0.9\" stroke=\"{color}\" stroke-width=\"{width}\"");
+    if robot {
+        svg.rect((x - r, y - r), (2.0 * r, 2.0 * r), &format!("rx=\"{:.2}\" {style}", r * 0.3));
+    } else {
+        svg.circle((x, y), r, &style);
+    }
+}
+
+/// Words beside a place, where there is room for them; a thin line leads to words that stand apart from it.
 pub(crate) fn draw_label(
     svg: &mut Svg,
     labels: &mut Labels,
@@ -30,7 +76,16 @@ pub(crate) fn draw_label(
     (color, size_px): (&str, f64),
     gap: f64,
 ) {
+    /// Words so far beyond their gap need a line, px.
+    const APART: f64 = 12.0;
     let area = labels.place(at, (text_width(text, size_px) + 6.0, size_px + 3.0), gap);
+    let near = (at.0.clamp(area.x, area.x + area.w), at.1.clamp(area.y, area.y + area.h));
+    let (dx, dy) = (near.0 - at.0, near.1 - at.1);
+    let far = dx.hypot(dy);
+    if far > gap + APART {
+        let from = (at.0 + dx * gap / far, at.1 + dy * gap / far);
+        svg.line(from, near, &format!("stroke=\"{color}\" stroke-width=\"1.2\""));
+    }
     svg.label((area.x + area.w / 2.0, area.y + size_px - 1.0), text, size_px, color);
 }
 
@@ -47,7 +102,9 @@ pub(crate) fn draw_legend(svg: &mut Svg, entries: &[(u32, String)], width: f64, 
         #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
         let (column, row) = ((index % 4) as f64, (index / 4) as f64);
         let (x, y) = (27.0 + column * (width - 40.0) / 4.0, top + row * 24.0);
-        svg.circle((x, y - 5.0), 6.5, &format!("fill=\"{}\"", palette::agent(*number)));
+        svg.raw(&format!("<g transform=\"translate({x:.1} {:.1})\">", y - 5.0));
+        svg.raw(&body(*number == 0, 7.5, palette::agent(*number)));
+        svg.raw("</g>");
         let text = wrapped(text, (width - 40.0) / 4.0 - 24.0, 15.0, 1).concat();
         svg.heading((x + 13.0, y), &text, 15.0, palette::INK);
     }

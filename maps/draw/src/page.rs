@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use socrates_model::{Location, Paths, Proposal, Reading, Recording, Report, Request};
 
 use crate::page_data::page_data;
-use crate::svg::escape;
+use crate::svg::{escape, escape_code};
 use crate::template::{self, template};
 use crate::{palette, play};
 
@@ -74,7 +74,7 @@ impl Page<'_> {
         let own = vec![
             ("author", escape(&self.proposal.author)),
             ("location", location),
-            ("reading_line", escape(self.reading_line)),
+            ("reading_line", escape_code(self.reading_line)),
             ("reading", self.reading_html()),
             ("people", self.people_html()),
             ("stages", self.stages_html()),
@@ -84,7 +84,7 @@ impl Page<'_> {
     }
 
     fn reading_html(&self) -> String {
-        let mut out = format!("<p class=\"lead\">{}</p><dl>", escape(self.reading_line));
+        let mut out = format!("<p class=\"lead\">{}</p><dl>", escape_code(self.reading_line));
         let request = [
             ("Social context", Some(self.request.social_context.as_str())),
             ("Task", Some(self.request.task.as_str())),
@@ -96,22 +96,22 @@ impl Page<'_> {
         }
         let ignored =
             if self.reading.ignored.is_empty() { "nothing".to_owned() } else { self.reading.ignored.join(", ") };
-        out.push_str(&format!("<dt>Ignored words</dt><dd>{}</dd>", escape(&ignored)));
+        out.push_str(&format!("<dt>Ignored words</dt><dd>{}</dd>", escape_code(&ignored)));
         let notes: BTreeSet<&str> = self.reading.notes.iter().chain(&self.proposal.notes).map(String::as_str).collect();
         for note in notes {
-            out.push_str(&format!("<dt>Assumed</dt><dd>{}</dd>", escape(note)));
+            out.push_str(&format!("<dt>Assumed</dt><dd>{}</dd>", escape_code(note)));
         }
         for problem in &self.reading.problems {
-            out.push_str(&format!("<dt>Problem</dt><dd class=\"bad\">{}</dd>", escape(&problem.to_string())));
+            out.push_str(&format!("<dt>Problem</dt><dd class=\"bad\">{}</dd>", escape_code(&problem.to_string())));
         }
-        out.push_str(&format!("<dt>Proposed</dt><dd>{}</dd></dl>", escape(&self.proposal.description)));
+        out.push_str(&format!("<dt>Proposed</dt><dd>{}</dd></dl>", escape_code(&self.proposal.description)));
         out
     }
 
     fn people_html(&self) -> String {
         let mut out = String::new();
         out.push_str(&format!(
-            "<tr><td><i style=\"background:{}\"></i>robot</td><td>{}</td><td>{}</td></tr>",
+            "<tr><td><i class=\"robot\" style=\"background:{}\"></i>robot</td><td>{}</td><td>{}</td></tr>",
             palette::ROBOT,
             escape(&self.proposal.robot.task),
             escape(&self.proposal.robot.expected_behavior)
@@ -140,7 +140,7 @@ impl Page<'_> {
                     escape(&row.state),
                     row.attempts,
                     row.wall_ms,
-                    escape(&row.remark)
+                    escape_code(&row.remark)
                 )
             })
             .collect()

@@ -93,7 +93,7 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
         }
         EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),
         EventKind::Sees { human, distance_m } => {
-            mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m"))
+            mark(human.number(), "sees", format!("{human} sees the robot at {distance_m:.1} m, center to center"))
         }
         EventKind::Encounter { human, .. } => mark(human.number(), "encounter", recording.encounter_words(event)?),
         EventKind::Contact { a, b, .. } => mark(b.number(), "contact", format!("{a} touches {b}")),
@@ -105,10 +105,9 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
     }
 }
 
-/// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `runs stand up` for `StandUp`.
-fn spoken(tag: &str) -> String {
-    // Tags of the published trees, whose words are those of the story.
-    let known = match tag {
+/// What the published leaf of this tag does, in the words of the story.
+fn known(tag: &str) -> Option<Action> {
+    Some(match tag {
         "RegularNav" => Action::Navigate,
         "FollowRobot" => Action::FollowRobot,
         "RunAwayFromRobot" => Action::RunAway,
@@ -117,11 +116,23 @@ fn spoken(tag: &str) -> String {
         "LookAtRobot" => Action::LookAtRobot,
         "ApproachRobot" => Action::Approach,
         "StandStill" => Action::StandStill,
+        _ => return None,
+    })
+}
+
+/// Whether whoever runs a leaf of this tag does something about the robot.
+pub(crate) fn reacts(tag: &str) -> bool {
+    known(tag).is_some_and(|action| !matches!(action, Action::Navigate | Action::StandStill))
+}
+
+/// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `runs stand up` for `StandUp`.
+fn spoken(tag: &str) -> String {
+    match known(tag) {
+        Some(action) => action.phrase(),
         // The tag does not say whom.
-        "FollowHuman" => return "follows another human".to_owned(),
-        _ => return format!("runs {}", parted(tag)),
-    };
-    known.phrase()
+        None if tag == "FollowHuman" => "follows another human".to_owned(),
+        None => format!("runs {}", parted(tag)),
+    }
 }
 
 /// `stand up` for `StandUp`.

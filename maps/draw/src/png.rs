@@ -1,8 +1,9 @@
-//! SVG to PNG, with the font compiled in: the same picture on every machine.
-
-use std::sync::{Arc, OnceLock};
+//! SVG to PNG, with the font compiled in: the same picture on every machine, but for characters that only a font of the
+//! system has.
 
 use resvg::{tiny_skia, usvg};
+
+use crate::fonts;
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -23,22 +24,10 @@ pub enum PngError {
     Encode(String),
 }
 
-fn fonts() -> Arc<usvg::fontdb::Database> {
-    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
-    FONTS
-        .get_or_init(|| {
-            let mut database = usvg::fontdb::Database::new();
-            database.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-            database.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
-            database.set_sans_serif_family("Ubuntu");
-            database.set_monospace_family("Hack");
-            Arc::new(database)
-        })
-        .clone()
-}
-
-fn options() -> usvg::Options<'static> {
-    usvg::Options { fontdb: fonts(), font_family: "Ubuntu".to_owned(), ..usvg::Options::default() }
+/// A drawing, read with the fonts that its words need.
+fn tree(svg: &str) -> Result<usvg::Tree, PngError> {
+    let (text, fonts) = fonts::readable(svg);
+    usvg::Tree::from_str(&text, &fonts::options(fonts)).map_err(PngError::Svg)
 }
 
 /// Renders an SVG drawing at so many pixels per drawing unit.
@@ -59,7 +48,7 @@ pub fn png_at_dpi(svg: &str, dpi: f32) -> Result<Vec<u8>, PngError> {
 }
 
 fn render(svg: &str, scale: f32) -> Result<tiny_skia::Pixmap, PngError> {
-    let tree = usvg::Tree::from_str(svg, &options()).map_err(PngError::Svg)?;
+    let tree = tree(svg)?;
     let size = tree.size();
     #[expect(
         clippy::cast_possible_truncation,
@@ -95,7 +84,7 @@ impl Ground {
     /// # Errors
     /// [`PngError::Svg`] when the drawing is not valid.
     pub fn with(&self, svg: &str) -> Result<Vec<u8>, PngError> {
-        let tree = usvg::Tree::from_str(svg, &options()).map_err(PngError::Svg)?;
+        let tree = tree(svg)?;
         let mut pixels = self.pixels.clone();
         resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
         Ok(opaque(&pixels))

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 
 use socrates_model::{AgentId, EventKind, HumanId, Location, Paths, Point, Recording, Report, Verdict, ordinal};
 
-use crate::label::{Area, Labels, text_width, wrapped};
+use crate::label::{Area, Labels, text_width, wrapped, wrapped_beside};
 use crate::map_layer::{Frame, draw_doors, draw_floor, draw_graph, draw_locator, draw_scale, wall_areas};
-use crate::marks::{draw_arrow, draw_label, draw_legend, draw_line, legend_px};
+use crate::marks::{draw_arrow, draw_body, draw_label, draw_legend, draw_line, draw_start, legend_px};
 use crate::palette;
 use crate::presence::There;
 use crate::svg::Svg;
@@ -16,14 +16,18 @@ const MARK_SECS: f64 = 5.0;
 /// Below this speed somebody stands, m/s.
 const STANDS_MPS: f64 = 0.1;
 
-/// Height of the heading where nothing in it takes more than its line, px.
-const HEAD_PX: f64 = 118.0;
+/// Nobody is drawn smaller, px.
+const LEAST_RADIUS_PX: f64 = 7.0;
+/// Height of the heading of a picture that has only a title, px.
+const TITLE_PX: f64 = 50.0;
 /// Most lines of the verdict's reason and of what the robot did: enough for a sentence with its cause at the end.
 const LINES: usize = 4;
+/// The time of an encounter stands within so many rings around its mark: nobody must look for the mark of a time.
+const TIME_RINGS: usize = 3;
 /// From one line of the heading to the next, px.
 const LINE_PX: f64 = 18.0;
-/// Height of the small map beside the heading, px.
-const LOCATOR_PX: f64 = 96.0;
+/// Room of the small map beside the heading, px.
+const LOCATOR_PX: (f64, f64) = (190.0, 96.0);
 
 /// Draws the part of the map where it happens, every track with marks every 5 s, starts, ends and encounters, and a legend.
 #[must_use]
@@ -43,21 +47,23 @@ pub fn run_picture(
         .flat_map(|info| recording.track(info.agent).filter(|state| there.is(state)).map(|state| state.point()))
         .chain(way.iter().copied())
         .collect();
-    let mut frame = Frame::focused(location, &seen, 1160.0, 800.0, (20.0, HEAD_PX));
-    let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, HEAD_PX)).cells;
+    let mut frame = Frame::focused(location, &seen, 1160.0, 800.0, (20.0, TITLE_PX));
+    let focused = frame.cells != Frame::around(location, 1160.0, 800.0, (20.0, TITLE_PX)).cells;
     let (w, h) = frame.size();
     let width = (w + 40.0).max(760.0);
-    let words = width - 40.0 - if focused { 210.0 } else { 0.0 };
-    let told = report.map(|report| Told::of(report, words));
-    let head = told.as_ref().map_or(HEAD_PX, |told| told.bottom().max(HEAD_PX));
-    frame.at.1 = head;
+    let beside = if focused { width - 40.0 - LOCATOR_PX.0 - 20.0 } else { width - 40.0 };
+    let told = report.map(|report| Told::of(report, beside, width - 40.0));
+    let locator = if focused { LOCATOR_PX.1 + 22.0 } else { 0.0 };
+    let head = told.as_ref().map_or(TITLE_PX, Told::bottom).max(locator);
+    // A map that is narrower than the words stands in their middle.
+    frame.at = ((width - w) / 2.0, head);
     let height = head + h + 40.0 + legend_px(recording.header.agents.len()) + 14.0;
     let mut svg = Svg::new(width, height);
     svg.rect((0.0, 0.0), (width, height), "fill=\"#ffffff\"");
     if focused {
-        draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, (190.0, LOCATOR_PX));
+        draw_locator(&mut svg, location, &frame, width - 20.0, 10.0, LOCATOR_PX);
     }
-    svg.heading((20.0, 34.0), &wrapped(title, words, 24.0, 1).concat(), 24.0, palette::INK);
+    svg.heading((20.0, 34.0), &wrapped(title, beside, 24.0, 1).concat(), 24.0, palette::INK);
     if let Some(told) = told {
         told.draw(&mut svg);
     }
@@ -81,8 +87,11 @@ pub fn run_picture(
     for agent in &agents {
         draw_ends(&mut svg, location, recording, &frame, *agent, &mut labels);
     }
-    draw_encounters(&mut svg, location, recording, &frame, &mut labels);
-    // Names come last: by now it is known what they must not hide.
+    let met = draw_encounters(&mut svg, location, recording, &frame, &mut labels);
+    // Words come last: by now it is known what they must not hide. Times first, for they stay at their marks.
+    for mark in &met {
+        draw_time(&mut svg, &mut labels, mark);
+    }
     for agent in &agents {
         if let Some(first) = recording.track(*agent).find(|state| there.is(state)) {
             let gap = radius_px(location, recording, &frame, *agent) + 3.0;
@@ -103,7 +112,7 @@ pub fn run_picture(
     let more = if paths.is_some() { " · diamond: encounter · dots: intended way" } else { "" };
     svg.text(
         (width - 20.0, frame.at.1 + h + 22.0),
-        &format!("ring: start · disc: end · arrow: every {MARK_SECS:.0} s{more}"),
+        &format!("outline: start · filled: end · arrow: every {MARK_SECS:.0} s{more}"),
         &format!("font-size=\"13\" text-anchor=\"end\" fill=\"{}\"", palette::QUIET),
     );
     let legend: Vec<(u32, String)> = recording
@@ -133,17 +142,16 @@ struct Told {
 }
 
 impl Told {
-    fn of(report: &Report, width: f64) -> Self {
+    /// In lines `beside` the small map, and `below` it.
+    fn of(report: &Report, beside: f64, below: f64) -> Self {
         let good = matches!(report.verdict, Verdict::Realised | Verdict::RealisedLate);
         let verdict = report.verdict.name().replace('_', " ");
         let pill = text_width(&verdict, 15.0) + 22.0;
-        Self {
-            color: if good { palette::GOOD } else { palette::BAD },
-            reason: wrapped(&report.verdict_text, width - pill - 12.0, 15.0, LINES),
-            robot: wrapped(&format!("{} · seed {}", report.robot_text, report.seed), width, 14.0, LINES),
-            verdict,
-            pill,
-        }
+        let room = |y: f64| if y > LOCATOR_PX.1 + 10.0 + LINE_PX { below } else { beside };
+        let reason = wrapped_beside(&report.verdict_text, |line| room(Self::y(line)) - pill - 12.0, 15.0, LINES);
+        let robot = format!("{} · seed {}", report.robot_text, report.seed);
+        let robot = wrapped_beside(&robot, |line| room(Self::robot_y(reason.len(), line)), 14.0, LINES);
+        Self { color: if good { palette::GOOD } else { palette::BAD }, reason, robot, verdict, pill }
     }
 
     /// Where the line of this number is, px.
@@ -154,12 +162,12 @@ impl Told {
     }
 
     /// Lines of the robot begin below those of the reason, a little apart.
-    fn robot_y(&self, line: usize) -> f64 {
-        Self::y(self.reason.len() + line) + 9.0
+    fn robot_y(reasons: usize, line: usize) -> f64 {
+        Self::y(reasons + line) + 9.0
     }
 
     fn bottom(&self) -> f64 {
-        self.robot_y(self.robot.len()) - 8.0
+        Self::robot_y(self.reason.len(), self.robot.len()) - 8.0
     }
 
     fn draw(&self, svg: &mut Svg) {
@@ -174,7 +182,11 @@ impl Told {
             svg.text((32.0 + self.pill, Self::y(line)), text, &style);
         }
         for (line, text) in self.robot.iter().enumerate() {
-            svg.text((20.0, self.robot_y(line)), text, &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET));
+            svg.text(
+                (20.0, Self::robot_y(self.reason.len(), line)),
+                text,
+                &format!("font-size=\"14\" fill=\"{}\"", palette::QUIET),
+            );
         }
     }
 }
@@ -213,7 +225,7 @@ fn draw_track(
 
 fn radius_px(location: &Location, recording: &Recording, frame: &Frame, agent: AgentId) -> f64 {
     let radius_m = recording.header.agents.iter().find(|info| info.agent == agent).map_or(0.28, |info| info.radius_m);
-    frame.len(location, radius_m).max(5.0)
+    frame.len(location, radius_m).max(LEAST_RADIUS_PX)
 }
 
 fn draw_ends(
@@ -231,16 +243,14 @@ fn draw_ends(
     let Some(first) = track.next() else { return };
     let last = track.last().unwrap_or(first);
     let (start, end) = (frame.px(location, &first.point()), frame.px(location, &last.point()));
-    if (start.0 - end.0).hypot(start.1 - end.1) > 1.0 {
-        svg.circle(
-            start,
-            radius,
-            &format!("fill=\"#ffffff\" fill-opacity=\"0.85\" stroke=\"{color}\" stroke-width=\"3\""),
-        );
+    let robot = agent == AgentId::Robot;
+    let apart = (start.0 - end.0).hypot(start.1 - end.1);
+    draw_body(svg, end, last.yaw, robot, radius, color);
+    if apart > 1.0 {
+        // Where both lie on each other the start is a small outline on top.
+        let small = if apart < 2.0 * radius { 0.5 } else { 1.0 };
+        draw_start(svg, start, robot, radius * small, color, 3.0 * small.max(0.7));
     }
-    svg.circle(end, radius, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));
-    let nose = (end.0 + radius * last.yaw.cos(), end.1 - radius * last.yaw.sin());
-    svg.line(end, nose, "stroke=\"#ffffff\" stroke-width=\"2.4\"");
     for (x, y) in [start, end] {
         labels.block(Area { x: x - radius, y: y - radius, w: radius * 2.0, h: radius * 2.0 });
     }
@@ -253,38 +263,129 @@ pub(crate) fn several(recording: &Recording) -> BTreeSet<HumanId> {
     recording.events.iter().filter_map(|event| again(&event.kind)).collect()
 }
 
-fn draw_encounters(svg: &mut Svg, location: &Location, recording: &Recording, frame: &Frame, labels: &mut Labels) {
+/// An encounter on the map: where the robot was, who met it and when.
+#[derive(Debug, Clone, PartialEq)]
+struct Met {
+    at: (f64, f64),
+    human: HumanId,
+    words: String,
+}
+
+/// Half the height of the diamond of an encounter, px.
+const DIAMOND_PX: f64 = 8.0;
+
+fn draw_encounters(
+    svg: &mut Svg,
+    location: &Location,
+    recording: &Recording,
+    frame: &Frame,
+    labels: &mut Labels,
+) -> Vec<Met> {
     let again = several(recording);
+    let mut met = Vec::new();
     for event in &recording.events {
         let EventKind::Encounter { human, nth, .. } = &event.kind else { continue };
         let tick = usize::try_from(event.time.tick()).unwrap_or(usize::MAX);
         let Some(robot) = recording.tick(tick).iter().find(|state| state.agent == 0) else { continue };
         let (x, y) = frame.px(location, &robot.point());
         svg.raw(&format!(
-            "<path d=\"M{x:.1} {:.1}l8 8l-8 8l-8 -8z\" fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>",
-            y - 8.0,
+            "<path class=\"encounter\" d=\"M{x:.1} {:.1}l8 8l-8 8l-8 -8z\" fill=\"{}\" stroke=\"#ffffff\" stroke-width=\"1.4\"/>",
+            y - DIAMOND_PX,
             palette::human(human.number())
         ));
-        labels.block(Area { x: x - 8.0, y: y - 8.0, w: 16.0, h: 16.0 });
+        labels.block(Area { x: x - DIAMOND_PX, y: y - DIAMOND_PX, w: 2.0 * DIAMOND_PX, h: 2.0 * DIAMOND_PX });
         let which = if again.contains(human) { format!("{}: ", ordinal(*nth)) } else { String::new() };
-        let words = format!("{which}{:.1} s", event.time.secs());
-        draw_label(svg, labels, (x, y), &words, (palette::INK, 15.0), 11.0);
+        met.push(Met { at: (x, y), human: *human, words: format!("{which}{:.1} s", event.time.secs()) });
     }
+    met
+}
+
+/// The time of an encounter, in the color of whoever was met, right at its mark.
+fn draw_time(svg: &mut Svg, labels: &mut Labels, mark: &Met) {
+    const SIZE_PX: f64 = 15.0;
+    let size = (text_width(&mark.words, SIZE_PX) + 4.0, SIZE_PX + 2.0);
+    let area = labels.place_within(mark.at, size, DIAMOND_PX + 2.0, TIME_RINGS);
+    let base = (area.x + area.w / 2.0, area.y + SIZE_PX - 1.0);
+    svg.label(base, &mark.words, SIZE_PX, palette::agent_words(mark.human.number()));
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixture::{hall, walk};
 
     #[test]
     fn a_long_reason_goes_on_in_lines_and_the_map_moves_down() {
-        let run = crate::fixture::walk(1);
-        let short = Told::of(&crate::fixture::report(&run, "9 of 9 setup clauses"), 900.0);
-        assert_eq!((short.reason.len(), short.robot_y(0)), (1, 90.0));
+        let run = walk(1);
+        let short = Told::of(&crate::fixture::report(&run, "9 of 9 setup clauses"), 900.0, 900.0);
+        assert_eq!((short.reason.len(), Told::robot_y(1, 0)), (1, 90.0));
         let why = "9 of 10 setup clauses · encounter gap 0.0 s · c6: trigger at 6.6 s (when the robot says EXCUSE_ME), \
                    but human_1 never gives way to the robot";
-        let long = Told::of(&crate::fixture::report(&run, why), 700.0);
+        let long = Told::of(&crate::fixture::report(&run, why), 700.0, 700.0);
         assert!(long.reason.len() > 1 && long.bottom() > short.bottom(), "{:?}", long.reason);
-        assert_eq!(long.reason.join(" "), why, "nothing of the cause is cut");
+        let words = |text: &str| text.split([' ', '·']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ");
+        assert_eq!(words(&long.reason.join(" ")), words(why), "nothing of the cause is cut");
+    }
+
+    /// The boxes of everything that is written with a rim, left to right as in the drawing, with its words.
+    fn written(svg: &str) -> Vec<(String, Area)> {
+        let value = |line: &str, key: &str| -> f64 {
+            line.split_once(&format!(" {key}=\"")).unwrap().1.split('"').next().unwrap().parse().unwrap()
+        };
+        let rims = svg.lines().filter(|line| line.starts_with("<text") && line.contains("stroke-width=\"4.5\""));
+        rims.map(|line| {
+            let words = line.split_once('>').unwrap().1.trim_end_matches("</text>").to_owned();
+            let (x, y, size) = (value(line, "x"), value(line, "y"), value(line, "font-size"));
+            let w = text_width(&words, size);
+            (words, Area { x: x - w / 2.0, y: y - size * 0.8, w, h: size })
+        })
+        .collect()
+    }
+
+    #[test]
+    fn a_time_stands_at_its_mark_even_where_several_meet_the_robot_at_once() {
+        let mut run = walk(3);
+        let node = socrates_model::NodeId::new("m").unwrap();
+        run.events = (1..=3_u32)
+            .map(|n| {
+                let kind = EventKind::Encounter { human: HumanId::new(n), node: node.clone(), gap_s: 0.4, nth: 1 };
+                socrates_model::Event {
+                    time: socrates_model::SimTime::from_nanos(2_900_000_000 + u64::from(n) * 100_000_000),
+                    kind,
+                }
+            })
+            .collect();
+        let svg = run_picture(&hall("hall"), &run, None, None, "a run");
+        let written = written(&svg);
+        let marks = svg.lines().filter(|line| line.contains("class=\"encounter\""));
+        for (time, path) in ["3.0 s", "3.1 s", "3.2 s"].into_iter().zip(marks) {
+            let (x, y) = path.split_once(" d=\"M").unwrap().1.split_once('l').unwrap().0.split_once(' ').unwrap();
+            let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse::<f64>().unwrap() + DIAMOND_PX);
+            let (_, area) = written.iter().find(|(words, _)| words == time).unwrap();
+            let away = (x - x.clamp(area.x, area.x + area.w)).hypot(y - y.clamp(area.y, area.y + area.h));
+            // A pixel of a drawing is 25.4 / 96 mm.
+            assert!(away * 25.4 / 96.0 < 9.0, "{time} stands {away:.0} px from its mark");
+        }
+        for (i, (one, a)) in written.iter().enumerate() {
+            for (other, b) in written.iter().skip(i + 1) {
+                assert!(a.overlap(b) < 4.0, "`{one}` and `{other}`");
+            }
+        }
+    }
+
+    #[test]
+    fn the_robot_is_a_square_and_people_are_discs() {
+        let svg = run_picture(&hall("hall"), &walk(2), None, None, "a run");
+        // One end of the robot on the map and its sign in the legend; two people have both as well.
+        assert_eq!(svg.matches("<rect x=\"-").count(), 2, "{svg}");
+        assert_eq!(svg.matches("<circle r=").count(), 4);
+    }
+
+    #[test]
+    fn a_picture_without_a_verdict_has_no_empty_band() {
+        let svg = run_picture(&hall("hall"), &walk(1), None, None, "a run");
+        let map = svg.split_once("<clipPath id=\"inside-map\">").unwrap().1.split_once(" y=\"").unwrap().1;
+        let top: f64 = map.split('"').next().unwrap().parse().unwrap();
+        assert!(top <= TITLE_PX + 1.0, "{top}");
     }
 }

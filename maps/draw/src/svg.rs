@@ -21,6 +21,18 @@ pub fn escape(text: &str) -> String {
     out
 }
 
+/// Text made safe for HTML, with what stands in `backticks` set as code; a sign that has no second one stays as it is.
+#[must_use]
+pub fn escape_code(text: &str) -> String {
+    if text.matches('`').count() % 2 == 1 {
+        return escape(text);
+    }
+    let parts = text.split('`').enumerate();
+    parts
+        .map(|(index, part)| if index % 2 == 1 { format!("<code>{}</code>", escape(part)) } else { escape(part) })
+        .collect()
+}
+
 /// An SVG document being written.
 #[derive(Debug, Clone)]
 pub struct Svg {
@@ -166,6 +178,12 @@ mod tests {
         assert!(!svg.clone().finish().contains("polyline"));
         svg.polyline(&[(1.0, 1.0), (2.0, 2.0)], "");
         assert!(svg.finish().contains("polyline"));
+    }
+
+    #[test]
+    fn words_in_backticks_are_code() {
+        assert_eq!(escape_code("not read: `<bed>`, `stick`"), "not read: <code>&lt;bed&gt;</code>, <code>stick</code>");
+        assert_eq!(escape_code("5` long"), "5` long");
     }
 
     #[test]

@@ -16,7 +16,7 @@ use crate::video::{run_names, run_of};
 pub(crate) struct FigureOptions {
     /// Bundle folder.
     pub(crate) bundle: PathBuf,
-    /// SVG or PNG file to write.
+    /// SVG, PDF or PNG file to write; a PDF holds its words as text with their font.
     #[arg(long, short, default_value = "figure.svg")]
     pub(crate) out: PathBuf,
     /// Width on paper, mm: 84 is a column of two, 174 a page.
@@ -33,10 +33,10 @@ pub(crate) struct FigureOptions {
 /// Writes the figure.
 pub(crate) fn figure(talk: &Talk, options: &FigureOptions) -> Result<(), Complaint> {
     let ending = options.out.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if !matches!(ending.as_str(), "svg" | "png") {
+    if !matches!(ending.as_str(), "svg" | "png" | "pdf") {
         return Err(Complaint::input(
             format!("`{}` is no figure: its ending is `{ending}`", options.out.display()),
-            "name a file that ends in .svg or .png",
+            "name a file that ends in .svg, .pdf or .png",
         ));
     }
     let bundle = bundle::read(&options.bundle)?;
@@ -45,11 +45,12 @@ pub(crate) fn figure(talk: &Talk, options: &FigureOptions) -> Result<(), Complai
     let shown: Vec<&Recording> = names.iter().filter_map(|name| run_of(&bundle, name)).collect();
     let svg = socrates_draw::figure(&bundle.location, Some(&bundle.paths), &all, &shown, options.width_mm)
         .map_err(|why| Complaint::input(why.to_string(), "`socrates figure --help` names what is allowed"))?;
-    let bytes = if ending == "png" {
-        socrates_draw::png_at_dpi(&svg, f32::from(options.dpi))
-            .map_err(|why| Complaint::input(why.to_string(), "a smaller --dpi, or an SVG").with_code(Code::Input))?
-    } else {
-        svg.into_bytes()
+    let bytes = match ending.as_str() {
+        "png" => socrates_draw::png_at_dpi(&svg, f32::from(options.dpi))
+            .map_err(|why| Complaint::input(why.to_string(), "a smaller --dpi, or an SVG").with_code(Code::Input))?,
+        "pdf" => socrates_draw::pdf_from_svg(&svg, &bundle.proposal.title)
+            .map_err(|why| Complaint::input(why.to_string(), "an SVG holds the same figure").with_code(Code::Ours))?,
+        _ => svg.into_bytes(),
     };
     crate::files::write(&options.out, &bytes)?;
     talk.line(&format!("wrote      {} · {} mm wide · {}", options.out.display(), options.width_mm, names.join(", ")));

@@ -7,8 +7,8 @@ use std::process::{Child, Command, Stdio};
 use clap::{Args, ValueEnum};
 use serde_json::json;
 use socrates_draw::gif::{Gif, Histogram};
-use socrates_draw::{Film, FilmOptions};
-use socrates_model::Recording;
+use socrates_draw::{Film, FilmOptions, Shown};
+use socrates_model::{Recording, Report};
 
 use crate::bundle::{self, Bundle};
 use crate::exit::{Code, Complaint};
@@ -33,16 +33,16 @@ pub(crate) struct VideoOptions {
     /// where ffmpeg is installed, else `.gif`.
     #[arg(long, short)]
     pub(crate) out: Option<PathBuf>,
-    /// Names, clock, planner and captions.
+    /// Names, clock, planner, captions, and cards with title and verdict.
     #[arg(long, value_enum, default_value_t = Labels::On)]
     pub(crate) labels: Labels,
     /// Runs to show, such as `reference-1`; up to four, separated by commas, stand side by side. Default: the first.
     #[arg(long, value_delimiter = ',')]
     pub(crate) run: Vec<String>,
-    /// Simulated seconds per second, or `auto`: 1, and faster where the run would not fit into 20 s.
+    /// Simulated seconds per second, or `auto`: 1, and faster where what happens would not fit into 20 s.
     #[arg(long, default_value = "auto")]
     pub(crate) speed: String,
-    /// Width and height, px. Default: 1280x720, for a GIF 640x360.
+    /// Width and height, px. Default: 1280x720, for a GIF 800x450.
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(crate) size: Option<String>,
 }
@@ -93,7 +93,11 @@ pub(crate) fn video(talk: &Talk, options: &VideoOptions) -> Result<(), Complaint
         ));
     }
     let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
-    let shown: Vec<&Recording> = names.iter().filter_map(|name| run_of(&bundle, name)).collect();
+    let shown: Vec<Shown<'_>> = names
+        .iter()
+        .filter_map(|name| run_and_report(&bundle, name))
+        .map(|(recording, report)| Shown { recording, report: Some(report) })
+        .collect();
     let film_options = FilmOptions {
         size: size(options.size.as_deref(), kind)?,
         fps: if kind == Kind::Gif { 10 } else { 30 },
@@ -106,7 +110,7 @@ pub(crate) fn video(talk: &Talk, options: &VideoOptions) -> Result<(), Complaint
         complaint.causes.extend(cause);
         complaint
     };
-    let film = Film::new(&bundle.location, Some(&bundle.paths), &all, &shown, film_options).map_err(wrong)?;
+    let film = Film::new(&bundle.location, &bundle.proposal.title, &all, &shown, film_options).map_err(wrong)?;
     let count = film.times.pictures();
     let shown_so_far = std::cell::RefCell::new(Progress::new(*talk, "filming", count));
     let progress = |index: usize| shown_so_far.borrow_mut().at(index, "");
@@ -155,8 +159,14 @@ pub(crate) fn run_names(bundle: &Bundle, asked: &[String]) -> Result<Vec<String>
 
 /// The recording of a run of this name.
 pub(crate) fn run_of<'a>(bundle: &'a Bundle, name: &str) -> Option<&'a Recording> {
+    run_and_report(bundle, name).map(|(recording, _)| recording)
+}
+
+/// The recording of a run of this name, and its report.
+fn run_and_report<'a>(bundle: &'a Bundle, name: &str) -> Option<(&'a Recording, &'a Report)> {
     let mut runs = bundle.manifest.runs.iter().zip(&bundle.runs);
-    runs.find(|(entry, _)| format!("{}-{}", entry.planner, entry.seed) == name).map(|(_, (recording, _))| recording)
+    let run = runs.find(|(entry, _)| format!("{}-{}", entry.planner, entry.seed) == name);
+    run.map(|(_, (recording, report))| (recording, report))
 }
 
 fn round(x: f64) -> f64 {
@@ -176,7 +186,7 @@ fn speed(text: &str) -> Result<Option<f64>, Complaint> {
 }
 
 fn size(text: Option<&str>, kind: Kind) -> Result<(u32, u32), Complaint> {
-    let Some(text) = text else { return Ok(if kind == Kind::Gif { (640, 360) } else { (1280, 720) }) };
+    let Some(text) = text else { return Ok(if kind == Kind::Gif { (800, 450) } else { (1280, 720) }) };
     text.split_once('x')
         .and_then(|(width, height)| Some((width.trim().parse().ok()?, height.trim().parse().ok()?)))
         .ok_or_else(|| Complaint::input(format!("`--size {text}` is no size"), "for example 1280x720"))
@@ -259,7 +269,7 @@ fn gif(
         histogram.add(&film.picture(index).map_err(wrong)?);
     }
     let ours = |why: socrates_draw::gif::GifError| {
-        Complaint::input(why.to_string(), "--size chooses another size, such as 640x360")
+        Complaint::input(why.to_string(), "--size chooses another size, such as 800x450")
     };
     let mut gif = Gif::new(options.size.0, options.size.1, histogram.palette()).map_err(ours)?;
     for index in 0..count {
