@@ -62,16 +62,6 @@ fn a_time_is_only_told_of_what_is_played_for_that_time() {
 }
 
 #[test]
-fn whoever_is_met_is_there_as_the_robot_comes_near() {
-    for rough in
-        ["A nurse comes out of the room when the robot comes near.", "A nurse crosses when the robot comes near."]
-    {
-        assert_eq!(told(rough).problems, [], "{rough}");
-    }
-    assert_eq!(told("A nurse comes out of the room when the robot stops.").problems.len(), 1);
-}
-
-#[test]
 fn a_word_that_only_describes_whom_no_rule_tells_apart_is_listed() {
     for (rough, unread) in [
         ("The left visitor stops when they see the robot.", &["left"][..]),

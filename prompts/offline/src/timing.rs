@@ -1,6 +1,6 @@
 //! Clauses that only say when, and clauses that only name people.
 
-use socrates_model::{Gesture, HumanId, PlaceClass, Relation, Trigger};
+use socrates_model::{Gesture, HumanId, PlaceClass, Trigger};
 
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
@@ -300,12 +300,8 @@ pub(crate) fn timing(
         }
     } else {
         thread.waiting = Some(when);
-        // Who comes out waits for the door anyway; whoever is met is there as the robot comes near, or passes by.
-        let meets = |who: &usize| {
-            matches!(story.relation_of(*who), Some(Relation::Leaving | Relation::Crossing | Relation::Frontal))
-        };
-        let timed = found.distance_m.is_none() && !story.cast.last.is_empty() && story.cast.last.iter().all(meets);
-        let met = cue == Cue::Near && (quote.contains("pass") || timed);
+        // Who comes out waits for the door anyway; whoever is met is there as the robot passes by.
+        let met = cue == Cue::Near && quote.contains("pass");
         thread.untaken = Some(quote.to_owned()).filter(|quote| !quote.contains("open") && !met);
         thread.vague = found.distance_m.is_none();
     }
