@@ -156,7 +156,7 @@ impl Camera {
         (self.safe.x + self.safe.w / 2.0, self.safe.y + self.safe.h / 2.0)
     }
 
-    /// Pixels per metre.
+    /// Pixels per meter.
     pub(crate) fn px_per_m(&self, location: &Location) -> f64 {
         self.world.len(location, 1.0)
     }
