@@ -187,7 +187,10 @@ fn draw_words(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64, look: &
         if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };
     let gesture = state.gesture();
     let said = if gesture == Gesture::None { String::new() } else { gesture.name().replace('_', " ") };
-    if name.is_empty() && said.is_empty() {
+    // Whoever is out of the picture has no words in it.
+    let Area { x: left, y: top, w: wide, h: high } = look.bounds;
+    let seen = at.0 + r > left && at.0 - r < left + wide && at.1 + r > top && at.1 - r < top + high;
+    if name.is_empty() && said.is_empty() || !seen {
         return;
     }
     let bubble = if said.is_empty() { 0.0 } else { size * 1.6 };
@@ -202,7 +205,6 @@ fn draw_words(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64, look: &
         (at.0 - reach - w, at.1 - h / 2.0),
     ];
     // Words that would be cut at an edge are moved into the picture.
-    let Area { x: left, y: top, w: wide, h: high } = look.bounds;
     let inside = |(x, y): (f64, f64)| (x.min(left + wide - w).max(left), y.min(top + high - h).max(top));
     let covered = |(x, y): &(f64, f64)| -> f64 {
         let area = Area { x: *x, y: *y, w, h };

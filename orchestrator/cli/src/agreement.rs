@@ -46,7 +46,7 @@ pub(crate) fn agreement(talk: &Talk, labels: &Path, bundles: &[PathBuf]) -> Resu
             verdicts.insert(name, report.verdict);
         }
     }
-    for run in labels.iter().map(|label| &label.run).filter(|run| double.contains(*run)) {
+    if let Some(run) = labels.iter().map(|label| &label.run).find(|run| double.contains(*run)) {
         let fits: Vec<&str> = verdicts.keys().filter(|name| name.ends_with(run.as_str())).map(String::as_str).collect();
         return Err(Complaint::input(
             format!("several bundles hold a run `{run}`: {}", fits.join(", ")),

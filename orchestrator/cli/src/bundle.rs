@@ -346,13 +346,15 @@ pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
     let row = |job: &PastJob| {
         let item = if job.key.item.is_empty() { String::new() } else { format!(" {}", job.key.item) };
         let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
-        let remarks: Vec<&str> = job.attempts.iter().map(|attempt| attempt.remark.as_str()).collect();
+        let faults: Vec<String> =
+            job.attempts.iter().flat_map(|attempt| &attempt.faults).map(ToString::to_string).collect();
+        let remark = [job.remark.clone(), faults.join("; ")];
         StageRow {
             stage: format!("{}{item}{revision}", job.key.stage),
             state: job.state.clone(),
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
-            remark: remarks.into_iter().filter(|remark| !remark.is_empty()).collect::<Vec<_>>().join(" · "),
+            remark: remark.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · "),
         }
     };
     past.iter().map(row).collect()

@@ -126,17 +126,23 @@ fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: &str) -> Option<
     let last: BTreeMap<&str, &&StageJob> = counts.map(|job| (job.item.as_str(), job)).collect();
     let one = last.values().max_by_key(|job| job.revision)?;
     let ended = |job: &StageJob| matches!(job.state.as_str(), "failed" | "dead" | "canceled");
-    let mark = if wrong || last.values().any(|job| ended(job)) {
+    let attempts: u32 = jobs.iter().map(|job| job.attempts).sum();
+    // A stage that nothing came to has no fault of its own.
+    let unreached = attempts == 0 && last.values().all(|job| ended(job));
+    let mark = if unreached {
+        "–"
+    } else if wrong || last.values().any(|job| ended(job)) {
         "✘"
     } else if last.values().all(|job| job.state == "succeeded") {
         "✔"
     } else {
         "…"
     };
-    let attempts: u32 = jobs.iter().map(|job| job.attempts).sum();
     let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();
     let took = match (attempts, one.state.as_str()) {
         (0, "succeeded") => "known".to_owned(),
+        (0, _) if unreached => "not reached".to_owned(),
+        (0, _) => "waiting".to_owned(),
         _ => format!("{ms} ms"),
     };
     let what = if stage == Stage::Simulation && !one.remark.is_empty() && attempts > 0 {
@@ -226,6 +232,10 @@ mod tests {
         assert_eq!(known, "proposal ✔ known");
         let failed = StageJob { state: "failed".to_owned(), ..job(Stage::Paths, 0, 4, 12) };
         assert_eq!(of(&[failed], "failed"), "paths ✘ 12 ms (3 retries)");
+        let dead = StageJob { state: "dead".to_owned(), ..job(Stage::Simulation, 0, 0, 0) };
+        assert_eq!(of(&[dead], "failed"), "simulation – not reached");
+        let waiting = StageJob { state: "waiting".to_owned(), ..job(Stage::Simulation, 0, 0, 0) };
+        assert_eq!(of(&[waiting], ""), "simulation … waiting");
         let item = |item: &str, state: &str| StageJob {
             item: item.to_owned(),
             state: state.to_owned(),

@@ -116,7 +116,7 @@ impl Standing {
             Phase::Stopped => format!("stopped at {done} of {total}; the same command resumes"),
             Phase::Finished => "finished".to_owned(),
         };
-        let share = if total > 0 { format!(" ({} %)", done * 100 / total) } else { String::new() };
+        let share = (done * 100).checked_div(total).map_or_else(String::new, |share| format!(" ({share} %)"));
         let waiting = total.saturating_sub(done).saturating_sub(self.running);
         let why =
             if failed > 0 { format!(" · `socrates status --failed {}` says why", shell(word)) } else { String::new() };

@@ -383,7 +383,7 @@ fn the_story_tells_of_everybody_who_is_there_and_of_nobody_else() {
     let changed = edit(&ask, &after.draft, "human_3 stops when the robot is within 2 m");
     let story = changed.draft.proposal.description;
     let told = |id: &str| story.split(&format!("{id}: ")).nth(1).unwrap().split("human_").next().unwrap().to_owned();
-    assert!(told("human_3").contains("stands still") && !told("human_1").contains("stands still"), "{story}");
+    assert!(told("human_3").contains("stand still") && !told("human_1").contains("stand still"), "{story}");
     let fewer = edit(&ask, &after.draft, "remove human_2").draft.proposal.description;
     assert!(fewer.contains("2 humans take part.") && !fewer.contains("human_3"), "{fewer}");
     assert_eq!(fewer.matches("human_2: ").count(), 1, "{fewer}");

@@ -143,7 +143,7 @@ fn a_case_without_a_motion_is_found_in_words() {
     let xml = branches(&[&sequence(&[SEEN, "<MakeGesture agent_id='{id}' message='0'/>"]), WALK]);
     let faults = faults_of(&xml, &[]);
     let still = faults.iter().find(|fault| fault.code == FaultCode::BStill).unwrap();
-    assert!(still.message.contains("sees the robot within 5 m"), "{still}");
+    assert!(still.message.contains("see the robot within 5 m"), "{still}");
 }
 
 #[test]

@@ -54,6 +54,9 @@ pub(super) struct Kit {
     location: Location,
 }
 
+/// Lets the bytes of an input in through a door.
+type Open = fn(&Kit, &Path, &Sample, &[u8], &mut Chance) -> Result<(), Complaint>;
+
 /// A door and its good inputs.
 pub(super) struct Door {
     /// Its name, as `--door` takes it.
@@ -63,7 +66,7 @@ pub(super) struct Door {
     /// Its good inputs.
     pub(super) samples: fn(&Kit) -> Vec<Sample>,
     /// Lets an input in: the folder holds it under the sample's name.
-    pub(super) open: fn(&Kit, &Path, &Sample, &[u8], &mut Chance) -> Result<(), Complaint>,
+    pub(super) open: Open,
 }
 
 /// Every door. A new reader is a line here.
@@ -153,10 +156,11 @@ impl Kit {
 /// checksums are right.
 pub(super) fn damage(kit: &Kit, door: &Door, sample: &Sample, chance: &mut Chance) -> Vec<u8> {
     let is_recording = sample.file.ends_with(".mcap");
-    if is_recording && chance.below(2) == 0 {
-        if let Some(bytes) = kit.recording().and_then(|recording| rewritten(recording, chance)) {
-            return bytes;
-        }
+    if is_recording
+        && chance.below(2) == 0
+        && let Some(bytes) = kit.recording().and_then(|recording| rewritten(recording, chance))
+    {
+        return bytes;
     }
     // Two thirds of the damage to a table is to its first lines, so that single cells are hit.
     let bytes = damaged(&sample.bytes, chance);
