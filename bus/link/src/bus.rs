@@ -57,6 +57,12 @@ pub trait Bus: Send + Sync + 'static {
     /// [`LinkError::TooLarge`], [`LinkError::BadKey`], [`LinkError::Closed`], [`LinkError::Transport`]; nobody listening is none.
     async fn publish(&self, key: &str, body: Vec<u8>, qos: Qos) -> Result<(), LinkError>;
 
+    /// Declares that much will be published to a key, so that it is known whether anybody listens. Taken back when dropped.
+    ///
+    /// # Errors
+    /// [`LinkError::BadKey`], [`LinkError::Closed`], [`LinkError::Transport`].
+    async fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, LinkError>;
+
     /// Listens to a key expression with room for `depth` messages.
     ///
     /// # Errors
@@ -77,6 +83,19 @@ pub trait Bus: Send + Sync + 'static {
 
     /// Leaves the bus; waits at most 3 s. Everything it handed out ends.
     async fn close(&self);
+}
+
+/// A key that one participant publishes to again and again; see [`Bus::publisher`].
+#[async_trait]
+pub trait Publish: Send + Sync {
+    /// Whether anybody listens. A listener is known a moment after it came.
+    fn is_heard(&self) -> bool;
+
+    /// Publishes to whoever listens now.
+    ///
+    /// # Errors
+    /// As [`Bus::publish`].
+    async fn put(&self, body: Vec<u8>) -> Result<(), LinkError>;
 }
 
 /// What must live as long as a declaration; dropping it takes the declaration back.

@@ -20,7 +20,7 @@ pub use envelope::{Envelope, MIN_VERSION, VERSION, decode, encode};
 
 mod bus;
 mod mailbox;
-pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Qos, Reply, Serving, Subscription};
+pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 
 mod call;
 pub use call::{KIND_REFUSED, Refusal, call, call_envelope};

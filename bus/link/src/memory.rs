@@ -7,7 +7,7 @@ use std::time::Duration;
 use async_trait::async_trait;
 use tokio::sync::oneshot;
 
-use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Qos, Reply, Serving, Subscription};
+use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 use crate::envelope::fits;
 use crate::error::LinkError;
 use crate::keys::{checked, covers};
@@ -115,6 +115,24 @@ impl Default for MemoryBus {
     }
 }
 
+/// A declared publisher.
+struct Declaration {
+    bus: MemoryBus,
+    key: String,
+    qos: Qos,
+}
+
+#[async_trait]
+impl Publish for Declaration {
+    fn is_heard(&self) -> bool {
+        self.bus.hub.tables().listeners.iter().any(|entry| covers(&entry.key, &self.key).unwrap_or(false))
+    }
+
+    async fn put(&self, body: Vec<u8>) -> Result<(), LinkError> {
+        self.bus.publish(&self.key, body, self.qos).await
+    }
+}
+
 struct Back(oneshot::Sender<Vec<u8>>);
 
 #[async_trait]
@@ -177,6 +195,11 @@ impl Bus for MemoryBus {
             }
         }
         Ok(())
+    }
+
+    async fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, LinkError> {
+        self.hub.check(key)?;
+        Ok(Box::new(Declaration { bus: self.clone(), key: key.to_owned(), qos }))
     }
 
     async fn subscribe(&self, expression: &str, depth: usize, overflow: Overflow) -> Result<Subscription, LinkError> {

@@ -2,6 +2,7 @@
 //!
 //! Its functions are not generic, so that zenoh is compiled once, here.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -9,11 +10,12 @@ use async_trait::async_trait;
 use zenoh::Session;
 use zenoh::bytes::ZBytes;
 use zenoh::config::Config;
+use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::query::{ConsolidationMode, Query, QueryTarget};
 use zenoh::sample::{Sample, SampleKind};
 
-use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Qos, Reply, Serving, Subscription};
+use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 use crate::envelope::fits;
 use crate::error::LinkError;
 use crate::keys::Namespace;
@@ -160,6 +162,38 @@ impl ZenohBus {
     }
 }
 
+/// How the transport treats a message: what happens where it is full, whom it goes before, whether it waits for company.
+const fn manner(qos: Qos) -> (CongestionControl, Priority, bool) {
+    match qos {
+        Qos::Control => (CongestionControl::Block, Priority::InteractiveHigh, true),
+        Qos::Hint => (CongestionControl::Drop, Priority::Data, true),
+        Qos::Stream => (CongestionControl::Drop, Priority::DataLow, false),
+    }
+}
+
+/// A declared publisher.
+struct Declaration {
+    session: Session,
+    publisher: Publisher<'static>,
+    heard: Arc<AtomicBool>,
+    key: String,
+}
+
+#[async_trait]
+impl Publish for Declaration {
+    fn is_heard(&self) -> bool {
+        self.heard.load(Ordering::Acquire)
+    }
+
+    async fn put(&self, body: Vec<u8>) -> Result<(), LinkError> {
+        if self.session.is_closed() {
+            return Err(LinkError::Closed);
+        }
+        let body = fits(&self.key, body)?;
+        self.publisher.put(body).await.map_err(|why| transport(&format!("publishing `{}`", self.key), &why.to_string()))
+    }
+}
+
 struct Back(Query);
 
 #[async_trait]
@@ -237,13 +271,27 @@ impl Bus for ZenohBus {
     async fn publish(&self, key: &str, body: Vec<u8>, qos: Qos) -> Result<(), LinkError> {
         let full = self.full(key)?;
         let body = fits(key, body)?;
-        let (congestion, priority, express) = match qos {
-            Qos::Control => (CongestionControl::Block, Priority::InteractiveHigh, true),
-            Qos::Hint => (CongestionControl::Drop, Priority::Data, true),
-            Qos::Stream => (CongestionControl::Drop, Priority::DataLow, false),
-        };
+        let (congestion, priority, express) = manner(qos);
         let put = self.session.put(full, body).congestion_control(congestion).priority(priority).express(express);
         put.await.map_err(|why| transport(&format!("publishing `{key}`"), &why.to_string()))
+    }
+
+    async fn publisher(&self, key: &str, qos: Qos) -> Result<Box<dyn Publish>, LinkError> {
+        let full = self.full(key)?;
+        let failed = |why: &dyn std::fmt::Display| transport(&format!("declaring `{key}`"), &why.to_string());
+        let (congestion, priority, express) = manner(qos);
+        let declared = self.session.declare_publisher(full);
+        let declared = declared.congestion_control(congestion).priority(priority).express(express);
+        let publisher = declared.await.map_err(|why| failed(&why))?;
+        let heard = Arc::new(AtomicBool::new(false));
+        let change = Arc::clone(&heard);
+        let listening =
+            publisher.matching_listener().callback(move |status| change.store(status.matching(), Ordering::Release));
+        listening.background().await.map_err(|why| failed(&why))?;
+        // What was so before the listener was there; a listener that came in between has told by now.
+        let status = publisher.matching_status().await.map_err(|why| failed(&why))?;
+        heard.fetch_or(status.matching(), Ordering::AcqRel);
+        Ok(Box::new(Declaration { session: self.session.clone(), publisher, heard, key: key.to_owned() }))
     }
 
     async fn subscribe(&self, expression: &str, depth: usize, overflow: Overflow) -> Result<Subscription, LinkError> {

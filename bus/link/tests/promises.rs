@@ -133,6 +133,28 @@ async fn a_publication_reaches_who_listens_in_order(pair: &Pair) {
     assert_eq!(inbox.lost(), 0);
 }
 
+async fn a_publisher_knows_whether_anybody_listens(pair: &Pair) {
+    let publisher = pair.a.publisher("live/heard/agents", Qos::Stream).await.unwrap();
+    assert!(!publisher.is_heard(), "nobody listens yet");
+    let mut inbox = pair.b.subscribe("live/*/agents", 16, Overflow::Block).await.unwrap();
+    until(|| publisher.is_heard()).await;
+    publisher.put(vec![1]).await.unwrap();
+    assert_eq!(inbox.next().await.unwrap().1, [1]);
+    let late = pair.a.publisher("live/late/agents", Qos::Stream).await.unwrap();
+    until(|| late.is_heard()).await;
+    drop(inbox);
+    until(|| !publisher.is_heard() && !late.is_heard()).await;
+    let error = late.put(vec![0; MESSAGE_BYTES + 1]).await.unwrap_err();
+    assert!(matches!(error, LinkError::TooLarge { .. }), "{error}");
+}
+
+/// Looks again and again; declarations travel for a moment.
+async fn until(mut holds: impl FnMut() -> bool) {
+    while !holds() {
+        tokio::time::sleep(Duration::from_millis(5)).await;
+    }
+}
+
 async fn a_full_subscription_loses_its_oldest_and_counts_them(pair: &Pair) {
     let mut inbox = pair.b.subscribe("ev/x", 3, Overflow::DropOldest).await.unwrap();
     let mut fence = pair.b.subscribe("ev/fence", 1, Overflow::DropOldest).await.unwrap();
@@ -205,6 +227,7 @@ async fn every_promise(pair: &Pair) {
     a_dropped_ask_is_no_reply(pair).await;
     a_silent_server_is_a_timeout(pair).await;
     a_publication_reaches_who_listens_in_order(pair).await;
+    a_publisher_knows_whether_anybody_listens(pair).await;
     a_full_subscription_loses_its_oldest_and_counts_them(pair).await;
     too_large_a_message_is_refused_at_the_sender(pair).await;
     presence_is_told_at_once_and_taken_back(pair).await;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Ask, Bus, Envelope, LinkError, Qos, Serving, encode, keys};
+use socrates_link::{Ask, Bus, Envelope, LinkError, Publish, Qos, Serving, encode, keys};
 use socrates_model::RunId;
 use socrates_model::recording::{AgentState, Event, RecordingHeader};
 use tokio::sync::Notify;
@@ -116,24 +116,27 @@ impl Publisher {
 
     /// Publishes what is new until the run is over.
     async fn tell(&self) -> Result<(), LinkError> {
-        let (meta_key, agents_key) = (keys::live_meta(&self.run), keys::live_agents(&self.run));
+        let meta = self.bus.publisher(&keys::live_meta(&self.run), Qos::Hint).await?;
+        let agents = self.bus.publisher(&keys::live_agents(&self.run), Qos::Stream).await?;
         let (mut announced, mut told_ticks, mut told_events) = (false, 0_u64, 0_u64);
         loop {
             let (ticks, events, ended) = self.shelf.standing();
             if !announced && self.shelf.meta().is_some() {
-                self.bus.publish(&meta_key, self.meta_message()?, Qos::Hint).await?;
+                self.say(&*meta).await?;
                 announced = true;
             }
-            while told_ticks < ticks {
-                self.bus.publish(&agents_key, self.shelf.frame(told_ticks), Qos::Stream).await?;
+            while told_ticks < ticks && agents.is_heard() {
+                agents.put(self.shelf.frame(told_ticks)).await?;
                 told_ticks += 1;
             }
+            // What nobody hears is not sent: whoever comes later fetches it.
+            told_ticks = ticks;
             if ended && !announced {
                 return Ok(());
             }
             if told_events < events || ended {
                 // Says how many there are; whoever wants them fetches them.
-                self.bus.publish(&meta_key, self.meta_message()?, Qos::Hint).await?;
+                self.say(&*meta).await?;
                 told_events = events;
             }
             if ended && told_ticks == ticks {
@@ -148,10 +151,15 @@ impl Publisher {
                     vy: 0.,
                     omega: 0.,
                 };
-                return self.bus.publish(&agents_key, end.to_bytes().to_vec(), Qos::Stream).await;
+                return if agents.is_heard() { agents.put(end.to_bytes().to_vec()).await } else { Ok(()) };
             }
             self.news.notified().await;
         }
+    }
+
+    /// Tells how the run stands, where anybody listens.
+    async fn say(&self, meta: &dyn Publish) -> Result<(), LinkError> {
+        if meta.is_heard() { meta.put(self.meta_message()?).await } else { Ok(()) }
     }
 
     fn meta_message(&self) -> Result<Vec<u8>, LinkError> {
