@@ -134,32 +134,7 @@ pub(crate) fn write(
     let paths: Paths = parse("paths", &paths_text)?;
     let behaviors: Behaviors = parse("behaviors", &behaviors_text)?;
     let mut out = Writer { dir: dir.to_path_buf(), files: BTreeMap::new() };
-    let mut runs: Vec<(Recording, Report)> = Vec::new();
-    let mut entries = Vec::new();
-    for job in scoring_jobs(status) {
-        let (Some(report_file), Some(simulation)) =
-            (job.artifacts.iter().find(|a| a.role == "report"), newest(status, Stage::Simulation, &job.key.item))
-        else {
-            continue;
-        };
-        let report_text = string(report_file, fetch)?;
-        let report: Report = parse("report", &report_text)?;
-        let recording_file =
-            simulation.artifacts.iter().find(|a| a.role == "recording").ok_or_else(|| missing("recording"))?;
-        let bytes = fetch(&recording_file.digest)?;
-        let recording =
-            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
-        out.put(&format!("details/recordings/{}.mcap", job.key.item), &bytes)?;
-        let report_digest = out.put(&format!("details/reports/{}.json", job.key.item), pretty(&report)?.as_bytes())?;
-        entries.push(RunEntry {
-            planner: report.planner.clone(),
-            seed: report.seed,
-            verdict: report.verdict,
-            recording_hash: recording.hash(),
-            report: report_digest,
-        });
-        runs.push((recording, report));
-    }
+    let (runs, entries) = put_runs(&mut out, status, fetch)?;
     let Some((recording, report)) = runs.first() else { return Err(missing("report")) };
     let verdict = report.verdict;
     let title = format!("{} · {}", proposal.title, prepared.location.name);
@@ -211,6 +186,44 @@ pub(crate) fn write(
     out.put_outside("report.html", crate::report::page(&bundle, &stages, &prepared.author).as_bytes())?;
     out.put_outside("details/manifest.json", pretty(&bundle.manifest)?.as_bytes())?;
     Ok(bundle)
+}
+
+/// A run with what was found of it.
+type Judged = (Recording, Report);
+
+/// Writes every recording and report, and hands them back with their entries in the manifest.
+fn put_runs(
+    out: &mut Writer,
+    status: &ScenarioStatus,
+    fetch: &Fetch<'_>,
+) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
+    let mut runs: Vec<(Recording, Report)> = Vec::new();
+    let mut entries = Vec::new();
+    for job in scoring_jobs(status) {
+        let (Some(report_file), Some(simulation)) =
+            (job.artifacts.iter().find(|a| a.role == "report"), newest(status, Stage::Simulation, &job.key.item))
+        else {
+            continue;
+        };
+        let report_text = string(report_file, fetch)?;
+        let report: Report = parse("report", &report_text)?;
+        let recording_file =
+            simulation.artifacts.iter().find(|a| a.role == "recording").ok_or_else(|| missing("recording"))?;
+        let bytes = fetch(&recording_file.digest)?;
+        let recording =
+            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
+        out.put(&format!("details/recordings/{}.mcap", job.key.item), &bytes)?;
+        let report_digest = out.put(&format!("details/reports/{}.json", job.key.item), pretty(&report)?.as_bytes())?;
+        entries.push(RunEntry {
+            planner: report.planner.clone(),
+            seed: report.seed,
+            verdict: report.verdict,
+            recording_hash: recording.hash(),
+            report: report_digest,
+        });
+        runs.push((recording, report));
+    }
+    Ok((runs, entries))
 }
 
 struct Writer {

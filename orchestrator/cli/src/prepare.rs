@@ -125,36 +125,14 @@ pub(crate) fn prepare_text(
         complaint.hint = "`socrates explain J-REQUEST`".to_owned();
         return Err(complaint);
     }
-    let known = socrates_planners::names();
-    for planner in &request.robot.planners {
-        if !known.contains(&planner.as_str()) {
-            return Err(Complaint::input(
-                format!("J-PLANNER the request `{shown}`: `robot.planners`: there is no planner `{planner}`"),
-                format!("planners: {}", known.join(", ")),
-            ));
-        }
-    }
+    check_planners(&request, shown)?;
     let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
     let (mut location, location_files) = load_location(&request.location, folder).map_err(of_request)?;
     if let Some(description) = &request.location_description {
         location.description.clone_from(description);
     }
     let reading = socrates_offline::read(&request, &location);
-    let stops: Vec<Fault> = socrates_model::fault::hard(&reading.problems);
-    if !stops.is_empty() {
-        return Err(Complaint::faults(
-            format!("the request `{shown}` asks for something that cannot be made"),
-            &stops,
-            match socrates_offline::settled_by(&request, &location).as_slice() {
-                [] => format!("correct the text; `socrates read {}` shows the reading", files::shell(Path::new(shown))),
-                keys => format!(
-                    "correct the text, or set {} under [expect]; `socrates read {}` shows the reading",
-                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and "),
-                    files::shell(Path::new(shown))
-                ),
-            },
-        ));
-    }
+    check_reading(&reading, &request, &location, shown)?;
     let mut pins = BTreeMap::new();
     for (role, pinned) in
         [("proposal", &request.proposal), ("paths", &request.paths), ("behaviors", &request.behaviors)]
@@ -200,6 +178,40 @@ pub(crate) fn prepare_text(
         author,
         author_note,
     })
+}
+
+/// Refuses planners that do not exist.
+fn check_planners(request: &Request, shown: &str) -> Result<(), Complaint> {
+    let known = socrates_planners::names();
+    for planner in &request.robot.planners {
+        if !known.contains(&planner.as_str()) {
+            return Err(Complaint::input(
+                format!("J-PLANNER the request `{shown}`: `robot.planners`: there is no planner `{planner}`"),
+                format!("planners: {}", known.join(", ")),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a request whose reading says that it cannot be made, with what would settle it.
+fn check_reading(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Complaint> {
+    let stops: Vec<Fault> = socrates_model::fault::hard(&reading.problems);
+    if !stops.is_empty() {
+        return Err(Complaint::faults(
+            format!("the request `{shown}` asks for something that cannot be made"),
+            &stops,
+            match socrates_offline::settled_by(request, location).as_slice() {
+                [] => format!("correct the text; `socrates read {}` shows the reading", files::shell(Path::new(shown))),
+                keys => format!(
+                    "correct the text, or set {} under [expect]; `socrates read {}` shows the reading",
+                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and "),
+                    files::shell(Path::new(shown))
+                ),
+            },
+        ));
+    }
+    Ok(())
 }
 
 /// The settings of `--inject`.
