@@ -120,6 +120,8 @@ impl ZenohConfig {
 }
 
 fn transport(what: &str, why: &str) -> LinkError {
+    // The transport ends its reasons with the place in its own source, which tells a person nothing.
+    let why = why.split_once(" at /").map_or(why, |(words, _)| words);
     LinkError::Transport { what: what.to_owned(), why: why.to_owned() }
 }
 

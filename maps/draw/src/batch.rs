@@ -83,9 +83,10 @@ impl BatchPage {
         }));
     }
 
-    /// Adds a scenario of which there is no bundle, and why.
-    pub fn add_failed(&mut self, scenario: &str, why: &str) {
-        self.rows.push(json!({ "scenario": scenario, "verdict": "failed", "told": why, "runs": [] }));
+    /// Adds a scenario of which there is no bundle, and why; `repeats` is the earlier one that failed in the same way.
+    pub fn add_failed(&mut self, scenario: &str, why: &str, repeats: Option<&str>) {
+        let row = json!({ "scenario": scenario, "repeats": repeats, "verdict": "failed", "told": why, "runs": [] });
+        self.rows.push(row);
     }
 
     /// Sets the figures over all scenarios.
@@ -233,8 +234,9 @@ mod tests {
         let repeats: Vec<&Value> = rows.iter().map(|row| &row["repeats"]).collect();
         assert!(repeats[0].is_null() && repeats[4] == "hall", "{repeats:?}");
         let mut page = BatchPage::default();
-        page.add_failed("odd", "no author");
-        assert_eq!(page.distinct(), 1);
+        page.add_failed("odd", "no author", None);
+        page.add_failed("odd-2", "no author", Some("odd"));
+        assert_eq!((page.distinct(), page.len()), (1, 2));
     }
 
     #[test]
@@ -264,7 +266,7 @@ mod tests {
     fn an_empty_folder_and_a_failed_scenario_have_a_page() {
         let mut page = BatchPage::default();
         assert!(page.is_empty() && page.html("none").contains("\"rows\":[]"));
-        page.add_failed("odd-1", "no author");
+        page.add_failed("odd-1", "no author", None);
         assert_eq!(page.len(), 1);
         assert!(page.html("one").contains("no author"));
     }

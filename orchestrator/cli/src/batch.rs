@@ -71,7 +71,7 @@ pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
             Ok(Some(found)) => reports.push((name, found)),
             Ok(None) => {}
             Err(why) => {
-                page.add_failed(&name, &why.what);
+                page.add_failed(&name, &why.what, None);
                 index.add_failed(Scenario { request: "", location: "", repeats: false, path: &name }, &why.what);
                 left_out.push((name, why.what));
             }
@@ -92,8 +92,9 @@ pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
     }
     for row in &failed {
         let why = if row.reason.is_empty() { "no bundle could be made" } else { &row.reason };
-        page.add_failed(row.scenario.as_str(), why);
-        index.add_failed(Scenario { request: &row.request, location: "", repeats: false, path: "" }, why);
+        let earlier = row.repeats.as_ref().map(ScenarioId::as_str);
+        page.add_failed(row.scenario.as_str(), why, earlier);
+        index.add_failed(Scenario { request: &row.request, location: "", repeats: earlier.is_some(), path: "" }, why);
     }
     index.write(root)?;
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));

@@ -69,13 +69,17 @@ pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
 
 /// Finds scenarios that repeat earlier ones.
 #[derive(Debug, Default)]
-pub(crate) struct Repeats(BTreeMap<Signature, VecDeque<(ScenarioId, Likeness)>>);
+pub(crate) struct Repeats {
+    made: BTreeMap<Signature, VecDeque<(ScenarioId, Likeness)>>,
+    /// The first that failed, by request and reason.
+    failed: BTreeMap<(String, String), ScenarioId>,
+}
 
 impl Repeats {
     /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
     pub(crate) fn of(&mut self, id: &ScenarioId, proposal: &Proposal) -> Option<ScenarioId> {
         let proposal = Likeness::of(proposal);
-        let alike = self.0.entry(proposal.signature.clone()).or_default();
+        let alike = self.made.entry(proposal.signature.clone()).or_default();
         let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
         if let Some((other, _)) = earlier {
             return Some(other.clone());
@@ -85,6 +89,16 @@ impl Repeats {
         }
         alike.push_back((id.clone(), proposal));
         None
+    }
+
+    /// The earlier scenario of the same request that failed for the same reason; it is remembered itself where there is none.
+    pub(crate) fn of_failed(&mut self, id: &ScenarioId, request: &str, reason: &str) -> Option<ScenarioId> {
+        let alike = (request.to_owned(), reason.to_owned());
+        let earlier = self.failed.get(&alike).cloned();
+        if earlier.is_none() {
+            self.failed.insert(alike, id.clone());
+        }
+        earlier
     }
 }
 

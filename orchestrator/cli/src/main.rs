@@ -160,7 +160,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
         Verb::Scenarios { verb } => done(scenarios::scenarios(talk, verb).await),
         Verb::Evaluate { verb } => done(evaluate::evaluate(talk, cli, config, verb).await),
         Verb::Cluster { verb } => match verb {
-            ClusterVerb::Up(options) => done(process::orchestrator(config, options).await),
+            ClusterVerb::Up(options) => done(process::orchestrator(talk, config, options).await),
             ClusterVerb::Worker(options) => done(process::worker(config, options).await),
             ClusterVerb::Submit { requests, connect, namespace, seed } => {
                 done(cluster::submit(talk, config, requests, connect, namespace, *seed).await)
@@ -168,7 +168,7 @@ async fn act(talk: &Talk, cli: &Cli, config: &Config) -> Result<Code, Complaint>
         },
         Verb::Dev { verb } => done(dev::dev(talk, cli, config, verb).await),
         Verb::Worker(options) => done(process::worker(config, options).await),
-        Verb::Orchestrator(options) => done(process::orchestrator(config, options).await),
+        Verb::Orchestrator(options) => done(process::orchestrator(talk, config, options).await),
     }
 }
 

@@ -37,7 +37,7 @@ pub(crate) async fn batch(
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
             return library::finish(talk, options, &root, refused);
         }
-        Place::New(root) => root,
+        Place::New(root) => place::told(talk, &base, root),
     };
     crate::authors::check(config, prepared.iter().map(|one| one.author.as_str())).await?;
     let work = place::claim(&root, wish)?;
@@ -99,8 +99,13 @@ fn rows(talk: &Talk, root: &Path, wanted: &[Wanted<'_>], made: &Made) -> Vec<lib
         let (verdict, repeats, reason) = match written(&dir, want, status, made) {
             Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal), String::new()),
             Err(why) => {
-                talk.warn(&format!("{}: {why}", want.id));
-                (crate::index::FAILED.to_owned(), None, why.short())
+                let reason = why.short();
+                let earlier = repeats.of_failed(&want.id, &want.prepared.name, &reason);
+                match &earlier {
+                    Some(first) => talk.warn(&format!("{}: failed as `{first}` did", want.id)),
+                    None => talk.warn(&format!("{}: {why}", want.id)),
+                }
+                (crate::index::FAILED.to_owned(), earlier, reason)
             }
         };
         let request = want.prepared.name.clone();

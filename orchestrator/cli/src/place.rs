@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use socrates_model::{Digest, ScenarioId};
 
 use crate::exit::Complaint;
+use crate::talk::Talk;
 use crate::{bundle, library};
 
 /// Folder, inside that of the result, which only a resumed run needs.
@@ -42,6 +43,18 @@ pub(crate) fn place(base: &Path, wish: Digest) -> Place {
         }
     }
     Place::New(base.to_path_buf())
+}
+
+/// The folder, and a word where it is not the one that was named.
+pub(crate) fn told(talk: &Talk, named: &Path, dir: PathBuf) -> PathBuf {
+    if dir != named {
+        talk.line(&format!(
+            "folder     `{}` holds something else; this goes into `{}`",
+            named.display(),
+            dir.display()
+        ));
+    }
+    dir
 }
 
 /// Makes the work folder and marks it with the wish, so that the same command resumes it. What ended without a bundle is begun

@@ -14,6 +14,7 @@ use crate::args::{OrchestratorOptions, WorkerOptions};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::orchestrate::{self, OrchestratorConfig};
+use crate::talk::Talk;
 
 /// Version of the stages' code; results of another version are not reused.
 pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -120,18 +121,19 @@ fn is_local(endpoint: &str) -> bool {
 }
 
 /// Runs the orchestrator until told to leave.
-pub(crate) async fn orchestrator(config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
+pub(crate) async fn orchestrator(talk: &Talk, config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
     let bus: Arc<dyn Bus> = match (&options.listen, &options.connect) {
         (Some(listen), None) => {
             reachable(listen, options.insecure)?;
             let settings = ZenohConfig::new(Mode::Router, &options.namespace, "orchestrator").listen(listen);
-            let opened = ZenohBus::open(settings).await;
-            Arc::new(opened.map_err(|why| {
+            let opened = ZenohBus::open(settings).await.map_err(|why| {
                 Complaint::input(
                     format!("cannot listen on `{listen}`: {why}"),
                     "another port, or end the program that has it",
                 )
-            })?)
+            })?;
+            talk.warn(&format!("listening  {listen} · namespace {}", options.namespace));
+            Arc::new(opened)
         }
         (None, Some(connect)) => joined(connect, &options.namespace, "orchestrator", options.tied).await?,
         (Some(_), Some(_)) | (None, None) => {

@@ -149,7 +149,7 @@ async fn single(
             let bundle = bundle::read(&dir)?;
             return Ok(finish(talk, options, &prepared, &bundle, None));
         }
-        Place::New(dir) => dir,
+        Place::New(dir) => place::told(talk, &base, dir),
     };
     crate::authors::check(config, [prepared.author.as_str()]).await?;
     let work = place::claim(&dir, wish)?;
@@ -203,7 +203,7 @@ pub(crate) fn conclude(
         if author {
             "`socrates config author` shows which author is asked; `--author offline` needs none"
         } else {
-            "`socrates explain CODE` says what each fault means; another --seed asks for another answer"
+            "`socrates explain CODE` says what each fault means; say it in other words, or look at it with --ask"
         },
     );
     complaint.code = if author { Code::Author } else { Code::NotRealised };

@@ -18,8 +18,12 @@ use crate::talk::Talk;
 
 /// Ticks that may wait unread; a minute of a run.
 const DEPTH: usize = 6_000;
-/// How long nothing may be heard before watching ends.
+/// How long a run is waited for that nobody has announced.
 const PATIENCE: Duration = Duration::from_secs(60);
+/// How long nothing may be heard of a run before watching ends: a run that goes on tells something a hundred times a second.
+const SILENCE: Duration = Duration::from_secs(10);
+/// The same once the run itself has said that it ends.
+const LAST_WORDS: Duration = Duration::from_secs(2);
 
 async fn connect(what: &str) -> Result<Arc<dyn Bus>, Complaint> {
     let (endpoint, namespace) = endpoint(what).ok_or_else(|| {
@@ -44,7 +48,8 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
     let mut watch = Watch::open(bus.clone(), &run, DEPTH).await.map_err(|why| ours(why.to_string()))?;
     let (mut received, mut fetched, mut ticks) = (0_u64, 0_u64, 0_u64);
     let mut gaps: Vec<(u64, u64)> = Vec::new();
-    while let Some(sight) = watch.next(PATIENCE).await.map_err(|why| ours(why.to_string()))? {
+    let (mut patience, mut ended) = (SILENCE, false);
+    while let Some(sight) = watch.next(patience).await.map_err(|why| ours(why.to_string()))? {
         match sight {
             Sight::Header(header) => {
                 let agents: Vec<String> = header.agents.iter().map(|info| info.agent.to_string()).collect();
@@ -85,16 +90,22 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
                 }
             }
             Sight::Event(event) => {
+                if matches!(event.kind, EventKind::End { .. }) {
+                    patience = LAST_WORDS;
+                }
                 if let Some(words) = words(&event.kind) {
                     talk.line(&format!("{:>7.2} s  {words}", event.time.secs()));
                 }
                 talk.result(&json!({ "type": "event", "t": event.time.secs(), "event": event.kind }));
             }
             Sight::End { ticks: all } => {
-                ticks = all;
+                (ticks, ended) = (all, true);
                 break;
             }
         }
+    }
+    if !ended {
+        talk.warn(&format!("nothing was heard of `{run}` for {} s; it is over or was given up", patience.as_secs()));
     }
     let missing: u64 = watch.missing().iter().map(|range| range.to - range.from + 1).sum();
     let lists: Vec<(u64, u64)> = watch.missing().iter().map(|range| (range.from, range.to)).collect();

@@ -199,8 +199,8 @@ fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, As
     // The vendors' own servers answer nobody without a key; a server of one's own may.
     if key.is_empty() && url == dialect.default_url() && url.starts_with("https:") {
         let message = format!(
-            "`{dialect}:{model}` needs a key: put it into the environment variable or the file that `socrates config \
-             author` names, or use `offline`"
+            "`{dialect}:{model}` needs a key: put it into the environment variable that `author.key_variable` names, or into \
+             the file of `author.key_file`; `socrates config author` shows both. `offline` needs none"
         );
         return Err(AskError::new(FaultCode::TAuth, message));
     }
