@@ -160,6 +160,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_scenario_that_fails_as_an_earlier_one_did_repeats_it() {
+        let id = |name: &str| ScenarioId::new(name).unwrap();
+        let mut repeats = Repeats::default();
+        assert_eq!(repeats.of_failed(&id("a"), "hall", "no way"), None);
+        assert_eq!(repeats.of_failed(&id("b"), "hall", "no way"), Some(id("a")));
+        assert_eq!(repeats.of_failed(&id("c"), "hall", "too narrow"), None);
+        assert_eq!(repeats.of_failed(&id("d"), "ward", "no way"), None);
+    }
+
+    #[test]
     fn distinct_scenarios_are_counted_beside_all() {
         let row = |name: &str, verdict: &str, repeats: Option<&str>| Row {
             scenario: ScenarioId::new(name).unwrap(),
