@@ -16,11 +16,11 @@ fn silent() -> (u16, Arc<AtomicUsize>) {
     std::thread::spawn(move || {
         let mut open = Vec::new();
         for mut stream in listener.incoming().filter_map(Result::ok) {
-            let mut head = [0; 4];
-            if stream.read_exact(&mut head).is_err() {
-                continue;
+            let (mut head, mut byte) = (Vec::new(), [0]);
+            while !head.ends_with(b"\r\n\r\n") && stream.read_exact(&mut byte).is_ok() {
+                head.extend(byte);
             }
-            if &head == b"POST" {
+            if head.starts_with(b"POST") {
                 count.fetch_add(1, Ordering::SeqCst);
                 open.push(stream);
             } else {
