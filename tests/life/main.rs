@@ -18,6 +18,7 @@ mod readme;
 mod release;
 mod repairs;
 mod requests;
+mod restarts;
 mod slow_author;
 mod strangers;
 mod tables;
