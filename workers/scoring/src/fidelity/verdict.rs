@@ -22,7 +22,7 @@ pub struct Ruling {
     pub score: f64,
 }
 
-/// Rules on the clauses, and on what the request asks for beyond them. `reference` is what [`ruling_of_played`] says of the
+/// Rules on the clauses, and on what the request asks for beyond them. `reference` is the ruling on the clauses alone of the
 /// same scenario with the reference robot, if known.
 ///
 /// A run that shows all its clauses is `invalid` while part of the request could not be read or played: nothing is
