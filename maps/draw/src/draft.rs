@@ -40,7 +40,6 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
         width - 40.0
     };
     svg.heading((20.0, 34.0), &wrapped(title, words, 24.0, 1).concat(), 24.0, palette::INK);
-    svg.begin_clip(frame.at, frame.size());
     draw_floor(&mut svg, location, &frame);
     draw_graph(&mut svg, location, &frame, palette::UNKNOWN, 1.5);
     draw_doors(&mut svg, location, &frame);
@@ -76,7 +75,6 @@ pub fn draft_picture(location: &Location, paths: &Paths, roles: &[(AgentId, Stri
         svg.circle(at, 2.2, &format!("fill=\"{}\"", palette::QUIET));
         draw_label(&mut svg, &mut labels, at, node.as_str(), (palette::QUIET, 12.0), 5.0);
     }
-    svg.end_clip();
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
     svg.text(

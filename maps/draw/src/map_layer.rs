@@ -104,6 +104,49 @@ impl Frame {
         (self.at.0 + (x - self.cells.0 as f64) * self.scale, self.at.1 + (y - self.cells.1 as f64) * self.scale)
     }
 
+    /// The parts of a line, px, that lie in the picture of the map: what is not drawn needs no clip mask, which costs a painter
+    /// more than everything else.
+    #[must_use]
+    pub fn inside(&self, line: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
+        let mut parts: Vec<Vec<(f64, f64)>> = Vec::new();
+        for pair in line.windows(2) {
+            let [from, to] = pair else { continue };
+            let Some((a, b)) = self.cut(*from, *to) else { continue };
+            match parts.last_mut() {
+                Some(part) if part.last() == Some(&a) => part.push(b),
+                Some(_) | None => parts.push(vec![a, b]),
+            }
+        }
+        parts
+    }
+
+    /// The part of one straight line that lies in the picture of the map (Liang and Barsky 1984).
+    fn cut(&self, from: (f64, f64), to: (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
+        let ((dx, dy), (w, h)) = ((to.0 - from.0, to.1 - from.1), self.size());
+        let (mut enters, mut leaves) = (0.0_f64, 1.0_f64);
+        let (left, top) = (from.0 - self.at.0, from.1 - self.at.1);
+        for (step, room) in [(-dx, left), (dx, w - left), (-dy, top), (dy, h - top)] {
+            if step < 0.0 {
+                enters = enters.max(room / step);
+            } else if step > 0.0 {
+                leaves = leaves.min(room / step);
+            } else if room < 0.0 {
+                return None;
+            }
+        }
+        let at = |share: f64| (from.0 + dx * share, from.1 + dy * share);
+        let end = |share: f64| {
+            if share <= 0.0 {
+                from
+            } else if share >= 1.0 {
+                to
+            } else {
+                at(share)
+            }
+        };
+        (enters <= leaves).then(|| (end(enters), end(leaves)))
+    }
+
     /// Picture length of a world length.
     #[must_use]
     pub fn len(&self, location: &Location, meters: f64) -> f64 {
@@ -136,23 +179,26 @@ pub fn draw_locator(svg: &mut Svg, location: &Location, frame: &Frame, right: f6
 /// The boxes of the walls in the picture, for labels to keep off.
 #[must_use]
 pub fn wall_areas(location: &Location, frame: &Frame) -> Vec<Area> {
-    merged(location, frame, Cell::Occupied)
+    merged(location, frame, &|cell| cell == Cell::Occupied)
 }
 
-/// Draws floor and walls as merged rectangles.
+/// Draws floor and walls as merged rectangles. The floor lies under the walls too, so that no seam shows between them, and
+/// edges are crisp: they are those of cells.
 pub fn draw_floor(svg: &mut Svg, location: &Location, frame: &Frame) {
     let (w, h) = frame.size();
-    svg.rect(frame.at, (w, h), &format!("fill=\"{}\"", palette::UNKNOWN));
-    for (cell, color) in [(Cell::Free, palette::FLOOR), (Cell::Occupied, palette::WALL)] {
+    svg.rect(frame.at, (w, h), &format!("fill=\"{}\" shape-rendering=\"crispEdges\"", palette::UNKNOWN));
+    let layers: [(&dyn Fn(Cell) -> bool, &str); 2] =
+        [(&|cell| cell != Cell::Unknown, palette::FLOOR), (&|cell| cell == Cell::Occupied, palette::WALL)];
+    for (shown, color) in layers {
         let mut path = String::new();
-        for area in merged(location, frame, cell) {
+        for area in merged(location, frame, shown) {
             // Writing into a String cannot fail.
             if write!(path, "M{:.1} {:.1}h{:.1}v{:.1}h{:.1}z", area.x, area.y, area.w, area.h, -area.w).is_err() {
                 return;
             }
         }
         if !path.is_empty() {
-            svg.raw(&format!("<path fill=\"{color}\" stroke=\"{color}\" stroke-width=\"0.4\" d=\"{path}\"/>"));
+            svg.raw(&format!("<path fill=\"{color}\" shape-rendering=\"crispEdges\" d=\"{path}\"/>"));
         }
     }
 }
@@ -161,7 +207,9 @@ pub fn draw_floor(svg: &mut Svg, location: &Location, frame: &Frame) {
 pub fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame) {
     for door in &location.doors {
         let (from, to) = (frame.px(location, &door.from), frame.px(location, &door.to));
-        svg.line(from, to, &format!("stroke=\"{}\" stroke-width=\"3\" stroke-dasharray=\"5 3\"", palette::DOOR));
+        for part in frame.inside(&[from, to]) {
+            svg.polyline(&part, &format!("stroke=\"{}\" stroke-width=\"3\" stroke-dasharray=\"5 3\"", palette::DOOR));
+        }
     }
 }
 
@@ -170,7 +218,9 @@ pub fn draw_graph(svg: &mut Svg, location: &Location, frame: &Frame, color: &str
     for edge in &location.graph.edges {
         if let Some(points) = location.graph.edge_points(&edge.from, &edge.to) {
             let line: Vec<(f64, f64)> = points.iter().map(|p| frame.px(location, p)).collect();
-            svg.polyline(&line, &format!("stroke=\"{color}\" stroke-width=\"{width}\""));
+            for part in frame.inside(&line) {
+                svg.polyline(&part, &format!("stroke=\"{color}\" stroke-width=\"{width}\""));
+            }
         }
     }
 }
@@ -188,8 +238,8 @@ pub fn draw_scale(svg: &mut Svg, location: &Location, frame: &Frame, below: f64)
     svg.text((x + w + 8.0, y + 4.0), &format!("{length_m:.0} m"), &format!("font-size=\"12\" fill=\"{ink}\""));
 }
 
-/// Boxes of all cells of one kind: row runs, joined downward where they repeat.
-fn merged(location: &Location, frame: &Frame, wanted: Cell) -> Vec<Area> {
+/// Boxes of all cells of the wanted kinds: row runs, joined downward where they repeat.
+fn merged(location: &Location, frame: &Frame, wanted: &dyn Fn(Cell) -> bool) -> Vec<Area> {
     let grid = &location.grid;
     let (x0, y0, w, h) = frame.cells;
     let mut open: BTreeMap<(usize, usize), usize> = BTreeMap::new();
@@ -199,7 +249,7 @@ fn merged(location: &Location, frame: &Frame, wanted: Cell) -> Vec<Area> {
         if row < y0 + h {
             let mut start = None;
             for column in x0..=x0 + w {
-                let here = column < x0 + w && grid.at(column, row) == wanted;
+                let here = column < x0 + w && wanted(grid.at(column, row));
                 match (start, here) {
                     (None, true) => start = Some(column),
                     (Some(from), false) => {
@@ -236,6 +286,18 @@ fn rectangle(frame: &Frame, run: (usize, usize), top: usize, bottom: usize) -> A
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_is_cut_at_the_frame() {
+        let frame = Frame { cells: (0, 0, 10, 10), scale: 10.0, at: (20.0, 50.0) };
+        let inside = |line: &[(f64, f64)]| frame.inside(line);
+        assert_eq!(inside(&[(30.0, 60.0), (40.0, 60.0), (40.0, 70.0)]).len(), 1, "what lies inside stays one line");
+        assert_eq!(inside(&[(0.0, 60.0), (140.0, 60.0)]), [[(20.0, 60.0), (120.0, 60.0)]]);
+        assert_eq!(inside(&[(70.0, 100.0), (170.0, 200.0)]), [[(70.0, 100.0), (120.0, 150.0)]]);
+        assert_eq!(inside(&[(0.0, 0.0), (10.0, 200.0)]), Vec::<Vec<(f64, f64)>>::new());
+        let out_and_in = [(30.0, 60.0), (30.0, 0.0), (60.0, 0.0), (60.0, 60.0)];
+        assert_eq!(inside(&out_and_in), [[(30.0, 60.0), (30.0, 50.0)], [(60.0, 50.0), (60.0, 60.0)]]);
+    }
 
     #[test]
     fn a_span_is_widened_and_stays_inside() {

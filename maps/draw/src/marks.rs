@@ -6,7 +6,7 @@ use crate::svg::Svg;
 
 /// The line of an agent, set off from what lies under it.
 pub(crate) fn draw_line(svg: &mut Svg, line: &[(f64, f64)], color: &str) {
-    svg.polyline(line, "stroke=\"#ffffff\" stroke-width=\"6.5\" stroke-linejoin=\"round\" opacity=\"0.8\"");
+    svg.polyline(line, "stroke=\"#ffffff\" stroke-width=\"6.5\" stroke-linejoin=\"round\" stroke-opacity=\"0.8\"");
     svg.polyline(
         line,
         &format!("stroke=\"{color}\" stroke-width=\"3.6\" stroke-linejoin=\"round\" stroke-linecap=\"round\""),

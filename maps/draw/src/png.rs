@@ -117,13 +117,12 @@ fn encode(pixels: &tiny_skia::Pixmap, dpi: Option<f32>) -> Result<Vec<u8>, PngEr
 
 /// Colors over white: they are stored multiplied with their opacity, so what is missing to opaque is added.
 fn opaque(pixels: &tiny_skia::Pixmap) -> Vec<u8> {
-    pixels
-        .pixels()
-        .iter()
-        .flat_map(|pixel| {
-            [pixel.red(), pixel.green(), pixel.blue()].map(|color| color.saturating_add(255 - pixel.alpha()))
-        })
-        .collect()
+    let mut colors = vec![0; pixels.pixels().len() * 3];
+    for (color, pixel) in colors.as_chunks_mut::<3>().0.iter_mut().zip(pixels.pixels()) {
+        let rest = 255 - pixel.alpha();
+        *color = [pixel.red(), pixel.green(), pixel.blue()].map(|part| part.saturating_add(rest));
+    }
+    colors
 }
 
 #[cfg(test)]

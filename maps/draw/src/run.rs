@@ -67,13 +67,12 @@ pub fn run_picture(
     if let Some(told) = told {
         told.draw(&mut svg);
     }
-    svg.begin_clip(frame.at, frame.size());
     draw_floor(&mut svg, location, &frame);
     draw_graph(&mut svg, location, &frame, palette::UNKNOWN, 1.5);
     let line: Vec<(f64, f64)> = way.iter().map(|p| frame.px(location, p)).collect();
     svg.polyline(
         &line,
-        &format!("stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"3 5\" opacity=\"0.7\"", palette::ROBOT),
+        &format!("stroke=\"{}\" stroke-width=\"1.6\" stroke-dasharray=\"3 5\" stroke-opacity=\"0.7\"", palette::ROBOT),
     );
     draw_doors(&mut svg, location, &frame);
     let mut labels = Labels::within(Area { x: frame.at.0, y: frame.at.1, w, h });
@@ -106,7 +105,6 @@ pub fn run_picture(
             );
         }
     }
-    svg.end_clip();
     svg.rect(frame.at, (w, h), &format!("fill=\"none\" stroke=\"{}\" stroke-width=\"1\"", palette::GRAPH));
     draw_scale(&mut svg, location, &frame, 18.0);
     let more = if paths.is_some() { " · diamond: encounter · dots: intended way" } else { "" };
