@@ -53,7 +53,7 @@ pub use fsck::fsck;
 pub use policy::Policy;
 pub use recover::Snapshot;
 pub use state::{Attempt, AttemptEnd, Job, JobResult, JobState, Millis, Scenario, ScenarioEnd, State, Worker};
-pub use status::status;
+pub use status::{standing, status};
 
 /// One step: takes an event at time `now` and says what is to be saved and sent.
 ///

@@ -6,6 +6,8 @@ use socrates_model::ScenarioId;
 use socrates_model::job::JobKey;
 use socrates_model::wire::{JobStatus, ScenarioStatus, StatusAsk, StatusReply};
 
+use crate::policy::Policy;
+use crate::recover::Snapshot;
 use crate::state::{Job, Millis, Scenario, State};
 
 /// Scenario lines in one reply at most.
@@ -78,6 +80,14 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
         workers,
         scenarios,
     }
+}
+
+/// How the scenarios of a store's rows stand, each with all of its jobs and in order of submission: what [`status`] says in pages.
+#[must_use]
+pub fn standing(snapshot: Snapshot) -> Vec<ScenarioStatus> {
+    let state = State::restore(snapshot, Policy::default(), 0);
+    let scenarios = state.by_order.values().filter_map(|id| state.scenarios.get(id));
+    scenarios.map(|scenario| line(&state, scenario, newest(&state, scenario).iter()).0).collect()
 }
 
 /// The jobs that stand in the plan of the revision that counts.

@@ -9,6 +9,7 @@ mod doors;
 mod evaluations;
 mod folders;
 mod leaving;
+mod libraries;
 mod live;
 mod looks;
 mod models;

@@ -21,16 +21,6 @@ impl Digest {
         Self(*blake3::hash(bytes).as_bytes())
     }
 
-    /// The digest of all that a reader gives, in the memory of one block.
-    ///
-    /// # Errors
-    /// Those of the reader.
-    pub fn of_reader(from: impl std::io::Read) -> std::io::Result<Self> {
-        let mut hasher = blake3::Hasher::new();
-        hasher.update_reader(from)?;
-        Ok(Self(*hasher.finalize().as_bytes()))
-    }
-
     /// The raw bytes.
     #[must_use]
     pub const fn bytes(&self) -> &[u8; 32] {

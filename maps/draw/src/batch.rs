@@ -26,8 +26,6 @@ pub struct BatchEntry<'a> {
     pub folder: &'a str,
     /// Its id.
     pub scenario: &'a str,
-    /// The earlier scenario of the page that it repeats.
-    pub repeats: Option<&'a str>,
     /// What the user gave.
     pub request: &'a Request,
     /// The reading in one line.
@@ -63,24 +61,50 @@ pub struct BatchPage {
     figures: Value,
 }
 
-impl BatchPage {
-    /// Adds a scenario.
-    pub fn add(&mut self, entry: &BatchEntry<'_>) {
+/// What the page tells of one scenario, made wherever its recording is at hand.
+#[derive(Debug, Clone)]
+pub struct BatchRow {
+    told: Value,
+    picture: Option<Picture>,
+}
+
+/// A small picture, without the number of its place: the page numbers places.
+#[derive(Debug, Clone)]
+struct Picture {
+    focus: [f64; 4],
+    tracks: Vec<Value>,
+}
+
+impl BatchRow {
+    /// The row of a scenario.
+    #[must_use]
+    pub fn of(entry: &BatchEntry<'_>) -> Self {
         let first = entry.reports.first();
         let runs: Vec<Value> = entry.reports.iter().map(run_row).collect();
-        let picture = entry
-            .recording
-            .filter(|_| self.rows.len() < PICTURES)
-            .map(|recording| picture(entry.location, entry.paths, recording, self.places.number(entry.location)));
-        self.rows.push(json!({
-            "folder": entry.folder, "scenario": entry.scenario, "repeats": entry.repeats, "title": entry.proposal.title,
+        let told = json!({
+            "folder": entry.folder, "scenario": entry.scenario, "title": entry.proposal.title,
             "reading": entry.reading_line, "context": entry.request.social_context, "task": entry.request.task,
             "rough": entry.request.rough_scenario, "location": entry.location.name, "place": entry.proposal.place.name(),
             "pattern": entry.proposal.pattern, "humans": entry.proposal.humans.len(), "author": entry.proposal.author,
             "verdict": first.map_or("failed", |report| report.verdict.name()),
             "told": first.map_or("", |report| report.verdict_text.as_str()), "why": first.and_then(why), "runs": runs,
-            "picture": picture,
-        }));
+        });
+        Self { told, picture: entry.recording.map(|recording| picture(entry.location, entry.paths, recording)) }
+    }
+}
+
+impl BatchPage {
+    /// Adds a scenario at a place; `repeats` is the earlier scenario of the page that it repeats.
+    pub fn add(&mut self, row: BatchRow, location: &Location, repeats: Option<&str>) {
+        let picture = row.picture.filter(|_| self.rows.len() < PICTURES).map(|picture| {
+            json!({ "place": self.places.number(location), "focus": picture.focus, "tracks": picture.tracks })
+        });
+        let mut told = row.told;
+        if let Some(members) = told.as_object_mut() {
+            members.insert("repeats".to_owned(), repeats.into());
+            members.insert("picture".to_owned(), picture.into());
+        }
+        self.rows.push(told);
     }
 
     /// Adds a scenario of which there is no bundle, and why; `repeats` is the earlier one that failed in the same way.
@@ -146,7 +170,7 @@ fn why(report: &Report) -> Option<String> {
         .map(|clause| format!("{}: {}", clause.id, clause.text))
 }
 
-fn picture(location: &Location, paths: &Paths, recording: &Recording, place: usize) -> Value {
+fn picture(location: &Location, paths: &Paths, recording: &Recording) -> Picture {
     let frame = play::frame(location);
     let way = location.graph.polyline(&paths.robot);
     let mut tracks: Vec<Value> = Vec::new();
@@ -167,7 +191,7 @@ fn picture(location: &Location, paths: &Paths, recording: &Recording, place: usi
     }
     // The robot lies on top.
     tracks.reverse();
-    json!({ "place": place, "focus": play::focus(location, &way, &[recording]), "tracks": tracks })
+    Picture { focus: play::focus(location, &way, &[recording]), tracks }
 }
 
 #[cfg(test)]
@@ -182,10 +206,9 @@ mod tests {
         let location = hall(text);
         let mut page = BatchPage::default();
         for _ in 0..count {
-            page.add(&BatchEntry {
+            let row = BatchRow::of(&BatchEntry {
                 folder: text,
                 scenario: text,
-                repeats: (page.len() > 1).then_some(text),
                 request: &request,
                 reading_line: text,
                 location: &location,
@@ -194,6 +217,8 @@ mod tests {
                 reports: &reports,
                 recording: Some(&recording),
             });
+            let repeats = (page.len() > 1).then_some(text);
+            page.add(row, &location, repeats);
         }
         page.html(text)
     }

@@ -41,7 +41,7 @@ mod template;
 pub mod track_page;
 
 pub use annotated::annotated_map;
-pub use batch::{BatchEntry, BatchPage, Figures};
+pub use batch::{BatchEntry, BatchPage, BatchRow, Figures};
 pub use draft::draft_picture;
 pub use facts::fact_words;
 pub use figure::{FigureError, figure};

@@ -515,6 +515,10 @@ pub(crate) enum DevVerb {
         /// Runs to take the median of.
         #[arg(long, default_value_t = 9)]
         runs: u32,
+
+        /// Make a library of at least so many scenarios of all shipped requests instead: CPU, memory, growth.
+        #[arg(long, value_name = "SCENARIOS", conflicts_with = "runs")]
+        library: Option<u32>,
     },
 }
 

@@ -1,16 +1,18 @@
 //! The page of a folder of bundles, filled from what lies in it.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 
-use socrates_draw::{BatchEntry, BatchPage};
-use socrates_model::{Report, ScenarioId};
+use socrates_checks::Likeness;
+use socrates_draw::{BatchEntry, BatchPage, BatchRow};
+use socrates_model::{Location, Report, ScenarioId, Verdict};
 use socrates_scoring::Pool;
 
-use crate::bundle;
+use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
 use crate::figures;
-use crate::index::{Index, Scenario};
+use crate::index::{self, Index, Scenario};
 use crate::library;
 use crate::progress::Progress;
 use crate::talk::Talk;
@@ -44,9 +46,62 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
     Ok(names.into_iter().collect())
 }
 
+/// What page, table and figures of a folder need of one bundle: all that is left of it once it is written or read.
+#[derive(Debug, Clone)]
+pub(crate) struct Card {
+    /// Verdict of its first run.
+    pub(crate) verdict: Verdict,
+    /// What other scenarios are compared with.
+    pub(crate) likeness: Likeness,
+    id: ScenarioId,
+    location: Arc<Location>,
+    row: BatchRow,
+    runs: index::Rows,
+}
+
+impl Card {
+    /// The card of a bundle in a folder of this name, with the reports of all its runs and the recording of the first.
+    pub(crate) fn of(
+        bundle: &Bundle,
+        location: Arc<Location>,
+        name: &str,
+        reports: &[Report],
+    ) -> Result<Self, Complaint> {
+        // Folders are unique where ids need not be.
+        let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
+        let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
+        let request = match bundle.manifest.request.as_str() {
+            "" => bundle.manifest.scenario.as_str(),
+            request => request,
+        };
+        let row = BatchRow::of(&BatchEntry {
+            folder: name,
+            scenario: &bundle.manifest.scenario,
+            request: &bundle.request,
+            reading_line: &socrates_offline::summary(&bundle.reading),
+            location: &location,
+            proposal: &bundle.proposal,
+            paths: &bundle.paths,
+            reports,
+            recording: bundle.runs.first().map(|(recording, _)| recording),
+        });
+        let runs = index::Rows::of(Scenario { request, location: &location.name, path: name }, reports);
+        Ok(Self { verdict: bundle.manifest.verdict, likeness: Likeness::of(&bundle.proposal), id, location, row, runs })
+    }
+
+    /// The card of a bundle that lies in a folder of this name.
+    pub(crate) fn read(root: &Path, name: &str) -> Result<Self, Complaint> {
+        let dir = root.join(name);
+        // One recording at a time: a library is larger than the memory of a laptop.
+        let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
+        let reports = bundle::reports(&dir, &bundle.manifest)?;
+        Self::of(&bundle, Arc::new(bundle.location.clone()), name, &reports)
+    }
+}
+
 /// Writes `report.html`, `index.csv` and `planners.csv` into a folder of bundles: those its library lists first, in their order,
-/// then the others.
-pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
+/// then the others. Bundles whose cards are not at hand are read.
+pub(crate) fn write(talk: &Talk, root: &Path, mut cards: BTreeMap<String, Card>) -> Result<Found, Complaint> {
     let listed = library::read(root);
     let mut names: Vec<String> = Vec::new();
     let mut failed: Vec<library::Row> = Vec::new();
@@ -66,13 +121,14 @@ pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
     let mut progress = Progress::new(*talk, "reading", names.len());
     for (done, name) in names.into_iter().enumerate() {
         progress.at(done, "");
-        match add(&mut page, &mut index, &mut repeats, root, &name) {
+        let card = cards.remove(&name).map_or_else(|| Card::read(root, &name), Ok);
+        match card.and_then(|card| add(&mut page, &mut index, &mut repeats, card, root, &name)) {
             // What repeats another scenario is no evidence of its own.
             Ok(Some(found)) => reports.push((name, found)),
             Ok(None) => {}
             Err(why) => {
                 page.add_failed(&name, &why.what, None);
-                index.add_failed(Scenario { request: "", location: "", repeats: false, path: &name }, &why.what);
+                index.add_failed(Scenario { request: "", location: "", path: &name }, &why.what, false);
                 left_out.push((name, why.what));
             }
         }
@@ -94,7 +150,7 @@ pub(crate) fn write(talk: &Talk, root: &Path) -> Result<Found, Complaint> {
         let why = if row.reason.is_empty() { "no bundle could be made" } else { &row.reason };
         let earlier = row.repeats.as_ref().map(ScenarioId::as_str);
         page.add_failed(row.scenario.as_str(), why, earlier);
-        index.add_failed(Scenario { request: &row.request, location: "", repeats: earlier.is_some(), path: "" }, why);
+        index.add_failed(Scenario { request: &row.request, location: "", path: "" }, why, earlier.is_some());
     }
     index.write(root)?;
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
@@ -108,36 +164,17 @@ fn add(
     page: &mut BatchPage,
     index: &mut Index,
     repeats: &mut library::Repeats,
+    card: Card,
     root: &Path,
     name: &str,
 ) -> Result<Option<Vec<Report>>, Complaint> {
-    let dir = root.join(name);
-    // One recording at a time: a library is larger than the memory of a laptop.
-    let bundle = bundle::read_some(&dir, |index, _| index == 0)?;
-    let reports = bundle::reports(&dir, &bundle.manifest)?;
-    // Folders are unique where ids need not be.
-    let id = ScenarioId::new(name).or_else(|_| ScenarioId::new(&bundle.manifest.scenario));
-    let id = id.map_err(|bad| Complaint::input(bad.to_string(), "rename the folder"))?;
-    let earlier = repeats.of(&id, &bundle.proposal);
-    let request = match bundle.manifest.request.as_str() {
-        "" => bundle.manifest.scenario.as_str(),
-        request => request,
-    };
-    let scenario = Scenario { request, location: &bundle.location.name, repeats: earlier.is_some(), path: name };
-    index.add(scenario, &reports);
-    page.add(&BatchEntry {
-        folder: name,
-        scenario: &bundle.manifest.scenario,
-        repeats: earlier.as_ref().map(ScenarioId::as_str),
-        request: &bundle.request,
-        reading_line: &socrates_offline::summary(&bundle.reading),
-        location: &bundle.location,
-        proposal: &bundle.proposal,
-        paths: &bundle.paths,
-        reports: &reports,
-        recording: bundle.runs.first().map(|(recording, _)| recording),
-    });
-    Ok(earlier.is_none().then_some(reports))
+    let earlier = repeats.of(&card.id, card.likeness);
+    index.add(card.runs, earlier.is_some());
+    page.add(card.row, &card.location, earlier.as_ref().map(ScenarioId::as_str));
+    if earlier.is_some() {
+        return Ok(None);
+    }
+    bundle::reports_in(&root.join(name)).map(Some)
 }
 
 /// What is said of a folder without bundles.

@@ -1,4 +1,7 @@
-//! `dev bench`: the main job as a user meets it, and what the bus adds to each of its stages.
+//! `dev bench`: the main job as a user meets it, what the bus adds to each of its stages, and what a library costs.
+
+mod library;
+mod machine;
 
 use std::path::Path;
 use std::time::Instant;
@@ -19,16 +22,27 @@ const SERIES: u64 = 14;
 /// The first of them warm the processes up and are not counted.
 const WARM_UP: usize = 2;
 
-/// Prints both; nothing is judged.
-pub(crate) async fn bench(talk: &Talk, cli: &Cli, config: &Config, runs: u32) -> Result<(), Complaint> {
+/// Prints the figures of one scenario, or those of a library where one is asked for; nothing is judged.
+pub(crate) async fn bench(
+    talk: &Talk,
+    cli: &Cli,
+    config: &Config,
+    runs: u32,
+    scenarios: Option<u32>,
+) -> Result<(), Complaint> {
     let folder = std::env::temp_dir().join(format!("socrates-bench-{}", std::process::id()));
-    let measured = measure(talk, cli, config, runs, &folder).await;
+    machine::told().iter().for_each(|line| talk.line(line));
+    let measured = match scenarios {
+        Some(scenarios) => library::bench(talk, &cli.flags, scenarios, &folder).await,
+        None => measure(talk, cli, config, runs, &folder).await,
+    };
     drop(std::fs::remove_dir_all(&folder));
     measured
 }
 
 async fn measure(talk: &Talk, cli: &Cli, config: &Config, runs: u32, folder: &Path) -> Result<(), Complaint> {
     std::fs::create_dir_all(folder).map_err(|why| ours(why.to_string()))?;
+    talk.line("request    warehouse/group.toml (4 humans, author offline), from process start to exit");
     let (times, result) = whole(runs, folder)?;
     let (median, least, most) = spread(&times);
     talk.line(&format!(

@@ -6,9 +6,10 @@
 //!          behaviors.json behaviors/*.xml recordings/<planner>-<seed>.mcap reports/<planner>-<seed>.json
 //! ```
 
+mod beside;
 mod read;
 
-pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports};
+pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports, reports_in};
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,6 +21,7 @@ use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Behaviors, Digest, Location, Paths, Proposal, Reading, Recording, Report, Request, Verdict};
 
+use self::beside::Beside;
 use crate::exit::Complaint;
 use crate::history::PastJob;
 use crate::prepare::Prepared;
@@ -102,15 +104,29 @@ pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
 /// Where artifacts are read from.
 pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
 
-/// Writes the bundle of a finished scenario.
-pub(crate) fn write(
-    dir: &Path,
-    prepared: &Prepared,
-    seed: u64,
-    status: &ScenarioStatus,
-    past: &[PastJob],
-    fetch: &Fetch<'_>,
-) -> Result<Bundle, Complaint> {
+/// A finished scenario: what its bundle is written from.
+pub(crate) struct Past<'a> {
+    /// How it stands.
+    pub(crate) status: &'a ScenarioStatus,
+    /// Every revision and attempt.
+    pub(crate) jobs: &'a [PastJob],
+    /// Where artifacts are read from.
+    pub(crate) fetch: &'a Fetch<'a>,
+    /// Work folder on the same file system: files are written there, then moved to where they belong.
+    pub(crate) work: &'a Path,
+}
+
+/// Writes the bundle of a finished scenario. The folder is there whole or, whatever happens on the way, not finished.
+pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let beside = Beside::new(past.work, past.status.id.as_str())?;
+    let bundle = written(&beside.0, dir, prepared, seed, past)?;
+    beside.appear(dir)?;
+    Ok(bundle)
+}
+
+/// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
+fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let Past { status, jobs: past, fetch, .. } = *past;
     let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
         // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
@@ -133,14 +149,15 @@ pub(crate) fn write(
     let proposal: Proposal = parse("proposal", &proposal_text)?;
     let paths: Paths = parse("paths", &paths_text)?;
     let behaviors: Behaviors = parse("behaviors", &behaviors_text)?;
-    let mut out = Writer { dir: dir.to_path_buf(), files: BTreeMap::new() };
+    let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
     let (runs, entries) = put_runs(&mut out, status, fetch)?;
     let Some((recording, report)) = runs.first() else { return Err(missing("report")) };
     let verdict = report.verdict;
     let title = format!("{} · {}", proposal.title, prepared.location.name);
     let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
     out.put("run.svg", svg.as_bytes())?;
-    out.put("run.png", &socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()))?)?;
+    // Painting takes as long as everything else of a bundle, so it goes on beside it.
+    let painted = std::thread::spawn(move || socrates_draw::png_from_svg(&svg, 1.5));
     out.put("story.txt", story(&title, &proposal, report).as_bytes())?;
     out.put("metrics.csv", metrics(runs.iter().map(|(_, report)| report)).as_bytes())?;
     let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
@@ -158,6 +175,8 @@ pub(crate) fn write(
     for (id, human) in &behaviors.humans {
         out.put(&format!("details/behaviors/{id}.xml"), human.tree.as_bytes())?;
     }
+    let painted = painted.join().map_err(|_broke| ours("the thread that painted `run.png` broke"))?;
+    out.put("run.png", &painted.map_err(|why| ours(&why.to_string()))?)?;
     let stages = stage_rows(past);
     let provenance = provenance(prepared, seed, status, past, fetch);
     out.put_outside("details/provenance.json", pretty(&provenance)?.as_bytes())?;
@@ -426,6 +445,5 @@ fn provenance(
                     "said": said(&job.artifacts) })
         })
         .collect();
-    let program = crate::files::program_hash();
-    json!({ "version": env!("CARGO_PKG_VERSION"), "program": program, "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
+    json!({ "version": env!("CARGO_PKG_VERSION"), "program": crate::files::BUILD_ID, "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
 }

@@ -44,7 +44,7 @@ pub(crate) fn cite(talk: &Talk, dir: &Path) -> Result<(), Complaint> {
     Ok(())
 }
 
-/// The hash of the program that made the bundle, as its provenance tells it.
+/// The build id of the program that made the bundle, as its provenance tells it.
 fn program(dir: &Path) -> Option<String> {
     let text = std::fs::read_to_string(dir.join("details/provenance.json")).ok()?;
     let provenance: serde_json::Value = serde_json::from_str(&text).ok()?;
@@ -53,8 +53,7 @@ fn program(dir: &Path) -> Option<String> {
 
 fn paragraph(bundle: &Bundle, asked: u32, program: Option<&str>) -> String {
     let (manifest, proposal) = (&bundle.manifest, &bundle.proposal);
-    let build = program
-        .map_or_else(String::new, |hash| format!(" (program BLAKE3 {})", hash.chars().take(12).collect::<String>()));
+    let build = program.map_or_else(String::new, |id| format!(" (build {})", id.chars().take(12).collect::<String>()));
     let mut out = format!(
         "The scenario \"{}\" was generated with SocRATES {VERSION}{build} from the social context \"{}\" and the robot task \"{}\"",
         proposal.title,

@@ -11,8 +11,9 @@ use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
 use crate::args::RunOptions;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
-use crate::prepare::{plural, prepare, request_files, scenario_id};
-use crate::session::{Wanted, spec, submit as send};
+use crate::many::wanted;
+use crate::prepare::{plural, prepare, request_files};
+use crate::session::{specs, submit as send};
 use crate::talk::Talk;
 
 /// Submits requests and returns; `socrates status ENDPOINT` shows how they stand.
@@ -35,13 +36,7 @@ pub(crate) async fn submit(
     let folder = std::env::temp_dir().join(format!("socrates-submit-{}", std::process::id()));
     let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
     let blobs = LocalBlobs::new(&folder, false);
-    let mut specs = Vec::new();
-    for one in &prepared {
-        for index in 0..one.request.run.variants {
-            let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
-            specs.push(spec(&Wanted { id, seed: seed + u64::from(index), prepared: one }, config, &options, &blobs)?);
-        }
-    }
+    let specs = specs(&wanted(&prepared, seed)?, config, &options, &blobs)?;
     let mut digests: Vec<_> = specs
         .iter()
         .flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied()))

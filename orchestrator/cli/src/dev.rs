@@ -33,7 +33,7 @@ pub(crate) async fn dev(talk: &Talk, cli: &Cli, config: &Config, verb: &DevVerb)
         DevVerb::Agreement { labels, bundles } => agreement::agreement(talk, labels, bundles),
         DevVerb::Golden { agents } => crate::golden::golden(talk, config, agents).await,
         DevVerb::Fuzz(options) => crate::fuzz::fuzz(talk, config, options),
-        DevVerb::Bench { runs } => bench::bench(talk, cli, config, *runs).await,
+        DevVerb::Bench { runs, library } => bench::bench(talk, cli, config, *runs, *library).await,
     }
 }
 

@@ -59,16 +59,8 @@ pub(crate) fn cells(line: &str) -> Vec<String> {
     socrates_stream::csv::cells(line, ',')
 }
 
-/// The hash of the running program, which tells two builds of one version apart; `None` where it cannot be read.
-pub(crate) fn program_hash() -> Option<String> {
-    static HASH: std::sync::OnceLock<Option<String>> = std::sync::OnceLock::new();
-    let read = || {
-        // Block by block: the program is larger than everything else that this process holds.
-        let program = std::fs::File::open(std::env::current_exe().ok()?).ok()?;
-        Some(socrates_model::Digest::of_reader(program).ok()?.to_string())
-    };
-    HASH.get_or_init(read).clone()
-}
+/// The id of this build, which tells two builds of one version apart: a digest of sources, toolchain and settings.
+pub(crate) const BUILD_ID: &str = env!("SOCRATES_BUILD_ID");
 
 #[cfg(test)]
 mod tests {

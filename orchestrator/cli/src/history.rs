@@ -1,12 +1,10 @@
-//! What was tried: every revision and attempt, out of the job store of a finished making.
+//! What was tried: every revision and attempt, out of a job store.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use socrates_model::job::{Artifact, JobKey, Stage};
 use socrates_model::{Digest, Fault, ScenarioId};
-use socrates_orchestrator::{Attempt, ScenarioEnd};
-use socrates_store::{SqliteStore, StoreError};
+use socrates_orchestrator::{Attempt, ScenarioEnd, Snapshot};
 
 /// One revision of one job.
 #[derive(Debug, Clone)]
@@ -42,42 +40,41 @@ pub(crate) struct History {
 }
 
 impl History {
+    /// What the rows of a store tell.
+    pub(crate) fn of_rows(rows: Snapshot) -> Self {
+        let mut attempts: BTreeMap<JobKey, Vec<Attempt>> = BTreeMap::new();
+        for (key, attempt) in rows.attempts {
+            attempts.entry(key).or_default().push(attempt);
+        }
+        let mut results: BTreeMap<JobKey, _> = rows.results.into_iter().collect();
+        let ends = rows.scenarios.into_iter().map(|scenario| (scenario.spec.id, scenario.end)).collect();
+        let mut history = Self { ends, ..Self::default() };
+        for job in rows.jobs {
+            let result = results.remove(&job.key);
+            let past = PastJob {
+                state: job.state.name().to_owned(),
+                seed: job.spec.seed,
+                inputs: job.spec.inputs,
+                sent_back: job.sent_back,
+                attempts: attempts.remove(&job.key).unwrap_or_default(),
+                verdict: result.as_ref().and_then(|result| result.verdict),
+                blames: result.as_ref().and_then(|result| Some(result.repair.as_ref()?.stage)),
+                remark: result.as_ref().map_or(job.reason, |result| result.remark.clone()),
+                artifacts: result.map(|result| result.artifacts).unwrap_or_default(),
+                key: job.key,
+            };
+            history.jobs.entry(past.key.scenario.clone()).or_default().push(past);
+        }
+        for jobs in history.jobs.values_mut() {
+            jobs.sort_by(|a, b| {
+                (a.key.stage, &a.key.item, a.key.revision).cmp(&(b.key.stage, &b.key.item, b.key.revision))
+            });
+        }
+        history
+    }
+
     /// What was tried for a scenario, in pipeline order.
     pub(crate) fn of(&self, scenario: &ScenarioId) -> &[PastJob] {
         self.jobs.get(scenario).map_or(&[], Vec::as_slice)
     }
-}
-
-/// Reads the store, and leaves it as it is: an orchestrator may be at work on it.
-pub(crate) fn read(path: &Path) -> Result<History, StoreError> {
-    let peek = SqliteStore::peek(path)?;
-    let mut attempts: BTreeMap<JobKey, Vec<Attempt>> = BTreeMap::new();
-    for (key, attempt) in peek.attempts {
-        attempts.entry(key).or_default().push(attempt);
-    }
-    let mut results: BTreeMap<JobKey, _> = peek.results.into_iter().collect();
-    let ends = peek.scenarios.into_iter().map(|scenario| (scenario.spec.id, scenario.end)).collect();
-    let mut history = History { ends, ..History::default() };
-    for job in peek.jobs {
-        let result = results.remove(&job.key);
-        let past = PastJob {
-            state: job.state.name().to_owned(),
-            seed: job.spec.seed,
-            inputs: job.spec.inputs,
-            sent_back: job.sent_back,
-            attempts: attempts.remove(&job.key).unwrap_or_default(),
-            verdict: result.as_ref().and_then(|result| result.verdict),
-            blames: result.as_ref().and_then(|result| Some(result.repair.as_ref()?.stage)),
-            remark: result.as_ref().map_or(job.reason, |result| result.remark.clone()),
-            artifacts: result.map(|result| result.artifacts).unwrap_or_default(),
-            key: job.key,
-        };
-        history.jobs.entry(past.key.scenario.clone()).or_default().push(past);
-    }
-    for jobs in history.jobs.values_mut() {
-        jobs.sort_by(|a, b| {
-            (a.key.stage, &a.key.item, a.key.revision).cmp(&(b.key.stage, &b.key.item, b.key.revision))
-        });
-    }
-    Ok(history)
 }

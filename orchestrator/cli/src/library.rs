@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use socrates_checks::{Likeness, Signature, check_repeats};
-use socrates_model::{Digest, Proposal, Reading, ScenarioId};
+use socrates_model::{Digest, Reading, ScenarioId};
 
 use crate::args::RunOptions;
 use crate::exit::{Code, Complaint};
@@ -77,8 +77,7 @@ pub(crate) struct Repeats {
 
 impl Repeats {
     /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
-    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: &Proposal) -> Option<ScenarioId> {
-        let proposal = Likeness::of(proposal);
+    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: Likeness) -> Option<ScenarioId> {
         let alike = self.made.entry(proposal.signature.clone()).or_default();
         let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
         if let Some((other, _)) = earlier {

@@ -16,7 +16,10 @@ mod authors;
 mod batch;
 mod bench;
 mod bt;
+#[cfg(test)]
+mod build_id;
 mod bundle;
+mod bundler;
 #[cfg(test)]
 mod case_studies;
 mod chat;

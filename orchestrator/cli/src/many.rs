@@ -1,18 +1,21 @@
-//! Several scenarios in one folder: made in one go, then written, listed and counted together.
+//! Several scenarios in one folder: made in one go, each written when it is done, and listed and counted together.
 
-use std::collections::BTreeSet;
+use std::borrow::Borrow;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use socrates_model::wire::ScenarioStatus;
+use socrates_model::ScenarioId;
 
 use crate::args::{Cli, RunOptions};
+use crate::batch::Card;
+use crate::bundler::{Bundled, Bundler};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::place::{self, Place};
 use crate::prepare::{Prepared, scenario_id};
-use crate::progress::Progress;
-use crate::run::{Refused, conclude, print_reading};
-use crate::session::{Made, Wanted, make};
+use crate::run::{Refused, print_reading};
+use crate::session::{Wanted, make_into};
 use crate::talk::Talk;
 use crate::{bundle, library};
 
@@ -45,12 +48,15 @@ pub(crate) async fn batch(
         talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
         print_reading(talk, one);
     }
+    let prepared: Vec<Arc<Prepared>> = prepared.into_iter().map(Arc::new).collect();
     let wanted = wanted(&prepared, options.seed)?;
-    let made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
-    let rows = rows(talk, &root, &wanted, &made);
+    let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
+    // Until the last bundle is written, nobody else makes them.
+    let _hold = make_into(talk, &cli.flags, config, options, &work, &wanted, &mut bundler).await?;
+    let (rows, cards) = rows(talk, &root, &wanted, bundler.finish(talk)?);
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
-    if let Err(why) = crate::batch::write(talk, &root)?.figures {
+    if let Err(why) = crate::batch::write(talk, &root, cards)?.figures {
         talk.warn(&why.what);
     }
     // The work folder is only needed to resume.
@@ -76,9 +82,10 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 }
 
 /// Every scenario of these requests, with its id and seed.
-fn wanted(prepared: &[Prepared], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
+pub(crate) fn wanted<P: Borrow<Prepared>>(prepared: &[P], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
     let mut wanted = Vec::new();
     for one in prepared {
+        let one: &Prepared = one.borrow();
         for index in 0..one.request.run.variants {
             let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
             wanted.push(Wanted { id, seed: seed + u64::from(index), prepared: one });
@@ -87,17 +94,25 @@ fn wanted(prepared: &[Prepared], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint
     Ok(wanted)
 }
 
-/// Writes the bundles that are not there yet, and the list of all.
-fn rows(talk: &Talk, root: &Path, wanted: &[Wanted<'_>], made: &Made) -> Vec<library::Row> {
-    let mut rows = Vec::new();
+/// The list of all scenarios, in order of submission, and the cards of those that have a bundle.
+fn rows(
+    talk: &Talk,
+    root: &Path,
+    wanted: &[Wanted<'_>],
+    mut bundled: BTreeMap<ScenarioId, Bundled>,
+) -> (Vec<library::Row>, BTreeMap<String, Card>) {
+    let (mut rows, mut cards) = (Vec::new(), BTreeMap::new());
     let mut repeats = library::Repeats::default();
-    let mut progress = Progress::new(*talk, "writing", made.statuses.len());
-    for (index, status) in made.statuses.iter().enumerate() {
-        progress.at(index, "");
-        let Some(want) = wanted.iter().find(|want| want.id == status.id) else { continue };
+    for want in wanted {
+        let Some(bundled) = bundled.remove(&want.id) else { continue };
         let dir = root.join(want.id.as_str());
-        let (verdict, repeats, reason) = match written(&dir, want, status, made) {
-            Ok((verdict, proposal)) => (verdict.to_string(), repeats.of(&want.id, &proposal), String::new()),
+        let (verdict, repeats, reason) = match bundled {
+            Ok(card) => {
+                let earlier = repeats.of(&want.id, card.likeness.clone());
+                let verdict = card.verdict.to_string();
+                cards.insert(want.id.to_string(), card);
+                (verdict, earlier, String::new())
+            }
             Err(why) => {
                 let reason = why.short();
                 let earlier = repeats.of_failed(&want.id, &want.prepared.name, &reason);
@@ -112,22 +127,7 @@ fn rows(talk: &Talk, root: &Path, wanted: &[Wanted<'_>], made: &Made) -> Vec<lib
         let bundle = dir.display().to_string();
         rows.push(library::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
     }
-    rows
-}
-
-/// The bundle of one scenario, written unless it lies there: its verdict and its proposal.
-fn written(
-    dir: &Path,
-    want: &Wanted<'_>,
-    status: &ScenarioStatus,
-    made: &Made,
-) -> Result<(socrates_model::Verdict, socrates_model::Proposal), Complaint> {
-    let known = bundle::manifest(dir).filter(|manifest| manifest.wish == bundle::wish(want.prepared, want.seed));
-    let bundle = match known {
-        Some(_) => bundle::read_some(dir, |_, _| false)?,
-        None => conclude(dir, want.prepared, want.seed, status, made)?,
-    };
-    Ok((bundle.manifest.verdict, bundle.proposal))
+    (rows, cards)
 }
 
 #[cfg(test)]

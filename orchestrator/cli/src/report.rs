@@ -1,5 +1,6 @@
 //! `report`: the pages of a bundle, or of a folder of bundles, written anew from what lies in them.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::json;
@@ -34,7 +35,7 @@ pub(crate) fn page(bundle: &Bundle, stages: &[StageRow], author: &str) -> String
 /// Writes the page of a bundle, or the page of a folder of bundles.
 pub(crate) fn report(talk: &Talk, what: &Path) -> Result<(), Complaint> {
     if !bundle::is_bundle(what) {
-        let found = batch::write(talk, what)?;
+        let found = batch::write(talk, what, BTreeMap::new())?;
         let page = what.join("report.html");
         let repeats = found.rows - found.distinct;
         let of_them = if repeats > 0 {

@@ -1,20 +1,22 @@
 //! `run` and `demo`: the main job.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::json;
 use socrates_model::Verdict;
-use socrates_model::wire::ScenarioStatus;
+use socrates_store::Reader;
 
 use crate::again::values;
 use crate::args::{Cli, RunOptions};
-use crate::bundle::{self, Bundle};
+use crate::bundle::{self, Bundle, Past};
+use crate::bundler::bundled;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::PastJob;
 use crate::place::{self, Place};
 use crate::prepare::{Prepared, prepare, prepare_text, request_files, scenario_id};
-use crate::session::{Made, Wanted, make};
+use crate::session::{self, Wanted, make_one};
 use crate::talk::Talk;
 use crate::{many, next, stages};
 
@@ -154,12 +156,24 @@ async fn single(
     crate::authors::check(config, [prepared.author.as_str()]).await?;
     let work = place::claim(&dir, wish)?;
     let id = place::named_like(&dir, scenario_id(&prepared.name, options.seed, 0, 1)?);
-    let wanted = vec![Wanted { id, seed: options.seed, prepared: &prepared }];
-    let mut made = make(talk, &cli.flags, config, options, &work, &wanted, wanted.len()).await?;
+    let prepared = Arc::new(prepared);
+    let writing = {
+        let (dir, work, id, prepared, seed) =
+            (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
+        move || -> Result<Bundle, Complaint> {
+            let reader = Reader::open(&session::store(&work)).map_err(session::unread)?;
+            bundled(&dir, &work, &id, &prepared, seed, &reader)
+        }
+    };
+    let want = Wanted { id, seed: options.seed, prepared: &prepared };
+    let then = async { tokio::task::spawn_blocking(writing).await };
+    let (mut made, outcome) = make_one(talk, &cli.flags, config, options, &work, want, then).await?;
     let status = made.statuses.pop().ok_or_else(|| {
         Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
     })?;
-    let outcome = conclude(&dir, &prepared, options.seed, &status, &made);
+    let outcome = outcome.unwrap_or_else(|broke| {
+        Err(Complaint::input(format!("the bundle could not be written: {broke}"), "").with_code(Code::Ours))
+    });
     let past = made.history.of(&status.id);
     talk.line(&stages::line(past, &status.result));
     let result = match outcome {
@@ -182,17 +196,12 @@ async fn single(
 }
 
 /// Writes the bundle, or says why there is none.
-pub(crate) fn conclude(
-    dir: &Path,
-    prepared: &Prepared,
-    seed: u64,
-    status: &ScenarioStatus,
-    made: &Made,
-) -> Result<Bundle, Complaint> {
+pub(crate) fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let status = past.status;
     let scored =
         status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
     if scored {
-        return bundle::write(dir, prepared, seed, status, made.history.of(&status.id), &|digest| made.fetch(digest));
+        return bundle::write(dir, prepared, seed, past);
     }
     let faults: Vec<socrates_model::Fault> =
         status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();

@@ -1,20 +1,23 @@
-//! One making: store the inputs, start the system, submit, follow, collect.
+//! One making: store the inputs, start the system, submit, follow, hand on what is done.
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use socrates_kit::LocalBlobs;
 use socrates_link::{Bus, LinkError, Overflow, call, keys};
 use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
 use socrates_model::{Digest, ScenarioId};
+use socrates_store::{Reader, StoreError};
 use tokio::time::Instant;
 
 use crate::args::{Flags, RunOptions};
 use crate::ask::Asking;
+use crate::bundler::Bundler;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
-use crate::history::{self, History};
+use crate::history::History;
 use crate::prepare::Prepared;
 use crate::progress::Progress;
 use crate::stages;
@@ -47,8 +50,28 @@ pub(crate) struct Made {
 impl Made {
     /// An artifact from the work folder.
     pub(crate) fn fetch(&self, digest: &Digest) -> Result<Vec<u8>, Complaint> {
-        self.blobs.get(digest).map_err(|why| ours(&format!("artifact {} cannot be read: {why}", digest.short())))
+        fetch(&self.blobs, digest)
     }
+}
+
+/// Where the artifacts of a work folder lie.
+pub(crate) fn blobs(work: &Path) -> LocalBlobs {
+    LocalBlobs::new(work.join("blobs"), false)
+}
+
+/// The job store of a work folder.
+pub(crate) fn store(work: &Path) -> PathBuf {
+    work.join("jobs.sqlite")
+}
+
+/// An artifact of a work folder.
+pub(crate) fn fetch(blobs: &LocalBlobs, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+    blobs.get(digest).map_err(|why| ours(&format!("artifact {} cannot be read: {why}", digest.short())))
+}
+
+/// What is said of a store that cannot be read.
+pub(crate) fn unread(why: StoreError) -> Complaint {
+    ours(&format!("the job store cannot be read: {why}"))
 }
 
 fn ours(what: &str) -> Complaint {
@@ -75,44 +98,100 @@ pub(crate) async fn make(
     at_once: usize,
 ) -> Result<Made, Complaint> {
     let hold = Hold::take(work)?;
-    let blobs = LocalBlobs::new(work.join("blobs"), false);
-    let specs = wanted.iter().map(|want| spec(want, config, options, &blobs)).collect::<Result<Vec<_>, _>>()?;
-    let workers = options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
-    let mut supervisor = Supervisor::start(work, config, workers, &passed_on(flags)).await?;
-    let mut asking = match wanted.first().filter(|want| want.prepared.looked_at) {
-        Some(want) => Some(Asking::start(talk, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?),
-        None => None,
-    };
-    let followed = follow_all(talk, &mut supervisor, &hold, &specs, at_once, asking.as_mut()).await;
-    talk.clear();
-    if let Some(asking) = asking {
-        asking.end().await;
-    }
-    supervisor.stop().await;
-    let statuses = followed?;
-    // The store is free once its orchestrator has left; a history that cannot be read fails no scenario.
-    let history = history::read(&work.join("jobs.sqlite")).unwrap_or_else(|why| {
-        talk.warn(&format!("the history of attempts cannot be read: {why}"));
-        Default::default()
-    });
-    Ok(Made { statuses, history, blobs, _hold: hold })
+    Making { talk, flags, config, options, work, wanted }.carry_out(&hold, at_once, None, async {}).await?;
+    made(work, wanted, hold)
 }
 
-/// Submits so many at once and waits for them, until all are done.
-async fn follow_all(
+/// Makes one scenario. What is to be done with it goes on while the processes leave.
+pub(crate) async fn make_one<T>(
     talk: &Talk,
-    supervisor: &mut Supervisor,
-    hold: &Hold,
-    specs: &[ScenarioSpec],
-    at_once: usize,
-    mut asking: Option<&mut Asking>,
-) -> Result<Vec<ScenarioStatus>, Complaint> {
-    let mut all = Vec::new();
-    for some in specs.chunks(at_once.max(1)) {
-        let before = u32::try_from(all.len()).unwrap_or(u32::MAX);
-        all.extend(follow(talk, supervisor, hold, some.to_vec(), before, asking.as_deref_mut()).await?);
+    flags: &Flags,
+    config: &Config,
+    options: &RunOptions,
+    work: &Path,
+    want: Wanted<'_>,
+    then: impl Future<Output = T>,
+) -> Result<(Made, T), Complaint> {
+    let hold = Hold::take(work)?;
+    let wanted = [want];
+    let done = Making { talk, flags, config, options, work, wanted: &wanted }.carry_out(&hold, 1, None, then).await?;
+    Ok((made(work, &wanted, hold)?, done))
+}
+
+/// What the store holds once its orchestrator has left.
+fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Complaint> {
+    let rows = Reader::open(&store(work)).and_then(|reader| reader.all()).map_err(unread)?;
+    let mut found: BTreeMap<ScenarioId, ScenarioStatus> =
+        socrates_orchestrator::standing(rows.clone()).into_iter().map(|status| (status.id.clone(), status)).collect();
+    let statuses = wanted.iter().filter_map(|want| found.remove(&want.id)).collect();
+    Ok(Made { statuses, history: History::of_rows(rows), blobs: blobs(work), _hold: hold })
+}
+
+/// Makes the scenarios, each of which goes to the bundler as soon as it is done. The hold is for as long as bundles are written.
+pub(crate) async fn make_into(
+    talk: &Talk,
+    flags: &Flags,
+    config: &Config,
+    options: &RunOptions,
+    work: &Path,
+    wanted: &[Wanted<'_>],
+    bundler: &mut Bundler,
+) -> Result<Hold, Complaint> {
+    let hold = Hold::take(work)?;
+    let making = Making { talk, flags, config, options, work, wanted };
+    making.carry_out(&hold, wanted.len(), Some(bundler), async {}).await?;
+    Ok(hold)
+}
+
+/// What is made, and how.
+struct Making<'a> {
+    talk: &'a Talk,
+    flags: &'a Flags,
+    config: &'a Config,
+    options: &'a RunOptions,
+    work: &'a Path,
+    wanted: &'a [Wanted<'a>],
+}
+
+impl Making<'_> {
+    /// Starts the system, submits so many at once and waits for them, until all are done; then ends the system, and does
+    /// what comes then meanwhile.
+    async fn carry_out<T>(
+        &self,
+        hold: &Hold,
+        at_once: usize,
+        mut bundler: Option<&mut Bundler>,
+        then: impl Future<Output = T>,
+    ) -> Result<T, Complaint> {
+        let Self { talk, config, options, work, wanted, .. } = self;
+        let blobs = blobs(work);
+        let specs = specs(wanted, config, options, &blobs)?;
+        let workers =
+            options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
+        let mut supervisor = Supervisor::start(work, config, workers, &passed_on(self.flags)).await?;
+        let mut asking = match wanted.first().filter(|want| want.prepared.looked_at) {
+            Some(want) => Some(Asking::start(talk, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?),
+            None => None,
+        };
+        let mut followed = Ok(());
+        for (index, some) in specs.chunks(at_once.max(1)).enumerate() {
+            let before = u32::try_from(index.saturating_mul(at_once)).unwrap_or(u32::MAX);
+            let some = some.to_vec();
+            followed = follow(talk, &mut supervisor, hold, some, before, asking.as_mut(), bundler.as_deref_mut()).await;
+            if followed.is_err() {
+                break;
+            }
+        }
+        talk.clear();
+        if let Some(asking) = asking {
+            asking.end().await;
+        }
+        if let Err(why) = followed {
+            supervisor.stop().await;
+            return Err(why);
+        }
+        Ok(tokio::join!(then, supervisor.stop()).0)
     }
-    Ok(all)
 }
 
 /// Global flags that the children need too.
@@ -127,8 +206,28 @@ fn passed_on(flags: &Flags) -> Vec<String> {
     args
 }
 
+/// Stores the inputs of scenarios and names them. Those that are made from one request differ by name and seed alone.
+pub(crate) fn specs(
+    wanted: &[Wanted<'_>],
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<Vec<ScenarioSpec>, Complaint> {
+    let mut specs: Vec<ScenarioSpec> = Vec::with_capacity(wanted.len());
+    for (index, want) in wanted.iter().enumerate() {
+        let before = index.checked_sub(1).and_then(|before| Some((wanted.get(before)?, specs.get(before)?)));
+        specs.push(match before {
+            Some((alike, spec)) if std::ptr::eq(alike.prepared, want.prepared) => {
+                ScenarioSpec { id: want.id.clone(), seed: want.seed, ..spec.clone() }
+            }
+            Some(_) | None => spec(want, config, options, blobs)?,
+        });
+    }
+    Ok(specs)
+}
+
 /// Stores the inputs of a scenario and names them.
-pub(crate) fn spec(
+fn spec(
     want: &Wanted<'_>,
     config: &Config,
     options: &RunOptions,
@@ -141,16 +240,14 @@ pub(crate) fn spec(
             .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
     };
     let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
-    let mut settings = std::collections::BTreeMap::from([
-        ("author".to_owned(), prepared.author.clone()),
-        ("pace".to_owned(), options.pace.clone()),
-    ]);
+    let mut settings =
+        BTreeMap::from([("author".to_owned(), prepared.author.clone()), ("pace".to_owned(), options.pace.clone())]);
     settings.extend(prepared.injected.clone());
     settings.extend(prepared.style.clone());
     if config.text("stream.live") != "off" {
         settings.insert("live".to_owned(), "on".to_owned());
     }
-    let mut pinned = std::collections::BTreeMap::new();
+    let mut pinned = BTreeMap::new();
     for (role, text) in &prepared.pins {
         pinned.insert(role.clone(), put(text.clone())?);
     }
@@ -202,7 +299,8 @@ async fn follow(
     specs: Vec<ScenarioSpec>,
     before: u32,
     mut asking: Option<&mut Asking>,
-) -> Result<Vec<ScenarioStatus>, Complaint> {
+    mut bundler: Option<&mut Bundler>,
+) -> Result<(), Complaint> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
     let mut notices =
@@ -255,8 +353,11 @@ async fn follow(
                 } else if let Some(line) = reply.scenarios.first() {
                     passing(talk, asking.as_deref(), &stages::line_of(line));
                 }
+                if let Some(bundler) = &mut bundler {
+                    bundler.look()?;
+                }
                 if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
-                    return all(bus.as_ref(), &ids).await;
+                    return Ok(());
                 }
             }
             Err(why) if last_heard.elapsed() > AWAY => {
@@ -268,7 +369,7 @@ async fn follow(
 }
 
 /// `20 realised, 3 contradicted, 1 failed`.
-fn counted(results: &std::collections::BTreeMap<String, u32>) -> String {
+fn counted(results: &BTreeMap<String, u32>) -> String {
     let mut rows: Vec<(&String, &u32)> = results.iter().collect();
     rows.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     rows.iter().map(|(result, count)| format!("{count} {result}")).collect::<Vec<_>>().join(", ")
@@ -297,28 +398,4 @@ fn stopped() -> Complaint {
 /// One page of statuses.
 pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
     call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
-}
-
-/// Every status, page by page, in the order of the ids.
-async fn all(bus: &dyn Bus, ids: &[ScenarioId]) -> Result<Vec<ScenarioStatus>, Complaint> {
-    let mut found: Vec<ScenarioStatus> = Vec::new();
-    let started = Instant::now();
-    loop {
-        let from = u32::try_from(found.len()).unwrap_or(u32::MAX);
-        match status(bus, from).await {
-            Ok(reply) if reply.scenarios.is_empty() => break,
-            Ok(reply) => found.extend(reply.scenarios),
-            Err(_) if started.elapsed() < AWAY => tokio::time::sleep(Duration::from_millis(50)).await,
-            Err(why) => return Err(ours(&why.to_string())),
-        }
-    }
-    // A scenario with many runs comes in several lines, so that each reply fits a message.
-    let mut whole: std::collections::BTreeMap<ScenarioId, ScenarioStatus> = std::collections::BTreeMap::new();
-    for mut line in found {
-        match whole.get_mut(&line.id) {
-            Some(status) => status.jobs.append(&mut line.jobs),
-            None => drop(whole.insert(line.id.clone(), line)),
-        }
-    }
-    Ok(ids.iter().filter_map(|id| whole.remove(id)).collect())
 }

@@ -11,14 +11,15 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 use socrates_model::wire::StatusReply;
-use socrates_store::SqliteStore;
+use socrates_store::Reader;
 
 use crate::exit::{Code, Complaint};
 use crate::files::shell;
+use crate::history::History;
 use crate::progress::{Speed, span};
 use crate::supervise::endpoint;
 use crate::talk::Talk;
-use crate::{batch, bundle, history, library, place, process, session, stages};
+use crate::{batch, bundle, library, place, process, session, stages};
 
 /// How long an orchestrator may take to answer before the folder counts as one where nobody works.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -286,13 +287,17 @@ fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
     let unread = |why: socrates_store::StoreError| {
         Complaint::input(format!("cannot read `{}`: {why}", store.display()), "the same command again resumes")
     };
-    let standings = SqliteStore::standings(&store).map_err(unread)?;
+    let reader = Reader::open(&store).map_err(unread)?;
+    let standings = reader.standings(0, u64::MAX).map_err(unread)?;
     if !told && standings.len() != 1 {
-        let row =
-            |one: socrates_store::Standing| Row { scenario: one.scenario, result: one.result, told: String::new() };
+        let row = |one: socrates_store::Standing| Row {
+            scenario: one.scenario.to_string(),
+            result: one.result,
+            told: String::new(),
+        };
         return Ok(standings.into_iter().map(row).collect());
     }
-    let history = history::read(&store).map_err(unread)?;
+    let history = History::of_rows(reader.all().map_err(unread)?);
     let row = |(id, end): &(socrates_model::ScenarioId, Option<socrates_orchestrator::ScenarioEnd>)| {
         let result = end.map(|end| end.name().to_owned());
         let past = history.of(id);

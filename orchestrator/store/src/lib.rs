@@ -11,7 +11,7 @@
 //! *Never here:* a decision about a job, the bus, a clock.
 
 mod memory;
-mod peek;
+mod reader;
 mod schema;
 mod sqlite;
 
@@ -24,7 +24,7 @@ use socrates_model::Digest;
 use socrates_orchestrator::{Row, Snapshot};
 
 pub use memory::MemoryStore;
-pub use peek::{Peek, Standing};
+pub use reader::{Reader, Standing};
 pub use sqlite::{Durability, SqliteStore};
 
 /// Layout number of the tables. A store with a larger one is refused.

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{Acquire, Acquired, Outcome, Report, ScenarioSpec, Submit};
 use socrates_model::{Digest, ScenarioId, Verdict};
-use socrates_orchestrator::{Answer, Effect, Event, JobState, Policy, Row, State, step};
+use socrates_orchestrator::{Answer, Effect, Event, JobState, Policy, Row, Snapshot, State, step};
 
-use crate::{MemoryStore, SCHEMA_VERSION, SqliteStore, Standing, Store, StoreError};
+use crate::{MemoryStore, Reader, SCHEMA_VERSION, SqliteStore, Standing, Store, StoreError};
 
 macro_rules! keeps_store_promises {
     ($name:ident, $make:expr) => {
@@ -176,23 +176,37 @@ fn a_store_belongs_to_one_process_at_a_time() {
 fn a_store_can_be_looked_at_while_it_is_held_and_nothing_changes() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("jobs.sqlite");
-    assert!(SqliteStore::standings(&path).is_err() && !path.exists(), "a look makes no store");
+    let standings = |path: &std::path::Path| Reader::open(path).and_then(|reader| reader.standings(0, u64::MAX));
+    assert!(standings(&path).is_err() && !path.exists(), "a look makes no store");
     drop(rusqlite::Connection::open(&path).unwrap().execute_batch("pragma journal_mode = wal;"));
-    assert!(SqliteStore::standings(&path).unwrap().is_empty(), "its tables are not made yet");
+    assert!(standings(&path).unwrap().is_empty(), "its tables are not made yet");
     let mut store = SqliteStore::open(&path).unwrap();
     let mut state = State::new(Policy::default());
     store.save(&submit(&mut state, "a")).unwrap();
     let epoch = store.load().unwrap().epoch;
-    let of = |standings: Vec<Standing>| standings.into_iter().map(|one| (one.scenario, one.result)).collect::<Vec<_>>();
-    assert_eq!(of(SqliteStore::standings(&path).unwrap()), [("a".to_owned(), None)]);
+    let of = |standings: Vec<Standing>| {
+        standings.into_iter().map(|one| (one.scenario.to_string(), one.result)).collect::<Vec<_>>()
+    };
+    assert_eq!(of(standings(&path).unwrap()), [("a".to_owned(), None)]);
     while !state.is_done() {
         store.save(&work(&mut state)).unwrap();
     }
-    let peek = SqliteStore::peek(&path).unwrap();
+    let peek = Reader::open(&path).unwrap().all().unwrap();
     assert_eq!(peek.scenarios[0].end, state.scenarios.values().next().unwrap().end);
     assert_eq!((peek.results.len(), peek.attempts.len()), (11, 11));
     let ended = peek.scenarios[0].end.unwrap().name().to_owned();
-    assert_eq!(of(SqliteStore::standings(&path).unwrap()), [("a".to_owned(), Some(ended))]);
+    assert_eq!(of(standings(&path).unwrap()), [("a".to_owned(), Some(ended))]);
+    // A scenario whose name begins alike is another one.
+    store.save(&submit(&mut state, "a0")).unwrap();
+    let reader = Reader::open(&path).unwrap();
+    let own = reader.scenario(&ScenarioId::new("a").unwrap()).unwrap();
+    assert_eq!(
+        (own.scenarios, own.jobs, own.attempts, own.results),
+        (peek.scenarios, peek.jobs, peek.attempts, peek.results)
+    );
+    assert_eq!(reader.scenario(&ScenarioId::new("b").unwrap()).unwrap(), Snapshot::default());
+    let later = reader.standings(1, 5).unwrap();
+    assert_eq!(later.iter().map(|one| (one.place, one.scenario.as_str())).collect::<Vec<_>>(), [(1, "a0")]);
     assert_eq!(store.load().unwrap().epoch, epoch + 1, "a look begins no reign");
 }
 

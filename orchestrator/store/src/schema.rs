@@ -5,6 +5,7 @@ pub(crate) const TABLES: &str = "
 create table if not exists meta(name text primary key, value text not null) without rowid;
 create table if not exists scenario(
   id text primary key, batch text not null, place integer not null, result text, body text not null) without rowid;
+create index if not exists scenario_place on scenario(place);
 create table if not exists job(
   job text primary key, scenario text not null, stage text not null, item text not null, revision integer not null,
   state text not null, idem_key text, body text not null) without rowid;

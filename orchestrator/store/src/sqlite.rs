@@ -4,13 +4,13 @@ use std::fs::{File, TryLockError};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
-use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension as _, params};
+use rusqlite::{Connection, ErrorCode, OptionalExtension as _, params};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use socrates_model::Digest;
 use socrates_orchestrator::{Row, Snapshot};
 
-use crate::peek::{Peek, Standing};
+use crate::reader::bodies;
 use crate::{OUTBOX, SCHEMA_VERSION, Store, StoreError, check, schema};
 
 /// The job store of one orchestrator. Do not put it on a network file system: its locks and its log
@@ -44,35 +44,6 @@ impl Durability {
 }
 
 impl SqliteStore {
-    /// How every scenario of the store at `path` stands. Nothing is written, begun or locked, so that it can be read while
-    /// an orchestrator works, and after it was killed.
-    ///
-    /// # Errors
-    /// [`StoreError::Unwritable`] where there is no such file, [`StoreError::Sqlite`] when it is no store.
-    pub fn standings(path: &Path) -> Result<Vec<Standing>, StoreError> {
-        let Some(connection) = only_read(path)? else { return Ok(Vec::new()) };
-        let failed = |source| failure(path, source);
-        let mut statement = connection.prepare("select id, result from scenario order by place").map_err(failed)?;
-        let rows = statement
-            .query_map([], |row| Ok(Standing { scenario: row.get(0)?, result: row.get(1)? }))
-            .map_err(failed)?;
-        rows.collect::<Result<_, _>>().map_err(failed)
-    }
-
-    /// Everything that was tried, without the beginning of a new reign; as [`Self::standings`] it only reads.
-    ///
-    /// # Errors
-    /// As [`Self::standings`], and [`StoreError::Row`].
-    pub fn peek(path: &Path) -> Result<Peek, StoreError> {
-        let Some(connection) = only_read(path)? else { return Ok(Peek::default()) };
-        Ok(Peek {
-            scenarios: bodies(&connection, path, "scenario", "place")?,
-            jobs: bodies(&connection, path, "job", "job")?,
-            attempts: bodies(&connection, path, "attempt", "job, number")?,
-            results: bodies(&connection, path, "result", "job")?,
-        })
-    }
-
     /// Opens or makes the store at `path`, for this process alone; every commit outlives the machine.
     ///
     /// # Errors
@@ -151,7 +122,7 @@ impl SqliteStore {
     }
 
     fn bodies<T: DeserializeOwned>(&self, table: &'static str, order: &str) -> Result<Vec<T>, StoreError> {
-        bodies(&self.connection, &self.path, table, order)
+        bodies(&self.connection, &self.path, table, &format!("order by {order}"), &[])
     }
 
     fn read(&self) -> Result<Snapshot, StoreError> {
@@ -233,34 +204,6 @@ impl Store for SqliteStore {
     }
 }
 
-/// A connection that changes nothing; none while the tables are being made, when nothing stands in them.
-fn only_read(path: &Path) -> Result<Option<Connection>, StoreError> {
-    let failed = |source| failure(path, source);
-    let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).map_err(failed)?;
-    connection.execute_batch("pragma busy_timeout = 2000;").map_err(failed)?;
-    let sql = "select exists(select 1 from sqlite_schema where name = ?1)";
-    let made: bool = connection.query_row(sql, [schema::LAST], |row| row.get(0)).map_err(failed)?;
-    Ok(made.then_some(connection))
-}
-
-fn bodies<T: DeserializeOwned>(
-    connection: &Connection,
-    path: &Path,
-    table: &'static str,
-    order: &str,
-) -> Result<Vec<T>, StoreError> {
-    let failed = |source| failure(path, source);
-    let sql = format!("select body from {table} order by {order}");
-    let mut statement = connection.prepare(&sql).map_err(failed)?;
-    let mut rows = statement.query([]).map_err(failed)?;
-    let mut all = Vec::new();
-    while let Some(row) = rows.next().map_err(failed)? {
-        let body = row.get_ref(0).and_then(|body| Ok(body.as_str()?)).map_err(failed)?;
-        all.push(serde_json::from_str(body).map_err(|source| StoreError::Row { table, source })?);
-    }
-    Ok(all)
-}
-
 type Failed<'a> = dyn Fn(rusqlite::Error) -> StoreError + 'a;
 
 fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreError> {
@@ -330,7 +273,7 @@ fn body(table: &'static str, of: &impl Serialize) -> Result<String, StoreError> 
     serde_json::to_string(of).map_err(|source| StoreError::Row { table, source })
 }
 
-fn failure(path: &Path, source: rusqlite::Error) -> StoreError {
+pub(crate) fn failure(path: &Path, source: rusqlite::Error) -> StoreError {
     let path = path.to_owned();
     match source.sqlite_error_code() {
         Some(ErrorCode::DiskFull) => StoreError::Full { path },

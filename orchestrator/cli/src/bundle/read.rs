@@ -66,6 +66,11 @@ pub(crate) fn reports(dir: &Path, manifest: &Manifest) -> Result<Vec<Report>, Co
     manifest.runs.iter().map(|entry| report(dir, entry)).collect()
 }
 
+/// The same of the bundle in a folder.
+pub(crate) fn reports_in(dir: &Path) -> Result<Vec<Report>, Complaint> {
+    reports(dir, &finished(dir)?)
+}
+
 /// Files of a bundle that are not as they were written, in order of their names; the page may be written anew.
 pub(crate) fn changed(bundle: &Bundle) -> Vec<String> {
     let same = |name: &str, digest: &Digest| {
