@@ -14,8 +14,10 @@ const TILE: usize = 128;
 /// A beam that meets an edge nearer than this to a corner of a cell is left to the walk, cells. Rounding is below 1e-10
 /// on maps of up to 100 000 cells a side.
 const CORNER: f64 = 1e-7;
-/// A scanner nearer than this to a line between cells is left to the walk, cells.
+/// An edge whose border is nearer to the scanner than this is seen from its end; its beams are left to the walk, cells.
 const LINE: f64 = 1e-6;
+/// A scanner nearer than this to such an edge touches it: all its beams are left to the walk, cells.
+const TOUCH: f64 = 1e-3;
 /// More than the rounding of a distance, as a share.
 const ROUNDING: f64 = 1e-9;
 /// With more edges than this within reach the walk over cells is faster: about 25 ns an edge against 80 ns a beam.
@@ -141,8 +143,7 @@ impl Walls {
 
     /// Whether a scanner here is better served by edges than by walks over cells.
     pub(crate) fn serves(&self, eye: &Eye) -> bool {
-        let clear = |at: f64| (at - at.round()).abs() > LINE;
-        if !clear(eye.at.0) || !clear(eye.at.1) || !eye.reach.is_finite() {
+        if !(eye.at.0.is_finite() && eye.at.1.is_finite() && eye.reach.is_finite()) {
             return false;
         }
         let [(left, right), (top, bottom)] = self.tiles(eye);
@@ -169,8 +170,13 @@ impl Walls {
                     let (from, to) = (f64::from(edge.from), f64::from(edge.to));
                     let aside = (from - other).max(other - to).max(0.0);
                     let in_reach = away * away + aside * aside <= eye.reach * eye.reach * (1.0 + ROUNDING);
-                    if (away > 0.0) != facing || !in_reach {
+                    let in_line = away.abs() < LINE;
+                    if !in_reach || !in_line && (away > 0.0) != facing {
                         continue;
+                    }
+                    if in_line && aside < TOUCH {
+                        doubtful.fill(1.0);
+                        return;
                     }
                     let (ends, lanes) = if upright {
                         ([(away, from - other), (away, to - other)], (&steps.per_right, &steps.down))
@@ -179,7 +185,11 @@ impl Walls {
                     };
                     let line = Line { away, other, from, to };
                     for beams in seen(eye, ends) {
-                        cross(&line, lanes, beams, ranges, doubtful);
+                        if in_line {
+                            doubtful.get_mut(beams).into_iter().flatten().for_each(|doubt| *doubt = 1.0);
+                        } else {
+                            cross(&line, lanes, beams, ranges, doubtful);
+                        }
                     }
                 }
             }
