@@ -2,7 +2,7 @@
 //! shortest ways.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 use std::sync::OnceLock;
 
 use petgraph::graph::{NodeIndex, UnGraph};
@@ -65,17 +65,23 @@ fn short(number: usize) -> u32 {
 impl Index {
     pub(crate) fn of(nodes: &[GraphNode], edges: &[GraphEdge]) -> Self {
         let (by_id, strays, place_of) = names(nodes, edges);
+        // A map has a dozen type names.
+        let mut classes: BTreeMap<&str, PlaceClass> = BTreeMap::new();
+        for kind in nodes.iter().map(|node| &node.kind).chain(edges.iter().map(|edge| &edge.kind)) {
+            classes.entry(kind).or_insert_with(|| PlaceClass::of_type(kind));
+        }
+        let class_of = |kind: &str| classes.get(kind).copied().unwrap_or(PlaceClass::Plain);
         let mut index = Self {
             by_id,
             strays,
             place_of,
             places: Vec::new(),
-            kinds: nodes.iter().map(|node| PlaceClass::of_type(&node.kind)).collect(),
+            kinds: nodes.iter().map(|node| class_of(&node.kind)).collect(),
             lengths_m: Vec::with_capacity(edges.len()),
             net: UnGraph::default(),
             trees: Vec::new(),
         };
-        index.places = index.arms(nodes, edges);
+        index.places = index.arms(nodes, edges, &class_of);
         let both = |(number, edge): (usize, &GraphEdge)| {
             [(&edge.from, &edge.to), (&edge.to, &edge.from)]
                 .map(|(a, b)| index.points(nodes, edges, number, a, b).map_or(0.0, |points| length_m(&points)))
@@ -88,12 +94,12 @@ impl Index {
         index
     }
 
-    fn arms(&self, nodes: &[GraphNode], edges: &[GraphEdge]) -> Vec<Place> {
+    fn arms(&self, nodes: &[GraphNode], edges: &[GraphEdge], class_of: &dyn Fn(&str) -> PlaceClass) -> Vec<Place> {
         let mut places: Vec<Place> = Vec::new();
         places.resize_with(nodes.len() + self.strays.len(), Place::default);
         for (number, edge) in edges.iter().enumerate() {
             let (Some(from), Some(to)) = (self.place(nodes, &edge.from), self.place(nodes, &edge.to)) else { continue };
-            let class = bit(PlaceClass::of_type(&edge.kind));
+            let class = bit(class_of(&edge.kind));
             for (place, other, id) in [(from, to, &edge.to), (to, from, &edge.from)] {
                 let Some(place) = places.get_mut(place) else { continue };
                 place.bits |= class;
@@ -288,7 +294,7 @@ fn name<'a>(nodes: &'a [GraphNode], strays: &'a [NodeId], place: usize) -> Optio
 
 /// Places in order of their ids, the ids that only edges name, and the place of each node.
 fn names(nodes: &[GraphNode], edges: &[GraphEdge]) -> (Vec<u32>, Vec<NodeId>, Vec<u32>) {
-    let mut first = std::collections::BTreeMap::new();
+    let mut first = BTreeMap::new();
     let mut place_of = Vec::with_capacity(nodes.len());
     for (number, node) in nodes.iter().enumerate() {
         place_of.push(*first.entry(&node.id).or_insert(short(number)));
