@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point};
 
+use crate::ground::Ground;
 use crate::read::{EXTRA, GRAPH};
-use crate::sight::Sight;
 
 /// Longest opening that counts as a door, m.
 const DOOR_MAX_M: f64 = 8.0;
@@ -69,7 +69,7 @@ fn grid_problems(grid: &Grid, faults: &mut Vec<Fault>) {
 
 fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSet<&'a NodeId> {
     let mut on_wall = BTreeSet::new();
-    for node in &location.graph.nodes {
+    for node in location.graph.nodes() {
         let at = format!("{GRAPH} node `{}`", node.id);
         if !location.grid.is_free(&node.at) {
             let found = location.grid.cell_of(&node.at).map_or("outside the map", |(column, row)| {
@@ -95,8 +95,9 @@ fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSe
 }
 
 fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut Vec<Fault>) {
-    let sight = Sight::new(&location.grid);
-    for edge in &location.graph.edges {
+    let ground = Ground::of(&location.grid);
+    let sight = ground.sight();
+    for edge in location.graph.edges() {
         let at = format!("{GRAPH} edge `{}` – `{}`", edge.from, edge.to);
         if edge.kind.trim().is_empty() {
             faults.push(Fault::new(FaultCode::MType, &at, "the type is empty; say what kind of way it is"));
@@ -229,7 +230,7 @@ mod tests {
             name: "two".into(),
             description: "Two rooms.".into(),
             grid: grid(&["#########", "#...#...#", "#.......#", "#...#...#", "#########"]),
-            graph: SceneGraph { nodes: vec![node("a", 1.2, 1.25), node("b", 3.2, 1.25)], edges: vec![edge("a", "b")] },
+            graph: SceneGraph::new(vec![node("a", 1.2, 1.25), node("b", 3.2, 1.25)], vec![edge("a", "b")]),
             doors: vec![Door {
                 id: "d".into(),
                 kind: DoorKind::Room,
@@ -255,18 +256,20 @@ mod tests {
     #[test]
     fn nodes_in_walls_and_edges_through_walls_are_named() {
         let mut bad = location();
-        bad.graph.nodes[0].at = Point::new(0.2, 0.2);
+        bad.graph = bad.graph.edited(|nodes, _| nodes[0].at = Point::new(0.2, 0.2));
         assert_eq!(codes(&bad), ["M-WALL"]);
         let mut bad = location();
-        bad.graph.nodes[0].at = Point::new(1.2, 0.75);
-        bad.graph.nodes[1].at = Point::new(3.2, 0.75);
+        bad.graph = bad.graph.edited(|nodes, _| {
+            nodes[0].at = Point::new(1.2, 0.75);
+            nodes[1].at = Point::new(3.2, 0.75);
+        });
         assert_eq!(codes(&bad), ["G-FREE"]);
     }
 
     #[test]
     fn the_parts_of_a_broken_graph_are_listed() {
         let mut bad = location();
-        bad.graph.edges.clear();
+        bad.graph = bad.graph.edited(|_, edges| edges.clear());
         let faults = check(&bad);
         assert_eq!(faults[0].code, FaultCode::MParts);
         assert!(faults[0].message.contains("2 parts: a | b"), "{}", faults[0]);

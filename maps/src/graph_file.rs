@@ -44,7 +44,7 @@ pub(crate) fn read(bytes: &[u8], grid: Option<&Grid>, faults: &mut Vec<Fault>) -
         reading.fault(FaultCode::MId, GRAPH, "has no node; at least two and an edge between them are needed");
         return None;
     }
-    Some(SceneGraph { nodes, edges })
+    Some(SceneGraph::new(nodes, edges))
 }
 
 /// An element with the place to name in a fault.
@@ -228,9 +228,9 @@ mod tests {
             let (graph, faults) = read_over(&text);
             let graph = graph.unwrap();
             assert_eq!(faults, "");
-            assert_eq!((graph.nodes.len(), graph.edges.len()), (2, 1));
-            assert!((graph.nodes[0].at - Point::new(0.5, 1.0)).norm() < 1e-12);
-            assert_eq!(graph.edges[0].to.as_str(), "7");
+            assert_eq!((graph.nodes().len(), graph.edges().len()), (2, 1));
+            assert!((graph.nodes()[0].at - Point::new(0.5, 1.0)).norm() < 1e-12);
+            assert_eq!(graph.edges()[0].to.as_str(), "7");
         }
     }
 

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Modules in reading order: files in ([`parse`], [`load`]), what is checked ([`check`]), the grid's
-//! questions (field, geodesic, route, sight), places, and the shipped locations with their generator.
+//! questions (field, geodesic, route, sight; [`Ground`] keeps their answers), places, and the shipped locations with their generator.
 //!
 //! *Never here:* pictures with labels (they are drawn next door), moving agents, a clock, a random
 //! number, a rule about scenarios.
@@ -19,6 +19,7 @@ mod field;
 mod generate;
 mod geodesic;
 mod graph_file;
+mod ground;
 mod image;
 mod json_lines;
 mod layer;
@@ -36,6 +37,7 @@ pub use check::check;
 pub use field::{DistanceField, free_disc, nearest_free};
 pub use generate::generate;
 pub use geodesic::Geodesic;
+pub use ground::{Ground, Kept};
 pub use read::{load, load_map, parse};
 pub use route::shortest_path;
 pub use sight::{Sight, sight_clear};

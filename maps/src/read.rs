@@ -175,8 +175,8 @@ fn read_grid(files: &BTreeMap<String, Vec<u8>>, faults: &mut Vec<Fault>, warning
 fn route_edges(location: &mut Location, faults: &mut Vec<Fault>, warnings: &mut Vec<String>) {
     let mut field: Option<DistanceField> = None;
     let sight = crate::Sight::new(&location.grid);
-    let mut edges = std::mem::take(&mut location.graph.edges);
-    for edge in &mut edges {
+    let mut led = location.graph.edges().to_vec();
+    for edge in &mut led {
         let ends = location.graph.node(&edge.from).zip(location.graph.node(&edge.to));
         let Some((a, b)) = ends.map(|(a, b)| (a.at, b.at)) else { continue };
         // A node in a wall is its own fault; a way from there says nothing new.
@@ -211,7 +211,7 @@ fn route_edges(location: &mut Location, faults: &mut Vec<Fault>, warnings: &mut 
             )),
         }
     }
-    location.graph.edges = edges;
+    location.graph = location.graph.edited(|_, edges| *edges = led);
 }
 
 #[cfg(test)]
@@ -234,7 +234,7 @@ edges = [{ type = "DOORWAY", along = ["a", "b"] }]
     fn an_edge_through_a_wall_is_led_round_with_a_warning() {
         let location = parse(&crate::generate(PLAN).unwrap(), "two").unwrap();
         assert!(location.warnings[0].starts_with("M-ROUTE"), "{:?}", location.warnings);
-        let edge = &location.graph.edges[0];
+        let edge = &location.graph.edges()[0];
         assert!(!edge.via.is_empty() && edge.via.len() < 12, "{:?}", edge.via);
         let points = location.graph.edge_points(&edge.from, &edge.to).unwrap();
         let sight = Sight::new(&location.grid);

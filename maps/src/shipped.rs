@@ -6,6 +6,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use socrates_model::{Fault, FaultCode, Location};
 
@@ -55,8 +56,11 @@ fn entry(name: &str) -> Option<&'static Shipped> {
 /// The files of a shipped location's folder, by name; `None` where there is no such location.
 #[must_use]
 pub fn files(name: &str) -> Option<BTreeMap<String, Vec<u8>>> {
-    let shipped = entry(name)?;
-    Some(shipped.files.iter().map(|(file, bytes)| ((*file).to_owned(), bytes.to_vec())).collect())
+    entry(name).map(files_of)
+}
+
+fn files_of(shipped: &Shipped) -> BTreeMap<String, Vec<u8>> {
+    shipped.files.iter().map(|(file, bytes)| ((*file).to_owned(), bytes.to_vec())).collect()
 }
 
 /// A shipped location.
@@ -64,12 +68,19 @@ pub fn files(name: &str) -> Option<BTreeMap<String, Vec<u8>>> {
 /// # Errors
 /// A fault that lists the names, where there is no such location.
 pub fn load(name: &str) -> Result<Location, Vec<Fault>> {
-    let Some(files) = files(name) else {
+    let Some((place, shipped)) = CATALOG.iter().enumerate().find(|(_, shipped)| shipped.name == name) else {
         let message =
             format!("there is no shipped location `{name}`; shipped are {}, or name a folder", NAMES.join(", "));
         return Err(vec![Fault::new(FaultCode::MRead, name, message)]);
     };
-    parse(&files, name)
+    // Read once: a catalog of scenarios asks for the same three again and again.
+    static READ: [OnceLock<Location>; NAMES.len()] = [const { OnceLock::new() }; NAMES.len()];
+    let Some(kept) = READ.get(place) else { return parse(&files_of(shipped), name) };
+    if let Some(location) = kept.get() {
+        return Ok(location.clone());
+    }
+    let location = parse(&files_of(shipped), name)?;
+    Ok(kept.get_or_init(|| location).clone())
 }
 
 /// Sample requests of a shipped location: file stem and TOML text; empty where there is no such location.

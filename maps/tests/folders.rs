@@ -27,7 +27,7 @@ mod folders {
     fn a_foreign_location_is_read_with_its_extra_key_as_a_warning() {
         let Some(dir) = shared("socrates/locations/small_warehouse") else { return };
         let location = load(&dir).unwrap_or_else(|faults| panic!("{faults:#?}"));
-        assert_eq!((location.graph.nodes.len(), location.graph.edges.len()), (18, 19));
+        assert_eq!((location.graph.nodes().len(), location.graph.edges().len()), (18, 19));
         assert_eq!(location.name, "small_warehouse");
         assert_eq!(location.warnings.len(), 1, "{:?}", location.warnings);
         assert!(location.warnings[0].contains("`type`"), "{:?}", location.warnings);
@@ -36,7 +36,7 @@ mod folders {
         assert!((node.at.x - -3.7).abs() < 1e-9 && (node.at.y - 9.4).abs() < 1e-9, "{}", node.at);
         assert_eq!(PlaceClass::of_type(&node.kind), PlaceClass::BlindCorner);
         let field = DistanceField::new(&location.grid);
-        assert!(location.graph.nodes.iter().all(|node| field.clearance(&node.at) > 0.1));
+        assert!(location.graph.nodes().iter().all(|node| field.clearance(&node.at) > 0.1));
     }
 
     #[test]
@@ -121,7 +121,7 @@ mod folders {
         let plan = readme.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
         let files = generate(plan).unwrap_or_else(|faults| panic!("{faults:#?}"));
         let location = parse(&files, "fourth").unwrap();
-        assert_eq!((location.graph.nodes.len(), location.doors.len()), (8, 1));
+        assert_eq!((location.graph.nodes().len(), location.doors.len()), (8, 1));
         assert_eq!(location.warnings, Vec::<String>::new());
     }
 

@@ -52,12 +52,10 @@ fn with(stage: Stage, words: &str) -> Question {
     request.task = words.to_owned();
     request.rough_scenario = Some(words.to_owned());
     request.location_description = Some(words.to_owned());
-    for node in &mut asked.location.graph.nodes {
-        node.kind = format!("{} {words}", node.kind);
-    }
-    for edge in &mut asked.location.graph.edges {
-        edge.kind = words.to_owned();
-    }
+    asked.location.graph = asked.location.graph.edited(|nodes, edges| {
+        nodes.iter_mut().for_each(|node| node.kind = format!("{} {words}", node.kind));
+        edges.iter_mut().for_each(|edge| edge.kind = words.to_owned());
+    });
     if let Some(proposal) = &mut asked.proposal {
         proposal.title = words.to_owned();
         proposal.description = words.to_owned();

@@ -389,7 +389,7 @@ mod tests {
         assert_eq!(one[..3], two[..3]);
         assert!(two[3].text.contains("three people wait"));
         let mut elsewhere = question(Stage::Paths);
-        elsewhere.location.graph.nodes.reverse();
+        elsewhere.location.graph = elsewhere.location.graph.edited(|nodes, _| nodes.reverse());
         let (one, two) = (question(Stage::Paths).prompt(&Style::default()), elsewhere.prompt(&Style::default()));
         assert_eq!((&one.messages[1], &one.template), (&two.messages[1], &two.template));
         assert_ne!(one.messages[2], two.messages[2]);

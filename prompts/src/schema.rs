@@ -61,7 +61,7 @@ fn text() -> Value {
 /// The short form of a proposal. Humans are keyed by name where their number is known.
 fn proposal(question: &Question) -> Value {
     let graph = &question.location.graph;
-    let found: BTreeSet<PlaceClass> = graph.nodes.iter().flat_map(|node| graph.classes(&node.id)).collect();
+    let found: BTreeSet<PlaceClass> = graph.nodes().iter().flat_map(|node| graph.classes(&node.id)).copied().collect();
     let place = json!({"$ref": "#/$defs/place"});
     let count = question.reading.facts.iter().find_map(|fact| {
         if let FactKind::Humans(count) = fact.kind { Some(count).filter(|count| *count <= MOST_KEYED) } else { None }
@@ -137,7 +137,7 @@ fn define(schema: &mut Value, defs: &[(&str, Value)]) {
 
 fn paths(question: &Question, form: PathsForm) -> Value {
     let graph = &question.location.graph;
-    let mut ids: Vec<&str> = graph.nodes.iter().map(|node| node.id.as_str()).collect();
+    let mut ids: Vec<&str> = graph.nodes().iter().map(|node| node.id.as_str()).collect();
     ids.sort_unstable();
     let few = ids.len() <= MOST_IDS;
     let node = if few { json!({"type": "string", "enum": ids}) } else { text() };

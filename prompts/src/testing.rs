@@ -25,15 +25,15 @@ pub(crate) fn tee_map() -> Location {
             origin: Pose::new(-5.0, -5.0, 0.0),
             cells: vec![Cell::Free; 400],
         },
-        graph: SceneGraph {
-            nodes: vec![
+        graph: SceneGraph::new(
+            vec![
                 node("c", "INTERSECTION", 0., 0.),
                 node("w", "CORRIDOR", -4., 0.),
                 node("e", "CORRIDOR", 4., 0.),
                 node("n", "CORRIDOR", 0., 3.),
             ],
-            edges: vec![way("w"), way("e"), way("n")],
-        },
+            vec![way("w"), way("e"), way("n")],
+        ),
         doors: Vec::new(),
         warnings: Vec::new(),
     }

@@ -149,7 +149,7 @@ fn anchors(nodes: &[NodeId], named: &[&NodeId], graph: &SceneGraph) -> Map<Strin
 pub(crate) fn grammar(graph: &SceneGraph, humans: &[String], meetings: usize) -> String {
     const ROBOT_LEAST: usize = 4;
     const LONGEST: usize = 12;
-    let mut ids: Vec<&NodeId> = graph.nodes.iter().map(|node| &node.id).collect();
+    let mut ids: Vec<&NodeId> = graph.nodes().iter().map(|node| &node.id).collect();
     ids.sort();
     let number = |id: &NodeId| ids.iter().position(|other| *other == id);
     let mut text = String::from(
@@ -172,7 +172,7 @@ pub(crate) fn grammar(graph: &SceneGraph, humans: &[String], meetings: usize) ->
             for step in 1..=LONGEST {
                 let mut next: Vec<String> = Vec::new();
                 if step < LONGEST {
-                    let near = graph.neighbors(id).into_iter().filter_map(|other| number(&other));
+                    let near = graph.neighbors(id).iter().filter_map(number);
                     next.extend(near.map(|other| format!("\",\" {prefix}{other}-{}", step + 1)));
                 }
                 if step >= least {

@@ -119,11 +119,11 @@ fn a_run_in_which_robot_and_human_never_meet_is_not_realised() {
         serde_json::from_str(&std::fs::read_to_string(details.join("location.json")).unwrap()).unwrap();
     let visited: Vec<String> =
         paths["robot"].as_array().unwrap().iter().map(|node| node.as_str().unwrap().to_owned()).collect();
-    let robot: Vec<_> = location.graph.nodes.iter().filter(|node| visited.contains(&node.id.to_string())).collect();
+    let robot: Vec<_> = location.graph.nodes().iter().filter(|node| visited.contains(&node.id.to_string())).collect();
     let reach = |node: &&socrates_model::GraphNode| {
         robot.iter().map(|other| (node.at - other.at).norm()).fold(f64::INFINITY, f64::min)
     };
-    let far = location.graph.nodes.iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap();
+    let far = location.graph.nodes().iter().max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap();
     paths["humans"]["human_1"] = serde_json::json!([far.id]);
     std::fs::write(folder.path().join("paths.json"), paths.to_string()).unwrap();
     std::fs::copy(details.join("proposal.json"), folder.path().join("proposal.json")).unwrap();

@@ -181,11 +181,10 @@ fn ends(
         return Some(Fault::new(FaultCode::GMeetEnd, human.id, message));
     }
     if !stands && !indoors && is_end(own, human_step) {
-        let next: Vec<NodeId> = location.graph.neighbors(&encounter.node);
         let message = format!(
             "ends at the encounter `{}`; a human who walks needs at least one node after it, such as one of {}",
             encounter.node,
-            list(next)
+            list(location.graph.neighbors(&encounter.node))
         );
         return Some(Fault::new(FaultCode::GMeetEnd, human.id, message));
     }

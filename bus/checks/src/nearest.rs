@@ -6,7 +6,7 @@ use socrates_model::{NodeId, SceneGraph};
 pub(crate) fn nodes_like(graph: &SceneGraph, wrong: &NodeId, count: usize) -> Vec<NodeId> {
     let spelled = wrong.as_str().to_lowercase();
     let mut ranked: Vec<(usize, &NodeId)> = graph
-        .nodes
+        .nodes()
         .iter()
         .map(|node| (strsim::damerau_levenshtein(&spelled, &node.id.as_str().to_lowercase()), &node.id))
         .collect();

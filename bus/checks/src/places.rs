@@ -4,14 +4,20 @@ use socrates_model::{Location, NodeId, PlaceClass, SceneGraph};
 
 /// Every node of the class, in file order.
 pub(crate) fn nodes_of(graph: &SceneGraph, class: PlaceClass) -> Vec<NodeId> {
-    graph.nodes.iter().filter(|node| graph.node_is(&node.id, class)).map(|node| node.id.clone()).collect()
+    graph
+        .nodes()
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| graph.is_at(*at, class))
+        .map(|(_, node)| node.id.clone())
+        .collect()
 }
 
 /// The classes that the map has, in order, `plain` left out.
 pub(crate) fn classes_of(graph: &SceneGraph) -> Vec<PlaceClass> {
     PlaceClass::ALL
         .into_iter()
-        .filter(|class| *class != PlaceClass::Plain && graph.nodes.iter().any(|node| graph.node_is(&node.id, *class)))
+        .filter(|class| *class != PlaceClass::Plain && (0..graph.nodes().len()).any(|at| graph.is_at(at, *class)))
         .collect()
 }
 
@@ -38,8 +44,5 @@ pub(crate) fn family(wanted: PlaceClass) -> &'static [PlaceClass] {
 /// Whether the node is inside a room or car: behind a declared door, or by its own type.
 pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
     location.door_of(node).is_some()
-        || location
-            .graph
-            .node(node)
-            .is_some_and(|node| matches!(PlaceClass::of_type(&node.kind), PlaceClass::Elevator | PlaceClass::Room))
+        || matches!(location.graph.kind(node), Some(PlaceClass::Elevator | PlaceClass::Room))
 }

@@ -90,7 +90,7 @@ fn labels(proposal: &Proposal, location: &Location) -> Vec<Fault> {
         |id: &str| id.len() >= 2 && id.chars().any(|c| c.is_ascii_digit() || c == '_') && id.parse::<u32>().is_err();
     let named: Vec<&str> = location
         .graph
-        .nodes
+        .nodes()
         .iter()
         .map(|node| node.id.as_str())
         .filter(|id| telling(id) && says(&proposal.description, &id.to_lowercase()))

@@ -76,8 +76,7 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
             let robot_arms = arms(robot, meeting);
             let crosses = arms(nodes, meeting).iter().any(|arm| !robot_arms.contains(arm));
             (!crosses).then(|| {
-                let free: Vec<NodeId> =
-                    graph.neighbors(meeting).into_iter().filter(|node| !robot_arms.contains(&node)).collect();
+                let free = graph.neighbors(meeting).iter().filter(|node| !robot_arms.contains(node));
                 format!(
                     "uses at `{meeting}` only the robot's own edges; they should come from or go to one of {}",
                     list(free)
@@ -158,7 +157,7 @@ fn around<'a>(nodes: &'a [NodeId], node: &'a NodeId) -> Vec<&'a NodeId> {
 }
 
 fn inside_nodes(location: &Location) -> Vec<NodeId> {
-    location.graph.nodes.iter().map(|node| node.id.clone()).filter(|id| is_inside(location, id)).take(24).collect()
+    location.graph.nodes().iter().map(|node| node.id.clone()).filter(|id| is_inside(location, id)).take(24).collect()
 }
 
 #[cfg(test)]

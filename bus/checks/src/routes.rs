@@ -83,7 +83,7 @@ fn steps(agent: AgentId, nodes: &[NodeId], place: socrates_model::PlaceClass, gr
         if graph.node(node).is_none() {
             let of_place = nodes_of(graph, place);
             let candidates =
-                if of_place.is_empty() { graph.nodes.iter().map(|node| node.id.clone()).collect() } else { of_place };
+                if of_place.is_empty() { graph.nodes().iter().map(|node| node.id.clone()).collect() } else { of_place };
             let message = format!(
                 "names `{node}`, which the map does not have; nearest: {}; nodes of class `{place}`: {}",
                 list(nodes_like(graph, node, 3)),

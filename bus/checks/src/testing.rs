@@ -64,7 +64,7 @@ pub(crate) fn plus_map() -> Location {
             origin: Pose::new(-12.5, -12.5, 0.0),
             cells: vec![Cell::Free; 2500],
         },
-        graph: SceneGraph { nodes, edges },
+        graph: SceneGraph::new(nodes, edges),
         doors: Vec::new(),
         warnings: Vec::new(),
     }
@@ -73,12 +73,14 @@ pub(crate) fn plus_map() -> Location {
 /// The same map with a room of two nodes behind a door north of `n_1`.
 pub(crate) fn room_map() -> Location {
     let mut location = plus_map();
-    for (id, x) in [("room_a", 3.0), ("room_b", 1.5)] {
-        location.graph.nodes.push(GraphNode { id: node(id), kind: "ROOM".into(), at: Point::new(x, 3.0) });
-    }
-    for (a, b) in [("room_a", "room_b"), ("room_b", "n_1")] {
-        location.graph.edges.push(GraphEdge { from: node(a), to: node(b), kind: "DOOR".into(), via: Vec::new() });
-    }
+    location.graph = location.graph.edited(|nodes, edges| {
+        for (id, x) in [("room_a", 3.0), ("room_b", 1.5)] {
+            nodes.push(GraphNode { id: node(id), kind: "ROOM".into(), at: Point::new(x, 3.0) });
+        }
+        for (a, b) in [("room_a", "room_b"), ("room_b", "n_1")] {
+            edges.push(GraphEdge { from: node(a), to: node(b), kind: "DOOR".into(), via: Vec::new() });
+        }
+    });
     location.doors.push(Door {
         id: "room".into(),
         kind: DoorKind::Room,

@@ -1,12 +1,13 @@
 //! The scene graph: places a person can name, and the ways between them.
 
-use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Arc, OnceLock};
 
-use petgraph::graph::{NodeIndex, UnGraph};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Point;
+use crate::graph_index::{Index, length_m};
 use crate::ids::NodeId;
 use crate::place::PlaceClass;
 
@@ -40,45 +41,89 @@ pub struct GraphEdge {
 }
 
 /// Nodes and undirected edges over a map.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+///
+/// A graph never changes: [`SceneGraph::edited`] makes another one. What it is asked again and again (nodes by name,
+/// neighbors, classes, lengths, shortest ways) is therefore computed once, at the first question, and clones share it.
+#[derive(Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SceneGraph {
     /// Places in file order.
-    pub nodes: Vec<GraphNode>,
+    nodes: Vec<GraphNode>,
     /// Ways in file order.
-    pub edges: Vec<GraphEdge>,
+    edges: Vec<GraphEdge>,
+    #[serde(skip)]
+    index: Kept,
+}
+
+/// The index of a graph once it was asked something; says nothing that nodes and edges do not say.
+#[derive(Clone, Default)]
+struct Kept(Arc<OnceLock<Index>>);
+
+impl PartialEq for Kept {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl fmt::Debug for SceneGraph {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SceneGraph").field("nodes", &self.nodes).field("edges", &self.edges).finish()
+    }
 }
 
 impl SceneGraph {
+    /// The graph of these nodes and edges, in this order.
+    #[must_use]
+    pub fn new(nodes: Vec<GraphNode>, edges: Vec<GraphEdge>) -> Self {
+        Self { nodes, edges, index: Kept::default() }
+    }
+
+    /// Another graph: this one with changed nodes or edges.
+    #[must_use]
+    pub fn edited(&self, edit: impl FnOnce(&mut Vec<GraphNode>, &mut Vec<GraphEdge>)) -> Self {
+        let (mut nodes, mut edges) = (self.nodes.clone(), self.edges.clone());
+        edit(&mut nodes, &mut edges);
+        Self::new(nodes, edges)
+    }
+
+    /// Places in file order.
+    #[must_use]
+    pub fn nodes(&self) -> &[GraphNode] {
+        &self.nodes
+    }
+
+    /// Ways in file order.
+    #[must_use]
+    pub fn edges(&self) -> &[GraphEdge] {
+        &self.edges
+    }
+
+    fn index(&self) -> &Index {
+        self.index.0.get_or_init(|| Index::of(&self.nodes, &self.edges))
+    }
+
+    /// Place of a node in [`SceneGraph::nodes`].
+    #[must_use]
+    pub fn position(&self, id: &NodeId) -> Option<usize> {
+        self.index().node(&self.nodes, id)
+    }
+
     /// The node of this id.
     #[must_use]
     pub fn node(&self, id: &NodeId) -> Option<&GraphNode> {
-        self.nodes.iter().find(|node| node.id == *id)
+        self.nodes.get(self.position(id)?)
     }
 
     /// The edge between two nodes, in either direction.
     #[must_use]
     pub fn edge(&self, a: &NodeId, b: &NodeId) -> Option<&GraphEdge> {
-        self.edges.iter().find(|edge| edge.from == *a && edge.to == *b || edge.from == *b && edge.to == *a)
+        self.edges.get(self.index().edge(&self.nodes, a, b)?)
     }
 
     /// Neighbors of a node, in file order.
     #[must_use]
-    pub fn neighbors(&self, id: &NodeId) -> Vec<NodeId> {
-        let mut found = Vec::new();
-        for edge in &self.edges {
-            let other = if edge.from == *id {
-                &edge.to
-            } else if edge.to == *id {
-                &edge.from
-            } else {
-                continue;
-            };
-            if !found.contains(other) {
-                found.push(other.clone());
-            }
-        }
-        found
+    pub fn neighbors(&self, id: &NodeId) -> &[NodeId] {
+        self.index().neighbors(&self.nodes, id)
     }
 
     /// Number of ways at a node.
@@ -90,45 +135,44 @@ impl SceneGraph {
     /// Whether the node belongs to the class: by its type name, or as an intersection by its degree.
     #[must_use]
     pub fn node_is(&self, id: &NodeId, class: PlaceClass) -> bool {
-        self.classes(id).contains(&class)
+        self.position(id).is_some_and(|node| self.is_at(node, class))
+    }
+
+    /// The same by the node's place in [`SceneGraph::nodes`].
+    #[must_use]
+    pub fn is_at(&self, node: usize, class: PlaceClass) -> bool {
+        self.index().is(node, class)
     }
 
     /// Classes of a node: of its type name, of the ways at it, and intersection from degree 3 on.
     #[must_use]
-    pub fn classes(&self, id: &NodeId) -> Vec<PlaceClass> {
-        let Some(node) = self.node(id) else { return Vec::new() };
-        let mut classes = vec![PlaceClass::of_type(&node.kind)];
-        if self.degree(id) >= 3 {
-            classes.push(PlaceClass::Intersection);
-        }
-        for edge in self.edges.iter().filter(|edge| edge.from == *id || edge.to == *id) {
-            classes.push(PlaceClass::of_type(&edge.kind));
-        }
-        classes.sort();
-        classes.dedup();
-        classes
+    pub fn classes(&self, id: &NodeId) -> &[PlaceClass] {
+        self.position(id).map_or(&[], |node| self.index().classes(node))
+    }
+
+    /// Class of a node's own type name, by its place in [`SceneGraph::nodes`]; plain where there is no such node.
+    #[must_use]
+    pub fn kind_at(&self, node: usize) -> PlaceClass {
+        self.index().kind(node).unwrap_or(PlaceClass::Plain)
+    }
+
+    /// Class of a node's own type name.
+    #[must_use]
+    pub fn kind(&self, id: &NodeId) -> Option<PlaceClass> {
+        self.index().kind(self.position(id)?)
     }
 
     /// Length of an edge along its via points, m.
     #[must_use]
     pub fn edge_length_m(&self, a: &NodeId, b: &NodeId) -> Option<f64> {
-        let points = self.edge_points(a, b)?;
-        Some(points.windows(2).map(|pair| if let [p, q] = pair { (q - p).norm() } else { 0.0 }).sum())
+        self.index().edge_length_m(&self.nodes, &self.edges, a, b)
     }
 
     /// Points of an edge walked from `a` to `b`, ends included.
     #[must_use]
     pub fn edge_points(&self, a: &NodeId, b: &NodeId) -> Option<Vec<Point>> {
-        let edge = self.edge(a, b)?;
-        let (from, to) = (self.node(a)?.at, self.node(b)?.at);
-        let mut points = vec![from];
-        if edge.from == *a {
-            points.extend(edge.via.iter().copied());
-        } else {
-            points.extend(edge.via.iter().rev().copied());
-        }
-        points.push(to);
-        Some(points)
+        let edge = self.index().edge(&self.nodes, a, b)?;
+        self.index().points(&self.nodes, &self.edges, edge, a, b)
     }
 
     /// Points of a node sequence, via points included. Pairs without an edge are joined straight.
@@ -150,54 +194,26 @@ impl SceneGraph {
     /// Length of a node sequence, m.
     #[must_use]
     pub fn length_m(&self, nodes: &[NodeId]) -> f64 {
-        self.polyline(nodes).windows(2).map(|pair| if let [p, q] = pair { (q - p).norm() } else { 0.0 }).sum()
+        length_m(&self.polyline(nodes))
     }
 
     /// Shortest node sequence between two nodes by length, both ends included.
     #[must_use]
     pub fn shortest(&self, from: &NodeId, to: &NodeId) -> Option<Vec<NodeId>> {
-        let (graph, index) = self.petgraph();
-        let (start, end) = (*index.get(from)?, *index.get(to)?);
-        let (_, way) = petgraph::algo::astar(&graph, start, |n| n == end, |edge| *edge.weight(), |_| 0.0)?;
-        Some(way.into_iter().filter_map(|n| graph.node_weight(n).cloned()).collect())
+        let way = self.index().shortest(self.position(from)?, self.position(to)?)?;
+        Some(way.into_iter().filter_map(|node| self.nodes.get(node)).map(|node| node.id.clone()).collect())
     }
 
     /// Connected parts, each a sorted list of node ids; one part in a good map.
     #[must_use]
     pub fn parts(&self) -> Vec<Vec<NodeId>> {
-        let (graph, index) = self.petgraph();
-        let mut parts: Vec<Vec<NodeId>> = Vec::new();
-        for node in &self.nodes {
-            if parts.iter().any(|part| part.contains(&node.id)) {
-                continue;
-            }
-            let Some(start) = index.get(&node.id) else { continue };
-            let mut walk = petgraph::visit::Dfs::new(&graph, *start);
-            let mut part = Vec::new();
-            while let Some(next) = walk.next(&graph) {
-                part.extend(graph.node_weight(next).cloned());
-            }
-            part.sort();
-            parts.push(part);
-        }
-        parts
-    }
-
-    /// The graph in petgraph's own form: weights are ids and lengths in m.
-    #[must_use]
-    pub fn petgraph(&self) -> (UnGraph<NodeId, f64>, BTreeMap<NodeId, NodeIndex>) {
-        let mut graph = UnGraph::default();
-        let mut index = BTreeMap::new();
-        for node in &self.nodes {
-            index.entry(node.id.clone()).or_insert_with(|| graph.add_node(node.id.clone()));
-        }
-        for edge in &self.edges {
-            if let (Some(a), Some(b)) = (index.get(&edge.from), index.get(&edge.to)) {
-                let length = self.edge_length_m(&edge.from, &edge.to).unwrap_or(0.0);
-                graph.add_edge(*a, *b, length);
-            }
-        }
-        (graph, index)
+        let named = |part: Vec<usize>| {
+            let mut ids: Vec<NodeId> =
+                part.into_iter().filter_map(|node| self.nodes.get(node)).map(|node| node.id.clone()).collect();
+            ids.sort();
+            ids
+        };
+        self.index().parts().into_iter().map(named).collect()
     }
 }
 
@@ -213,10 +229,10 @@ mod tests {
         let node =
             |name: &str, x: f64, y: f64| GraphNode { id: id(name), kind: "SIMPLE NODE".into(), at: Point::new(x, y) };
         let edge = |a: &str, b: &str| GraphEdge { from: id(a), to: id(b), kind: "PASSAGEWAY".into(), via: vec![] };
-        SceneGraph {
-            nodes: vec![node("c", 0., 0.), node("e", 3., 0.), node("n", 0., 4.), node("w", -2., 0.), node("x", 9., 9.)],
-            edges: vec![edge("c", "e"), edge("n", "c"), edge("w", "c")],
-        }
+        SceneGraph::new(
+            vec![node("c", 0., 0.), node("e", 3., 0.), node("n", 0., 4.), node("w", -2., 0.), node("x", 9., 9.)],
+            vec![edge("c", "e"), edge("n", "c"), edge("w", "c")],
+        )
     }
 
     #[test]
@@ -231,5 +247,36 @@ mod tests {
         assert_eq!(way, [id("e"), id("c"), id("n")]);
         assert!((star().length_m(&way) - 7.0).abs() < 1e-12);
         assert_eq!(star().parts().len(), 2);
+    }
+
+    #[test]
+    fn an_edited_graph_is_another_one_and_clones_share_their_answers() {
+        let graph = star();
+        let way = graph.shortest(&id("e"), &id("n"));
+        assert_eq!(graph.clone(), graph);
+        assert!(Arc::ptr_eq(&graph.clone().index.0, &graph.index.0));
+        let longer = graph.edited(|nodes, edges| {
+            nodes.push(GraphNode { id: id("m"), kind: "ROOM".into(), at: Point::new(0.1, 0.1) });
+            edges.retain(|edge| edge.from != id("c"));
+            for (a, b) in [("e", "m"), ("m", "n")] {
+                edges.push(GraphEdge { from: id(a), to: id(b), kind: "DOOR".into(), via: vec![] });
+            }
+        });
+        assert_eq!(longer.shortest(&id("e"), &id("n")), Some(vec![id("e"), id("m"), id("n")]));
+        assert_eq!((longer.degree(&id("c")), graph.degree(&id("c"))), (2, 3));
+        assert_eq!(graph.shortest(&id("e"), &id("n")), way);
+        assert_ne!(longer, graph);
+    }
+
+    #[test]
+    fn the_written_form_is_nodes_and_edges_alone() {
+        let graph = star();
+        let before = serde_json::to_string(&graph).unwrap();
+        assert!(graph.node_is(&id("c"), PlaceClass::Intersection));
+        assert_eq!(serde_json::to_string(&graph).unwrap(), before);
+        assert!(before.starts_with(r#"{"nodes":[{"id":"c","kind":"SIMPLE NODE","at":[0.0,0.0]}"#), "{before}");
+        assert_eq!(serde_json::from_str::<SceneGraph>(&before).unwrap(), graph);
+        let more = before.replacen('{', r#"{"index":null,"#, 1);
+        assert!(serde_json::from_str::<SceneGraph>(&more).unwrap_err().to_string().contains("unknown field `index`"));
     }
 }

@@ -103,16 +103,28 @@ mod runs {
 
     pub(super) fn serialize<S: Serializer>(cells: &[Cell], out: S) -> Result<S::Ok, S::Error> {
         let mut text = String::new();
-        for run in cells.chunk_by(|a, b| a == b) {
-            let letter = match run.first() {
-                Some(Cell::Free) => 'f',
-                Some(Cell::Occupied) => 'o',
-                Some(Cell::Unknown) | None => 'u',
+        let mut rest = cells;
+        while let Some(first) = rest.first() {
+            let letter = match first {
+                Cell::Free => 'f',
+                Cell::Occupied => 'o',
+                Cell::Unknown => 'u',
             };
-            text.push_str(&run.len().to_string());
+            let run = run_length(rest, *first);
+            text.push_str(&run.to_string());
             text.push(letter);
+            rest = rest.get(run..).unwrap_or_default();
         }
         out.serialize_str(&text)
+    }
+
+    /// How many cells from the first on are of this kind: whole blocks at a time, which the compiler compares at once.
+    fn run_length(cells: &[Cell], kind: Cell) -> usize {
+        const BLOCK: usize = 64;
+        let alike = |block: &[Cell]| block.iter().fold(true, |all, cell| all & (*cell == kind));
+        let whole = cells.chunks_exact(BLOCK).take_while(|block| alike(block)).count() * BLOCK;
+        let rest = cells.get(whole..).unwrap_or_default();
+        whole + rest.iter().take_while(|cell| **cell == kind).count()
     }
 
     pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Vec<Cell>, D::Error> {
@@ -160,6 +172,22 @@ mod tests {
         let grid = grid(0.3);
         let (px, py) = grid.pixel_from_world(&grid.world_from_pixel(1.25, 2.5));
         assert!((px - 1.25).abs() < 1e-12 && (py - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn runs_of_any_length_are_written_as_they_are() {
+        let letters = [('f', Cell::Free), ('o', Cell::Occupied), ('u', Cell::Unknown)];
+        let lengths = [1, 63, 64, 65, 1, 2, 127, 128, 129, 640, 1, 5];
+        let (mut cells, mut wanted) = (Vec::new(), String::new());
+        for (place, length) in lengths.into_iter().enumerate() {
+            let (letter, cell) = letters[place % 3];
+            cells.extend(std::iter::repeat_n(cell, length));
+            wanted.push_str(&format!("{length}{letter}"));
+        }
+        let grid = Grid { width: cells.len(), height: 1, cells, ..grid(0.0) };
+        let text = serde_json::to_string(&grid).unwrap();
+        assert!(text.contains(&format!("\"{wanted}\"")), "{text}");
+        assert_eq!(serde_json::from_str::<Grid>(&text).unwrap(), grid);
     }
 
     #[test]

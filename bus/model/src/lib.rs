@@ -18,6 +18,7 @@ pub mod polyline;
 pub mod time;
 
 pub mod graph;
+mod graph_index;
 pub mod grid;
 pub mod location;
 pub mod place;

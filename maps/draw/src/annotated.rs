@@ -32,7 +32,7 @@ pub fn annotated_map(location: &Location) -> String {
     let frame = Frame::around(location, SIZE, 860.0, (20.0, 46.0));
     let (w, h) = frame.size();
     let mut types: BTreeMap<&str, (PlaceClass, usize)> = BTreeMap::new();
-    for node in &location.graph.nodes {
+    for node in location.graph.nodes() {
         types.entry(node.kind.as_str()).or_insert_with(|| (PlaceClass::of_type(&node.kind), 0)).1 += 1;
     }
     #[expect(clippy::cast_precision_loss, reason = "a legend has few rows")]
@@ -45,7 +45,7 @@ pub fn annotated_map(location: &Location) -> String {
     svg.heading((20.0, 30.0), &location.name, 20.0, ink);
     svg.text(
         (30.0 + text_width(&location.name, 20.0), 30.0),
-        &format!("{} nodes, {} ways", location.graph.nodes.len(), location.graph.edges.len()),
+        &format!("{} nodes, {} ways", location.graph.nodes().len(), location.graph.edges().len()),
         &format!("font-size=\"15\" fill=\"{}\"", palette::QUIET),
     );
     draw_floor(&mut svg, location, &frame);
@@ -53,7 +53,7 @@ pub fn annotated_map(location: &Location) -> String {
     draw_doors(&mut svg, location, &frame);
     let mut labels = Labels::within(Area { x: 4.0, y: 34.0, w: width - 8.0, h: h + 24.0 });
     labels.avoid(wall_areas(location, &frame));
-    for edge in &location.graph.edges {
+    for edge in location.graph.edges() {
         if let Some(points) = location.graph.edge_points(&edge.from, &edge.to) {
             labels.avoid_line(&points.iter().map(|p| frame.px(location, p)).collect::<Vec<_>>());
         }
@@ -61,11 +61,11 @@ pub fn annotated_map(location: &Location) -> String {
     for door in &location.doors {
         labels.avoid_line(&[frame.px(location, &door.from), frame.px(location, &door.to)]);
     }
-    for node in &location.graph.nodes {
+    for node in location.graph.nodes() {
         let (x, y) = frame.px(location, &node.at);
         labels.block(Area { x: x - 6.0, y: y - 6.0, w: 12.0, h: 12.0 });
     }
-    for node in &location.graph.nodes {
+    for node in location.graph.nodes() {
         let at = frame.px(location, &node.at);
         let color = class_color(PlaceClass::of_type(&node.kind));
         svg.circle(at, 5.5, &format!("fill=\"{color}\" stroke=\"#ffffff\" stroke-width=\"1.5\""));

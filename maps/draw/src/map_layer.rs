@@ -215,7 +215,7 @@ pub fn draw_doors(svg: &mut Svg, location: &Location, frame: &Frame) {
 
 /// Draws the ways of the scene graph as faint lines.
 pub fn draw_graph(svg: &mut Svg, location: &Location, frame: &Frame, color: &str, width: f64) {
-    for edge in &location.graph.edges {
+    for edge in location.graph.edges() {
         if let Some(points) = location.graph.edge_points(&edge.from, &edge.to) {
             let line: Vec<(f64, f64)> = points.iter().map(|p| frame.px(location, p)).collect();
             for part in frame.inside(&line) {

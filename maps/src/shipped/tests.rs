@@ -46,9 +46,9 @@ fn every_shipped_location_is_rich_and_passable() {
     for name in names() {
         let location = load(name).unwrap_or_else(|faults| panic!("{name}: {faults:#?}"));
         assert_eq!(location.warnings, Vec::<String>::new(), "{name}");
-        assert!((30..=48).contains(&location.graph.nodes.len()), "{name}: {} nodes", location.graph.nodes.len());
+        assert!((30..=48).contains(&location.graph.nodes().len()), "{name}: {} nodes", location.graph.nodes().len());
         let field = DistanceField::new(&location.grid);
-        for node in &location.graph.nodes {
+        for node in location.graph.nodes() {
             let class = PlaceClass::of_type(&node.kind);
             let needed = if class == PlaceClass::Doorway { 0.4 } else { 0.45 };
             let clearance = field.clearance(&node.at);
@@ -56,7 +56,7 @@ fn every_shipped_location_is_rich_and_passable() {
             assert_ne!(class, PlaceClass::Plain, "{name} {}: `{}` says nothing", node.id, node.kind);
         }
         let mut long = 0;
-        for edge in &location.graph.edges {
+        for edge in location.graph.edges() {
             assert_ne!(PlaceClass::of_type(&edge.kind), PlaceClass::Plain, "{name}: `{}` says nothing", edge.kind);
             let points = location.graph.edge_points(&edge.from, &edge.to).unwrap();
             let length = (points[1] - points[0]).norm();
@@ -68,7 +68,7 @@ fn every_shipped_location_is_rich_and_passable() {
                 assert!(clearance >= 0.38, "{name} {} – {}: {clearance:.2} m at {at}", edge.from, edge.to);
             }
         }
-        assert!(long * 5 <= location.graph.edges.len(), "{name}: {long} long edges");
+        assert!(long * 5 <= location.graph.edges().len(), "{name}: {long} long edges");
     }
 }
 
@@ -93,7 +93,7 @@ fn two_elevators_hide_those_inside_and_hold_four() {
     for door in elevators {
         assert!(door.inside.len() >= 2, "{}", door.id);
         let inside: Vec<_> = door.inside.iter().map(|id| hospital.graph.node(id).unwrap()).collect();
-        for node in &hospital.graph.nodes {
+        for node in hospital.graph.nodes() {
             if inside.iter().any(|other| other.id == node.id) {
                 continue;
             }
@@ -112,7 +112,7 @@ fn two_elevators_hide_those_inside_and_hold_four() {
         assert!(span(0.0) >= 2.2, "{}: {}", door.id, span(0.0));
         let far: Vec<f64> = hospital
             .graph
-            .nodes
+            .nodes()
             .iter()
             .filter_map(|node| hospital.graph.shortest(&node.id, &inside[0].id))
             .map(|way| hospital.graph.length_m(&way))
@@ -128,7 +128,7 @@ fn from_the_meeting_room_the_junction_is_near_and_the_corridor_hidden() {
     let door = office.door("meeting_room_1").unwrap();
     let junctions: Vec<_> = office
         .graph
-        .nodes
+        .nodes()
         .iter()
         .filter(|node| office.graph.degree(&node.id) >= 3 && (node.at - door.middle()).norm() <= 8.0)
         .filter(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Intersection)
@@ -138,12 +138,12 @@ fn from_the_meeting_room_the_junction_is_near_and_the_corridor_hidden() {
     // Even when the door is open, nobody inside sees along the corridor.
     let middle = office.graph.node(&door.inside[0]).unwrap().at;
     for approach in ["h5", "h6"] {
-        let along = office.graph.nodes.iter().find(|node| node.id.as_str() == approach).unwrap();
+        let along = office.graph.nodes().iter().find(|node| node.id.as_str() == approach).unwrap();
         assert!(!sight.clear(&middle, &along.at), "{approach}");
     }
     for id in &door.inside {
         let within = office.graph.node(id).unwrap();
-        for node in office.graph.nodes.iter().filter(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Corridor) {
+        for node in office.graph.nodes().iter().filter(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Corridor) {
             assert!(!sight_clear(&sight, &within.at, &node.at, &closed), "{id} sees {}", node.id);
         }
     }
@@ -152,7 +152,7 @@ fn from_the_meeting_room_the_junction_is_near_and_the_corridor_hidden() {
 /// Distance between the walls left and right of a node, m, across a direction.
 fn width(location: &Location, id: &str, across: f64) -> f64 {
     let sight = Sight::new(&location.grid);
-    let at = location.graph.nodes.iter().find(|node| node.id.as_str() == id).unwrap().at;
+    let at = location.graph.nodes().iter().find(|node| node.id.as_str() == id).unwrap().at;
     sight.ray(&at, across, 50.0) + sight.ray(&at, across + std::f64::consts::PI, 50.0)
 }
 

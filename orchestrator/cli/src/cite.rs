@@ -77,7 +77,7 @@ fn paragraph(bundle: &Bundle, asked: u32, program: Option<&str>) -> String {
         meters(bundle.location.grid.width, bundle.location.grid.resolution_m),
         meters(bundle.location.grid.height, bundle.location.grid.resolution_m),
         bundle.location.grid.resolution_m,
-        bundle.location.graph.nodes.len(),
+        bundle.location.graph.nodes().len(),
         count(proposal.humans.len(), "human"),
         groups(bundle)
     ));

@@ -61,11 +61,11 @@ fn check(talk: &Talk, name: &str) -> Result<(), Complaint> {
         grid.width,
         grid.height,
         grid.resolution_m,
-        plural(location.graph.nodes.len(), "node"),
-        plural(location.graph.edges.len(), "edge"),
+        plural(location.graph.nodes().len(), "node"),
+        plural(location.graph.edges().len(), "edge"),
         plural(location.doors.len(), "door")
     ));
-    talk.result(&json!({ "location": name, "nodes": location.graph.nodes.len(), "edges": location.graph.edges.len(), "warnings": location.warnings }));
+    talk.result(&json!({ "location": name, "nodes": location.graph.nodes().len(), "edges": location.graph.edges().len(), "warnings": location.warnings }));
     Ok(())
 }
 

@@ -129,7 +129,7 @@ fn fill(name: &str, wording: &Wording, places: &str) -> String {
 /// Nodes by the name that people give their kind of place: `kitchen`, `reception area`, `exit`.
 fn places(location: &Location) -> BTreeMap<String, Vec<NodeId>> {
     let mut found: BTreeMap<String, Vec<NodeId>> = BTreeMap::new();
-    for node in &location.graph.nodes {
+    for node in location.graph.nodes() {
         let words: String =
             node.kind.to_lowercase().chars().map(|c| if c == '_' || c.is_whitespace() { ' ' } else { c }).collect();
         let words = words.split_whitespace().filter(|word| word.parse::<u32>().is_err()).collect::<Vec<_>>().join(" ");
@@ -204,14 +204,14 @@ mod tests {
     #[tokio::test]
     async fn a_map_of_ones_own_has_a_template_of_its_own_names() {
         let mut location = socrates_maps::shipped::load("office").unwrap();
-        for node in &mut location.graph.nodes {
-            node.kind = match node.kind.as_str() {
-                "KITCHEN" => "LABORATORY_1".to_owned(),
-                "MEETING ROOM" => "STORE ROOM".to_owned(),
-                kind if PlaceClass::of_type(kind) == PlaceClass::Corridor => kind.to_owned(),
-                _ => "INTERSECTION".to_owned(),
-            };
-        }
+        let other = |kind: &str| match kind {
+            "KITCHEN" => "LABORATORY_1".to_owned(),
+            "MEETING ROOM" => "STORE ROOM".to_owned(),
+            kind if PlaceClass::of_type(kind) == PlaceClass::Corridor => kind.to_owned(),
+            _ => "INTERSECTION".to_owned(),
+        };
+        location.graph =
+            location.graph.edited(|nodes, _| nodes.iter_mut().for_each(|node| node.kind = other(&node.kind)));
         let (task, complaints) = of("my \"lab\"", &location).await;
         assert_eq!(complaints, 0, "{task}");
         assert!(task.contains("laboratory") || task.contains("store room"), "{task}");
@@ -222,7 +222,7 @@ mod tests {
     #[tokio::test]
     async fn a_map_without_names_has_a_template_too() {
         let mut location = socrates_maps::shipped::load("office").unwrap();
-        location.graph.nodes.iter_mut().for_each(|node| node.kind.clear());
+        location.graph = location.graph.edited(|nodes, _| nodes.iter_mut().for_each(|node| node.kind.clear()));
         let text = template("bare", &location).await;
         assert!(toml::from_str::<Request>(&text).is_ok(), "{text}");
     }

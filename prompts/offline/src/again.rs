@@ -184,7 +184,7 @@ pub(crate) fn fact(
     }
     let graph = &location.graph;
     let through = |class: PlaceClass| {
-        graph.nodes.iter().any(|node| graph.node_is(&node.id, class) && graph.neighbors(&node.id).len() > 1)
+        graph.nodes().iter().any(|node| graph.node_is(&node.id, class) && graph.neighbors(&node.id).len() > 1)
     };
     if let Some(class) = again.place.filter(|class| !through(*class)) {
         problem(

@@ -155,7 +155,9 @@ impl Trip<'_> {
         let named: Vec<usize> = wish
             .names
             .iter()
-            .filter_map(|name| self.net.location.graph.nodes.iter().position(|node| node.id.as_str() == name.as_str()))
+            .filter_map(|name| {
+                self.net.location.graph.nodes().iter().position(|node| node.id.as_str() == name.as_str())
+            })
             .collect();
         if !named.is_empty() {
             return Ok(named);
@@ -357,7 +359,7 @@ fn moved(desk: &mut Desk, wish: &Wish, paths: &Paths) {
     let before = node(paths);
     let mut named: Vec<NodeId> = location
         .graph
-        .nodes
+        .nodes()
         .iter()
         .filter(|node| wish.names.iter().any(|name| *name == node.id.as_str()))
         .map(|node| node.id.clone())

@@ -97,7 +97,7 @@ pub(crate) fn find(location: &Location, name: &str) -> Option<Found> {
         let words = wanted.iter().filter(|word| own.contains(word) && !number(word)).count();
         if words == 0 { 0 } else { wanted.iter().filter(|word| own.contains(word)).count() }
     };
-    let hits: Vec<(usize, &GraphNode)> = location.graph.nodes.iter().map(|node| (hits(node), node)).collect();
+    let hits: Vec<(usize, &GraphNode)> = location.graph.nodes().iter().map(|node| (hits(node), node)).collect();
     let most = hits.iter().map(|(hits, _)| *hits).max().filter(|most| *most > 0)?;
     let found: Vec<&GraphNode> = hits.into_iter().filter(|(hits, _)| *hits == most).map(|(_, node)| node).collect();
     let first = found.first()?;

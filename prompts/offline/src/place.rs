@@ -4,7 +4,7 @@ use socrates_model::{Location, NodeId, PlaceClass};
 
 /// Whether the map has a place of the class; everything is plain.
 pub(crate) fn has(location: &Location, class: PlaceClass) -> bool {
-    class == PlaceClass::Plain || location.graph.nodes.iter().any(|node| location.graph.node_is(&node.id, class))
+    class == PlaceClass::Plain || location.graph.nodes().iter().any(|node| location.graph.node_is(&node.id, class))
 }
 
 /// The classes that the map has, in words, for messages.
@@ -32,22 +32,19 @@ pub(crate) fn an(class: PlaceClass) -> String {
 /// Whether the node is in a room or an elevator: behind a door, or by its type.
 pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
     location.door_of(node).is_some()
-        || location
-            .graph
-            .node(node)
-            .is_some_and(|node| matches!(PlaceClass::of_type(&node.kind), PlaceClass::Elevator | PlaceClass::Room))
+        || matches!(location.graph.kind(node), Some(PlaceClass::Elevator | PlaceClass::Room))
 }
 
 /// Whether the node is in an elevator.
 pub(crate) fn is_car(location: &Location, node: &NodeId) -> bool {
     let by_door = location.door_of(node).is_some_and(|door| door.kind == socrates_model::DoorKind::Elevator);
-    by_door || location.graph.node(node).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Elevator)
+    by_door || location.graph.kind(node) == Some(PlaceClass::Elevator)
 }
 
 /// Nodes inside rooms or cars: of cars where an elevator is wanted, of rooms otherwise.
 pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<NodeId> {
     let car = class == Some(PlaceClass::Elevator);
-    let ids = location.graph.nodes.iter().map(|node| &node.id);
+    let ids = location.graph.nodes().iter().map(|node| &node.id);
     ids.filter(|id| is_inside(location, id) && is_car(location, id) == car).cloned().collect()
 }
 
@@ -55,15 +52,14 @@ pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<Node
 pub(crate) fn meets_arms(location: &Location, from: Option<PlaceClass>, least: usize) -> bool {
     let graph = &location.graph;
     let arms = |id: &NodeId| graph.neighbors(id).len();
-    let doorway =
-        |id: &NodeId| graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway);
+    let doorway = |id: &NodeId| graph.kind(id) == Some(PlaceClass::Doorway);
     let outside = |id: &NodeId| !is_inside(location, id) && !doorway(id);
     let Some(class) = from else {
-        return graph.nodes.iter().any(|node| outside(&node.id) && arms(&node.id) >= least);
+        return graph.nodes().iter().any(|node| outside(&node.id) && arms(&node.id) >= least);
     };
     inside(location, Some(class)).iter().any(|start| {
         let next = graph.neighbors(start);
         let beyond = next.iter().filter(|id| doorway(id)).flat_map(|id| graph.neighbors(id));
-        next.iter().cloned().chain(beyond).any(|id| outside(&id) && arms(&id) >= least)
+        next.iter().chain(beyond).any(|id| outside(id) && arms(id) >= least)
     })
 }

@@ -37,11 +37,10 @@ pub(crate) struct Tree {
 impl<'a> Net<'a> {
     pub(crate) fn new(location: &'a Location) -> Self {
         let graph = &location.graph;
-        let ids: Vec<NodeId> = graph.nodes.iter().map(|node| node.id.clone()).collect();
+        let ids: Vec<NodeId> = graph.nodes().iter().map(|node| node.id.clone()).collect();
         let mut near = vec![Vec::new(); ids.len()];
-        for edge in &graph.edges {
-            let find = |id: &NodeId| ids.iter().position(|other| other == id);
-            let (Some(a), Some(b)) = (find(&edge.from), find(&edge.to)) else { continue };
+        for edge in graph.edges() {
+            let (Some(a), Some(b)) = (graph.position(&edge.from), graph.position(&edge.to)) else { continue };
             let length = graph.edge_length_m(&edge.from, &edge.to).unwrap_or(0.0);
             for (one, other) in [(a, b), (b, a)] {
                 if let Some(list) = near.get_mut(one) {
@@ -52,7 +51,7 @@ impl<'a> Net<'a> {
         let inside = ids.iter().map(|id| place::is_inside(location, id)).collect();
         Self {
             location,
-            at: graph.nodes.iter().map(|node| node.at).collect(),
+            at: graph.nodes().iter().map(|node| node.at).collect(),
             ids,
             near,
             inside,
@@ -113,7 +112,7 @@ impl<'a> Net<'a> {
     }
 
     pub(crate) fn index(&self, id: &NodeId) -> Option<usize> {
-        self.ids.iter().position(|other| other == id)
+        self.location.graph.position(id)
     }
 
     pub(crate) fn id(&self, node: usize) -> Option<&NodeId> {
@@ -137,12 +136,12 @@ impl<'a> Net<'a> {
     }
 
     pub(crate) fn is(&self, node: usize, class: PlaceClass) -> bool {
-        self.ids.get(node).is_some_and(|id| self.location.graph.node_is(id, class))
+        self.location.graph.is_at(node, class)
     }
 
     /// Class of the node's own type name.
     pub(crate) fn kind(&self, node: usize) -> PlaceClass {
-        self.location.graph.nodes.get(node).map_or(PlaceClass::Plain, |node| PlaceClass::of_type(&node.kind))
+        self.location.graph.kind_at(node)
     }
 
     pub(crate) fn length_m(&self, nodes: &[usize]) -> f64 {

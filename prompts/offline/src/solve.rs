@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_maps::{DistanceField, Sight};
+use socrates_maps::Ground;
 use socrates_model::rule::{RobotDo, RobotWhen};
 use socrates_model::{
     Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
@@ -273,7 +273,8 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let wide = found.and_then(|card| card.width_m);
     let overtakers = proposal.humans.iter().filter(|human| overtakes(human)).count();
     let overtaken = overtakers > 0;
-    let field = (standing > 0 || wide.is_some() || overtaken).then(|| DistanceField::new(&net.location.grid));
+    let ground = Ground::of(&net.location.grid);
+    let field = (standing > 0 || wide.is_some() || overtaken).then(|| ground.field());
     // People who come out are met near the place that they leave.
     let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
     let sources: Option<Vec<Tree>> = leaver.map(|human| {
@@ -283,7 +284,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     });
     let abreast = proposal.groups.iter().any(|group| !group.standing && group.members.len() > 2);
     let many = proposal.humans.len() > 3 || abreast;
-    let sight = if wish.place == PlaceClass::BlindCorner { Some(Sight::new(&net.location.grid)) } else { None };
+    let sight = (wish.place == PlaceClass::BlindCorner).then(|| ground.sight());
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
         .filter(|node| (!net.inside(**node) || wish.indoors) && net.near(**node).len() >= 2)
@@ -300,7 +301,7 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
             } else {
                 -20.0
             };
-            let clear_m = field.as_ref().map_or(0.0, |field| field.clearance(&net.at(*node)));
+            let clear_m = field.map_or(0.0, |field| field.clearance(&net.at(*node)));
             let room = if standing > 0 { 1.5 * clear_m.min(2.5) } else { 0.0 };
             let far = sources.as_ref().map_or(0.0, |trees| {
                 let nearest = trees.iter().map(|tree| tree.length_m(*node)).fold(f64::INFINITY, f64::min);
@@ -313,12 +314,11 @@ fn at_nodes(net: &Net<'_>, proposal: &Proposal, wish: &Wish, nodes: &[usize], cr
     let mut found = Vec::new();
     for (rank, meet) in ranked.into_iter().take(NODES) {
         for route in over(net, meet, wish).into_iter().take(ROUTES) {
-            let hidden = sight.as_ref().map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
+            let hidden = sight.map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
             if let Some(mut solution) = people(net, proposal, route, crowded) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
                 let squeezed = field
-                    .as_ref()
                     .filter(|_| overtaken)
                     .map_or(0.0, |field| squeezed(net, field, &solution.route, overtakers > 1));
                 let tight = 3.0 * tight + crowd::squeezes(net, proposal, &solution.route, &solution.ways);

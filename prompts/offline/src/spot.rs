@@ -98,19 +98,21 @@ fn outside(stretch: &Stretch, at: usize) -> bool {
 }
 
 fn is_door(location: &Location, id: &NodeId) -> bool {
-    location.graph.node(id).is_some_and(|node| PlaceClass::of_type(&node.kind) == PlaceClass::Doorway)
+    location.graph.kind(id) == Some(PlaceClass::Doorway)
 }
 
 /// The nodes right outside the doors of these.
 fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
     let graph = &location.graph;
-    let doors: Vec<NodeId> =
+    let mut from: Vec<&NodeId> =
         rooms.iter().flat_map(|room| graph.neighbors(room)).filter(|id| is_door(location, id)).collect();
-    let from = if doors.is_empty() { rooms.to_vec() } else { doors };
+    if from.is_empty() {
+        from = rooms.iter().collect();
+    }
     let mut found: Vec<NodeId> = Vec::new();
-    for node in from.iter().flat_map(|id| graph.neighbors(id)) {
-        if !place::is_inside(location, &node) && !is_door(location, &node) && !found.contains(&node) {
-            found.push(node);
+    for node in from.into_iter().flat_map(|id| graph.neighbors(id)) {
+        if !place::is_inside(location, node) && !is_door(location, node) && !found.contains(node) {
+            found.push(node.clone());
         }
     }
     found
@@ -120,7 +122,7 @@ fn before_doors(location: &Location, rooms: &[NodeId]) -> Vec<NodeId> {
 fn doorways(location: &Location, quote: &str, stretches: &[(Stretch, Found)]) -> Option<Meant> {
     let graph = &location.graph;
     let mut nodes: Vec<NodeId> =
-        graph.nodes.iter().map(|node| node.id.clone()).filter(|id| is_door(location, id)).collect();
+        graph.nodes().iter().map(|node| node.id.clone()).filter(|id| is_door(location, id)).collect();
     let rooms = stretches.iter().flat_map(|(stretch, found)| {
         found.places.iter().filter(|(class, _)| *class == PlaceClass::Room).map(move |(_, at)| (stretch, *at))
     });
@@ -164,11 +166,11 @@ pub(crate) fn nodes(location: &Location, quote: &str, class: PlaceClass, humans:
     let beside = |id: &NodeId| {
         let next = graph.neighbors(id);
         let through = next.iter().filter(|id| is_door(location, id)).flat_map(|door| graph.neighbors(door));
-        next.clone().into_iter().chain(through).collect::<Vec<_>>()
+        next.iter().chain(through).collect::<Vec<_>>()
     };
     for node in all.iter().flat_map(beside) {
-        if !found.contains(&node) {
-            found.push(node);
+        if !found.contains(node) {
+            found.push(node.clone());
         }
     }
     found

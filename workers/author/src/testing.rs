@@ -48,11 +48,11 @@ fn plus_map() -> Location {
     let at = |id: &str, x: f64, y: f64| GraphNode { id: node(id), kind: "CORRIDOR".into(), at: Point::new(x, y) };
     let way = |a: &str, b: &str| GraphEdge { from: node(a), to: node(b), kind: "PASSAGEWAY".into(), via: Vec::new() };
     let arms = [("w", -3.0, 0.0), ("e", 3.0, 0.0), ("n", 0.0, 3.0), ("s", 0.0, -3.0)];
-    let mut graph = SceneGraph { nodes: vec![at("c", 0.0, 0.0)], edges: Vec::new() };
+    let (mut nodes, mut edges) = (vec![at("c", 0.0, 0.0)], Vec::new());
     for (name, x, y) in arms {
         let (near, far) = (format!("{name}_1"), format!("{name}_2"));
-        graph.nodes.extend([at(&near, x, y), at(&far, 2.0 * x, 2.0 * y)]);
-        graph.edges.extend([way("c", &near), way(&near, &far)]);
+        nodes.extend([at(&near, x, y), at(&far, 2.0 * x, 2.0 * y)]);
+        edges.extend([way("c", &near), way(&near, &far)]);
     }
     Location {
         format: FORMAT,
@@ -65,7 +65,7 @@ fn plus_map() -> Location {
             origin: Pose::new(-10.0, -10.0, 0.0),
             cells: vec![Cell::Free; 1600],
         },
-        graph,
+        graph: SceneGraph::new(nodes, edges),
         doors: Vec::new(),
         warnings: Vec::new(),
     }

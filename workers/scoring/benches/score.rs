@@ -29,7 +29,7 @@ fn cpu_s() -> f64 {
 
 /// The longest of the shortest ways between any two nodes.
 fn longest(location: &Location) -> Vec<NodeId> {
-    let nodes = &location.graph.nodes;
+    let nodes = location.graph.nodes();
     let pairs = nodes.iter().flat_map(|a| nodes.iter().map(move |b| (a, b)));
     let ways = pairs.filter_map(|(a, b)| location.graph.shortest(&a.id, &b.id));
     ways.max_by(|a, b| location.graph.length_m(a).total_cmp(&location.graph.length_m(b))).unwrap()

@@ -1,6 +1,6 @@
 //! What looks wrong about a recording that can be read: other units, another map, holes.
 
-use socrates_maps::DistanceField;
+use socrates_maps::{DistanceField, Ground};
 use socrates_model::{Location, Recording};
 
 use crate::tracks::{Track, Tracks};
@@ -31,8 +31,8 @@ pub fn doubts(recording: &Recording, location: Option<&Location>) -> Vec<String>
     }
     found.extend(apart(&tracks));
     if let Some(location) = location {
-        let field = DistanceField::new(&location.grid);
-        found.extend(tracks.all().filter_map(|track| off(track, location, &field)));
+        let ground = Ground::of(&location.grid);
+        found.extend(tracks.all().filter_map(|track| off(track, location, ground.field())));
     }
     found
 }

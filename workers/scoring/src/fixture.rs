@@ -205,16 +205,16 @@ pub(crate) fn floor(
         name: "floor".into(),
         description: "an open floor".into(),
         grid,
-        graph: SceneGraph {
-            nodes: nodes
+        graph: SceneGraph::new(
+            nodes
                 .iter()
                 .map(|(id, kind, x, y)| GraphNode { id: node(id), kind: (*kind).into(), at: Point::new(*x, *y) })
                 .collect(),
-            edges: edges
+            edges
                 .iter()
                 .map(|(a, b)| GraphEdge { from: node(a), to: node(b), kind: "CORRIDOR".into(), via: vec![] })
                 .collect(),
-        },
+        ),
         doors: vec![],
         warnings: vec![],
     }

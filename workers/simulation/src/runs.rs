@@ -115,7 +115,7 @@ fn troubles(recording: &Recording, met: usize, loose_s: f64) -> Vec<String> {
 
 /// Ways of the robot of 10 to 25 m between every few nodes.
 fn ways(location: &Location, every: usize) -> Vec<Vec<NodeId>> {
-    let nodes = &location.graph.nodes;
+    let nodes = location.graph.nodes();
     let outside = |id: &NodeId| location.door_of(id).is_none();
     let mut found = Vec::new();
     for (i, a) in nodes.iter().enumerate() {
@@ -142,12 +142,12 @@ fn relations(location: &Location, way: &[NodeId]) -> Vec<(&'static str, Vec<Cast
     all.push(("static", vec![Cast(Relation::Static, vec![middle.clone()], vec![])], middle));
     for place in 1..way.len() - 1 {
         let around: Vec<NodeId> =
-            location.graph.neighbors(&way[place]).into_iter().filter(|id| !way.contains(id)).collect();
+            location.graph.neighbors(&way[place]).iter().filter(|id| !way.contains(id)).cloned().collect();
         if let Some(side) = around.first() {
             let onward = around.get(1).cloned().unwrap_or_else(|| way[place + 1].clone());
             let mut path = vec![side.clone(), way[place].clone(), onward];
             if let Some(far) =
-                location.graph.neighbors(side).into_iter().find(|id| *id != way[place] && !way.contains(id))
+                location.graph.neighbors(side).iter().find(|id| **id != way[place] && !way.contains(id)).cloned()
             {
                 path.insert(0, far);
             }
@@ -228,7 +228,7 @@ fn in_the_hospital_two_leave_the_car_one_stays_and_the_robot_enters_last() {
         let deep = inside.iter().find(|id| **id != entry).cloned().unwrap_or_else(|| entry.clone());
         let far = location
             .graph
-            .nodes
+            .nodes()
             .iter()
             .filter(|node| location.door_of(&node.id).is_none())
             .filter_map(|node| {
@@ -241,7 +241,7 @@ fn in_the_hospital_two_leave_the_car_one_stays_and_the_robot_enters_last() {
         let out: Vec<NodeId> = far.iter().rev().cloned().collect();
         let lobby = out[1].clone();
         let aside: Vec<NodeId> =
-            location.graph.neighbors(&lobby).into_iter().filter(|id| location.door_of(id).is_none()).collect();
+            location.graph.neighbors(&lobby).iter().filter(|id| location.door_of(id).is_none()).cloned().collect();
         let exit = |k: usize| {
             let mut path = vec![entry.clone(), lobby.clone()];
             path.extend(aside.get(k % aside.len()).cloned());

@@ -68,7 +68,7 @@ fn items(case: &Case<'_>) -> Wrong {
     let ways = case.scenario.made.paths.robot.windows(2).filter_map(|pair| {
         let edge = place
             .graph
-            .edges
+            .edges()
             .iter()
             .find(|e| [&e.from, &e.to] == [&pair[0], &pair[1]] || [&e.from, &e.to] == [&pair[1], &pair[0]])?;
         let kind = edge.kind.to_lowercase();

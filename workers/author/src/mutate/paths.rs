@@ -164,7 +164,7 @@ fn apart(answer: &mut Value, question: &Question) -> Option<()> {
     let humans = answer.get_mut("humans")?;
     let start = graph.node(&id(humans.get(&member)?.as_array()?.first()?)?)?.at;
     let far = |node: &socrates_model::GraphNode| (node.at.x - start.x).hypot(node.at.y - start.y);
-    let furthest = graph.nodes.iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
+    let furthest = graph.nodes().iter().max_by(|a, b| far(a).total_cmp(&far(b)))?;
     *humans.get_mut(&member)? = json!([furthest.id]);
     Some(())
 }

@@ -30,7 +30,7 @@ pub(super) fn put(kind: FaultKind, answer: &mut Value, question: &Question, draw
             let absent: Vec<PlaceClass> = PlaceClass::ALL
                 .into_iter()
                 .filter(|class| *class != PlaceClass::Plain)
-                .filter(|class| !graph.nodes.iter().any(|node| graph.node_is(&node.id, *class)))
+                .filter(|class| !graph.nodes().iter().any(|node| graph.node_is(&node.id, *class)))
                 .collect();
             *answer.get_mut("place")? = json!(absent.get(pick(draw, absent.len())?)?);
         }

@@ -36,7 +36,7 @@ const fn is_inside(class: PlaceClass) -> bool {
 /// equally narrow ones the outermost. `None` where the way begins in no room, or no walls bound the opening.
 #[must_use]
 pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -> Option<Door> {
-    let class = |id: &NodeId| place.graph.node(id).map(|node| PlaceClass::of_type(&node.kind));
+    let class = |id: &NodeId| place.graph.kind(id);
     let first = way.first()?;
     if !class(first).is_some_and(is_inside) {
         return None;
@@ -65,14 +65,14 @@ pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -
 /// node on.
 #[must_use]
 pub(super) fn way_out(graph: &SceneGraph, from: &NodeId) -> Option<Vec<NodeId>> {
-    let class = |id: &NodeId| graph.node(id).map(|node| PlaceClass::of_type(&node.kind));
-    let outside = graph.nodes.iter().filter(|node| !is_inside(PlaceClass::of_type(&node.kind)));
+    let outside = graph.nodes().iter().enumerate().filter(|(at, _)| !is_inside(graph.kind_at(*at)));
     let mut way = outside
-        .filter_map(|node| graph.shortest(from, &node.id))
+        .filter_map(|(_, node)| graph.shortest(from, &node.id))
         .min_by(|a, b| graph.length_m(a).total_cmp(&graph.length_m(b)))?;
     let last = way.last()?;
-    let on = graph.neighbors(last).into_iter().find(|next| !way.contains(next));
-    way.extend(on.filter(|_| class(last) == Some(PlaceClass::Doorway)));
+    let on = graph.neighbors(last).iter().find(|next| !way.contains(next));
+    let on = on.filter(|_| graph.kind(last) == Some(PlaceClass::Doorway)).cloned();
+    way.extend(on);
     Some(way)
 }
 
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn without_a_doorway_node_the_narrowest_place_before_the_corridor_is_the_opening() {
         let mut place = room(["OFFICE ROOM", "OFFICE ROOM", "CORRIDOR"]);
-        place.graph.nodes[1].at = Point::new(6., 0.);
+        place.graph = place.graph.edited(|nodes, _| nodes[1].at = Point::new(6., 0.));
         let door = found(&place, &["r", "d", "c"]).unwrap();
         assert!((door.middle().x - 4.1).abs() < 0.25 && (door.to - door.from).norm() < 1.4, "{door:?}");
         assert_eq!(found(&room(["NODE", "NODE", "CORRIDOR"]), &["r", "d", "c"]), None, "plain nodes tell of no room");
@@ -205,11 +205,11 @@ mod tests {
                 assert_eq!((door.kind, door.id.as_str()), (DoorKind::Elevator, "front"));
                 let x = door.middle().x;
                 assert!(x < front_x - 0.3 && x > 2.9 && x < 4.1, "a node at {front_x}, its opening at {x}");
-                let inside = place.graph.nodes[1].at;
-                for node in &place.graph.nodes[..2] {
+                let inside = place.graph.nodes()[1].at;
+                for node in &place.graph.nodes()[..2] {
                     assert!(door.depth_m(&node.at, &inside) > 0.3, "{}: {door:?}", node.id);
                 }
-                assert!(door.depth_m(&place.graph.nodes[2].at, &inside) < -0.3, "{door:?}");
+                assert!(door.depth_m(&place.graph.nodes()[2].at, &inside) < -0.3, "{door:?}");
             }
         }
     }

@@ -1,8 +1,9 @@
 //! What the monitors look at: one moment per 0.05 s for every human and the robot.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use socrates_maps::{DistanceField, Sight, sight_clear};
+use socrates_maps::{DistanceField, Ground, sight_clear};
 use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{AgentId, EventKind, HumanId, NodeId, Point};
 
@@ -80,8 +81,10 @@ pub struct Signals<'a> {
     pub moves_s: f64,
     /// When the robot arrived, s.
     pub arrived_s: Option<f64>,
+    /// What is computed of the map; `None` without one.
+    pub ground: Option<Arc<Ground>>,
     /// Distance to walls; `None` without a map.
-    pub field: Option<DistanceField>,
+    pub field: Option<Arc<DistanceField>>,
     /// Encounters of every human who has several, one after the other.
     pub(super) meetings: BTreeMap<HumanId, Vec<Meeting>>,
 }
@@ -94,7 +97,8 @@ impl<'a> Signals<'a> {
         let doors = Doors::of(evidence.location, evidence.recording);
         let way =
             evidence.location.zip(evidence.paths).map(|(place, paths)| Way::new(place.graph.polyline(&paths.robot)));
-        let sight = evidence.location.map(|location| Sight::new(&location.grid));
+        let ground = evidence.location.map(|location| Ground::of(&location.grid));
+        let sight = ground.as_ref().map(|ground| ground.sight());
         let closed: Vec<Vec<(Point, Point)>> = match &tracks.robot {
             Some(robot) if sight.is_some() => robot.samples.iter().map(|sample| doors.closed_at(sample.t)).collect(),
             _ => Vec::new(),
@@ -111,13 +115,13 @@ impl<'a> Signals<'a> {
                     let mine = robot_on_way.get(index).copied().flatten();
                     let theirs = way.as_ref().and_then(|way| way.place(&h.at));
                     let closed = closed.get(index).map_or(&[][..], Vec::as_slice);
-                    let seen = sight.as_ref().map(|sight| sight_clear(sight, &r.at, &h.at, closed));
+                    let seen = sight.map(|sight| sight_clear(sight, &r.at, &h.at, closed));
                     list.push(moment(index, r, h, mine.zip(theirs).map(|((a, _), (b, off))| (b - a, off)), seen));
                 }
                 moments.insert(id, list);
             }
         }
-        let field = evidence.location.map(|location| DistanceField::new(&location.grid));
+        let field = ground.as_ref().map(|ground| Arc::clone(ground.field()));
         let leaves: BTreeMap<HumanId, Vec<LeafSpan>> = tracks
             .humans
             .iter()
@@ -133,7 +137,20 @@ impl<'a> Signals<'a> {
             .find(|event| event.kind == EventKind::RobotArrived)
             .map(|event| event.time.secs());
         let meetings = meetings_of(evidence, tracks.robot.as_ref());
-        Self { evidence, full, tracks, moments, doors, leaves, tells_leaves, moves_s, arrived_s, field, meetings }
+        Self {
+            evidence,
+            full,
+            tracks,
+            moments,
+            doors,
+            leaves,
+            tells_leaves,
+            moves_s,
+            arrived_s,
+            ground,
+            field,
+            meetings,
+        }
     }
 
     /// Moments of a human; empty when it or the robot is missing.

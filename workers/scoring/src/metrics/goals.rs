@@ -1,6 +1,9 @@
 //! Legibility and predictability: could somebody who watches tell early where the robot goes?
 
-use socrates_maps::{DistanceField, Geodesic};
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use socrates_maps::{DistanceField, Geodesic, Ground, Kept};
 use socrates_model::{Cell, Grid, NodeId, Point};
 
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
@@ -18,6 +21,8 @@ const MOST: usize = 5;
 const LOOK_SECS: f64 = 0.5;
 /// Cells of the map on which beliefs are computed, m.
 const COARSE_M: f64 = 0.3;
+/// Robots of different sizes whose coarse maps are kept.
+const MAX_ROBOTS: usize = 4;
 /// Half of a human's field of view, rad (100°).
 const HALF_VIEW_RAD: f64 = 100.0 / 180.0 * std::f64::consts::PI;
 
@@ -88,7 +93,7 @@ fn candidates(scene: &Scene<'_>, goal: &Point, start: &Point) -> Vec<Point> {
         scene.signals.evidence.paths.map(|paths| paths.robot.iter().collect()).unwrap_or_default();
     let mut found: Vec<(f64, &NodeId, Point)> = Vec::new();
     let far = |a: &Point, b: &Point| (a - b).norm() >= APART_M;
-    for node in &graph.nodes {
+    for node in graph.nodes() {
         let ends = graph.neighbors(&node.id).len() <= 1;
         let beside = !on_way.contains(&&node.id) && graph.neighbors(&node.id).iter().any(|id| on_way.contains(&id));
         if !(ends || beside) || !far(&node.at, goal) || !far(&node.at, start) {
@@ -129,6 +134,22 @@ fn coarse(grid: &Grid, field: &DistanceField, radius_m: f64) -> Grid {
     rough
 }
 
+/// The coarse map of a grid for a disc, kept for the last few grids and robots.
+fn rough(grid: &Grid, field: &DistanceField, radius_m: f64) -> Arc<Ground> {
+    static ROUGH: Kept<Mutex<VecDeque<(u64, Arc<Ground>)>>> = Kept::new();
+    let kept = ROUGH.of(grid, |_| Mutex::default());
+    let mut shelf = kept.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = shelf.iter().find(|(radius, _)| *radius == radius_m.to_bits()).map(|(_, ground)| Arc::clone(ground));
+    known.unwrap_or_else(|| {
+        let made = Arc::new(Ground::new(Arc::new(coarse(grid, field, radius_m))));
+        if shelf.len() >= MAX_ROBOTS {
+            shelf.pop_front();
+        }
+        shelf.push_back((radius_m.to_bits(), Arc::clone(&made)));
+        made
+    })
+}
+
 /// Belief in the true goal over time, with whether somebody watches: `(t, belief, watched)`.
 fn beliefs(scene: &Scene<'_>) -> Result<Vec<(f64, f64, bool)>, String> {
     let (Some(goal), Some(field)) = (scene.goal, &scene.signals.field) else {
@@ -141,11 +162,11 @@ fn beliefs(scene: &Scene<'_>) -> Result<Vec<(f64, f64, bool)>, String> {
     let Some(place) = scene.signals.evidence.location else {
         return Err("there is no map with a goal".to_owned());
     };
-    let rough = DistanceField::new(&coarse(&place.grid, field, (radius - 0.05).max(0.05)));
-    let to = |at: &Point| Geodesic::to(&rough, at, 0.0);
+    let rough = rough(&place.grid, field, (radius - 0.05).max(0.05));
+    let to = |at: &Point| rough.geodesic(at, 0.0);
     let mine = to(&goal);
-    let others: Vec<Geodesic> = candidates(scene, &goal, &start).iter().map(to).collect();
-    let others: Vec<(&Geodesic, f64)> =
+    let others: Vec<Arc<Geodesic>> = candidates(scene, &goal, &start).iter().map(to).collect();
+    let others: Vec<(&Arc<Geodesic>, f64)> =
         others.iter().filter_map(|geodesic| Some((geodesic, geodesic.distance(&start)?))).collect();
     if others.is_empty() {
         return Err("the scene graph has no other place the robot might go to".to_owned());

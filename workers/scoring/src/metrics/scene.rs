@@ -1,6 +1,7 @@
 //! What the metrics look at: the run cut to the robot's trip, with distances ready.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use socrates_maps::Geodesic;
 use socrates_model::{HumanId, Missing, Point, Proposal, Vector};
@@ -26,7 +27,7 @@ pub struct Scene<'a> {
     /// When the robot arrived, s.
     pub arrived_s: Option<f64>,
     /// Shortest ways to the goal for the robot's disc.
-    pub geodesic: Option<Geodesic>,
+    pub geodesic: Option<Arc<Geodesic>>,
     /// When it came to its goal or said so, and everybody up to then on the even grid, row by row.
     rows: Vec<Row>,
     /// The robot on the even grid, while it is there.
@@ -77,7 +78,7 @@ impl<'a> Scene<'a> {
             .unwrap_or_default();
         let radius = tracks.robot.as_ref().map_or(0.0, |robot| robot.radius_m);
         let geodesic =
-            signals.field.as_ref().zip(goal).map(|(field, goal)| Geodesic::to(field, &goal, (radius - 0.05).max(0.05)));
+            signals.ground.as_ref().zip(goal).map(|(ground, goal)| ground.geodesic(&goal, (radius - 0.05).max(0.05)));
         let even = tracks.robot.as_ref().map_or_else(Vec::new, |robot| robot.present().copied().collect());
         let twin = signals.evidence.twin.ok_or_else(|| "there is no twin run".to_owned());
         let twin = twin
@@ -116,8 +117,8 @@ impl<'a> Scene<'a> {
             robot_speed_mps: robot.map_or(0.0, |robot| robot.speed_mps),
             humans_radius_m,
             goal: self.goal,
-            field: self.signals.field.as_ref(),
-            geodesic: self.geodesic.as_ref(),
+            field: self.signals.field.as_deref(),
+            geodesic: self.geodesic.as_deref(),
         }
     }
 

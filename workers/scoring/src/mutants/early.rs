@@ -1,6 +1,6 @@
 //! Changes after which something is seen, or done, long before its time.
 
-use socrates_maps::{Sight, sight_clear};
+use socrates_maps::{Ground, sight_clear};
 use socrates_model::{
     Action, AgentId, AgentState, Clause, ClauseRole, EventKind, Gesture, HumanId, Point, Predicate, Recording, Relation,
 };
@@ -139,12 +139,13 @@ fn seen_ahead(evidence: &Evidence<'_>, id: HumanId, add: &mut Add<'_>) {
     if run.events.iter().any(|event| matches!(event.kind, EventKind::Door { .. })) {
         return;
     }
-    let sight = Sight::new(&location.grid);
+    let ground = Ground::of(&location.grid);
+    let sight = ground.sight();
     let (robot, old) = (states(run, AgentId::Robot), states(run, AgentId::Human(id)));
     let Some(start) = old.first().map(AgentState::point) else { return };
     let clear = |k: usize, at: &Point| {
         robot.get(k).is_some_and(|state| {
-            (SEEN_M.0..=SEEN_M.1).contains(&(state.point() - at).norm()) && sight_clear(&sight, &state.point(), at, &[])
+            (SEEN_M.0..=SEEN_M.1).contains(&(state.point() - at).norm()) && sight_clear(sight, &state.point(), at, &[])
         })
     };
     // It goes so much of its way as it has time for before it would set off.

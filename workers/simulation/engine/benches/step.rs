@@ -118,7 +118,7 @@ fn map_scans(name: &str) {
     let location = socrates_maps::shipped::load(name).unwrap();
     let mut floor = Floor::new(&location.grid);
     floor.close(location.doors.iter().map(|door| (door.from, door.to)).collect());
-    let nodes: Vec<Point> = location.graph.nodes.iter().map(|node| node.at).collect();
+    let nodes: Vec<Point> = location.graph.nodes().iter().map(|node| node.at).collect();
     let people: Vec<Disc> = nodes.iter().map(|at| Disc { center: *at, radius_m: 0.28 }).collect();
     let pose = |call: usize| {
         let at = nodes[call % nodes.len()];

@@ -37,7 +37,7 @@ pub fn event_names(location: &Location) -> BTreeSet<String> {
     let gestures = Gesture::ALL.iter().filter(|gesture| **gesture != Gesture::None);
     names.extend(gestures.map(ToString::to_string));
     names.extend(LEAVES.iter().filter(|leaf| !leaf.is_empty()).map(|leaf| (*leaf).to_owned()));
-    names.extend(location.graph.nodes.iter().map(|node| format!("node {}", node.id)));
+    names.extend(location.graph.nodes().iter().map(|node| format!("node {}", node.id)));
     for door in &location.doors {
         names.extend([format!("door {} opens", door.id), format!("door {} closes", door.id)]);
     }

@@ -56,7 +56,7 @@ pub(crate) fn location(grid: Grid, nodes: &[(&str, f64, f64)], edges: &[(&str, &
         name: "test".into(),
         description: String::new(),
         grid,
-        graph: SceneGraph { nodes, edges },
+        graph: SceneGraph::new(nodes, edges),
         doors: vec![],
         warnings: vec![],
     }

@@ -1,12 +1,13 @@
 //! The still world: walls from the grid, doors as they stand now.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use socrates_maps::{DistanceField, Sight, shortest_path};
+use socrates_maps::{DistanceField, Ground, Kept, shortest_path};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::{Grid, Point, Polyline, Vector};
 
 use crate::cells::Cells;
+use crate::walls::Walls;
 
 /// Reach of the wall points that people feel, m (8 sectors).
 const WALL_REACH_M: f64 = 3.0;
@@ -16,24 +17,28 @@ const SECTORS: usize = 8;
 /// Walls and doors of a run.
 #[derive(Debug, Clone)]
 pub struct Floor {
-    grid: Grid,
+    walls: Arc<Still>,
     field: Arc<DistanceField>,
-    sight: Sight,
-    cells: Cells,
     closed: Vec<(Point, Point)>,
 }
+
+/// What never moves: the same for every run over the same grid.
+#[derive(Debug)]
+struct Still {
+    ground: Arc<Ground>,
+    cells: Cells,
+    edges: OnceLock<Walls>,
+}
+
+static STILL: Kept<Still> = Kept::new();
 
 impl Floor {
     /// The floor of a grid, all doors open.
     #[must_use]
     pub fn new(grid: &Grid) -> Self {
-        Self {
-            grid: grid.clone(),
-            field: Arc::new(DistanceField::new(grid)),
-            sight: Sight::new(grid),
-            cells: Cells::new(grid),
-            closed: Vec::new(),
-        }
+        let walls =
+            STILL.of(grid, |grid| Still { ground: Ground::of(grid), cells: Cells::new(grid), edges: OnceLock::new() });
+        Self { field: Arc::clone(walls.ground.field()), walls, closed: Vec::new() }
     }
 
     /// The distance field of the grid, shared: it is dear to compute.
@@ -98,13 +103,13 @@ impl Floor {
     /// in between.
     pub(crate) fn open_of(&self, clearance_m: f64) -> f64 {
         // The field blurs by less than a cell, and a cell is solid to its corners.
-        clearance_m - 2.0 * self.grid.resolution_m
+        clearance_m - 2.0 * self.walls.ground.grid().resolution_m
     }
 
     /// Whether two points see each other now.
     #[must_use]
     pub fn sees(&self, a: &Point, b: &Point) -> bool {
-        self.closed.iter().all(|(from, to)| !segments_cross(a, b, from, to)) && self.cells.clear(a, b)
+        self.closed.iter().all(|(from, to)| !segments_cross(a, b, from, to)) && self.walls.cells.clear(a, b)
     }
 
     /// Whether a disc can go straight from `a` to `b`, doors taken as open.
@@ -139,22 +144,23 @@ impl Floor {
         if self.straight(from, to, radius_m) {
             return Some(Polyline::new(&[*from, *to]));
         }
-        shortest_path(&self.grid, &self.field, from, to, radius_m).map(|points| Polyline::new(&points))
+        shortest_path(self.walls.ground.grid(), &self.field, from, to, radius_m).map(|points| Polyline::new(&points))
     }
 
-    /// Shortens every range to the distance of the first wall along its unit heading, m, closed doors not
-    /// counted; 0 in a wall.
-    pub fn wall_ranges(&self, from: &Point, ranges: &mut [f64], heading: impl Fn(usize) -> Vector) {
-        let at = self.cells.position(from);
-        for (beam, range) in ranges.iter_mut().enumerate() {
-            *range = self.cells.ray(at, self.cells.direction(&heading(beam)), *range);
-        }
+    /// The cells that rays walk over, doors taken as open.
+    pub(crate) fn cells(&self) -> &Cells {
+        &self.walls.cells
+    }
+
+    /// The walls as edges, looked for when somebody first asks.
+    pub(crate) fn walls(&self) -> &Walls {
+        self.walls.edges.get_or_init(|| Walls::new(self.walls.ground.grid()))
     }
 
     /// Distance to the first wall or closed door in a direction, m, at most `max_m`.
     #[must_use]
     pub fn ray_m(&self, from: &Point, angle: f64, max_m: f64) -> f64 {
-        let mut range = self.sight.ray(from, angle, max_m);
+        let mut range = self.walls.ground.sight().ray(from, angle, max_m);
         let heading = Vector::new(libm::cos(angle), libm::sin(angle));
         for (a, b) in &self.closed {
             if let Some(hit) = ray_segment(from, &heading, a, b) {

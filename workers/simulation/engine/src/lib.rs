@@ -44,6 +44,7 @@ mod script;
 mod start;
 mod view;
 mod walk;
+mod walls;
 
 #[cfg(test)]
 mod aisle_runs;

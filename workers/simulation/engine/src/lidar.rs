@@ -11,13 +11,15 @@ use std::sync::LazyLock;
 
 use socrates_model::{Point, Pose, Vector};
 
+use crate::cells::Cells;
 use crate::floor::Floor;
+use crate::walls::{Eye, Steps};
 
 /// Beams of a scan; beam 0 is straight ahead, then counter-clockwise by one degree.
 pub const BEAMS: usize = 360;
 
 /// More than the error of [`bearing`] (0.004 rad), rad.
-const SLACK_RAD: f64 = 0.006;
+pub(crate) const SLACK_RAD: f64 = 0.006;
 /// A beam and a segment with a smaller sine of the angle between them are parallel.
 const PARALLEL: f64 = 1e-12;
 
@@ -95,8 +97,7 @@ static HEADINGS: LazyLock<Headings> = LazyLock::new(|| {
 #[must_use]
 pub fn scan(floor: &Floor, from: &Pose, people: &[Disc], max_m: f64) -> Vec<f64> {
     let frame = Frame::new(from);
-    let mut ranges = [max_m; BEAMS];
-    floor.wall_ranges(&frame.origin, &mut ranges, |beam| frame.heading(beam));
+    let mut ranges = wall_ranges(floor, &frame, max_m);
     meet_shapes(&mut ranges, &frame, people, floor.closed(), max_m);
     ranges.to_vec()
 }
@@ -118,6 +119,40 @@ pub fn scan_shapes(
     let mut ranges = [max_m; BEAMS];
     meet_shapes(&mut ranges, &Frame::new(from), discs, segments, max_m);
     Ok(ranges)
+}
+
+/// Ranges over the walls of the map alone.
+fn wall_ranges(floor: &Floor, frame: &Frame, max_m: f64) -> [f64; BEAMS] {
+    let mut ranges = [max_m; BEAMS];
+    pulp::Arch::new().dispatch(|| meet_walls(&mut ranges, frame, floor, max_m));
+    ranges
+}
+
+/// Shortens the beams that meet a wall of the map; all to 0 in a wall and outside.
+#[inline(always)]
+fn meet_walls(ranges: &mut [f64; BEAMS], frame: &Frame, floor: &Floor, max_m: f64) {
+    let (cells, walls) = (floor.cells(), floor.walls());
+    let at = cells.position(&frame.origin);
+    let ahead = cells.direction(&Vector::new(frame.cos, frame.sin));
+    let eye = Eye { at, turn: ahead, reach: max_m * libm::hypot(ahead.0, ahead.1) };
+    let steps = frame.steps(cells);
+    let walk = |beam: usize| {
+        let step = steps.right.get(beam).copied().zip(steps.down.get(beam).copied());
+        step.map_or(max_m, |step| cells.ray(at, step, max_m))
+    };
+    if !walls.serves(&eye) {
+        ranges.iter_mut().enumerate().for_each(|(beam, range)| *range = walk(beam));
+    } else if !cells.clear(&frame.origin, &frame.origin) {
+        ranges.fill(0.0);
+    } else {
+        let mut doubtful = [0.0; BEAMS];
+        walls.meet(&eye, &steps, ranges, &mut doubtful);
+        for (beam, (range, doubt)) in ranges.iter_mut().zip(&doubtful).enumerate() {
+            if *doubt > 0.0 {
+                *range = walk(beam);
+            }
+        }
+    }
 }
 
 fn meet_shapes(ranges: &mut [f64; BEAMS], frame: &Frame, discs: &[Disc], segments: &[(Point, Point)], max_m: f64) {
@@ -172,11 +207,20 @@ impl Frame {
         Vector::new(away.x * self.cos + away.y * self.sin, away.y * self.cos - away.x * self.sin)
     }
 
-    /// Direction of a beam in the map frame.
-    fn heading(&self, beam: usize) -> Vector {
-        let (cos, sin) = (HEADINGS.cos.get(beam), HEADINGS.sin.get(beam));
-        let (x, y) = (cos.copied().unwrap_or(1.0), sin.copied().unwrap_or(0.0));
-        Vector::new(x * self.cos - y * self.sin, x * self.sin + y * self.cos)
+    /// The beams over the cells of a map.
+    #[inline(always)]
+    fn steps(&self, cells: &Cells) -> Steps {
+        let mut steps =
+            Steps { right: [0.0; BEAMS], down: [0.0; BEAMS], per_right: [0.0; BEAMS], per_down: [0.0; BEAMS] };
+        let both = steps.right.iter_mut().zip(&mut steps.down);
+        let per_cell = steps.per_right.iter_mut().zip(&mut steps.per_down);
+        let headings = HEADINGS.cos.iter().zip(&HEADINGS.sin);
+        for (((right, down), (per_right, per_down)), (x, y)) in both.zip(per_cell).zip(headings) {
+            let in_map = Vector::new(x * self.cos - y * self.sin, x * self.sin + y * self.cos);
+            (*right, *down) = cells.direction(&in_map);
+            (*per_right, *per_down) = (1.0 / *right, 1.0 / *down);
+        }
+        steps
     }
 }
 
@@ -268,7 +312,7 @@ fn meet_edge_on(ranges: &mut [f64; BEAMS], headings: &Headings, a: &Vector, b: &
 
 /// The beams between two bearings, rad, the second not smaller than the first: one or two runs of numbers.
 #[inline(always)]
-fn span(from: f64, to: f64) -> [std::ops::Range<usize>; 2] {
+pub(crate) fn span(from: f64, to: f64) -> [std::ops::Range<usize>; 2] {
     // Two turns added so that cutting off the fraction rounds down.
     let turned = |angle: f64| angle.to_degrees() + 720.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a bearing within two turns")]
@@ -294,7 +338,7 @@ fn slices<'a>(
 ///
 /// Arc tangent of z in 0 to 1 as z (pi/4 + 0.273 (1 - z)), Rajan et al. 2006.
 #[inline(always)]
-fn bearing(to: &Vector) -> f64 {
+pub(crate) fn bearing(to: &Vector) -> f64 {
     let (x, y) = (to.x.abs(), to.y.abs());
     let share = x.min(y) / x.max(y).max(f64::MIN_POSITIVE);
     let octant = share * (FRAC_PI_4 + 0.273 * (1.0 - share));
@@ -304,68 +348,4 @@ fn bearing(to: &Vector) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fixture;
-
-    #[test]
-    fn the_rough_bearing_is_within_its_slack() {
-        for step in 0..3600_u32 {
-            let angle = -PI + f64::from(step) * TAU / 3600.0 + 1e-6;
-            let found = bearing(&Vector::new(libm::cos(angle), libm::sin(angle)));
-            assert!((found - angle).abs() < 0.005, "{angle}: {found}");
-        }
-    }
-
-    #[test]
-    fn a_person_ahead_shortens_the_beams_that_meet_it() {
-        let discs = [Disc { center: Point::new(5.0, 1.0), radius_m: 0.5 }];
-        let ranges = scan_shapes(&Pose::new(1.0, 1.0, 0.0), &discs, &[], 12.0).unwrap();
-        assert!((ranges[0] - 3.5).abs() < 1e-12);
-        // asin(0.5 / 4) is 7.18 degrees.
-        assert_eq!(ranges.iter().filter(|range| **range < 12.0).count(), 15);
-        assert!(ranges[7] < 12.0 && ranges[353] < 12.0 && (ranges[8] - 12.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn the_floor_and_its_closed_doors_and_people_are_one_scan() {
-        let mut floor = Floor::new(&fixture::hall(20.0, 10.0));
-        let from = Pose::new(5.0, 5.0, std::f64::consts::FRAC_PI_2);
-        let open = scan(&floor, &from, &[], 12.0);
-        assert!((open[0] - 4.9).abs() < 1e-9 && (open[270] - 12.0).abs() < 1e-9 && (open[90] - 4.9).abs() < 1e-9);
-        floor.close(vec![(Point::new(8.0, 4.0), Point::new(8.0, 6.0))]);
-        let people = [
-            Disc { center: Point::new(5.0, 7.0), radius_m: 0.3 },
-            Disc { center: Point::new(f64::NAN, 7.0), radius_m: 0.3 },
-        ];
-        let shut = scan(&floor, &from, &people, 12.0);
-        assert!((shut[270] - 3.0).abs() < 1e-9 && (shut[0] - 1.7).abs() < 1e-9 && (shut[90] - 4.9).abs() < 1e-9);
-        // Beam by beam the same as one ray at a time.
-        for (beam, range) in shut.iter().enumerate() {
-            let angle = from.yaw + (beam as f64).to_radians();
-            let wall = floor.ray_m(&from.point(), angle, 12.0);
-            let heading = Vector::new(libm::cos(angle), libm::sin(angle));
-            let body = crate::floor::ray_disc(&from.point(), &heading, &people[0].center, 0.3);
-            assert!((range - body.unwrap_or(12.0).min(wall)).abs() < 1e-9, "beam {beam}: {range}");
-        }
-    }
-
-    #[test]
-    fn a_scene_with_a_number_that_is_none_is_refused_with_its_place() {
-        let (here, nan) = (Pose::new(0.0, 0.0, 0.0), f64::NAN);
-        let disc = |x: f64, radius_m: f64| Disc { center: Point::new(x, 0.0), radius_m };
-        let line = (Point::new(1.0, 0.0), Point::new(nan, 0.0));
-        let refused = [
-            (scan_shapes(&Pose::new(nan, 0.0, 0.0), &[], &[], 12.0), "scanner stands at `NaN"),
-            (scan_shapes(&here, &[], &[], nan), "range is `NaN` m"),
-            (scan_shapes(&here, &[], &[], -1.0), "range is `-1` m"),
-            (scan_shapes(&here, &[disc(1.0, 0.3), disc(nan, 0.3)], &[], 12.0), "disc 1 is at `NaN"),
-            (scan_shapes(&here, &[disc(1.0, -0.3)], &[], 12.0), "radius `-0.3` m"),
-            (scan_shapes(&here, &[], &[line], 12.0), "segment 0 goes"),
-        ];
-        for (found, wanted) in refused {
-            let message = found.unwrap_err().to_string();
-            assert!(message.contains(wanted), "{message}");
-        }
-    }
-}
+mod tests;

@@ -504,16 +504,24 @@ fn run_away(human: &mut Human, scene: &Scene<'_>) -> Want {
 fn refuge(human: &Human, scene: &Scene<'_>, robot: &Robot) -> Option<Point> {
     let graph = &scene.location.graph;
     let walk = |from: &Point| {
-        let start =
-            graph.nodes.iter().min_by(|a, b| (a.at - from).norm_squared().total_cmp(&(b.at - from).norm_squared()))?;
+        let start = graph
+            .nodes()
+            .iter()
+            .min_by(|a, b| (a.at - from).norm_squared().total_cmp(&(b.at - from).norm_squared()))?;
         let offset = (start.at - from).norm();
         let costs = walking(graph, &start.id);
-        Some(graph.nodes.iter().map(|node| costs.get(&node.id).map(|cost| cost + offset)).collect::<Vec<Option<f64>>>())
+        Some(
+            graph
+                .nodes()
+                .iter()
+                .map(|node| costs.get(&node.id).map(|cost| cost + offset))
+                .collect::<Vec<Option<f64>>>(),
+        )
     };
     let (mine, robots) = (walk(&human.at)?, walk(&robot.at())?);
     let away = human.at - robot.at();
     let mut best: Option<(f64, Point)> = None;
-    for ((node, mine), robots) in graph.nodes.iter().zip(mine).zip(robots) {
+    for ((node, mine), robots) in graph.nodes().iter().zip(mine).zip(robots) {
         let (Some(mine), Some(robots)) = (mine, robots) else { continue };
         let way = node.at - human.at;
         // Towards the robot is no way out, whatever the graph says.
@@ -551,10 +559,10 @@ fn walking(graph: &SceneGraph, from: &NodeId) -> BTreeMap<NodeId, f64> {
     while let Some(node) = open.pop() {
         let here = costs.get(&node).copied().unwrap_or(0.0);
         for next in graph.neighbors(&node) {
-            let cost = here + graph.edge_length_m(&node, &next).unwrap_or(0.0);
-            if costs.get(&next).is_none_or(|known| cost + 1e-9 < *known) {
+            let cost = here + graph.edge_length_m(&node, next).unwrap_or(0.0);
+            if costs.get(next).is_none_or(|known| cost + 1e-9 < *known) {
                 costs.insert(next.clone(), cost);
-                open.push(next);
+                open.push(next.clone());
             }
         }
     }

@@ -26,7 +26,7 @@ fn pick<'a, T>(random: &mut Random, list: &'a [T]) -> &'a T {
 /// A way between two random nodes, at most 40 m.
 fn wander(random: &mut Random, location: &Location) -> Vec<NodeId> {
     loop {
-        let nodes = &location.graph.nodes;
+        let nodes = location.graph.nodes();
         let (from, to) = (pick(random, nodes).id.clone(), pick(random, nodes).id.clone());
         if let Some(way) = location.graph.shortest(&from, &to)
             && location.graph.length_m(&way) < 40.0
@@ -163,7 +163,7 @@ fn a_crush_stays_apart_and_out_of_walls() {
         let mut floor = Floor::new(&location.grid);
         floor.close(location.doors.iter().map(|door| (door.from, door.to)).collect());
         for _ in 0..6 {
-            let goal = pick(&mut random, &location.graph.nodes).at;
+            let goal = pick(&mut random, location.graph.nodes()).at;
             let mut bodies: Vec<Body> = Vec::new();
             for _ in 0..20_000 {
                 let at = goal + Vector::new(random.between(-4.0, 4.0), random.between(-4.0, 4.0));

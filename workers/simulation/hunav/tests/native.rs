@@ -74,7 +74,7 @@ fn random(map: &str, seed: u64, people: usize, seconds: f64) -> (Recording, Grid
     let location = shipped::load(map).unwrap();
     let nearest = |(x, y): (f64, f64)| {
         let at = Point::new(x, y);
-        let nodes = location.graph.nodes.iter().map(|node| node.at);
+        let nodes = location.graph.nodes().iter().map(|node| node.at);
         nodes.min_by(|a, b| (a - at).norm().total_cmp(&(b - at).norm())).unwrap()
     };
     // A robot without a planner drives straight: its points are the corners of a way.

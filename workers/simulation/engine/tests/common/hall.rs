@@ -95,7 +95,7 @@ pub fn crowd(n: u32, secs: f64) -> Setup {
             name: "hall".into(),
             description: String::new(),
             grid: grid(side, &scene.segments),
-            graph: SceneGraph { nodes, edges },
+            graph: SceneGraph::new(nodes, edges),
             doors: vec![],
             warnings: vec![],
         },

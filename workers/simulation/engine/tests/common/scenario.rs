@@ -116,7 +116,7 @@ pub fn run(mut setup: Setup, planner: &str) -> Recording {
 
 /// Ways of the robot of 10 to 25 m between every few nodes.
 pub fn ways(location: &Location, every: usize, offset: usize) -> Vec<Vec<NodeId>> {
-    let nodes = &location.graph.nodes;
+    let nodes = location.graph.nodes();
     let outside = |id: &NodeId| location.door_of(id).is_none();
     let mut found = Vec::new();
     for (i, a) in nodes.iter().enumerate() {
@@ -144,11 +144,11 @@ pub fn relations(location: &Location, way: &[NodeId]) -> Vec<(&'static str, Cast
     all.push(("static", Cast(Relation::Static, vec![middle.clone()], vec![]), middle));
     let graph = &location.graph;
     for place in 1..way.len() - 1 {
-        let around: Vec<NodeId> = graph.neighbors(&way[place]).into_iter().filter(|id| !way.contains(id)).collect();
+        let around: Vec<NodeId> = graph.neighbors(&way[place]).iter().filter(|id| !way.contains(id)).cloned().collect();
         if let Some(side) = around.first() {
             let onward = around.get(1).cloned().unwrap_or_else(|| way[place + 1].clone());
             let mut path = vec![side.clone(), way[place].clone(), onward];
-            let farther = graph.neighbors(side).into_iter().find(|id| *id != way[place] && !way.contains(id));
+            let farther = graph.neighbors(side).iter().find(|id| **id != way[place] && !way.contains(id)).cloned();
             path.splice(0..0, farther);
             all.push(("crossing", Cast(Relation::Crossing, path, vec![]), way[place].clone()));
             break;
