@@ -52,7 +52,7 @@ pub use geometry::{Point, Pose, Vector};
 pub use gesture::Gesture;
 pub use graph::{GraphEdge, GraphNode, SceneGraph};
 pub use grid::{Cell, Grid};
-pub use hash::Digest;
+pub use hash::{Digest, DigestWriter};
 pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
 pub use location::{Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};

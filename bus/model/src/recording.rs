@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
-use crate::hash::Digest;
+use crate::hash::{Digest, DigestWriter};
 use crate::ids::{AgentId, HumanId, NodeId, RunId};
 use crate::time::SimTime;
 
@@ -298,18 +298,45 @@ impl Recording {
     /// The recording hash: over decoded frames and events, not over any file.
     #[must_use]
     pub fn hash(&self) -> Digest {
-        let mut bytes = Vec::with_capacity(self.frames.len() * AGENT_STATE_BYTES + 1024);
-        for state in &self.frames {
-            bytes.extend_from_slice(&state.to_bytes());
+        let mut hash = RecordingHash::default();
+        hash.states(&self.frames);
+        self.events.iter().for_each(|event| hash.event(event));
+        hash.finish()
+    }
+}
+
+/// The recording hash of a run while it goes. It holds no frame: only the words of the events, which come after all frames.
+#[derive(Debug, Clone, Default)]
+pub struct RecordingHash {
+    frames: DigestWriter,
+    events: Vec<u8>,
+}
+
+impl RecordingHash {
+    /// Takes the next states, in frame order.
+    pub fn states(&mut self, states: &[AgentState]) {
+        states.iter().for_each(|state| self.frames.write(&state.to_bytes()));
+    }
+
+    /// The same with the bytes of the states one after the other, as [`AgentState::to_bytes`] makes them.
+    pub fn state_bytes(&mut self, bytes: &[u8]) {
+        self.frames.write(bytes);
+    }
+
+    /// Takes the next event.
+    pub fn event(&mut self, event: &Event) {
+        // Events hold no map without order, so their JSON is canonical.
+        if let Ok(text) = serde_json::to_vec(event) {
+            self.events.extend_from_slice(&text);
         }
-        for event in &self.events {
-            // Events hold no map without order, so their JSON is canonical.
-            if let Ok(text) = serde_json::to_vec(event) {
-                bytes.extend_from_slice(&text);
-            }
-            bytes.push(b'\n');
-        }
-        Digest::of(&bytes)
+        self.events.push(b'\n');
+    }
+
+    /// The hash of all that was taken.
+    #[must_use]
+    pub fn finish(mut self) -> Digest {
+        self.frames.write(&self.events);
+        self.frames.finish()
     }
 }
 
@@ -341,6 +368,39 @@ mod tests {
         assert_eq!(header(&["", "track", ABSENT_LEAF]).absent(), Some(2));
         // Index 0 is none, whatever its name.
         assert_eq!((header(&[ABSENT_LEAF, "track"]).absent(), header(&[]).absent()), (None, None));
+    }
+
+    #[test]
+    fn the_hash_of_a_run_that_goes_is_that_of_the_whole_recording() {
+        let state = |tick, agent| AgentState {
+            tick,
+            agent,
+            flags: agent,
+            x: 0.5,
+            y: -1.0,
+            yaw: 0.1,
+            vx: 0.2,
+            vy: 0.3,
+            omega: 0.0,
+        };
+        let frames: Vec<AgentState> = (0..50).flat_map(|tick| [state(tick, 0), state(tick, 1)]).collect();
+        let event = |tick| Event { time: SimTime::at_tick(tick), kind: EventKind::RobotArrived };
+        let events = vec![event(3), event(40)];
+        let mut bytes: Vec<u8> = frames.iter().flat_map(AgentState::to_bytes).collect();
+        for event in &events {
+            bytes.extend(serde_json::to_vec(event).unwrap());
+            bytes.push(b'\n');
+        }
+        // Events come between the ticks, as a run tells them.
+        let mut hash = RecordingHash::default();
+        for (tick, states) in frames.chunks(2).enumerate() {
+            match tick % 2 {
+                0 => hash.states(states),
+                _ => hash.state_bytes(&states.iter().flat_map(AgentState::to_bytes).collect::<Vec<u8>>()),
+            }
+            events.iter().filter(|event| event.time.tick() == tick as u64).for_each(|event| hash.event(event));
+        }
+        assert_eq!(hash.finish(), Digest::of(&bytes));
     }
 
     #[test]
