@@ -9,8 +9,8 @@ use socrates_model::job::MESSAGE_BYTES;
 
 use crate::error::LinkError;
 
-/// Version of the messages written here.
-pub const VERSION: u32 = 1;
+/// Version of the messages written here. Since 2, the ticks of a live run come several to a message.
+pub const VERSION: u32 = 2;
 /// Oldest version read here.
 pub const MIN_VERSION: u32 = 1;
 /// Deepest nesting that is read: far more than any message has, far less than a stack holds.
@@ -43,6 +43,12 @@ pub struct Envelope<T> {
 }
 
 impl<T> Envelope<T> {
+    /// The same for readers of this version and newer ones: an older one would take it for something else.
+    #[must_use]
+    pub fn for_readers_of(self, version: u32) -> Self {
+        Self { min_v: version, ..self }
+    }
+
     /// An envelope of this version with a fresh id; its time is the id's own.
     #[must_use]
     pub fn fresh(kind: &str, sender: &str, epoch: u64, body: T) -> Self {

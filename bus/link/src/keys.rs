@@ -91,7 +91,7 @@ pub fn live_meta(run: &RunId) -> String {
     format!("live/{}/meta", chunk(run.as_str()))
 }
 
-/// Frames of a run, one message per tick.
+/// Frames of a run: up to ten ticks to a message, or one part of a tick that is larger than a message.
 #[must_use]
 pub fn live_agents(run: &RunId) -> String {
     format!("live/{}/agents", chunk(run.as_str()))

@@ -3,6 +3,7 @@
 //! ```text
 //! simulation ── FrameSink ─┬─► ShmSink   shared memory, one host      ─► ShmWatch
 //!   (blocking thread)      ├─► LiveSink  bus, between hosts           ─► Watch (ticks in order, exact gaps, fetch)
+//!                          ├─► mcap::Writer  a file or a tape in memory, chunk by chunk, as the run grows
 //!                          └─► Recorder  memory ─► mcap::write, csv::write_agents
 //! ```
 //!
@@ -25,6 +26,7 @@ mod shm;
 pub use shm::{ShmConfig, ShmSink, ShmState, ShmWatch};
 
 mod live;
+mod part;
 mod shelf;
 mod watch;
 pub use live::LiveSink;

@@ -1,4 +1,4 @@
-//! Frames over the bus: one message per tick, which may be lost, and a door where the lost can be fetched.
+//! Frames over the bus: several ticks to a message, which may be lost, and a door where the lost can be fetched.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,8 +10,15 @@ use tokio::sync::Notify;
 use tokio::task::JoinHandle;
 
 use crate::error::StreamError;
-use crate::shelf::{Ctl, END_AGENT, KIND_CTL, KIND_META, PART_BYTES, Shelf};
+use crate::mcap::Tape;
+use crate::part;
+use crate::shelf::{Ctl, KIND_CTL, KIND_META, Shelf};
 use crate::sink::FrameSink;
+
+/// Ticks that go out together, where they come that fast.
+const TOGETHER: u64 = 10;
+/// Longest time that a tick waits for others, where they come slowly.
+const GATHER: Duration = Duration::from_millis(50);
 
 /// Puts a run on the bus.
 ///
@@ -24,15 +31,16 @@ pub struct LiveSink {
 }
 
 impl LiveSink {
-    /// Opens the run's keys. Queries are served before it returns, so that the run can be asked about from tick 0 on.
+    /// Opens the run's keys. Queries are served before it returns, so that the run can be asked about from tick 0 on. The
+    /// last seconds are kept here; older ticks are read from `tape`, where somebody else records the run.
     ///
     /// # Errors
     /// [`StreamError::Link`].
-    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, linger: Duration) -> Result<Self, StreamError> {
+    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, tape: Tape, linger: Duration) -> Result<Self, StreamError> {
         let failed = |why: LinkError| StreamError::Link { run: run.to_string(), why };
         let meta = bus.serve(&keys::live_meta(run)).await.map_err(failed)?;
         let ctl = bus.serve(&keys::live_ctl(run)).await.map_err(failed)?;
-        let (shelf, news) = (Arc::new(Shelf::default()), Arc::new(Notify::new()));
+        let (shelf, news) = (Arc::new(Shelf::before(tape)), Arc::new(Notify::new()));
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
         let publisher = Some(tokio::spawn(task.publish(meta, ctl, linger)));
         Ok(Self { shelf, news, publisher })
@@ -65,9 +73,12 @@ impl FrameSink for LiveSink {
         self.news.notify_one();
     }
 
-    fn tick(&mut self, _tick: u64, states: &[AgentState]) {
+    fn tick(&mut self, tick: u64, states: &[AgentState]) {
         self.shelf.tick(states);
-        self.news.notify_one();
+        // Waking somebody costs more than a tick; whoever waits for fewer looks by itself.
+        if tick % TOGETHER == TOGETHER - 1 {
+            self.news.notify_one();
+        }
     }
 
     fn event(&mut self, event: &Event) {
@@ -75,7 +86,7 @@ impl FrameSink for LiveSink {
         self.news.notify_one();
     }
 
-    fn end(&mut self, _ticks: u64) {
+    fn end(&mut self) {
         self.shelf.end();
         self.news.notify_one();
     }
@@ -125,10 +136,7 @@ impl Publisher {
                 self.say(&*meta).await?;
                 announced = true;
             }
-            while told_ticks < ticks && agents.is_heard() {
-                agents.put(self.shelf.frame(told_ticks)).await?;
-                told_ticks += 1;
-            }
+            self.tell_ticks(&*agents, told_ticks, ticks).await?;
             // What nobody hears is not sent: whoever comes later fetches it.
             told_ticks = ticks;
             if ended && !announced {
@@ -139,22 +147,32 @@ impl Publisher {
                 self.say(&*meta).await?;
                 told_events = events;
             }
-            if ended && told_ticks == ticks {
-                let end = AgentState {
-                    tick: ticks,
-                    agent: END_AGENT,
-                    flags: 0,
-                    x: 0.,
-                    y: 0.,
-                    yaw: 0.,
-                    vx: 0.,
-                    vy: 0.,
-                    omega: 0.,
-                };
-                return if agents.is_heard() { agents.put(end.to_bytes().to_vec()).await } else { Ok(()) };
+            if ended {
+                return if agents.is_heard() { agents.put(part::over(ticks)).await } else { Ok(()) };
             }
-            self.news.notified().await;
+            if agents.is_heard() {
+                // Whoever watches a slow run waits no longer than this for its ticks.
+                drop(tokio::time::timeout(GATHER, self.news.notified()).await);
+            } else {
+                self.news.notified().await;
+            }
         }
+    }
+
+    /// Publishes the ticks from one on, as long as anybody listens.
+    async fn tell_ticks(&self, agents: &dyn Publish, mut from: u64, ticks: u64) -> Result<(), LinkError> {
+        let mut part = 0;
+        while from < ticks && agents.is_heard() {
+            let together = from.saturating_add(TOGETHER).min(ticks) - 1;
+            // One that is nowhere is missing, and whoever watches will know.
+            let Some((message, whole)) = self.shelf.message(from, together, part) else {
+                (from, part) = (from + 1, 0);
+                continue;
+            };
+            agents.put(message).await?;
+            (from, part) = if whole == 0 { (from, part + 1) } else { (from + whole, 0) };
+        }
+        Ok(())
     }
 
     /// Tells how the run stands, where anybody listens.
@@ -164,7 +182,8 @@ impl Publisher {
 
     fn meta_message(&self) -> Result<Vec<u8>, LinkError> {
         match self.shelf.meta() {
-            Some(meta) => encode(&Envelope::fresh(KIND_META, self.bus.name(), 0, meta)),
+            // A watcher of version 1 would take the messages of the frame key for something else.
+            Some(meta) => encode(&Envelope::fresh(KIND_META, self.bus.name(), 0, meta).for_readers_of(part::VERSION)),
             None => Err(LinkError::NoReply { key: keys::live_meta(&self.run) }),
         }
     }
@@ -175,12 +194,17 @@ impl Publisher {
     }
 
     async fn answer_ctl(&self, ask: Ask) -> Result<(), LinkError> {
+        let name = self.bus.name();
         match ask.read::<Ctl>(KIND_CTL) {
             Ok(envelope) => match envelope.body {
-                Ctl::Frames { from, to } => ask.reply(self.shelf.frames(from, to, PART_BYTES)).await,
-                Ctl::Events { from } => ask.answer(KIND_CTL, self.bus.name(), 0, &self.shelf.events(from)).await,
+                Ctl::Frames { from, to, part } => {
+                    let message = self.shelf.message(from, to, part).map(|(message, _)| message);
+                    ask.reply(message.unwrap_or_default()).await
+                }
+                Ctl::Events { from } => ask.answer(KIND_CTL, name, 0, &self.shelf.events(from)).await,
+                Ctl::Agents { from } => ask.answer(KIND_CTL, name, 0, &self.shelf.agents(from)).await,
             },
-            Err(why) => ask.refuse(self.bus.name(), 0, &why.to_string()).await,
+            Err(why) => ask.refuse(name, 0, &why.to_string()).await,
         }
     }
 }

@@ -3,46 +3,36 @@
 //! | topic | encoding | what |
 //! |---|---|---|
 //! | `/socrates/header` | JSON | the header, before everything else |
-//! | `/socrates/agents` | 64-byte records | every agent of one tick |
+//! | `/socrates/agents` | 64-byte records | every agent of one tick; the schema names the fields and where they are |
 //! | `/socrates/events` | JSON | one event |
 //! | `/socrates/end` | JSON | ticks, events and recording hash, after everything else |
-//! | `/scene` | JSON, `foxglove.SceneUpdate` | walls once; people, robot, headings and names ten times a second |
-//! | `/tf` | JSON, `foxglove.FrameTransform` | every agent's frame in `map`, ten times a second |
+//! | `/scene` | protobuf, `foxglove.SceneUpdate` | walls and bodies with their names once; who comes, goes or gestures |
+//! | `/tf` | protobuf, `foxglove.FrameTransforms` | every agent's frame in `map`, ten times a second |
+//! | `/crowd` | protobuf, `foxglove.PosesInFrame` | the people with their headings, ten times a second |
+//! | `/robot` | protobuf, `foxglove.PoseInFrame` | the robot, ten times a second |
 //!
-//! Times are those of the run and nothing else is written, so the same recording gives the same bytes.
+//! Foxglove and Lichtblick draw all of them, Rerun all but `/scene`. Whoever is absent is in none of the pictures.
+//!
+//! A file grows chunk by chunk and is good up to its last whole one at any moment. Times are those of the run and nothing
+//! else is written, so the same recording gives the same bytes.
 
+mod proto;
+mod read;
 mod scene;
+mod tape;
+mod write;
 
-use std::collections::BTreeMap;
-use std::io::Cursor;
-
-use ::mcap::records::MessageHeader;
-use ::mcap::sans_io::{LinearReaderOptions, MessageReadEvent, MessageReader};
-use ::mcap::{Compression, McapError, WriteOptions, Writer};
 use serde::{Deserialize, Serialize};
-use socrates_model::recording::{AgentState, Event, Recording, RecordingHeader};
-use socrates_model::{Digest, FORMAT, Location, SimTime};
+use socrates_model::Digest;
 
-use crate::bounds;
-use crate::error::StreamError;
-use crate::shelf::records;
+pub use read::{Rest, begins, read, read_rest};
+pub use tape::Tape;
+pub use write::{Whole, Writer, write};
 
 const HEADER: &str = "/socrates/header";
 const AGENTS: &str = "/socrates/agents";
 const EVENTS: &str = "/socrates/events";
 const END: &str = "/socrates/end";
-/// Ticks between two pictures of the scene: ten a second.
-const SCENE_EVERY: usize = 10;
-/// Largest record that is read, bytes.
-const MAX_RECORD: usize = 256 * 1024 * 1024;
-/// Most topics of others that are named.
-const MAX_TOPICS: usize = 12;
-/// Most states that are read: an hour with forty agents is 14.4 million.
-const MAX_STATES: usize = 32 * 1024 * 1024;
-/// Most events that are read: a run of an hour has some thousands.
-const MAX_EVENTS: usize = 4 * 1024 * 1024;
-/// Most bytes of messages that are unpacked: 32 million states and ten pictures of them a second.
-const MAX_UNPACKED: usize = 8 * 1024 * 1024 * 1024;
 
 /// The last message of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,314 +40,6 @@ struct End {
     ticks: u64,
     events: u64,
     hash: Digest,
-}
-
-/// A writer with the channels it knows.
-struct Pen {
-    writer: Writer<Cursor<Vec<u8>>>,
-    sequences: BTreeMap<u16, u32>,
-}
-
-impl Pen {
-    fn channel(&mut self, topic: &str, encoding: &str, schema: Option<(&str, &str)>) -> Result<u16, McapError> {
-        let schema_id = match schema {
-            Some((name, text)) => self.writer.add_schema(name, "jsonschema", text.as_bytes())?,
-            None => 0,
-        };
-        self.writer.add_channel(schema_id, topic, encoding, &BTreeMap::new())
-    }
-
-    fn message(&mut self, channel_id: u16, time: SimTime, data: &[u8]) -> Result<(), McapError> {
-        let sequence = self.sequences.entry(channel_id).or_insert(0);
-        let header =
-            MessageHeader { channel_id, sequence: *sequence, log_time: time.nanos(), publish_time: time.nanos() };
-        *sequence = sequence.wrapping_add(1);
-        self.writer.write_to_known_channel(&header, data)
-    }
-
-    fn json<T: Serialize>(&mut self, channel_id: u16, time: SimTime, value: &T) -> Result<(), McapError> {
-        let data = serde_json::to_vec(value).map_err(|why| McapError::Io(std::io::Error::other(why)))?;
-        self.message(channel_id, time, &data)
-    }
-}
-
-/// Writes a recording; with the location, its walls are in the scene.
-///
-/// # Errors
-/// [`StreamError::Write`].
-pub fn write(recording: &Recording, location: Option<&Location>) -> Result<Vec<u8>, StreamError> {
-    written(recording, location)
-        .map_err(|why| StreamError::Write { run: recording.header.run.to_string(), why: why.to_string() })
-}
-
-fn written(recording: &Recording, location: Option<&Location>) -> Result<Vec<u8>, McapError> {
-    let options = WriteOptions::new()
-        .compression(Some(Compression::Zstd))
-        .compression_threads(0)
-        .profile("")
-        .library("socrates")
-        .chunk_size(Some(1024 * 1024));
-    let mut pen = Pen { writer: options.create(Cursor::new(Vec::new()))?, sequences: BTreeMap::new() };
-    let object = r#"{"type":"object"}"#;
-    let header = pen.channel(HEADER, "json", Some(("socrates.Header", object)))?;
-    let agents = pen.channel(AGENTS, "socrates.AgentState.v1", None)?;
-    let events = pen.channel(EVENTS, "json", Some(("socrates.Event", object)))?;
-    let end = pen.channel(END, "json", Some(("socrates.End", object)))?;
-    let picture = pen.channel("/scene", "json", Some(("foxglove.SceneUpdate", scene::SCENE_SCHEMA)))?;
-    let frames = pen.channel("/tf", "json", Some(("foxglove.FrameTransform", scene::FRAME_SCHEMA)))?;
-
-    pen.json(header, SimTime::ZERO, &recording.header)?;
-    if let Some(location) = location {
-        pen.json(picture, SimTime::ZERO, &scene::walls(location))?;
-    }
-    if let Some(ways) = scene::ways(recording) {
-        pen.json(picture, SimTime::ZERO, &ways)?;
-    }
-    let mut next_event = recording.events.iter().peekable();
-    let mut last = SimTime::ZERO;
-    for tick in 0..recording.ticks() {
-        let time = SimTime::at_tick(tick as u64);
-        while let Some(event) = next_event.next_if(|event| event.time < time) {
-            pen.json(events, event.time, event)?;
-        }
-        let states = recording.tick(tick);
-        let bytes: Vec<u8> = states.iter().flat_map(AgentState::to_bytes).collect();
-        pen.message(agents, time, &bytes)?;
-        if tick % SCENE_EVERY == 0 {
-            pen.json(picture, time, &scene::agents(&recording.header, states, time))?;
-            for state in states {
-                pen.json(frames, time, &scene::frame(state, time))?;
-            }
-        }
-        last = time;
-    }
-    for event in next_event {
-        pen.json(events, event.time, event)?;
-        last = last.max(event.time);
-    }
-    let whole = End { ticks: recording.ticks() as u64, events: recording.events.len() as u64, hash: recording.hash() };
-    pen.json(end, last, &whole)?;
-    pen.writer.finish()?;
-    Ok(pen.writer.into_inner().into_inner())
-}
-
-/// A recording that may have been cut.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rest {
-    /// What is there.
-    pub recording: Recording,
-    /// Why it ends where it does; `None` for one that is whole.
-    pub cut: Option<String>,
-}
-
-/// Reads as much of a recording as there is: all of it, or all up to where the file is cut or damaged.
-///
-/// # Errors
-/// As [`read`], where not even two ticks are there or what is there contradicts itself.
-pub fn read_rest(bytes: &[u8]) -> Result<Rest, StreamError> {
-    // A chunk that was damaged is dropped whole. One that was cut is good up to the cut, but its checksum is not.
-    let (mut parts, mut filled) = Parts::read(bytes, Chunks::Whole);
-    if let Err(StreamError::Read { cut: true, .. }) = filled {
-        (parts, filled) = Parts::read(bytes, Chunks::UpToTheCut);
-    }
-    let why = match filled {
-        Ok(()) if parts.end.is_some() || parts.header.is_none() => {
-            return Ok(Rest { recording: parts.whole()?, cut: None });
-        }
-        Ok(()) => "the file was cut off".to_owned(),
-        Err(StreamError::Read { len, cut, why }) => {
-            let agents = parts.header.as_ref().map_or(usize::MAX, |header| header.agents.len());
-            if parts.frames.len() / 2 < agents {
-                return Err(StreamError::Read { len, cut, why });
-            }
-            format!("the file is cut off or damaged: {why}")
-        }
-        Err(other) => return Err(other),
-    };
-    match parts.header {
-        Some(header) if parts.frames.len() / 2 >= header.agents.len() => {
-            Ok(Rest { recording: Recording { header, frames: parts.frames, events: parts.events }, cut: Some(why) })
-        }
-        Some(_) | None => Err(StreamError::Read { len: bytes.len(), cut: true, why }),
-    }
-}
-
-/// Whether bytes begin as an MCAP file does, as far as there are any.
-#[must_use]
-pub fn begins(bytes: &[u8]) -> bool {
-    const MAGIC: &[u8] = b"\x89MCAP0\r\n";
-    let shared = bytes.len().min(MAGIC.len());
-    shared > 0 && bytes.get(..shared) == MAGIC.get(..shared)
-}
-
-/// Reads a recording and checks that it is whole.
-///
-/// # Errors
-/// [`StreamError::Read`] for bytes that are no MCAP file or are cut, [`StreamError::NotWhole`] for a file that lacks
-/// something, has states in a wrong order or another hash than it was written with.
-pub fn read(bytes: &[u8]) -> Result<Recording, StreamError> {
-    let (parts, filled) = Parts::read(bytes, Chunks::Whole);
-    filled?;
-    parts.whole()
-}
-
-/// What must be there of a chunk before its messages count.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Chunks {
-    /// All of it, with the right checksum.
-    Whole,
-    /// What comes before the end of the file.
-    UpToTheCut,
-}
-
-#[derive(Default)]
-struct Parts {
-    header: Option<RecordingHeader>,
-    frames: Vec<AgentState>,
-    events: Vec<Event>,
-    end: Option<End>,
-    /// Topics of others, with their schemas.
-    others: BTreeMap<String, String>,
-    /// Bytes of all messages so far.
-    unpacked: usize,
-}
-
-fn not_whole(why: impl Into<String>) -> StreamError {
-    StreamError::NotWhole { why: why.into() }
-}
-
-impl Parts {
-    /// What a file holds, and why no more of it.
-    fn read(bytes: &[u8], chunks: Chunks) -> (Self, Result<(), StreamError>) {
-        let mut parts = Self::default();
-        let filled = parts.fill(bytes, chunks);
-        (parts, filled)
-    }
-
-    /// Takes every message of a file; what came before an error is kept.
-    fn fill(&mut self, bytes: &[u8], chunks: Chunks) -> Result<(), StreamError> {
-        let failed = |why: &McapError| StreamError::Read {
-            len: bytes.len(),
-            cut: matches!(why, McapError::UnexpectedEof),
-            why: why.to_string(),
-        };
-        let mut options = LinearReaderOptions::default()
-            .with_record_length_limit(MAX_RECORD)
-            .with_validate_chunk_crcs(true)
-            .with_prevalidate_chunk_crcs(chunks == Chunks::Whole);
-        options.validate_data_section_crc = true;
-        let mut reader = MessageReader::new_with_options(options);
-        let mut rest = bytes;
-        while let Some(event) = reader.next_event() {
-            match event.map_err(|why| failed(&why))? {
-                MessageReadEvent::ReadRequest(wanted) => {
-                    // Never more memory than the file has bytes, whatever its lengths claim.
-                    let (given, left) = rest.split_at(wanted.min(rest.len()));
-                    if let Some(room) = reader.insert(given.len()).get_mut(..given.len()) {
-                        room.copy_from_slice(given);
-                    }
-                    reader.notify_read(given.len());
-                    rest = left;
-                }
-                MessageReadEvent::Message(message) => {
-                    self.unpacked = self.unpacked.saturating_add(message.data.len());
-                    if self.unpacked > MAX_UNPACKED {
-                        return Err(not_whole(format!("its messages have more than {MAX_UNPACKED} bytes")));
-                    }
-                    if !self.take(&message.channel.topic, &message.data)? && self.others.len() < MAX_TOPICS {
-                        let schema = message.channel.schema.as_ref().map_or("no schema", |schema| schema.name.as_str());
-                        self.others.entry(message.channel.topic.clone()).or_insert_with(|| schema.to_owned());
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Takes a message; `false` for one of a topic of others.
-    fn take(&mut self, topic: &str, data: &[u8]) -> Result<bool, StreamError> {
-        let unread = |why: serde_json::Error| not_whole(format!("a message of `{topic}` cannot be read: {why}"));
-        match topic {
-            HEADER => {
-                let header: RecordingHeader = serde_json::from_slice(data).map_err(unread)?;
-                if header.format > FORMAT {
-                    return Err(not_whole(format!(
-                        "it has format {}, this version reads up to {FORMAT}",
-                        header.format
-                    )));
-                }
-                if self.header.is_some() {
-                    return Err(not_whole("it has two headers"));
-                }
-                if let Some(why) = bounds::header(&header) {
-                    return Err(not_whole(why));
-                }
-                self.header = Some(header);
-            }
-            AGENTS => self.tick(data)?,
-            EVENTS => {
-                let event: Event = serde_json::from_slice(data).map_err(unread)?;
-                if let Some(why) = bounds::event(&event) {
-                    return Err(not_whole(why));
-                }
-                if self.events.len() >= MAX_EVENTS {
-                    return Err(not_whole(format!("it has more than {MAX_EVENTS} events")));
-                }
-                self.events.push(event);
-            }
-            END => self.end = Some(serde_json::from_slice(data).map_err(unread)?),
-            _other => return Ok(false),
-        }
-        Ok(true)
-    }
-
-    fn tick(&mut self, data: &[u8]) -> Result<(), StreamError> {
-        let Some(header) = &self.header else { return Err(not_whole("states come before the header")) };
-        let states =
-            records(data).ok_or_else(|| not_whole(format!("{} bytes are not whole 64-byte states", data.len())))?;
-        let agents = header.agents.len();
-        let tick = self.frames.len() / agents.max(1);
-        let expected = header.agents.iter().map(|info| info.agent.number());
-        if states.len() != agents || !states.iter().map(|state| state.agent).eq(expected) {
-            return Err(not_whole(format!(
-                "tick {tick} does not have the {agents} agents of the header in their order"
-            )));
-        }
-        if let Some(state) = states.iter().find(|state| state.tick != tick as u64) {
-            return Err(not_whole(format!("tick {} stands where tick {tick} is due", state.tick)));
-        }
-        if let Some(why) = states.iter().find_map(bounds::state) {
-            return Err(not_whole(why));
-        }
-        if self.frames.len() >= MAX_STATES {
-            return Err(not_whole(format!("it has more than {MAX_STATES} states")));
-        }
-        self.frames.extend(states);
-        Ok(())
-    }
-
-    fn whole(self) -> Result<Recording, StreamError> {
-        let Some(header) = self.header else {
-            let topics: Vec<String> =
-                self.others.iter().map(|(topic, schema)| format!("`{topic}` ({schema})")).collect();
-            let topics = if topics.is_empty() { "no message".to_owned() } else { topics.join(", ") };
-            return Err(StreamError::Foreign { topics });
-        };
-        let end = self.end.ok_or_else(|| not_whole(format!("there is no `{END}`: it was cut off")))?;
-        let recording = Recording { header, frames: self.frames, events: self.events };
-        let (ticks, events) = (recording.ticks() as u64, recording.events.len() as u64);
-        if (ticks, events) != (end.ticks, end.events) {
-            return Err(not_whole(format!(
-                "{ticks} of {} ticks and {events} of {} events are there",
-                end.ticks, end.events
-            )));
-        }
-        let hash = recording.hash();
-        if hash != end.hash {
-            return Err(not_whole(format!("its hash is `{hash}` but it was written with `{}`", end.hash)));
-        }
-        Ok(recording)
-    }
 }
 
 #[cfg(test)]

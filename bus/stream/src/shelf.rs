@@ -1,14 +1,21 @@
-//! The frames of a run in memory: written by the simulation, read by whoever missed some.
+//! The last frames of a run in memory: written by the simulation, read by whoever missed some. Older ones are read from the
+//! recording that is being written.
 
+use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
-use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
+use socrates_model::recording::{AGENT_STATE_BYTES, AgentInfo, AgentState, Event, RecordingHeader};
 
-/// Largest reply with frames or events, bytes.
-pub(crate) const PART_BYTES: usize = 48 * 1024;
-/// Agent number of the record that ends a run on the frame key; its tick is the number of ticks.
-pub(crate) const END_AGENT: u32 = u32::MAX;
+use crate::mcap::Tape;
+use crate::part;
+
+/// Largest reply with events or agents, bytes.
+const PART_BYTES: usize = 48 * 1024;
+/// Ticks that are kept: the last 20 s.
+const RING_TICKS: u64 = 2_000;
+/// Bytes of ticks that are kept: more than a chunk of the recording, so that what is not in it yet is here.
+const RING_BYTES: usize = 8 * 1024 * 1024;
 /// Kind of a message on the meta key and of its queries.
 pub(crate) const KIND_META: &str = "live_meta";
 /// Kind of a query on the ctl key.
@@ -17,8 +24,14 @@ pub(crate) const KIND_CTL: &str = "live_ctl";
 /// What the meta key says: header and how far the run is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Meta {
-    /// Header.
+    /// Version of the messages on the frame key.
+    #[serde(default)]
+    pub(crate) version: u32,
+    /// Header, with as many agents as fit into a message.
     pub(crate) header: RecordingHeader,
+    /// How many agents there are; the others are asked for.
+    #[serde(default)]
+    pub(crate) agents: u64,
     /// Ticks so far.
     pub(crate) ticks: u64,
     /// Events so far.
@@ -27,65 +40,113 @@ pub(crate) struct Meta {
     pub(crate) ended: bool,
 }
 
-/// What the ctl key is asked. Frames come back as plain records, events as a message.
+/// What the ctl key is asked. Frames come back as a message of the frame key, all else as a message.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Ctl {
-    /// Whole ticks from this one to that one, as many as fit.
+    /// Whole ticks from this one to that one, as many as fit; where a tick does not fit, this part of the first.
     Frames {
         /// First tick.
         from: u64,
         /// Last tick.
         to: u64,
+        /// Part, from 0.
+        #[serde(default)]
+        part: u32,
     },
     /// Events from this number on, as many as fit.
     Events {
         /// First event, from 0.
         from: u64,
     },
+    /// Agents of the header from this number on, as many as fit.
+    Agents {
+        /// First agent, from 0.
+        from: u64,
+    },
 }
 
 /// The frames.
 #[derive(Default)]
-pub(crate) struct Shelf(Mutex<Rows>);
+pub(crate) struct Shelf {
+    rows: Mutex<Rows>,
+    /// The recording that is being written.
+    tape: Tape,
+    /// The ticks that were read from it last, for the questions that follow.
+    read: Mutex<Vec<Vec<u8>>>,
+}
 
 #[derive(Default)]
 struct Rows {
     header: Option<RecordingHeader>,
-    frames: Vec<AgentState>,
-    events: Vec<Event>,
+    /// Bytes of the ticks from `first` on.
+    ring: VecDeque<u8>,
+    first: u64,
     ticks: u64,
+    events: Vec<Event>,
     ended: bool,
 }
 
+impl Rows {
+    fn tick_bytes(&self) -> usize {
+        self.header.as_ref().map_or(0, |header| header.agents.len()).max(1) * AGENT_STATE_BYTES
+    }
+}
+
 impl Shelf {
+    /// A shelf whose older ticks are on this tape.
+    pub(crate) fn before(tape: Tape) -> Self {
+        Self { tape, ..Self::default() }
+    }
+
     fn rows(&self) -> MutexGuard<'_, Rows> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.rows.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(crate) fn announce(&self, header: &RecordingHeader) {
         *self.rows() = Rows { header: Some(header.clone()), ..Rows::default() };
     }
 
+    /// Takes the next tick and lets go of what is older than the ring.
     pub(crate) fn tick(&self, states: &[AgentState]) {
         let mut rows = self.rows();
-        rows.frames.extend_from_slice(states);
+        states.iter().for_each(|state| rows.ring.extend(state.to_bytes()));
         rows.ticks += 1;
+        let len = rows.tick_bytes();
+        if rows.ticks - rows.first > RING_TICKS || rows.ring.len() > RING_BYTES {
+            rows.ring.drain(..len);
+            rows.first += 1;
+        }
     }
 
     pub(crate) fn event(&self, event: &Event) {
         self.rows().events.push(event.clone());
     }
 
+    /// The run is over. What is in the recording is not kept here as well.
     pub(crate) fn end(&self) {
-        self.rows().ended = true;
+        let recorded = self.tape.ticks();
+        let mut rows = self.rows();
+        rows.ended = true;
+        if recorded >= rows.ticks {
+            rows.first = rows.ticks;
+            rows.ring = VecDeque::new();
+        }
     }
 
     /// What the meta key says now; `None` before the announcement.
     pub(crate) fn meta(&self) -> Option<Meta> {
         let rows = self.rows();
-        let header = rows.header.clone()?;
-        Some(Meta { header, ticks: rows.ticks, events: rows.events.len() as u64, ended: rows.ended })
+        let header = rows.header.as_ref()?;
+        let meta = Meta {
+            version: part::VERSION,
+            header: RecordingHeader { agents: fitting(&header.agents, 0), ..header.clone() },
+            agents: header.agents.len() as u64,
+            ticks: rows.ticks,
+            events: rows.events.len() as u64,
+            ended: rows.ended,
+        };
+        Some(meta)
     }
 
     /// Ticks so far, events so far, whether the run is over.
@@ -94,37 +155,110 @@ impl Shelf {
         (rows.ticks, rows.events.len() as u64, rows.ended)
     }
 
-    /// The records of one tick; empty where there is none.
-    pub(crate) fn frame(&self, tick: u64) -> Vec<u8> {
-        self.frames(tick, tick, usize::MAX)
-    }
-
-    /// Whole ticks from one to another, as many as fit into `cap` bytes.
-    pub(crate) fn frames(&self, from: u64, to: u64, cap: usize) -> Vec<u8> {
-        let rows = self.rows();
-        let agents = rows.header.as_ref().map_or(0, |header| header.agents.len()).max(1);
-        let fit = (cap / (agents * AGENT_STATE_BYTES)).max(1);
-        let begin = usize::try_from(from).unwrap_or(usize::MAX).saturating_mul(agents);
-        let wanted = usize::try_from(to.saturating_add(1).saturating_sub(from)).unwrap_or(usize::MAX);
-        let states = rows.frames.iter().skip(begin).take(wanted.min(fit).saturating_mul(agents));
-        states.flat_map(AgentState::to_bytes).collect()
+    /// Agents of the header from a number on, as many as fit a message.
+    pub(crate) fn agents(&self, from: u64) -> Vec<AgentInfo> {
+        self.rows().header.as_ref().map_or_else(Vec::new, |header| fitting(&header.agents, from))
     }
 
     /// Events from a number on, as many as fit a message.
     pub(crate) fn events(&self, from: u64) -> Vec<Event> {
-        let mut left = PART_BYTES;
-        let rows = self.rows();
-        let from = usize::try_from(from).unwrap_or(usize::MAX);
-        let fits = |event: &&Event| {
-            let len = serde_json::to_vec(event).map_or(PART_BYTES, |bytes| bytes.len());
-            left = left.saturating_sub(len);
-            left > 0
+        fitting(&self.rows().events, from)
+    }
+
+    /// The message with the ticks from one to another, as many as fit, or with one part of the first; and how many whole
+    /// ticks it ends. `None` where the first of them is nowhere.
+    pub(crate) fn message(&self, from: u64, to: u64, part: u32) -> Option<(Vec<u8>, u64)> {
+        let (len, agents) = {
+            let rows = self.rows();
+            (rows.tick_bytes(), rows.header.as_ref().map_or(0, |header| header.agents.len()))
         };
-        rows.events.iter().skip(from).take_while(fits).cloned().collect()
+        let fit = part::ticks_that_fit(agents);
+        let wanted = usize::try_from(to.saturating_add(1).saturating_sub(from)).unwrap_or(usize::MAX);
+        let records = self.records(from, wanted.min(fit.max(1)), len)?;
+        if fit > 0 {
+            let ticks = (records.len() / len) as u64;
+            return Some((part::ticks(from, &records), ticks));
+        }
+        let last = (u64::from(part) + 1) * (part::RECORDS * AGENT_STATE_BYTES) as u64 >= records.len() as u64;
+        part::piece(from, part, &records).map(|message| (message, u64::from(last)))
+    }
+
+    /// The records of at most so many ticks from one on, all from the ring or all from the recording.
+    fn records(&self, from: u64, ticks: usize, len: usize) -> Option<Vec<u8>> {
+        {
+            let rows = self.rows();
+            if let Some(skipped) = from.checked_sub(rows.first) {
+                let begin = usize::try_from(skipped).ok()?.saturating_mul(len);
+                let end = begin.saturating_add(ticks.saturating_mul(len)).min(rows.ring.len());
+                return (begin < end).then(|| rows.ring.range(begin..end).copied().collect());
+            }
+        }
+        let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = |read: &[Vec<u8>]| read.iter().position(|records| tick_of(records) == Some(from));
+        let at = match place(&read) {
+            Some(at) => at,
+            None => {
+                *read = self.tape.chunk_of(from);
+                place(&read)?
+            }
+        };
+        let found: Vec<u8> = read.iter().skip(at).take(ticks).flatten().copied().collect();
+        Some(found)
     }
 }
 
-/// Reads the records of a message; `None` when they are not whole records.
-pub(crate) fn records(bytes: &[u8]) -> Option<Vec<AgentState>> {
-    bytes.chunks(AGENT_STATE_BYTES).map(AgentState::from_bytes).collect()
+/// Number of the tick whose records these are.
+fn tick_of(records: &[u8]) -> Option<u64> {
+    records.get(..8)?.try_into().ok().map(u64::from_le_bytes)
+}
+
+/// Things from a number on, as many as fit a message.
+fn fitting<T: Clone + Serialize>(all: &[T], from: u64) -> Vec<T> {
+    let mut left = PART_BYTES;
+    let from = usize::try_from(from).unwrap_or(usize::MAX);
+    let fits = |thing: &&T| {
+        let len = serde_json::to_vec(thing).map_or(PART_BYTES, |bytes| bytes.len());
+        left = left.saturating_sub(len);
+        left > 0
+    };
+    all.iter().skip(from).take_while(fits).cloned().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csv;
+
+    /// What is asked for from a shelf whose ring has passed on, tick by tick.
+    #[test]
+    fn older_ticks_come_from_the_recording_and_the_last_from_the_ring() {
+        let mut text = String::from("t,id,x,y\n");
+        for n in 0..=45 {
+            text.push_str(&format!("{n},robot,{n},0\n{n},human_1,0,{n}\n"));
+        }
+        let recording = csv::read_tracks(&text).unwrap();
+        let tape = Tape::default();
+        let shelf = Shelf::before(tape.clone());
+        let mut writer = tape.record(&recording.header, None).unwrap();
+        shelf.announce(&recording.header);
+        for tick in 0..recording.ticks() {
+            writer.tick(recording.tick(tick)).unwrap();
+            shelf.tick(recording.tick(tick));
+        }
+        assert!(shelf.rows().first > 2_000, "the ring holds the last ticks only");
+        let ring = shelf.rows().ring.len() as u64;
+        assert_eq!(ring, RING_TICKS * 128);
+        // Not even the recording is finished, and every tick is there.
+        let mut from = 0;
+        while from < recording.ticks() as u64 {
+            let (message, ticks) = shelf.message(from, u64::MAX, 0).unwrap();
+            let begin = usize::try_from(from).unwrap() * 2;
+            let Some(part::Part::Ticks(states)) = part::read(&message, 2) else { panic!("tick {from}") };
+            assert_eq!(states.len() as u64, ticks * 2);
+            assert_eq!(states, recording.frames[begin..begin + states.len()]);
+            from += ticks;
+        }
+        assert_eq!(from, recording.ticks() as u64);
+        assert!(shelf.message(from, u64::MAX, 0).is_none());
+    }
 }

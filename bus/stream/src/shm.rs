@@ -9,6 +9,7 @@ use iceoryx2::prelude::{
     AllocationStrategy, Config, FileName, LogLevel, Node, NodeBuilder, Path, SemanticString as _, ServiceName,
     SignalHandlingMode, ZeroCopySend, ipc_threadsafe, set_log_level,
 };
+use iceoryx2::service::port_factory::PortFactory as _;
 use socrates_model::RunId;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
 
@@ -20,10 +21,31 @@ use crate::sink::FrameSink;
 const SHM_FOLDER: &str = "/dev/shm";
 /// Readers at a time.
 const READERS: usize = 4;
-/// Ticks that wait for a reader; the oldest is replaced.
+/// Ticks that wait for a reader, and that a late reader still gets, at most; the oldest is replaced.
 const BUFFER: usize = 64;
-/// Ticks that a late reader still gets.
-const HISTORY: usize = 64;
+/// Ticks that wait at least, however many agents there are.
+const LEAST_BUFFER: usize = 4;
+/// Bytes of shared memory that a run takes, where the least buffer needs no more.
+const ROOM: usize = 16 * 1024 * 1024;
+
+/// Ticks of so many agents that wait for a reader.
+const fn buffer(agents: usize) -> usize {
+    let ticks = ROOM / (agents * AGENT_STATE_BYTES);
+    // As `samples` counts them.
+    let fit = ticks.saturating_sub(2 * READERS + 2) / (READERS + 1);
+    if fit > BUFFER {
+        BUFFER
+    } else if fit < LEAST_BUFFER {
+        LEAST_BUFFER
+    } else {
+        fit
+    }
+}
+
+/// Ticks that a writer needs room for: those that wait, those that are read, those for who comes late.
+const fn samples(buffer: usize) -> usize {
+    READERS * (buffer + 2) + buffer + 2
+}
 
 /// [`AgentState`] in the layout that is shared: the same 64 bytes.
 #[derive(Debug, Clone, Copy, PartialEq, ZeroCopySend)]
@@ -183,8 +205,9 @@ impl ShmSink {
     }
 
     fn create(&self, agents: usize) -> Result<Publisher<Ipc, [ShmState], ()>, StreamError> {
-        let samples = READERS * (BUFFER + 2) + HISTORY + 2;
-        room_for(samples * agents * AGENT_STATE_BYTES).map_err(|why| self.corner.failed("finding room", &why))?;
+        let buffer = buffer(agents);
+        room_for(samples(buffer) * agents * AGENT_STATE_BYTES)
+            .map_err(|why| self.corner.failed("finding room", &why))?;
         let service = self
             .corner
             .node
@@ -193,8 +216,8 @@ impl ShmSink {
             .max_publishers(1)
             .max_subscribers(READERS)
             .max_nodes(READERS + 4)
-            .subscriber_max_buffer_size(BUFFER)
-            .history_size(HISTORY)
+            .subscriber_max_buffer_size(buffer)
+            .history_size(buffer)
             .enable_safe_overflow(true)
             .open_or_create()
             .map_err(|why| self.corner.failed("creating the service", &why))?;
@@ -235,7 +258,7 @@ impl FrameSink for ShmSink {
 
     fn event(&mut self, _event: &Event) {}
 
-    fn end(&mut self, _ticks: u64) {}
+    fn end(&mut self) {}
 }
 
 /// Whether so many bytes are free in shared memory: over-committing it shows as a signal, not as an error.
@@ -272,9 +295,10 @@ impl ShmWatch {
             .publish_subscribe::<[ShmState]>()
             .open()
             .map_err(|why| corner.failed("opening the service", &why))?;
+        let buffer = service.static_config().subscriber_max_buffer_size();
         let port = service
             .subscriber_builder()
-            .buffer_size(BUFFER)
+            .buffer_size(buffer)
             .create()
             .map_err(|why| corner.failed("creating the subscriber", &why))?;
         Ok(Self { corner, port, order: Order::new() })
@@ -389,5 +413,39 @@ mod tests {
         assert_eq!(got.len() as u64 + lost, 180);
         assert_eq!(got.last(), Some(&199));
         assert!(lost > 0);
+    }
+    #[test]
+    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
+    fn three_thousand_agents_are_read_whole_and_in_bounded_room() {
+        for agents in [1, 10, 1_000, 3_000, 10_000] {
+            let room = samples(buffer(agents)) * agents * AGENT_STATE_BYTES;
+            assert!(room <= ROOM || buffer(agents) == LEAST_BUFFER, "{agents} agents: {room} bytes");
+        }
+        let dir = tempfile::tempdir().unwrap();
+        let mut recording = csv::read_tracks("t,id,x,y\n0,human_1,0,0\n1,human_1,1,0\n").unwrap();
+        let (info, state) = (recording.header.agents[0].clone(), recording.frames[0]);
+        recording.header.agents = vec![info; 3_000];
+        let states = |tick: u64| -> Vec<AgentState> {
+            (0..3_000).map(|agent| AgentState { tick, agent, x: f64::from(agent), ..state }).collect()
+        };
+        let run = RunId::new("shm-crowd").unwrap();
+        let mut sink = match ShmSink::open(&run, &config(dir.path())) {
+            Ok(sink) => sink,
+            Err(why) => {
+                eprintln!("skipped: this machine has no shared memory: {why}");
+                return;
+            }
+        };
+        sink.announce(&recording.header);
+        if sink.port.is_none() {
+            eprintln!("skipped: this machine has less shared memory than {ROOM} bytes");
+            return;
+        }
+        let mut watch = ShmWatch::open(&run, &config(dir.path())).unwrap();
+        for tick in 0..30 {
+            sink.tick(tick, &states(tick));
+            assert!(watch.poll().unwrap().unwrap() == states(tick), "tick {tick}");
+        }
+        assert!(watch.missing().is_empty());
     }
 }

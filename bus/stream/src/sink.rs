@@ -12,8 +12,8 @@ pub trait FrameSink: Send {
     fn tick(&mut self, tick: u64, states: &[AgentState]);
     /// Something happened.
     fn event(&mut self, event: &Event);
-    /// The run is over after so many ticks.
-    fn end(&mut self, ticks: u64);
+    /// The run is over.
+    fn end(&mut self);
 }
 
 /// Takes everything and keeps nothing.
@@ -24,7 +24,7 @@ impl FrameSink for NoSink {
     fn announce(&mut self, _header: &RecordingHeader) {}
     fn tick(&mut self, _tick: u64, _states: &[AgentState]) {}
     fn event(&mut self, _event: &Event) {}
-    fn end(&mut self, _ticks: u64) {}
+    fn end(&mut self) {}
 }
 
 /// Hands everything to several sinks in order.
@@ -57,8 +57,8 @@ impl FrameSink for Fanout {
         self.0.iter_mut().for_each(|sink| sink.event(event));
     }
 
-    fn end(&mut self, ticks: u64) {
-        self.0.iter_mut().for_each(|sink| sink.end(ticks));
+    fn end(&mut self) {
+        self.0.iter_mut().for_each(|sink| sink.end());
     }
 }
 
@@ -99,5 +99,5 @@ impl FrameSink for Recorder {
         }
     }
 
-    fn end(&mut self, _ticks: u64) {}
+    fn end(&mut self) {}
 }

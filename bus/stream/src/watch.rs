@@ -6,12 +6,13 @@ use std::time::Duration;
 
 use socrates_link::{Bus, Envelope, LinkError, Overflow, Subscription, call, decode, encode, keys};
 use socrates_model::RunId;
-use socrates_model::recording::{AgentState, Event, RecordingHeader};
+use socrates_model::recording::{AgentInfo, AgentState, Event, RecordingHeader};
 use tokio::time::Instant;
 
 use crate::error::StreamError;
 use crate::order::{Order, Seen, TickRange};
-use crate::shelf::{Ctl, END_AGENT, KIND_CTL, KIND_META, Meta, records};
+use crate::part::{self, Joiner, Part};
+use crate::shelf::{Ctl, KIND_CTL, KIND_META, Meta};
 
 /// Silence after which the run is asked how it stands.
 const IDLE: Duration = Duration::from_millis(300);
@@ -48,6 +49,7 @@ pub struct Watch {
     agents: Subscription,
     meta: Subscription,
     header: Option<RecordingHeader>,
+    joiner: Joiner,
     order: Order,
     events: u64,
     ended: bool,
@@ -55,7 +57,8 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Begins to watch, before the run or in the midst of it. `depth` is the number of ticks that may wait unread.
+    /// Begins to watch, before the run or in the midst of it. `depth` is the number of messages that may wait unread;
+    /// each holds up to ten ticks.
     ///
     /// # Errors
     /// [`StreamError::Link`].
@@ -69,6 +72,7 @@ impl Watch {
             agents,
             meta,
             header: None,
+            joiner: Joiner::default(),
             order: Order::new(),
             events: 0,
             ended: false,
@@ -123,27 +127,34 @@ impl Watch {
     /// # Errors
     /// [`StreamError::Link`] when the run cannot be asked any more.
     pub async fn fetch(&mut self, range: TickRange) -> Result<Vec<AgentState>, StreamError> {
-        let agents = self.header.as_ref().map_or(1, |header| header.agents.len()).max(1);
-        let mut fetched: Vec<AgentState> = Vec::new();
-        let mut from = range.from;
+        let agents = self.agents_count();
+        let (mut fetched, mut joiner): (Vec<AgentState>, Joiner) = (Vec::new(), Joiner::default());
+        let (mut from, mut asked) = (range.from, 0);
         while from <= range.to {
-            let ask = Ctl::Frames { from, to: range.to };
+            let ask = Ctl::Frames { from, to: range.to, part: asked };
             let body = encode(&Envelope::fresh(KIND_CTL, self.bus.name(), 0, ask)).map_err(|why| self.failed(why))?;
             let reply =
                 self.bus.query(&keys::live_ctl(&self.run), body, TIMEOUT).await.map_err(|why| self.failed(why))?;
-            let states = records(&reply).unwrap_or_default();
-            if states.len() < agents {
+            let states = match part::read(&reply, agents) {
+                Some(Part::Ticks(states)) => states,
+                Some(Part::Piece { tick, part, last, states }) if tick == from && part == asked => {
+                    let joined = joiner.join((tick, part, last), states, agents);
+                    if !last {
+                        asked += 1;
+                        continue;
+                    }
+                    asked = 0;
+                    joined.unwrap_or_default()
+                }
+                Some(Part::Piece { .. } | Part::Over(_)) | None => break,
+            };
+            if states.first().is_none_or(|first| first.tick != from) {
                 break;
             }
             for states in states.chunks_exact(agents) {
-                if let Some(first) = states.first().filter(|first| first.tick == from) {
-                    self.order.filled(first.tick);
-                    fetched.extend_from_slice(states);
-                    from += 1;
-                }
-            }
-            if fetched.last().is_none_or(|last| last.tick + 1 != from) {
-                break;
+                self.order.filled(from);
+                fetched.extend_from_slice(states);
+                from += 1;
             }
         }
         Ok(fetched)
@@ -167,8 +178,16 @@ impl Watch {
 
     async fn hear(&mut self, meta: Meta, quiet: bool) -> Result<(), StreamError> {
         if self.header.is_none() {
-            self.ready.push_back(Sight::Header(meta.header.clone()));
-            self.header = Some(meta.header);
+            if meta.version != part::VERSION {
+                let (found, known) = (meta.version.max(1), part::VERSION);
+                return Err(self.failed(LinkError::Incompatible { found, needs: known, low: known, high: known }));
+            }
+            let mut header = meta.header;
+            if !self.agents_up_to(&mut header.agents, meta.agents).await? {
+                return Ok(());
+            }
+            self.ready.push_back(Sight::Header(header.clone()));
+            self.header = Some(header);
         }
         self.events_up_to(meta.events).await?;
         if quiet && meta.ended {
@@ -179,6 +198,28 @@ impl Watch {
             self.end(meta.ticks);
         }
         Ok(())
+    }
+
+    /// Fetches the agents that did not fit into the message about the run; `false` where it does not answer now.
+    async fn agents_up_to(&self, agents: &mut Vec<AgentInfo>, count: u64) -> Result<bool, StreamError> {
+        while (agents.len() as u64) < count {
+            let ask = Ctl::Agents { from: agents.len() as u64 };
+            let more: Vec<AgentInfo> = match call(&*self.bus, &keys::live_ctl(&self.run), KIND_CTL, &ask, TIMEOUT).await
+            {
+                Ok(more) => more,
+                Err(why) if why.is_transient() => return Ok(false),
+                Err(why) => return Err(self.failed(why)),
+            };
+            if more.is_empty() {
+                return Ok(false);
+            }
+            agents.extend(more);
+        }
+        Ok(true)
+    }
+
+    fn agents_count(&self) -> usize {
+        self.header.as_ref().map_or(1, |header| header.agents.len()).max(1)
     }
 
     async fn events_up_to(&mut self, count: u64) -> Result<(), StreamError> {
@@ -200,18 +241,21 @@ impl Watch {
 
     /// Takes one message of frames; gives the number of ticks when it says that the run is over.
     fn frame(&mut self, body: &[u8]) -> Option<u64> {
-        let states = records(body)?;
-        let first = states.first()?;
-        if first.agent == END_AGENT {
-            return Some(first.tick);
+        let agents = self.agents_count();
+        let states = match part::read(body, agents)? {
+            Part::Over(ticks) => return Some(ticks),
+            Part::Ticks(states) => states,
+            Part::Piece { tick, part, last, states } => self.joiner.join((tick, part, last), states, agents)?,
+        };
+        for states in states.chunks_exact(agents) {
+            let tick = states.first()?.tick;
+            match self.order.saw(tick) {
+                Seen::Old => continue,
+                Seen::Next => {}
+                Seen::After(gap) => self.ready.push_back(Sight::Missing(gap)),
+            }
+            self.ready.push_back(Sight::Tick { tick, states: states.to_vec() });
         }
-        let tick = first.tick;
-        match self.order.saw(tick) {
-            Seen::Old => return None,
-            Seen::Next => {}
-            Seen::After(gap) => self.ready.push_back(Sight::Missing(gap)),
-        }
-        self.ready.push_back(Sight::Tick { tick, states });
         None
     }
 

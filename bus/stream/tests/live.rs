@@ -1,13 +1,15 @@
 //! A run on the bus: every tick comes, or is listed and can be fetched.
 #![expect(clippy::unwrap_used, clippy::expect_used, reason = "helpers of tests may fail the test")]
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, MemoryBus, Qos, keys};
-use socrates_model::recording::{Event, EventKind, Recording};
-use socrates_model::{RunId, SimTime};
+use socrates_link::{Bus, Envelope, MemoryBus, Overflow, Qos, decode, encode, keys};
+use socrates_model::recording::{AgentInfo, AgentState, Event, EventKind, Recording};
+use socrates_model::{AgentId, RunId, SimTime};
+use socrates_stream::mcap::Tape;
 use socrates_stream::{FrameSink as _, LiveSink, Sight, TickRange, Watch, csv};
 
 const WATCHDOG: Duration = Duration::from_secs(60);
@@ -24,21 +26,27 @@ fn recording(seconds: u32) -> Recording {
     recording
 }
 
-fn play(sink: &mut LiveSink, recording: &Recording) {
+/// Plays a run to its viewers; what is recorded of it on the tape comes first.
+fn play(sink: &mut LiveSink, tape: &Tape, recording: &Recording) {
+    let mut writer = tape.record(&recording.header, None).unwrap();
     sink.announce(&recording.header);
     for tick in 0..recording.ticks() {
+        writer.tick(recording.tick(tick)).unwrap();
         for event in recording.events.iter().filter(|event| event.time.tick() == tick as u64) {
             sink.event(event);
         }
         sink.tick(tick as u64, recording.tick(tick));
     }
-    sink.end(recording.ticks() as u64);
+    writer.finish().unwrap();
+    sink.end();
 }
 
 #[derive(Default)]
 struct Tally {
     headers: usize,
     seen: Vec<u64>,
+    /// Of the last tick.
+    agents: usize,
     gaps: Vec<TickRange>,
     events: Vec<Event>,
     end: Option<u64>,
@@ -50,7 +58,8 @@ async fn watched(watch: &mut Watch) -> Tally {
         match watch.next(PATIENCE).await.unwrap().expect("the run ends") {
             Sight::Header(_) => tally.headers += 1,
             Sight::Tick { tick, states } => {
-                assert_eq!(states.len(), 2);
+                assert!(states.iter().all(|state| state.tick == tick));
+                tally.agents = states.len();
                 tally.seen.push(tick);
             }
             Sight::Missing(range) => tally.gaps.push(range),
@@ -69,17 +78,18 @@ async fn guarded<T>(what: impl Future<Output = T>) -> T {
 async fn a_watcher_gets_the_header_every_tick_every_event_and_the_end() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
         let run = RunId::new("r1").unwrap();
         let recording = recording(3);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
         let mut watch = Watch::open(bus, &run, 4096).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
-            play(&mut sink, &played);
+            play(&mut sink, &tape, &played);
             sink
         });
         let tally = watched(&mut watch).await;
-        assert_eq!(tally.headers, 1);
+        assert_eq!((tally.headers, tally.agents), (1, 2));
         assert_eq!(tally.seen, (0..301).collect::<Vec<u64>>());
         assert!(tally.gaps.is_empty());
         assert_eq!(tally.events, recording.events);
@@ -93,19 +103,20 @@ async fn a_watcher_gets_the_header_every_tick_every_event_and_the_end() {
 async fn a_slow_watcher_knows_exactly_what_it_missed_and_can_fetch_it() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
         let run = RunId::new("r2").unwrap();
         let recording = recording(20);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
         // Room for few ticks, and nothing is read while the run goes on: most are lost.
-        let mut watch = Watch::open(Arc::clone(&bus), &run, 16).await.unwrap();
-        let mut fence = bus.subscribe(&keys::live_agents(&run), 1, socrates_link::Overflow::DropOldest).await.unwrap();
+        let mut watch = Watch::open(Arc::clone(&bus), &run, 4).await.unwrap();
+        let mut fence = bus.subscribe(&keys::live_agents(&run), 1, Overflow::DropOldest).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
-            play(&mut sink, &played);
+            play(&mut sink, &tape, &played);
             sink
         });
-        // The end marker is the last message of the frame key.
-        while fence.next().await.unwrap().1.len() != 64 {}
+        // The end marker is the last message of the frame key, a head alone.
+        while fence.next().await.unwrap().1.len() != 16 {}
         let tally = watched(&mut watch).await;
         let listed: u64 = tally.gaps.iter().map(|range| range.len()).sum();
         assert!(listed > 1000, "{listed}");
@@ -128,12 +139,13 @@ async fn a_slow_watcher_knows_exactly_what_it_missed_and_can_fetch_it() {
 async fn a_late_joiner_of_a_finished_run_gets_header_gap_and_end() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
         let run = RunId::new("r3").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
         let recording = recording(1);
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
-            play(&mut sink, &played);
+            play(&mut sink, &tape, &played);
             sink
         });
         let sink = sink.await.unwrap();
@@ -152,15 +164,16 @@ async fn a_late_joiner_of_a_finished_run_gets_header_gap_and_end() {
 async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
         let run = RunId::new("r4").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
         for len in [0_usize, 1, 63, 65] {
             bus.publish(&keys::live_agents(&run), vec![7; len], Qos::Stream).await.unwrap();
         }
         let played = recording(1);
         let sink = tokio::task::spawn_blocking(move || {
-            play(&mut sink, &played);
+            play(&mut sink, &tape, &played);
             sink
         });
         let tally = watched(&mut watch).await;
@@ -174,8 +187,9 @@ async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
 async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
         let run = RunId::new("r5").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Duration::ZERO).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::ZERO).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 64).await.unwrap();
         let recording = recording(1);
         sink.announce(&recording.header);
@@ -188,6 +202,166 @@ async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() 
         while bus.query(&keys::live_meta(&run), vec![], PATIENCE).await.is_ok() {
             tokio::time::sleep(Duration::from_millis(2)).await;
         }
+    })
+    .await;
+}
+
+/// Many agents that walk in rows.
+fn crowd(agents: u32, ticks: u64) -> Recording {
+    let mut recording = recording(1);
+    let info = recording.header.agents.last().unwrap().clone();
+    let first = *recording.frames.first().unwrap();
+    recording.header.agents = (1..=agents)
+        .map(|number| AgentInfo {
+            agent: AgentId::from_number(number),
+            role: format!("walker {number}"),
+            ..info.clone()
+        })
+        .collect();
+    let state =
+        |tick: u64, agent: u32| AgentState { tick, agent, flags: 1, x: f64::from(agent), y: tick as f64, ..first };
+    recording.frames = (0..ticks)
+        .flat_map(|tick| (1..=agents).map(move |agent| (tick, agent)))
+        .map(|(tick, agent)| state(tick, agent))
+        .collect();
+    recording.events.clear();
+    recording
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn three_thousand_agents_are_watched_whole() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
+        let run = RunId::new("crowd").unwrap();
+        let recording = crowd(3_000, 40);
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
+        let played = recording.clone();
+        let sink = tokio::task::spawn_blocking(move || {
+            play(&mut sink, &tape, &played);
+            sink
+        });
+        let mut frames = Vec::new();
+        let mut header = None;
+        loop {
+            match watch.next(PATIENCE).await.unwrap().expect("the run ends") {
+                Sight::Header(seen) => header = Some(seen),
+                Sight::Tick { states, .. } => frames.extend(states),
+                Sight::End { ticks } => break assert_eq!(ticks, 40),
+                other @ (Sight::Missing(_) | Sight::Event(_)) => panic!("{other:?}"),
+            }
+        }
+        assert_eq!(header.unwrap(), recording.header);
+        assert!(frames == recording.frames, "{} of {} states", frames.len(), recording.frames.len());
+        // Parts of a large tick are fetched as they are sent.
+        let fetched = watch.fetch(TickRange { from: 7, to: 8 }).await.unwrap();
+        assert!(fetched == recording.frames[7 * 3_000..9 * 3_000]);
+        drop(sink.await.unwrap());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
+        let run = RunId::new("late").unwrap();
+        let recording = recording(60);
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let (half, halfway) = tokio::sync::oneshot::channel();
+        let (go, gone) = std::sync::mpsc::sync_channel(1);
+        let played = recording.clone();
+        let sink = tokio::task::spawn_blocking(move || {
+            let mut writer = tape.record(&played.header, None).unwrap();
+            let mut half = Some(half);
+            sink.announce(&played.header);
+            for tick in 0..played.ticks() {
+                if tick == 5_000 {
+                    half.take().unwrap().send(()).unwrap();
+                    gone.recv().unwrap();
+                }
+                writer.tick(played.tick(tick)).unwrap();
+                sink.tick(tick as u64, played.tick(tick));
+            }
+            writer.finish().unwrap();
+            sink.end();
+            sink
+        });
+        halfway.await.unwrap();
+        let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
+        // Older ticks than any ring holds, while the run goes on.
+        let first = watch.fetch(TickRange { from: 0, to: 99 }).await.unwrap();
+        assert!(first == recording.frames[..200]);
+        go.send(()).unwrap();
+        let mut states = BTreeMap::new();
+        loop {
+            match watch.next(PATIENCE).await.unwrap().expect("the run ends") {
+                Sight::Tick { tick, states: now } => drop(states.insert(tick, now)),
+                Sight::Missing(range) => {
+                    let fetched = watch.fetch(range).await.unwrap();
+                    assert_eq!(fetched.len() as u64, range.len() * 2);
+                    fetched.chunks(2).for_each(|now| drop(states.insert(now[0].tick, now.to_vec())));
+                }
+                Sight::End { ticks } => break assert_eq!(ticks, 6_001),
+                Sight::Header(_) | Sight::Event(_) => {}
+            }
+        }
+        assert!(watch.missing().is_empty());
+        let all: Vec<AgentState> = states.into_values().flatten().collect();
+        assert!(all == recording.frames, "{} of {} states", all.len(), recording.frames.len());
+        // After the end too, as long as the run lingers.
+        assert!(watch.fetch(TickRange { from: 10, to: 19 }).await.unwrap() == recording.frames[20..40]);
+        drop(sink.await.unwrap());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn ticks_go_out_several_to_a_message() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let tape = Tape::default();
+        let run = RunId::new("several").unwrap();
+        let recording = recording(10);
+        let mut heard = bus.subscribe(&keys::live_agents(&run), 4096, Overflow::DropOldest).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let sink = tokio::task::spawn_blocking(move || {
+            play(&mut sink, &tape, &recording);
+            sink
+        });
+        let mut messages = 0;
+        while heard.next().await.unwrap().1.len() != 16 {
+            messages += 1;
+        }
+        assert!((101..400).contains(&messages), "{messages} messages for 1001 ticks");
+        drop(sink.await.unwrap());
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_version_tells_a_watcher_what_it_cannot_read() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let run = RunId::new("versions").unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Tape::default(), Duration::ZERO).await.unwrap();
+        sink.announce(&recording(1).header);
+        let reply = bus.query(&keys::live_meta(&run), Vec::new(), PATIENCE).await.unwrap();
+        let head: Envelope<serde_json::Value> = decode("live_meta", &reply).unwrap();
+        assert_eq!(head.min_v, 2, "a watcher of version 1 refuses it");
+        drop(sink);
+        // And one of this version says so of a run of version 1, whose message had no such number.
+        let old = RunId::new("old").unwrap();
+        let mut door = bus.serve(&keys::live_meta(&old)).await.unwrap();
+        let mut body = head.body;
+        body.as_object_mut().unwrap().remove("version");
+        let answer = encode(&Envelope::fresh("live_meta", "old", 0, body)).unwrap();
+        let served = tokio::spawn(async move { door.next().await.unwrap().reply(answer).await });
+        let refused = Watch::open(bus, &old, 16).await.err().unwrap();
+        served.await.unwrap().unwrap();
+        assert!(format!("{:?}", refused).contains("Incompatible { found: 1, needs: 2"), "{refused:?}");
     })
     .await;
 }

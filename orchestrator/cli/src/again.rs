@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_draw::{FigureRow, TrackPage};
-use socrates_model::{MetricValue, Recording, Report, RunId};
+use socrates_model::{MetricValue, Report, RunId};
 use socrates_scoring::Evidence;
 use socrates_scoring::metrics::{KEY_FIGURES, in_words, key_figures};
 use socrates_stream::csv::RunChoice;
@@ -21,6 +21,7 @@ use crate::exit::{Code, Complaint};
 use crate::files;
 use crate::play::{self, Made};
 use crate::prepare::load_location;
+use crate::scribe::{Scribe, Written};
 use crate::talk::Talk;
 
 /// Simulates a bundle again and compares hashes.
@@ -41,8 +42,8 @@ pub(crate) fn simulate(
     let mut rows = Vec::new();
     let mut differ = 0;
     for (planner, seed) in wanted {
-        let recording = run(&bundle, &planner, seed)?;
-        let hash = recording.hash();
+        let path = out.map(|folder| folder.join(format!("{planner}-{seed}.mcap")));
+        let Written { hash, last_s, .. } = written(&bundle, &planner, seed, path.as_deref())?;
         let known = bundle
             .manifest
             .runs
@@ -57,18 +58,7 @@ pub(crate) fn simulate(
             }
             None => "not in the bundle",
         };
-        let last = recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
-        talk.line(&format!("simulated  {planner} seed {seed}: {last:.1} s, {} ({word})", hash.short()));
-        if let Some(folder) = out {
-            let bytes = socrates_stream::mcap::write(&recording, Some(&bundle.location))
-                .map_err(|why| Complaint::input(why.to_string(), ""))?;
-            let path = folder.join(format!("{planner}-{seed}.mcap"));
-            let cannot = |why: std::io::Error| {
-                Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
-            };
-            std::fs::create_dir_all(folder).map_err(cannot)?;
-            std::fs::write(&path, bytes).map_err(cannot)?;
-        }
+        talk.line(&format!("simulated  {planner} seed {seed}: {last_s:.1} s, {} ({word})", hash.short()));
         rows.push(json!({ "planner": planner, "seed": seed, "recording_hash": hash, "same": known.map(|known| known == hash) }));
     }
     talk.result(&json!({ "bundle": dir.display().to_string(), "runs": rows }));
@@ -78,15 +68,18 @@ pub(crate) fn simulate(
     Ok(())
 }
 
-/// One run of a bundle's scenario.
-pub(crate) fn run(bundle: &Bundle, planner: &str, seed: u64) -> Result<Recording, Complaint> {
+/// One run of a bundle's scenario; its recording goes into a file where one is named, and is kept nowhere else.
+pub(crate) fn written(bundle: &Bundle, planner: &str, seed: u64, path: Option<&Path>) -> Result<Written, Complaint> {
     let name = format!("{}.{planner}-{seed}", bundle.manifest.scenario);
     let run = RunId::new(name).map_err(|bad| Complaint::input(bad.to_string(), "choose another `--planner`"))?;
     let made =
         Made { proposal: bundle.proposal.clone(), paths: bundle.paths.clone(), behaviors: bundle.behaviors.clone() };
-    play::simulate(&bundle.request, &bundle.location, made, run, planner, seed).map_err(|faults| {
+    let mut scribe = Scribe::new(path, Some(&bundle.location));
+    let scene = (&bundle.request, &bundle.location);
+    play::simulate_into(scene, made, run, (planner, seed), &mut scribe).map_err(|faults| {
         Complaint::faults("the scenario cannot be simulated", &faults, "`socrates explain CODE` says what to do")
-    })
+    })?;
+    scribe.finish()
 }
 
 /// Scores a bundle again, or one file of tracks.

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use socrates_crowd::tracks::Tracks;
 use socrates_hunav::{AgentsFile, Dialect, HumanModel, Inputs, Problem, Profile, RobotSpec, Severity};
-use socrates_model::{EventKind, Location, Point, Pose, SimTime};
+use socrates_model::{Location, Point, Pose};
 
 use crate::args::SimulateOptions;
 use crate::exit::Complaint;
 use crate::files;
 use crate::prepare::{load_location, plural, slug};
+use crate::scribe::Scribe;
 use crate::talk::Talk;
 
 /// Largest agents file that is read, bytes.
@@ -64,38 +65,34 @@ pub(crate) fn simulate(talk: &Talk, options: &SimulateOptions) -> Result<(), Com
         profile.name(),
         location.as_ref().map_or_else(|| "open floor".to_owned(), |location| format!("map {}", location.name)),
     ));
-    let recording = socrates_hunav::simulate(&inputs).map_err(|problems| listed(&file, &problems))?;
-    let last = recording.frames.last().map_or(0.0, |state| SimTime::at_tick(state.tick).secs());
-    let contacts = recording.events.iter().filter(|event| matches!(event.kind, EventKind::Contact { .. })).count();
     let name = slug(&options.what.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
     let dir = options
         .out
         .clone()
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{name}-{}-{}", profile.name(), inputs.seed)));
-    let bytes = socrates_stream::mcap::write(&recording, location.as_ref())
-        .map_err(|why| Complaint::input(why.to_string(), ""))?;
-    files::write(&dir.join("recording.mcap"), &bytes)?;
-    files::write(&dir.join("agents.csv"), socrates_stream::csv::write_agents(&[&recording]).as_bytes())?;
+    let path = dir.join("recording.mcap");
+    let mut scribe = Scribe::new(Some(&path), location.as_ref()).with_table(&dir.join("agents.csv"));
+    socrates_hunav::simulate_into(&inputs, &mut scribe).map_err(|problems| listed(&file, &problems))?;
+    let written = scribe.finish()?;
+    let (last, contacts) = (written.last_s, written.contacts);
     let mut look = dir.join("agents.csv");
     if let Some(location) = &location {
         let title = format!("{name} · {} · {}", profile.name(), location.name);
+        let bytes = files::bytes(&path, u64::MAX, "it was just written")?;
+        let recording = socrates_stream::mcap::read(&bytes).map_err(|why| Complaint::input(why.to_string(), ""))?;
         let svg = socrates_draw::run_picture(location, &recording, None, None, &title);
         let png = socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| Complaint::input(why.to_string(), ""))?;
         files::write(&dir.join("run.svg"), svg.as_bytes())?;
         look = dir.join("run.png");
         files::write(&look, &png)?;
     }
-    talk.line(&format!(
-        "simulated  {last:.1} s, {}, recording {}",
-        plural(contacts, "contact"),
-        recording.hash().short()
-    ));
+    talk.line(&format!("simulated  {last:.1} s, {}, recording {}", plural(contacts, "contact"), written.hash.short()));
     talk.line(&format!("look       {}", look.display()));
     talk.line(&format!("next       socrates score {}", dir.join("recording.mcap").display()));
     talk.result(&json!({
         "out": dir.display().to_string(), "agents": agents.agents.len(), "dialect": agents.dialect.name(),
         "profile": profile.name(), "seed": inputs.seed, "simulated_s": last, "contacts": contacts,
-        "recording_hash": recording.hash(), "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "recording_hash": written.hash, "warnings": warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
     }));
     Ok(())
 }

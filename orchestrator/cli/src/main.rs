@@ -57,6 +57,7 @@ mod progress;
 mod report;
 mod run;
 mod scenarios;
+mod scribe;
 mod session;
 mod stages;
 mod standing;

@@ -6,6 +6,7 @@ use socrates_model::{
     Behaviors, Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, RunId,
 };
 use socrates_scoring::{Evidence, REFERENCE};
+use socrates_simulation::Onlooker;
 
 /// Asks per stage, as many as `run` allows.
 const ASKS: u32 = 4;
@@ -98,6 +99,22 @@ pub(crate) fn simulate(
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), run, seed)?;
     socrates_simulation::simulate(setup, planner)
+}
+
+/// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
+///
+/// # Errors
+/// As [`simulate`].
+pub(crate) fn simulate_into(
+    (request, location): (&Request, &Location),
+    made: Made,
+    run: RunId,
+    (planner, seed): (&str, u64),
+    onlooker: &mut dyn Onlooker,
+) -> Result<(), Vec<Fault>> {
+    let Made { proposal, paths, behaviors } = made;
+    let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), run, seed)?;
+    socrates_simulation::simulate_into(setup, planner, onlooker)
 }
 
 /// All that the judge may look at in a run of the reference robot.

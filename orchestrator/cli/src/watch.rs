@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 use socrates_link::{Bus, Overflow, keys};
 use socrates_model::{AgentState, EventKind, RunId, SimTime};
-use socrates_stream::{Sight, Watch};
+use socrates_stream::{Sight, TickRange, Watch};
 
 use crate::args::Format;
 use crate::exit::{Code, Complaint};
@@ -16,8 +16,10 @@ use crate::session;
 use crate::supervise::endpoint;
 use crate::talk::Talk;
 
-/// Ticks that may wait unread; a minute of a run.
-const DEPTH: usize = 6_000;
+/// Messages of up to ten ticks that may wait unread; a minute of a run.
+const DEPTH: usize = 600;
+/// Ticks that are fetched at a time.
+const FETCH_TICKS: u64 = 200;
 /// How long a run is waited for that nobody has announced.
 const PATIENCE: Duration = Duration::from_secs(60);
 /// How long nothing may be heard of a run before watching ends: a run that goes on tells something a hundred times a second.
@@ -69,25 +71,7 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
             }
             Sight::Missing(range) => {
                 gaps.push((range.from, range.to));
-                let missed = format!("missed     ticks {} to {}", range.from, range.to);
-                match watch.fetch(range).await {
-                    Ok(states) => {
-                        let mut by_tick: BTreeMap<u64, Vec<AgentState>> = BTreeMap::new();
-                        for state in states {
-                            by_tick.entry(state.tick).or_default().push(state);
-                        }
-                        fetched += by_tick.len() as u64;
-                        talk.line(&format!("{missed}; {} of them fetched", by_tick.len()));
-                        talk.result(
-                            &json!({ "type": "missed", "from": range.from, "to": range.to, "fetched": by_tick.len() }),
-                        );
-                        by_tick.iter().for_each(|(tick, states)| shown(talk, *tick, states, false));
-                    }
-                    Err(why) => {
-                        talk.line(&format!("{missed}; not fetched: {why}"));
-                        talk.result(&json!({ "type": "missed", "from": range.from, "to": range.to, "fetched": 0 }));
-                    }
-                }
+                fetched += made_good(talk, &mut watch, range).await;
             }
             Sight::Event(event) => {
                 if matches!(event.kind, EventKind::End { .. }) {
@@ -116,6 +100,36 @@ pub(crate) async fn watch(talk: &Talk, what: &str, run: Option<&str>) -> Result<
         "missing_ticks": missing, "missing": lists, "gaps": gaps,
     }));
     Ok(())
+}
+
+/// Fetches ticks that did not come, some at a time, and shows them; gives how many there were.
+async fn made_good(talk: &Talk, watch: &mut Watch, range: TickRange) -> u64 {
+    let (mut fetched, mut from) = (0, range.from);
+    let mut why_not = String::new();
+    while from <= range.to {
+        let some = TickRange { from, to: range.to.min(from.saturating_add(FETCH_TICKS - 1)) };
+        match watch.fetch(some).await {
+            Ok(states) => {
+                let mut by_tick: BTreeMap<u64, Vec<AgentState>> = BTreeMap::new();
+                for state in states {
+                    by_tick.entry(state.tick).or_default().push(state);
+                }
+                by_tick.iter().for_each(|(tick, states)| shown(talk, *tick, states, false));
+                fetched += by_tick.len() as u64;
+                if (by_tick.len() as u64) < some.len() {
+                    break;
+                }
+            }
+            Err(why) => {
+                why_not = format!(": {why}");
+                break;
+            }
+        }
+        from = some.to.saturating_add(1);
+    }
+    talk.line(&format!("missed     ticks {} to {}; {fetched} of them fetched{why_not}", range.from, range.to));
+    talk.result(&json!({ "type": "missed", "from": range.from, "to": range.to, "fetched": fetched }));
+    fetched
 }
 
 /// One tick: an object with every agent for programs, a line now and then for people.

@@ -20,5 +20,6 @@ pub mod summary;
 mod runs;
 
 pub use simulate::{setup, simulate, simulate_into};
+pub use socrates_engine::Onlooker;
 pub use stage::Simulation;
 pub use summary::Summary;

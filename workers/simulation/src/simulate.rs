@@ -1,30 +1,12 @@
 //! One run, pure: the same setup gives the same recording.
 
-use socrates_engine::{Engine, Setup};
+use socrates_engine::{Engine, Keeper, Onlooker, Setup};
 use socrates_model::request::{RobotGesture, Waypoints};
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    AgentState, Behaviors, Event, Fault, FaultCode, Location, NodeId, Paths, Point, Proposal, Recording,
-    RecordingHeader, Request, RobotModel, RunId,
+    Behaviors, Fault, FaultCode, Location, NodeId, Paths, Point, Proposal, Recording, Request, RobotModel, RunId,
 };
 use socrates_planners::{Mission, make};
-
-/// Whoever looks on while a run goes.
-pub trait Onlooker {
-    /// Before tick 0.
-    fn announce(&mut self, header: &RecordingHeader);
-    /// One tick's states and events.
-    fn tick(&mut self, states: &[AgentState], events: &[Event]);
-}
-
-/// Nobody looks on.
-#[derive(Debug, Clone, Copy, Default)]
-struct Nobody;
-
-impl Onlooker for Nobody {
-    fn announce(&mut self, _header: &RecordingHeader) {}
-    fn tick(&mut self, _states: &[AgentState], _events: &[Event]) {}
-}
 
 /// The setup of a run from its artifacts. Without a request the robot is the default one and the run ends by itself.
 ///
@@ -100,14 +82,17 @@ fn gesture_rule(gesture: &RobotGesture) -> Result<RobotRule, Fault> {
 /// # Errors
 /// `J-PLANNER` with the list of planners; what [`Engine::new`] finds.
 pub fn simulate(setup: Setup, planner: &str) -> Result<Recording, Vec<Fault>> {
-    simulate_into(setup, planner, &mut Nobody)
+    let mut keeper = Keeper::default();
+    simulate_into(setup, planner, &mut keeper)?;
+    let nothing = || vec![Fault::new(FaultCode::JPanic, "the engine", "it ended before the first tick")];
+    keeper.recording().ok_or_else(nothing)
 }
 
-/// The same with somebody who looks on.
+/// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooker) -> Result<Recording, Vec<Fault>> {
+pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooker) -> Result<(), Vec<Fault>> {
     if !socrates_planners::names().contains(&planner) {
         return Err(vec![socrates_planners::catalog::unknown(planner)]);
     }
@@ -124,12 +109,11 @@ pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooke
     let field = engine.floor().field().clone();
     let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, encounters };
     let mut driver = make(planner, &mission).map_err(|fault| vec![fault])?;
-    onlooker.announce(engine.header());
-    let mut sink = |states: &[AgentState], events: &[Event]| onlooker.tick(states, events);
-    Ok(match driver.as_mut() {
-        Some(driver) => engine.run(Some(driver.as_mut()), &mut sink),
-        None => engine.run(None, &mut sink),
-    })
+    match driver.as_mut() {
+        Some(driver) => engine.play(Some(driver.as_mut()), onlooker),
+        None => engine.play(None, onlooker),
+    }
+    Ok(())
 }
 
 /// The points that the planner is given.

@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use socrates_engine::Onlooker;
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
-use socrates_model::{
-    AgentState, Event, Fault, FaultCode, Location, Reading, Recording, RecordingHeader, Request, RunId, fault,
-};
-use socrates_stream::{Fanout, FrameSink as _, LiveSink, ShmConfig, ShmSink, mcap};
+use socrates_model::{AgentState, Event, Fault, FaultCode, Location, Reading, RecordingHeader, Request, RunId, fault};
+use socrates_stream::mcap::{Tape, Writer};
+use socrates_stream::{Fanout, FrameSink as _, LiveSink, ShmConfig, ShmSink, StreamError};
 use tokio::runtime::Handle;
 
 use crate::pace::Pace;
-use crate::simulate::{Onlooker, setup, simulate_into};
+use crate::simulate::{setup, simulate_into};
 use crate::summary::Summary;
 
 /// How long the frames of a finished run can still be fetched from the bus.
@@ -50,8 +50,53 @@ fn inputs(job: &Job) -> Result<Inputs, Failure> {
     Ok(Inputs { setup, planner, location })
 }
 
-/// Hands frames to viewers and keeps the pace.
+/// Writes the run down while it goes, chunk by chunk.
+struct Scribe {
+    tape: Tape,
+    location: Location,
+    begun: Option<(Writer<Tape>, Summary)>,
+    /// The first thing that went wrong; nothing more is written then.
+    broken: Option<StreamError>,
+}
+
+impl Scribe {
+    fn announce(&mut self, header: &RecordingHeader) {
+        match self.tape.record(header, Some(&self.location)) {
+            Ok(writer) => self.begun = Some((writer, Summary::begun(header))),
+            Err(why) => self.broken = Some(why),
+        }
+    }
+
+    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
+        let Some((writer, summary)) = &mut self.begun else { return };
+        events.iter().for_each(|event| summary.event(event));
+        let written = writer.tick(states).and_then(|()| events.iter().try_for_each(|event| writer.event(event)));
+        if let Err(why) = written {
+            self.broken = Some(why);
+            self.begun = None;
+        }
+    }
+
+    /// Ends the recording and makes the outputs of the job.
+    fn outputs(self, run: &RunId) -> Result<Done, Failure> {
+        let told = |why: &dyn std::fmt::Display| {
+            Failure::from(Fault::new(FaultCode::JBlob, run, format!("the recording cannot be written: {why}")))
+        };
+        let (writer, mut summary) = match (self.begun, self.broken) {
+            (Some(begun), None) => begun,
+            (_, Some(why)) => return Err(told(&why)),
+            (None, None) => return Err(told(&"the run never began")),
+        };
+        let (tape, whole) = writer.finish().map_err(|why| told(&why))?;
+        summary.ends(whole.ticks, whole.hash);
+        let recording = Output::bytes("recording", media::MCAP, tape.bytes());
+        Ok(Done::with(vec![recording, Output::json("simulation", &summary)?]).remark(summary.remark()))
+    }
+}
+
+/// Hands a run to whoever writes it down and to its viewers, and keeps the pace.
 struct Viewers {
+    scribe: Scribe,
     sinks: Fanout,
     pace: Pace,
     start: Instant,
@@ -61,12 +106,15 @@ struct Viewers {
 
 impl Onlooker for Viewers {
     fn announce(&mut self, header: &RecordingHeader) {
+        self.scribe.announce(header);
         self.sinks.announce(header);
         self.start = Instant::now();
     }
 
     fn tick(&mut self, states: &[AgentState], events: &[Event]) {
         let tick = states.first().map_or(0, |state| state.tick);
+        // First what is kept: whom a viewer asks for an older tick is the recording.
+        self.scribe.tick(states, events);
         self.sinks.tick(tick, states);
         for event in events {
             self.sinks.event(event);
@@ -79,7 +127,8 @@ impl Onlooker for Viewers {
     }
 }
 
-async fn viewers(job: &Job, run: &RunId, config: &ShmConfig) -> Result<Viewers, Failure> {
+async fn viewers(job: &Job, run: &RunId, location: Location, config: &ShmConfig) -> Result<Viewers, Failure> {
+    let tape = Tape::default();
     let live = job.setting("live").unwrap_or("off");
     let (bus, shm) = match live {
         "" | "off" | "0" | "false" => (false, false),
@@ -92,27 +141,16 @@ async fn viewers(job: &Job, run: &RunId, config: &ShmConfig) -> Result<Viewers, 
         sinks.add(Box::new(sink));
     }
     if bus {
-        match LiveSink::open(Arc::clone(&job.live_bus()), run, LINGER).await {
+        match LiveSink::open(Arc::clone(&job.live_bus()), run, tape.clone(), LINGER).await {
             Ok(sink) => sinks.add(Box::new(sink)),
             // Viewers never decide about a run.
             Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
         }
     }
     let pace = Pace::read(job.setting("pace"))?;
-    Ok(Viewers { sinks, pace, start: Instant::now(), cancel: job.cancel().clone(), handle: Handle::current() })
-}
-
-fn outputs(recording: &Recording, location: &Location) -> Result<Done, Failure> {
-    let summary = Summary::of(recording);
-    let bytes = mcap::write(recording, Some(location)).map_err(|why| {
-        Failure::from(Fault::new(
-            FaultCode::JBlob,
-            &recording.header.run,
-            format!("the recording cannot be written: {why}"),
-        ))
-    })?;
-    let recording = Output::bytes("recording", media::MCAP, bytes);
-    Ok(Done::with(vec![recording, Output::json("simulation", &summary)?]).remark(summary.remark()))
+    let scribe = Scribe { tape, location, begun: None, broken: None };
+    let (start, cancel) = (Instant::now(), job.cancel().clone());
+    Ok(Viewers { scribe, sinks, pace, start, cancel, handle: Handle::current() })
 }
 
 impl Stage for Simulation {
@@ -121,11 +159,15 @@ impl Stage for Simulation {
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
         let Inputs { setup, planner, location } = inputs(job)?;
         let run = setup.run.clone();
-        let mut viewers = viewers(job, &run, &self.shm).await?;
+        let mut viewers = viewers(job, &run, location, &self.shm).await?;
+        let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            let recording = simulate_into(setup, &planner, &mut viewers)?;
-            viewers.sinks.end(recording.ticks() as u64);
-            outputs(&recording, &location)
+            simulate_into(setup, &planner, &mut viewers)?;
+            let Viewers { scribe, mut sinks, .. } = viewers;
+            let done = scribe.outputs(&named)?;
+            // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.
+            sinks.end();
+            Ok(done)
         });
         match work.await {
             Ok(done) => done,

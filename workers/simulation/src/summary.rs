@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use socrates_model::{Digest, EventKind, HumanId, Recording, RunId};
+use socrates_model::{Digest, Event, EventKind, HumanId, Recording, RecordingHeader, RunId};
 
 /// Summary of one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -37,43 +37,60 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// The summary of a recording.
+    /// The summary of a run that has not begun: its hash is that of nothing until [`Summary::ends`].
     #[must_use]
-    pub fn of(recording: &Recording) -> Self {
-        let mut summary = Self {
+    pub fn begun(header: &RecordingHeader) -> Self {
+        Self {
             format: socrates_model::FORMAT,
-            run: recording.header.run.clone(),
-            planner: recording.header.planner.clone(),
-            seed: recording.header.seed,
-            hash: recording.hash(),
-            ticks: recording.ticks() as u64,
-            seconds: recording.events.last().map_or(0.0, |event| event.time.secs()),
+            run: header.run.clone(),
+            planner: header.planner.clone(),
+            seed: header.seed,
+            hash: Digest::of(b""),
+            ticks: 0,
+            seconds: 0.0,
             end: String::new(),
             robot_arrived_s: None,
             encounter_gaps_s: BTreeMap::new(),
             later_gaps_s: BTreeMap::new(),
             contacts: 0,
-        };
-        for event in &recording.events {
-            match &event.kind {
-                EventKind::Encounter { human, gap_s, nth, .. } if *nth > 1 => {
-                    summary.later_gaps_s.entry(*human).or_default().push(*gap_s);
-                }
-                EventKind::Encounter { human, gap_s, .. } => {
-                    summary.encounter_gaps_s.insert(*human, *gap_s);
-                }
-                EventKind::Contact { .. } => summary.contacts += 1,
-                EventKind::RobotArrived => summary.robot_arrived_s = Some(event.time.secs()),
-                EventKind::End { reason } => summary.end.clone_from(reason),
-                EventKind::Gesture { .. }
-                | EventKind::Leaf { .. }
-                | EventKind::Sees { .. }
-                | EventKind::WallContact { .. }
-                | EventKind::Door { .. }
-                | EventKind::Node { .. }
-                | EventKind::Stuck { .. } => {}
-            }
         }
+    }
+
+    /// Takes what happened next.
+    pub fn event(&mut self, event: &Event) {
+        self.seconds = event.time.secs();
+        match &event.kind {
+            EventKind::Encounter { human, gap_s, nth, .. } if *nth > 1 => {
+                self.later_gaps_s.entry(*human).or_default().push(*gap_s);
+            }
+            EventKind::Encounter { human, gap_s, .. } => {
+                self.encounter_gaps_s.insert(*human, *gap_s);
+            }
+            EventKind::Contact { .. } => self.contacts += 1,
+            EventKind::RobotArrived => self.robot_arrived_s = Some(event.time.secs()),
+            EventKind::End { reason } => self.end.clone_from(reason),
+            EventKind::Gesture { .. }
+            | EventKind::Leaf { .. }
+            | EventKind::Sees { .. }
+            | EventKind::WallContact { .. }
+            | EventKind::Door { .. }
+            | EventKind::Node { .. }
+            | EventKind::Stuck { .. } => {}
+        }
+    }
+
+    /// The run is over: so many ticks with this recording hash.
+    pub const fn ends(&mut self, ticks: u64, hash: Digest) {
+        self.ticks = ticks;
+        self.hash = hash;
+    }
+
+    /// The summary of a recording.
+    #[must_use]
+    pub fn of(recording: &Recording) -> Self {
+        let mut summary = Self::begun(&recording.header);
+        recording.events.iter().for_each(|event| summary.event(event));
+        summary.ends(recording.ticks() as u64, recording.hash());
         summary
     }
 

@@ -67,29 +67,66 @@ pub fn write_agents(recordings: &[&Recording]) -> String {
 /// As [`write_agents`], at a rate of choice.
 #[must_use]
 pub fn write_agents_at(recordings: &[&Recording], rate: Rate) -> String {
-    let mut text = AGENT_COLUMNS.join(",") + "\n";
+    let mut text = AgentTable::head();
     for recording in recordings {
-        let run = format!("{},{}", quoted(&recording.header.planner), recording.header.seed);
+        let table = AgentTable::of(&recording.header);
         for tick in (0..recording.ticks()).step_by(rate.stride()) {
-            for state in recording.tick(tick) {
-                let leaf = recording.header.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
-                // Writing to a string cannot fail.
-                let _infallible = writeln!(
-                    text,
-                    "{run},{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{}",
-                    SimTime::at_tick(state.tick).secs(),
-                    state.agent_id(),
-                    state.x,
-                    state.y,
-                    state.yaw,
-                    state.speed(),
-                    state.gesture(),
-                    quoted(leaf),
-                );
-            }
+            table.append(&mut text, recording.tick(tick));
         }
     }
     text
+}
+
+/// The table of agents of one run while it goes, ten times a second.
+#[derive(Debug, Clone)]
+pub struct AgentTable {
+    run: String,
+    leaves: Vec<String>,
+}
+
+impl AgentTable {
+    /// The table of the run with this header.
+    #[must_use]
+    pub fn of(header: &RecordingHeader) -> Self {
+        let run = format!("{},{}", quoted(&header.planner), header.seed);
+        Self { run, leaves: header.leaves.iter().map(|leaf| quoted(leaf)).collect() }
+    }
+
+    /// The line that names the columns.
+    #[must_use]
+    pub fn head() -> String {
+        AGENT_COLUMNS.join(",") + "\n"
+    }
+
+    /// The lines of a tick; none of those between two tenths of a second.
+    #[must_use]
+    pub fn rows(&self, states: &[AgentState]) -> String {
+        let mut text = String::new();
+        let stride = Rate::TenHertz.stride() as u64;
+        if states.first().is_some_and(|state| state.tick.is_multiple_of(stride)) {
+            self.append(&mut text, states);
+        }
+        text
+    }
+
+    fn append(&self, text: &mut String, states: &[AgentState]) {
+        for state in states {
+            let leaf = self.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
+            // Writing to a string cannot fail.
+            let _infallible = writeln!(
+                text,
+                "{},{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{leaf}",
+                self.run,
+                SimTime::at_tick(state.tick).secs(),
+                state.agent_id(),
+                state.x,
+                state.y,
+                state.yaw,
+                state.speed(),
+                state.gesture(),
+            );
+        }
+    }
 }
 
 /// A cell as RFC 4180 has it: in quotes only where it needs them.

@@ -1,139 +1,277 @@
-//! Pictures of a run for viewers that know `foxglove.SceneUpdate`.
+//! Pictures of a run for viewers that know the messages of `foxglove`: what stands still once, what moves ten times a second.
 
-use serde_json::{Value, json};
 use socrates_model::grid::{Cell, Grid};
-use socrates_model::recording::{AgentState, Recording, RecordingHeader};
+use socrates_model::recording::{AgentState, RecordingHeader};
 use socrates_model::{AgentId, Gesture, Location, SimTime};
 
-/// What a viewer needs to know of a scene message.
-pub(super) const SCENE_SCHEMA: &str = r#"{"title":"foxglove.SceneUpdate","type":"object","properties":{"deletions":{"type":"array","items":{"type":"object"}},"entities":{"type":"array","items":{"type":"object","properties":{"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"frame_id":{"type":"string"},"id":{"type":"string"},"lifetime":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"frame_locked":{"type":"boolean"},"metadata":{"type":"array","items":{"type":"object"}},"arrows":{"type":"array","items":{"type":"object"}},"cubes":{"type":"array","items":{"type":"object"}},"spheres":{"type":"array","items":{"type":"object"}},"cylinders":{"type":"array","items":{"type":"object"}},"lines":{"type":"array","items":{"type":"object"}},"triangles":{"type":"array","items":{"type":"object"}},"texts":{"type":"array","items":{"type":"object"}},"models":{"type":"array","items":{"type":"object"}}}}}}}"#;
-/// What a viewer needs to know of a frame message.
-pub(super) const FRAME_SCHEMA: &str = r#"{"title":"foxglove.FrameTransform","type":"object","properties":{"timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"parent_frame_id":{"type":"string"},"child_frame_id":{"type":"string"},"translation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"}}},"rotation":{"type":"object","properties":{"x":{"type":"number"},"y":{"type":"number"},"z":{"type":"number"},"w":{"type":"number"}}}}}"#;
+use super::proto::Proto;
 
 /// Height at which people are drawn, m.
 const PERSON_M: f64 = 1.7;
 /// Height at which the robot is drawn, m.
 const ROBOT_M: f64 = 0.6;
-/// Pause between two points of a drawn way, ticks.
-const WAY_EVERY: usize = 20;
+/// Pause between two points of a drawn way at first, ticks.
+const WAY_EVERY: u64 = 20;
+/// Most points of all ways together: with more of them each way keeps every second.
+const WAY_POINTS: usize = 128 * 1024;
+/// Frame of the map.
+const MAP: &str = "map";
+/// A list of lines, two points each.
+const LINE_LIST: u64 = 2;
 
-fn stamp(time: SimTime) -> Value {
-    json!({ "sec": time.nanos() / 1_000_000_000, "nsec": time.nanos() % 1_000_000_000 })
+const DARK: [f64; 4] = [0.1, 0.1, 0.1, 1.0];
+const WALL: [f64; 4] = [0.2, 0.2, 0.2, 1.0];
+const DOOR: [f64; 4] = [0.0, 0.62, 0.45, 1.0];
+
+fn stamp(out: &mut Proto, field: u32, time: SimTime) {
+    out.message(field, |out| {
+        out.number(1, time.nanos() / 1_000_000_000);
+        out.number(2, time.nanos() % 1_000_000_000);
+    });
 }
 
-fn color(r: f64, g: f64, b: f64, a: f64) -> Value {
-    json!({ "r": r, "g": g, "b": b, "a": a })
+fn vector(out: &mut Proto, field: u32, [x, y, z]: [f64; 3]) {
+    out.message(field, |out| {
+        out.double(1, x);
+        out.double(2, y);
+        out.double(3, z);
+    });
 }
 
-fn position(x: f64, y: f64, z: f64) -> Value {
-    json!({ "x": x, "y": y, "z": z })
+fn turned(out: &mut Proto, field: u32, yaw: f64) {
+    out.message(field, |out| {
+        out.double(3, libm::sin(yaw / 2.0));
+        out.double(4, libm::cos(yaw / 2.0));
+    });
 }
 
-fn turned(yaw: f64) -> Value {
-    json!({ "x": 0.0, "y": 0.0, "z": libm::sin(yaw / 2.0), "w": libm::cos(yaw / 2.0) })
+fn pose(out: &mut Proto, field: u32, at: [f64; 3], yaw: f64) {
+    out.message(field, |out| {
+        vector(out, 1, at);
+        turned(out, 2, yaw);
+    });
 }
 
-fn agent_color(agent: AgentId) -> Value {
+fn color(out: &mut Proto, field: u32, rgba: [f64; 4]) {
+    out.message(field, |out| (1_u32..).zip(rgba).for_each(|(channel, value)| out.double(channel, value)));
+}
+
+const fn color_of(agent: AgentId) -> [f64; 4] {
     match agent {
-        AgentId::Robot => color(0.0, 0.45, 0.7, 1.0),
-        AgentId::Human(_) => color(0.84, 0.37, 0.0, 1.0),
+        AgentId::Robot => [0.0, 0.45, 0.7, 1.0],
+        AgentId::Human(_) => [0.84, 0.37, 0.0, 1.0],
     }
 }
 
-fn entity(id: &str, time: SimTime, shapes: Vec<(&str, Value)>) -> Value {
-    let mut entity = json!({
-        "timestamp": stamp(time), "frame_id": "map", "id": id, "lifetime": { "sec": 0, "nsec": 0 },
-        "frame_locked": true, "metadata": [], "arrows": [], "cubes": [], "spheres": [], "cylinders": [],
-        "lines": [], "triangles": [], "texts": [], "models": []
+/// An entity of a scene update, fixed to its frame.
+fn entity(out: &mut Proto, time: SimTime, frame: &str, id: &str, shapes: impl FnOnce(&mut Proto)) {
+    out.message(2, |out| {
+        stamp(out, 1, time);
+        out.text(2, frame);
+        out.text(3, id);
+        out.number(5, 1);
+        shapes(out);
     });
-    if let Some(fields) = entity.as_object_mut() {
-        for (kind, shape) in shapes {
-            fields.insert(kind.to_owned(), shape);
+}
+
+/// A line primitive of an entity.
+fn line(out: &mut Proto, kind: u64, points: impl Iterator<Item = [f64; 2]>, z: f64, thickness: f64, rgba: [f64; 4]) {
+    out.message(11, |out| {
+        out.number(1, kind);
+        pose(out, 2, [0.0; 3], 0.0);
+        out.double(3, thickness);
+        points.for_each(|[x, y]| vector(out, 5, [x, y, z]));
+        color(out, 6, rgba);
+    });
+}
+
+/// One agent that is drawn.
+#[derive(Debug)]
+struct Figure {
+    agent: AgentId,
+    name: String,
+    radius_m: f64,
+    /// The gesture it is drawn with; `None` while it is not drawn.
+    drawn: Option<Gesture>,
+}
+
+impl Figure {
+    /// Body, heading and name, fixed to the agent's own frame.
+    fn draw(&self, out: &mut Proto, time: SimTime, gesture: Gesture) {
+        let height = if self.agent == AgentId::Robot { ROBOT_M } else { PERSON_M };
+        entity(out, time, &self.name, &self.name, |out| {
+            out.message(7, |out| {
+                pose(out, 1, [0.0, 0.0, height + 0.05], 0.0);
+                out.double(2, self.radius_m + 0.2);
+                out.double(3, 0.06);
+                out.double(4, 0.15);
+                out.double(5, 0.15);
+                color(out, 6, DARK);
+            });
+            out.message(10, |out| {
+                pose(out, 1, [0.0, 0.0, height / 2.0], 0.0);
+                vector(out, 2, [2.0 * self.radius_m, 2.0 * self.radius_m, height]);
+                out.double(3, 1.0);
+                out.double(4, 0.8);
+                color(out, 5, color_of(self.agent));
+            });
+            out.message(13, |out| {
+                pose(out, 1, [0.0, 0.0, height + 0.3], 0.0);
+                out.number(2, 1);
+                out.double(3, 0.25);
+                color(out, 5, DARK);
+                if gesture == Gesture::None {
+                    out.text(6, &self.name);
+                } else {
+                    out.text(6, &format!("{}: {gesture}", self.name));
+                }
+            });
+        });
+    }
+}
+
+/// Draws the agents of a run.
+#[derive(Debug)]
+pub(super) struct Painter {
+    figures: Vec<Figure>,
+    absent: Option<u16>,
+    ways: Vec<Vec<[f64; 2]>>,
+    way_every: u64,
+    way_points: usize,
+}
+
+/// The messages of one moment, in memory that is used again; an empty one has nothing new.
+#[derive(Debug, Default)]
+pub(super) struct Picture {
+    /// `foxglove.SceneUpdate`: who comes, who goes, who begins or ends a gesture.
+    pub(super) scene: Proto,
+    /// `foxglove.FrameTransforms`: where everybody is.
+    pub(super) frames: Proto,
+    /// `foxglove.PosesInFrame`: the people.
+    pub(super) people: Proto,
+    /// `foxglove.PoseInFrame`: the robot.
+    pub(super) robot: Proto,
+}
+
+impl Painter {
+    pub(super) fn new(header: &RecordingHeader) -> Self {
+        let figures: Vec<Figure> = header
+            .agents
+            .iter()
+            .map(|info| Figure {
+                agent: info.agent,
+                name: info.agent.to_string(),
+                radius_m: info.radius_m,
+                drawn: None,
+            })
+            .collect();
+        let ways = figures.iter().map(|_| Vec::new()).collect();
+        Self { figures, absent: header.absent(), ways, way_every: WAY_EVERY, way_points: 0 }
+    }
+
+    fn is_there(absent: Option<u16>, state: &AgentState) -> bool {
+        absent.is_none_or(|absent| state.leaf() != absent)
+    }
+
+    /// Notes where everybody is, for the ways that are drawn at the end.
+    pub(super) fn follow(&mut self, tick: u64, states: &[AgentState]) {
+        if !tick.is_multiple_of(self.way_every) {
+            return;
+        }
+        let absent = self.absent;
+        for (way, state) in self.ways.iter_mut().zip(states).filter(|(_, state)| Self::is_there(absent, state)) {
+            way.push([state.x, state.y]);
+            self.way_points += 1;
+        }
+        if self.way_points > WAY_POINTS {
+            self.way_every *= 2;
+            for way in &mut self.ways {
+                let mut place = 0_usize;
+                way.retain(|_| {
+                    place += 1;
+                    !place.is_multiple_of(2)
+                });
+            }
+            self.way_points = self.ways.iter().map(Vec::len).sum();
         }
     }
-    entity
-}
 
-fn update(entities: Vec<Value>) -> Value {
-    json!({ "deletions": [], "entities": entities })
-}
-
-fn line(kind: u8, points: &[(f64, f64)], z: f64, thickness: f64, color: &Value) -> Value {
-    let points: Vec<Value> = points.iter().map(|(x, y)| position(*x, *y, z)).collect();
-    json!({
-        "type": kind, "pose": { "position": position(0.0, 0.0, 0.0), "orientation": turned(0.0) },
-        "thickness": thickness, "scale_invariant": false, "points": points, "color": color, "colors": [], "indices": []
-    })
-}
-
-/// Everybody at one tick: a cylinder, an arrow for the heading, name and gesture.
-pub(super) fn agents(header: &RecordingHeader, states: &[AgentState], time: SimTime) -> Value {
-    let drawn = header.agents.iter().zip(states).map(|(info, state)| {
-        let height = if info.agent == AgentId::Robot { ROBOT_M } else { PERSON_M };
-        let color_of = agent_color(info.agent);
-        let pose = |z: f64| json!({ "position": position(state.x, state.y, z), "orientation": turned(state.yaw) });
-        let size = position(2.0 * info.radius_m, 2.0 * info.radius_m, height);
-        let cylinder = json!({ "pose": pose(height / 2.0), "size": size, "bottom_scale": 1.0, "top_scale": 0.8, "color": color_of });
-        let arrow = json!({
-            "pose": pose(height + 0.05), "shaft_length": info.radius_m + 0.2, "shaft_diameter": 0.06,
-            "head_length": 0.15, "head_diameter": 0.15, "color": color(0.1, 0.1, 0.1, 1.0)
-        });
-        let gesture = state.gesture();
-        let text =
-            if gesture == Gesture::None { info.agent.to_string() } else { format!("{}: {gesture}", info.agent) };
-        let label = json!({
-            "pose": pose(height + 0.3), "billboard": true, "font_size": 0.25, "scale_invariant": false,
-            "color": color(0.1, 0.1, 0.1, 1.0), "text": text
-        });
-        let shapes = vec![("cylinders", json!([cylinder])), ("arrows", json!([arrow])), ("texts", json!([label]))];
-        entity(&info.agent.to_string(), time, shapes)
-    });
-    update(drawn.collect())
-}
-
-/// The frame of one agent in the map.
-pub(super) fn frame(state: &AgentState, time: SimTime) -> Value {
-    json!({
-        "timestamp": stamp(time), "parent_frame_id": "map", "child_frame_id": state.agent_id().to_string(),
-        "translation": position(state.x, state.y, 0.0), "rotation": turned(state.yaw)
-    })
-}
-
-/// The way that everybody took, as one line each; `None` for an empty run.
-pub(super) fn ways(recording: &Recording) -> Option<Value> {
-    if recording.ticks() == 0 {
-        return None;
+    /// Draws everybody who is there at one tick.
+    pub(super) fn paint(&mut self, picture: &mut Picture, states: &[AgentState], time: SimTime) {
+        let Picture { scene, frames, people, robot } = picture;
+        [&mut *scene, frames, people, robot].into_iter().for_each(Proto::clear);
+        stamp(people, 1, time);
+        people.text(2, MAP);
+        for (figure, state) in self.figures.iter_mut().zip(states) {
+            if !Self::is_there(self.absent, state) {
+                if figure.drawn.take().is_some() {
+                    scene.message(1, |out| {
+                        stamp(out, 1, time);
+                        out.text(3, &figure.name);
+                    });
+                }
+                continue;
+            }
+            let gesture = state.gesture();
+            if figure.drawn != Some(gesture) {
+                figure.draw(scene, time, gesture);
+                figure.drawn = Some(gesture);
+            }
+            let at = [state.x, state.y, 0.0];
+            frames.message(1, |out| {
+                stamp(out, 1, time);
+                out.text(2, MAP);
+                out.text(3, &figure.name);
+                vector(out, 4, at);
+                turned(out, 5, state.yaw);
+            });
+            match figure.agent {
+                AgentId::Human(_) => pose(people, 3, at, state.yaw),
+                AgentId::Robot => {
+                    stamp(robot, 1, time);
+                    robot.text(2, MAP);
+                    pose(robot, 3, at, state.yaw);
+                }
+            }
+        }
     }
-    let drawn = recording.header.agents.iter().map(|info| {
-        let points: Vec<(f64, f64)> =
-            recording.track(info.agent).step_by(WAY_EVERY).map(|state| (state.x, state.y)).collect();
-        let way = line(0, &points, 0.02, 0.04, &agent_color(info.agent));
-        entity(&format!("way_{}", info.agent), SimTime::ZERO, vec![("lines", json!([way]))])
-    });
-    Some(update(drawn.collect()))
+
+    /// The way that everybody took, as one line each: a scene update that is empty where nobody moved.
+    pub(super) fn ways(&self) -> Proto {
+        let mut out = Proto::default();
+        for (figure, way) in self.figures.iter().zip(&self.ways).filter(|(_, way)| way.len() > 1) {
+            entity(&mut out, SimTime::ZERO, MAP, &format!("way_{}", figure.name), |out| {
+                line(out, 0, way.iter().copied(), 0.02, 0.04, color_of(figure.agent));
+            });
+        }
+        out
+    }
 }
 
 /// The outline of everything that is not free floor, and the doors.
-pub(super) fn walls(location: &Location) -> Value {
-    let outline = line(2, &outline(&location.grid), 0.0, 0.05, &color(0.2, 0.2, 0.2, 1.0));
-    let mut shapes = vec![entity("walls", SimTime::ZERO, vec![("lines", json!([outline]))])];
+pub(super) fn walls(location: &Location) -> Proto {
+    let mut out = Proto::default();
+    entity(&mut out, SimTime::ZERO, MAP, "walls", |out| {
+        line(out, LINE_LIST, outline(&location.grid).into_iter(), 0.0, 0.05, WALL);
+    });
     for door in &location.doors {
-        let ends = [(door.from.x, door.from.y), (door.to.x, door.to.y)];
-        let drawn = line(2, &ends, 0.02, 0.08, &color(0.0, 0.62, 0.45, 1.0));
-        shapes.push(entity(&format!("door_{}", door.id), SimTime::ZERO, vec![("lines", json!([drawn]))]));
+        let ends = [[door.from.x, door.from.y], [door.to.x, door.to.y]];
+        entity(&mut out, SimTime::ZERO, MAP, &format!("door_{}", door.id), |out| {
+            line(out, LINE_LIST, ends.into_iter(), 0.02, 0.08, DOOR);
+        });
     }
-    update(shapes)
+    out
 }
 
 /// Pairs of points: every straight stretch between free floor and an occupied cell.
-fn outline(grid: &Grid) -> Vec<(f64, f64)> {
+fn outline(grid: &Grid) -> Vec<[f64; 2]> {
     let differs = |a: Cell, b: Cell| matches!((a, b), (Cell::Free, Cell::Occupied) | (Cell::Occupied, Cell::Free));
     let mut points = Vec::new();
     #[expect(clippy::cast_precision_loss, reason = "a map has fewer than 2^53 cells a side")]
     let mut stretch = |from: (usize, usize), to: (usize, usize)| {
         for (column, row) in [from, to] {
             let point = grid.world_from_pixel(column as f64, row as f64);
-            points.push((point.x, point.y));
+            points.push([point.x, point.y]);
         }
     };
     for row in 1..grid.height {
@@ -184,7 +322,7 @@ mod tests {
         let outline = outline(&grid);
         assert_eq!(outline.len(), 8);
         let length: f64 =
-            outline.chunks(2).map(|pair| (pair[0].0 - pair[1].0).abs() + (pair[0].1 - pair[1].1).abs()).sum();
+            outline.chunks(2).map(|pair| (pair[0][0] - pair[1][0]).abs() + (pair[0][1] - pair[1][1]).abs()).sum();
         assert!((length - 4.0).abs() < 1e-9);
     }
 }

@@ -335,7 +335,7 @@ fn open_bundle(
     }
     if let Some(run) = bundle.manifest.runs.first().filter(|_| chance.below(PLAYED) == 0) {
         // What cannot be simulated is refused with the fault; here only panics and hangs count.
-        drop(crate::again::run(&bundle, &run.planner, run.seed));
+        drop(crate::again::written(&bundle, &run.planner, run.seed, None));
     }
     // The digests stand in the manifest: with it damaged any file may seem changed.
     let is_manifest = sample.file.ends_with("manifest.json");

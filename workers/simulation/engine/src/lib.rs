@@ -66,6 +66,6 @@ pub use doors::event_names;
 pub use floor::Floor;
 pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
 pub use models::HumanModel;
-pub use recorder::Recorder;
+pub use recorder::{Keeper, Onlooker, Recorder};
 pub use run::{Engine, NO_ROBOT};
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

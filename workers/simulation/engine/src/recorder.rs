@@ -1,4 +1,4 @@
-//! Writes frames and events of a run, each thing once.
+//! Tells frames and events of a run, each thing once.
 
 use std::collections::BTreeMap;
 
@@ -7,6 +7,39 @@ use socrates_model::{
 };
 
 use crate::contacts::Touch;
+
+/// Whoever takes a run while it goes: who writes it down, who shows it. Nobody else keeps a tick.
+pub trait Onlooker {
+    /// Before tick 0.
+    fn announce(&mut self, header: &RecordingHeader);
+    /// One tick's states, in the header's order, and what happened at it.
+    fn tick(&mut self, states: &[AgentState], events: &[Event]);
+}
+
+/// Keeps a whole run in memory, for those who look at all of it at once.
+#[derive(Debug, Clone, Default)]
+pub struct Keeper(Option<Recording>);
+
+impl Keeper {
+    /// What was kept; `None` of a run that was never announced.
+    #[must_use]
+    pub fn recording(self) -> Option<Recording> {
+        self.0
+    }
+}
+
+impl Onlooker for Keeper {
+    fn announce(&mut self, header: &RecordingHeader) {
+        self.0 = Some(Recording { header: header.clone(), frames: Vec::new(), events: Vec::new() });
+    }
+
+    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
+        if let Some(recording) = &mut self.0 {
+            recording.frames.extend_from_slice(states);
+            recording.events.extend_from_slice(events);
+        }
+    }
+}
 
 /// A touch counts anew after so long without, s.
 const TOUCH_AGAIN_S: f64 = 1.0;
@@ -28,34 +61,25 @@ struct Meeting {
     told: bool,
 }
 
-/// Keeps a recording while a run goes: states per tick, and events each told once.
+/// Tells a run while it goes: states per tick, and events each told once. It keeps no tick but the events of the last.
 ///
-/// Per tick: [`Recorder::at`], then any of the events, then [`Recorder::frame`]; at the end [`Recorder::finish`].
-#[derive(Debug)]
+/// Per tick: [`Recorder::at`], then any of the events, then [`Recorder::frame`].
+#[derive(Debug, Default)]
 pub struct Recorder {
-    recording: Recording,
     now: SimTime,
     fresh: Vec<Event>,
-    /// Where the events of the tick that ended last begin.
-    last: usize,
+    /// Those of the tick that ended last.
+    last: Vec<Event>,
     touches: BTreeMap<(AgentId, Option<AgentId>), f64>,
     sights: BTreeMap<HumanId, f64>,
     meetings: BTreeMap<(HumanId, u32), Meeting>,
 }
 
 impl Recorder {
-    /// An empty recording with this header.
+    /// One that has told nothing.
     #[must_use]
-    pub const fn new(header: RecordingHeader) -> Self {
-        Self {
-            recording: Recording { header, frames: Vec::new(), events: Vec::new() },
-            now: SimTime::ZERO,
-            fresh: Vec::new(),
-            last: 0,
-            touches: BTreeMap::new(),
-            sights: BTreeMap::new(),
-            meetings: BTreeMap::new(),
-        }
+    pub fn new() -> Self {
+        Self::default()
     }
 
     /// Begins a tick: everything told from now on has this time.
@@ -136,24 +160,17 @@ impl Recorder {
         true
     }
 
-    /// Ends a tick: keeps its frame, hands frame and fresh events on. `states` are in the header's order.
-    pub fn frame(&mut self, states: &[AgentState], sink: &mut dyn FnMut(&[AgentState], &[Event])) {
-        sink(states, &self.fresh);
-        self.recording.frames.extend_from_slice(states);
-        self.last = self.recording.events.len();
-        self.recording.events.append(&mut self.fresh);
+    /// Ends a tick: hands its frame and fresh events on. `states` are in the header's order.
+    pub fn frame(&mut self, states: &[AgentState], onlooker: &mut dyn Onlooker) {
+        onlooker.tick(states, &self.fresh);
+        std::mem::swap(&mut self.last, &mut self.fresh);
+        self.fresh.clear();
     }
 
     /// Events of the tick that ended last.
     #[must_use]
     pub fn last_tick(&self) -> &[Event] {
-        self.recording.events.get(self.last..).unwrap_or(&[])
-    }
-
-    /// The recording as it stands.
-    #[must_use]
-    pub fn finish(self) -> Recording {
-        self.recording
+        &self.last
     }
 }
 

@@ -13,7 +13,7 @@ use crate::ending::{Ending, Standing};
 use crate::floor::Floor;
 use crate::human::{DoorOnWay, Human, LEAVES, leaf_name, leaf_number};
 use crate::near::Near;
-use crate::recorder::Recorder;
+use crate::recorder::{Onlooker, Recorder};
 use crate::rendezvous::{self, Timing};
 use crate::robot::Robot;
 use crate::script::Script;
@@ -23,6 +23,22 @@ use crate::{meetings, start, walk};
 
 /// The name of the planner that means: no robot (the twin run).
 pub const NO_ROBOT: &str = "none";
+
+/// Keeps a run and hands it on.
+struct Kept<'a> {
+    recording: Recording,
+    sink: &'a mut dyn FnMut(&[AgentState], &[Event]),
+}
+
+impl Onlooker for Kept<'_> {
+    fn announce(&mut self, _header: &RecordingHeader) {}
+
+    fn tick(&mut self, states: &[AgentState], events: &[Event]) {
+        (self.sink)(states, events);
+        self.recording.frames.extend_from_slice(states);
+        self.recording.events.extend_from_slice(events);
+    }
+}
 
 /// One run that is ready to go.
 #[derive(Debug)]
@@ -92,14 +108,19 @@ impl Engine {
         &self.floor
     }
 
-    /// Runs to the end. `driver` drives the robot (without one it stands); `sink` gets every tick's states
-    /// and events as they come.
-    pub fn run(
-        mut self,
-        mut driver: Option<&mut dyn RobotDriver>,
-        sink: &mut dyn FnMut(&[AgentState], &[Event]),
-    ) -> Recording {
-        let mut recorder = Recorder::new(self.header.clone());
+    /// Runs to the end and gives back all of it. `driver` drives the robot (without one it stands); `sink` gets every
+    /// tick's states and events as they come.
+    pub fn run(self, driver: Option<&mut dyn RobotDriver>, sink: &mut dyn FnMut(&[AgentState], &[Event])) -> Recording {
+        let recording = Recording { header: self.header.clone(), frames: Vec::new(), events: Vec::new() };
+        let mut kept = Kept { recording, sink };
+        self.play(driver, &mut kept);
+        kept.recording
+    }
+
+    /// Runs to the end; `onlooker` gets everything as it comes, and nothing of it is kept.
+    pub fn play(mut self, mut driver: Option<&mut dyn RobotDriver>, onlooker: &mut dyn Onlooker) {
+        onlooker.announce(&self.header);
+        let mut recorder = Recorder::new();
         let mut tick = 0_u64;
         loop {
             let now = SimTime::at_tick(tick);
@@ -125,11 +146,11 @@ impl Engine {
             let standing = self.standing(now.secs(), met);
             if let Some(reason) = self.ending.step(&standing, &mut recorder) {
                 recorder.tell(EventKind::End { reason: reason.to_owned() });
-                recorder.frame(&states, sink);
-                return recorder.finish();
+                recorder.frame(&states, onlooker);
+                return;
             }
             self.advance(now, doors_moved, &mut recorder);
-            recorder.frame(&states, sink);
+            recorder.frame(&states, onlooker);
             tick += 1;
         }
     }

@@ -20,12 +20,10 @@ use std::collections::BTreeMap;
 
 use socrates_bt::{Tree, TreeState};
 use socrates_crowd::tracks::{Track, Tracks};
-use socrates_engine::{Recorder, Touch};
+use socrates_engine::{Keeper, Onlooker, Recorder, Touch};
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{
-    AgentId, AgentState, Event, EventKind, Gesture, Grid, Recording, RecordingHeader, RunId, SimTime,
-};
+use socrates_model::{AgentId, AgentState, EventKind, Gesture, Grid, Recording, RecordingHeader, RunId, SimTime};
 
 pub use agent::HumanModel;
 pub use obstacle::Bounds;
@@ -97,29 +95,20 @@ impl<'a> Inputs<'a> {
 /// and goals in walls (native; elsewhere people walk through walls as upstream), ids that clash with the robot's,
 /// models for nobody, numbers out of range.
 pub fn simulate(inputs: &Inputs<'_>) -> Result<Recording, Vec<Problem>> {
-    simulate_into(inputs, &mut |_, _| {})
+    let run = Run::new(inputs)?;
+    let header = run.header.clone();
+    let mut keeper = Keeper::default();
+    run.play(&mut keeper);
+    Ok(keeper.recording().unwrap_or(Recording { header, frames: Vec::new(), events: Vec::new() }))
 }
 
-/// The same; `sink` gets every tick's states and events as they come.
+/// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn simulate_into(
-    inputs: &Inputs<'_>,
-    sink: &mut dyn FnMut(&[AgentState], &[Event]),
-) -> Result<Recording, Vec<Problem>> {
-    let mut run = Run::new(inputs)?;
-    let mut recorder = Recorder::new(run.header.clone());
-    let mut tick = 0_u64;
-    loop {
-        recorder.at(SimTime::at_tick(tick));
-        let ends = tick >= run.ticks;
-        run.tick(tick, ends, &mut recorder, sink);
-        if ends {
-            return Ok(recorder.finish());
-        }
-        tick += 1;
-    }
+pub fn simulate_into(inputs: &Inputs<'_>, onlooker: &mut dyn Onlooker) -> Result<(), Vec<Problem>> {
+    Run::new(inputs)?.play(onlooker);
+    Ok(())
 }
 
 /// The problems of a run, errors and warnings, without running it.
@@ -158,7 +147,16 @@ pub(crate) fn tick_of(now_s: f64) -> u64 {
 }
 
 impl Run {
-    fn tick(&mut self, tick: u64, ends: bool, recorder: &mut Recorder, sink: &mut dyn FnMut(&[AgentState], &[Event])) {
+    fn play(mut self, onlooker: &mut dyn Onlooker) {
+        onlooker.announce(&self.header);
+        let mut recorder = Recorder::new();
+        for tick in 0..=self.ticks {
+            recorder.at(SimTime::at_tick(tick));
+            self.tick(tick, tick == self.ticks, &mut recorder, onlooker);
+        }
+    }
+
+    fn tick(&mut self, tick: u64, ends: bool, recorder: &mut Recorder, onlooker: &mut dyn Onlooker) {
         self.scene.now_s = SimTime::at_tick(tick).secs();
         self.replay();
         let poses = self.poses(tick);
@@ -177,7 +175,7 @@ impl Run {
         if ends {
             recorder.tell(EventKind::End { reason: "time".to_owned() });
         }
-        recorder.frame(&states, sink);
+        recorder.frame(&states, onlooker);
         if ends {
             return;
         }
