@@ -23,13 +23,13 @@ mod order;
 pub use order::{Order, Seen, TickRange};
 
 mod shm;
-pub use shm::{ShmConfig, ShmSink, ShmState, ShmWatch};
+pub use shm::{ShmConfig, ShmHost, ShmSink, ShmState, ShmWatch};
 
 mod live;
 mod part;
 mod shelf;
 mod watch;
-pub use live::LiveSink;
+pub use live::{Linger, LiveSink};
 pub use watch::{Sight, Watch};
 
 pub mod csv;

@@ -1,6 +1,7 @@
 //! Frames over the bus: several ticks to a message, which may be lost, and a door where the lost can be fetched.
 
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use socrates_link::{Ask, Bus, Envelope, LinkError, Publish, Qos, Serving, encode, keys};
@@ -20,6 +21,40 @@ const TOGETHER: u64 = 10;
 /// Longest time that a tick waits for others, where they come slowly.
 const GATHER: Duration = Duration::from_millis(50);
 
+/// How long a finished run stays on the bus: for a time, and of those that nobody watches only the last.
+#[derive(Debug, Clone)]
+pub struct Linger {
+    time: Duration,
+    most: usize,
+    waiting: Arc<Mutex<VecDeque<Arc<Notify>>>>,
+}
+
+impl Linger {
+    /// Every run for this time, of those that nobody watches at most so many.
+    #[must_use]
+    pub fn new(time: Duration, most: usize) -> Self {
+        Self { time, most, waiting: Arc::default() }
+    }
+
+    fn waiting(&self) -> MutexGuard<'_, VecDeque<Arc<Notify>>> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits until a run may leave that nobody watches.
+    async fn unwatched(&self) {
+        let leave = Arc::new(Notify::new());
+        {
+            let mut waiting = self.waiting();
+            waiting.push_back(Arc::clone(&leave));
+            while waiting.len() > self.most {
+                waiting.pop_front().into_iter().for_each(|oldest| oldest.notify_one());
+            }
+        }
+        drop(tokio::time::timeout(self.time, leave.notified()).await);
+        self.waiting().retain(|other| !Arc::ptr_eq(other, &leave));
+    }
+}
+
 /// Puts a run on the bus.
 ///
 /// The simulation only writes to memory; a task publishes from there at the bus's own pace, so nobody who
@@ -36,13 +71,13 @@ impl LiveSink {
     ///
     /// # Errors
     /// [`StreamError::Link`].
-    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, tape: Tape, linger: Duration) -> Result<Self, StreamError> {
+    pub async fn open(bus: Arc<dyn Bus>, run: &RunId, tape: Tape, linger: &Linger) -> Result<Self, StreamError> {
         let failed = |why: LinkError| StreamError::Link { run: run.to_string(), why };
         let meta = bus.serve(&keys::live_meta(run)).await.map_err(failed)?;
         let ctl = bus.serve(&keys::live_ctl(run)).await.map_err(failed)?;
         let (shelf, news) = (Arc::new(Shelf::before(tape)), Arc::new(Notify::new()));
         let task = Publisher { bus, run: run.clone(), shelf: Arc::clone(&shelf), news: Arc::clone(&news) };
-        let publisher = Some(tokio::spawn(task.publish(meta, ctl, linger)));
+        let publisher = Some(tokio::spawn(task.publish(meta, ctl, linger.clone())));
         Ok(Self { shelf, news, publisher })
     }
 
@@ -75,15 +110,17 @@ impl FrameSink for LiveSink {
 
     fn tick(&mut self, tick: u64, states: &[AgentState]) {
         self.shelf.tick(states);
-        // Waking somebody costs more than a tick; whoever waits for fewer looks by itself.
-        if tick % TOGETHER == TOGETHER - 1 {
+        // Waking somebody costs more than a tick; who waits for fewer, or comes later, is looked for now and then.
+        if tick % TOGETHER == TOGETHER - 1 && self.shelf.is_heard() {
             self.news.notify_one();
         }
     }
 
     fn event(&mut self, event: &Event) {
         self.shelf.event(event);
-        self.news.notify_one();
+        if self.shelf.is_heard() {
+            self.news.notify_one();
+        }
     }
 
     fn end(&mut self) {
@@ -100,7 +137,7 @@ struct Publisher {
 }
 
 impl Publisher {
-    async fn publish(self, mut meta: Serving, mut ctl: Serving, linger: Duration) {
+    async fn publish(self, mut meta: Serving, mut ctl: Serving, linger: Linger) {
         let served = async {
             loop {
                 let answered = tokio::select! {
@@ -117,7 +154,11 @@ impl Publisher {
             if let Err(why) = self.tell().await {
                 tracing::warn!(run = %self.run, %why, "the live stream ended early; the run goes on");
             }
-            tokio::time::sleep(linger).await;
+            if self.shelf.is_heard() {
+                tokio::time::sleep(linger.time).await;
+            } else {
+                linger.unwatched().await;
+            }
         };
         tokio::select! {
             () = served => {}
@@ -131,6 +172,7 @@ impl Publisher {
         let agents = self.bus.publisher(&keys::live_agents(&self.run), Qos::Stream).await?;
         let (mut announced, mut told_ticks, mut told_events) = (false, 0_u64, 0_u64);
         loop {
+            self.shelf.hears(agents.is_heard());
             let (ticks, events, ended) = self.shelf.standing();
             if !announced && self.shelf.meta().is_some() {
                 self.say(&*meta).await?;
@@ -150,12 +192,8 @@ impl Publisher {
             if ended {
                 return if agents.is_heard() { agents.put(part::over(ticks)).await } else { Ok(()) };
             }
-            if agents.is_heard() {
-                // Whoever watches a slow run waits no longer than this for its ticks.
-                drop(tokio::time::timeout(GATHER, self.news.notified()).await);
-            } else {
-                self.news.notified().await;
-            }
+            // Whoever watches a slow run waits no longer than this for its ticks.
+            drop(tokio::time::timeout(GATHER, self.news.notified()).await);
         }
     }
 

@@ -2,6 +2,7 @@
 //! recording that is being written.
 
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde::{Deserialize, Serialize};
@@ -74,6 +75,7 @@ pub(crate) struct Shelf {
     tape: Tape,
     /// The ticks that were read from it last, for the questions that follow.
     read: Mutex<Vec<Vec<u8>>>,
+    heard: AtomicBool,
 }
 
 #[derive(Default)]
@@ -101,6 +103,15 @@ impl Shelf {
 
     fn rows(&self) -> MutexGuard<'_, Rows> {
         self.rows.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether anybody listens, as far as is known.
+    pub(crate) fn is_heard(&self) -> bool {
+        self.heard.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn hears(&self, heard: bool) {
+        self.heard.store(heard, Ordering::Relaxed);
     }
 
     pub(crate) fn announce(&self, header: &RecordingHeader) {

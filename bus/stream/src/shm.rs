@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 use std::path::{Path as FsPath, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use iceoryx2::port::publisher::Publisher;
 use iceoryx2::port::subscriber::Subscriber;
@@ -136,44 +137,87 @@ impl ShmConfig {
 
 type Ipc = ipc_threadsafe::Service;
 
-/// The run's corner of shared memory.
-struct Corner {
-    run: String,
-    node: Node<Ipc>,
-    name: ServiceName,
+/// Shared memory as one process sees it: joined at the first run and left with the last clone. Joining takes longer than
+/// many a run, so it is done once.
+#[derive(Clone)]
+pub struct ShmHost {
+    config: ShmConfig,
+    node: Arc<Mutex<Option<Node<Ipc>>>>,
 }
 
-impl Corner {
-    fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
-        let failed = |what: &'static str, why: &dyn std::fmt::Debug| StreamError::Shm {
-            run: run.to_string(),
-            what,
-            why: format!("{why:?}"),
-        };
-        config.claim().map_err(|why| failed("claiming the folder", &why))?;
+impl std::fmt::Debug for ShmHost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ShmHost").field("config", &self.config).finish_non_exhaustive()
+    }
+}
+
+impl ShmHost {
+    /// The shared memory that is arranged so; nothing is done before the first run.
+    #[must_use]
+    pub fn new(config: ShmConfig) -> Self {
+        Self { config, node: Arc::default() }
+    }
+
+    /// Joins, unless that was done.
+    fn join(&self, node: &mut Option<Node<Ipc>>) -> Result<(), (&'static str, String)> {
+        if node.is_some() {
+            return Ok(());
+        }
+        let failed = |what: &'static str, why: &dyn std::fmt::Debug| (what, format!("{why:?}"));
+        self.config.claim().map_err(|why| failed("claiming the folder", &why))?;
         // Failures come back as values; the library's own lines would reach a terminal.
         set_log_level(LogLevel::Fatal);
         let mut settings = Config::default();
-        let root = Path::new(config.root.as_os_str().as_encoded_bytes())
+        let root = Path::new(self.config.root.as_os_str().as_encoded_bytes())
             .map_err(|why| failed("reading the root path", &why))?;
         settings.global.set_root_path(&root);
         settings.global.prefix =
-            FileName::new(config.prefix.as_bytes()).map_err(|why| failed("reading the prefix", &why))?;
+            FileName::new(self.config.prefix.as_bytes()).map_err(|why| failed("reading the prefix", &why))?;
         // Corpses of killed processes are cleared away by whoever comes next.
         settings.global.node.cleanup_dead_nodes_on_creation = true;
         settings.global.service.cleanup_dead_nodes_on_open = true;
-        let node = NodeBuilder::new()
+        let joined = NodeBuilder::new()
             .config(&settings)
             .signal_handling_mode(SignalHandlingMode::Disabled)
             .create::<Ipc>()
             .map_err(|why| failed("joining", &why))?;
-        config.close_segments();
-        let name = ServiceName::new(&format!("socrates/{run}")).map_err(|why| failed("naming", &why))?;
-        Ok(Self { run: run.to_string(), node, name })
+        self.config.close_segments();
+        *node = Some(joined);
+        Ok(())
+    }
+
+    /// Calls `with` with the node of this process.
+    fn with<T>(
+        &self,
+        with: impl FnOnce(&Node<Ipc>) -> Result<T, (&'static str, String)>,
+    ) -> Result<T, (&'static str, String)> {
+        let mut node = self.node.lock().unwrap_or_else(PoisonError::into_inner);
+        self.join(&mut node)?;
+        node.as_ref().map_or_else(|| Err(("joining", "there is no node".to_owned())), with)
+    }
+}
+
+/// The run's corner of shared memory.
+struct Corner {
+    run: String,
+    host: ShmHost,
+    name: ServiceName,
+}
+
+impl Corner {
+    fn open(run: &RunId, host: &ShmHost) -> Result<Self, StreamError> {
+        let told = |(what, why)| StreamError::Shm { run: run.to_string(), what, why };
+        host.with(|_node| Ok(())).map_err(told)?;
+        let name = ServiceName::new(&format!("socrates/{run}")).map_err(|why| told(("naming", format!("{why:?}"))))?;
+        Ok(Self { run: run.to_string(), host: host.clone(), name })
     }
 
     fn failed(&self, what: &'static str, why: &dyn std::fmt::Debug) -> StreamError {
-        StreamError::Shm { run: self.run.clone(), what, why: format!("{why:?}") }
+        self.told((what, format!("{why:?}")))
+    }
+
+    fn told(&self, (what, why): (&'static str, String)) -> StreamError {
+        StreamError::Shm { run: self.run.clone(), what, why }
     }
 }
 
@@ -188,14 +232,14 @@ impl ShmSink {
     ///
     /// # Errors
     /// [`StreamError::Shm`]: the caller goes on without.
-    pub fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
-        Ok(Self { corner: Corner::open(run, config)?, port: None })
+    pub fn open(run: &RunId, host: &ShmHost) -> Result<Self, StreamError> {
+        Ok(Self { corner: Corner::open(run, host)?, port: None })
     }
 
     /// As [`ShmSink::open`], with one log line in place of an error.
     #[must_use]
-    pub fn open_or_log(run: &RunId, config: &ShmConfig) -> Option<Self> {
-        match Self::open(run, config) {
+    pub fn open_or_log(run: &RunId, host: &ShmHost) -> Option<Self> {
+        match Self::open(run, host) {
             Ok(sink) => Some(sink),
             Err(why) => {
                 tracing::warn!(%why, "no shared memory for this run");
@@ -208,19 +252,19 @@ impl ShmSink {
         let buffer = buffer(agents);
         room_for(samples(buffer) * agents * AGENT_STATE_BYTES)
             .map_err(|why| self.corner.failed("finding room", &why))?;
-        let service = self
-            .corner
-            .node
-            .service_builder(&self.corner.name)
-            .publish_subscribe::<[ShmState]>()
-            .max_publishers(1)
-            .max_subscribers(READERS)
-            .max_nodes(READERS + 4)
-            .subscriber_max_buffer_size(buffer)
-            .history_size(buffer)
-            .enable_safe_overflow(true)
-            .open_or_create()
-            .map_err(|why| self.corner.failed("creating the service", &why))?;
+        let created = self.corner.host.with(|node| {
+            let service = node.service_builder(&self.corner.name).publish_subscribe::<[ShmState]>();
+            service
+                .max_publishers(1)
+                .max_subscribers(READERS)
+                .max_nodes(READERS + 4)
+                .subscriber_max_buffer_size(buffer)
+                .history_size(buffer)
+                .enable_safe_overflow(true)
+                .open_or_create()
+                .map_err(|why| ("creating the service", format!("{why:?}")))
+        });
+        let service = created.map_err(|why| self.corner.told(why))?;
         service
             .publisher_builder()
             .initial_max_slice_len(agents)
@@ -287,14 +331,13 @@ impl ShmWatch {
     ///
     /// # Errors
     /// [`StreamError::Shm`], also when there is no such run.
-    pub fn open(run: &RunId, config: &ShmConfig) -> Result<Self, StreamError> {
-        let corner = Corner::open(run, config)?;
-        let service = corner
-            .node
-            .service_builder(&corner.name)
-            .publish_subscribe::<[ShmState]>()
-            .open()
-            .map_err(|why| corner.failed("opening the service", &why))?;
+    pub fn open(run: &RunId, host: &ShmHost) -> Result<Self, StreamError> {
+        let corner = Corner::open(run, host)?;
+        let opened = corner.host.with(|node| {
+            let service = node.service_builder(&corner.name).publish_subscribe::<[ShmState]>().open();
+            service.map_err(|why| ("opening the service", format!("{why:?}")))
+        });
+        let service = opened.map_err(|why| corner.told(why))?;
         let buffer = service.static_config().subscriber_max_buffer_size();
         let port = service
             .subscriber_builder()
@@ -373,14 +416,15 @@ mod tests {
         }
         let recording = csv::read_tracks(&text).unwrap();
         let run = RunId::new("shm-test").unwrap();
-        let mut sink = match ShmSink::open(&run, &config(dir.path())) {
+        let (writing, reading) = (ShmHost::new(config(dir.path())), ShmHost::new(config(dir.path())));
+        let mut sink = match ShmSink::open(&run, &writing) {
             Ok(sink) => sink,
             Err(why) => {
                 eprintln!("skipped: this machine has no shared memory: {why}");
                 return;
             }
         };
-        assert!(ShmWatch::open(&run, &config(dir.path())).is_err(), "nobody has announced the run");
+        assert!(ShmWatch::open(&run, &reading).is_err(), "nobody has announced the run");
         sink.announce(&recording.header);
         assert!(sink.port.is_some(), "the service was not created");
         let modes = modes(&config(dir.path()));
@@ -390,7 +434,7 @@ mod tests {
             sink.tick(tick as u64, recording.tick(tick));
         }
         // A late reader still gets the history.
-        let mut watch = ShmWatch::open(&run, &config(dir.path())).unwrap();
+        let mut watch = ShmWatch::open(&run, &reading).unwrap();
         let mut next = 0;
         for tick in 10..20 {
             sink.tick(tick as u64, recording.tick(tick));
@@ -429,7 +473,8 @@ mod tests {
             (0..3_000).map(|agent| AgentState { tick, agent, x: f64::from(agent), ..state }).collect()
         };
         let run = RunId::new("shm-crowd").unwrap();
-        let mut sink = match ShmSink::open(&run, &config(dir.path())) {
+        let (writing, reading) = (ShmHost::new(config(dir.path())), ShmHost::new(config(dir.path())));
+        let mut sink = match ShmSink::open(&run, &writing) {
             Ok(sink) => sink,
             Err(why) => {
                 eprintln!("skipped: this machine has no shared memory: {why}");
@@ -441,11 +486,29 @@ mod tests {
             eprintln!("skipped: this machine has less shared memory than {ROOM} bytes");
             return;
         }
-        let mut watch = ShmWatch::open(&run, &config(dir.path())).unwrap();
+        let mut watch = ShmWatch::open(&run, &reading).unwrap();
         for tick in 0..30 {
             sink.tick(tick, &states(tick));
             assert!(watch.poll().unwrap().unwrap() == states(tick), "tick {tick}");
         }
         assert!(watch.missing().is_empty());
+    }
+
+    #[test]
+    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
+    fn a_process_joins_once_for_all_its_runs() {
+        let dir = tempfile::tempdir().unwrap();
+        let host = ShmHost::new(config(dir.path()));
+        let open = |name: &str| ShmSink::open(&RunId::new(name).unwrap(), &host);
+        let Ok(first) = open("shm-first") else {
+            eprintln!("skipped: this machine has no shared memory");
+            return;
+        };
+        let node = || host.with(|node| Ok(format!("{:?}", node.id()))).unwrap();
+        let joined = node();
+        drop(first);
+        let _second = open("shm-second").unwrap();
+        assert_eq!(node(), joined);
+        assert_ne!(ShmHost::new(config(dir.path())).with(|node| Ok(format!("{:?}", node.id()))).unwrap(), joined);
     }
 }

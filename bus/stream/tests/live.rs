@@ -10,7 +10,7 @@ use socrates_link::{Bus, Envelope, MemoryBus, Overflow, Qos, decode, encode, key
 use socrates_model::recording::{AgentInfo, AgentState, Event, EventKind, Recording};
 use socrates_model::{AgentId, RunId, SimTime};
 use socrates_stream::mcap::Tape;
-use socrates_stream::{FrameSink as _, LiveSink, Sight, TickRange, Watch, csv};
+use socrates_stream::{FrameSink as _, Linger, LiveSink, Sight, TickRange, Watch, csv};
 
 const WATCHDOG: Duration = Duration::from_secs(60);
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -24,6 +24,11 @@ fn recording(seconds: u32) -> Recording {
     let event = |tick| Event { time: SimTime::at_tick(tick), kind: EventKind::RobotArrived };
     recording.events = vec![event(5), event(50)];
     recording
+}
+
+/// Longer than any test.
+fn linger() -> Linger {
+    Linger::new(Duration::from_secs(30), 4)
 }
 
 /// Plays a run to its viewers; what is recorded of it on the tape comes first.
@@ -81,7 +86,7 @@ async fn a_watcher_gets_the_header_every_tick_every_event_and_the_end() {
         let tape = Tape::default();
         let run = RunId::new("r1").unwrap();
         let recording = recording(3);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(bus, &run, 4096).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -106,7 +111,7 @@ async fn a_slow_watcher_knows_exactly_what_it_missed_and_can_fetch_it() {
         let tape = Tape::default();
         let run = RunId::new("r2").unwrap();
         let recording = recording(20);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         // Room for few ticks, and nothing is read while the run goes on: most are lost.
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4).await.unwrap();
         let mut fence = bus.subscribe(&keys::live_agents(&run), 1, Overflow::DropOldest).await.unwrap();
@@ -141,7 +146,7 @@ async fn a_late_joiner_of_a_finished_run_gets_header_gap_and_end() {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r3").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let recording = recording(1);
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -166,7 +171,7 @@ async fn bytes_of_a_stranger_on_the_frame_key_harm_nobody() {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r4").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
         for len in [0_usize, 1, 63, 65] {
             bus.publish(&keys::live_agents(&run), vec![7; len], Qos::Stream).await.unwrap();
@@ -189,7 +194,8 @@ async fn a_run_given_up_in_its_midst_ends_for_its_watchers_and_leaves_the_bus() 
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let tape = Tape::default();
         let run = RunId::new("r5").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::ZERO).await.unwrap();
+        let mut sink =
+            LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &Linger::new(Duration::ZERO, 4)).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 64).await.unwrap();
         let recording = recording(1);
         sink.announce(&recording.header);
@@ -235,7 +241,7 @@ async fn three_thousand_agents_are_watched_whole() {
         let tape = Tape::default();
         let run = RunId::new("crowd").unwrap();
         let recording = crowd(3_000, 40);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let mut watch = Watch::open(Arc::clone(&bus), &run, 4096).await.unwrap();
         let played = recording.clone();
         let sink = tokio::task::spawn_blocking(move || {
@@ -269,7 +275,7 @@ async fn a_late_watcher_gets_every_tick_from_0_though_the_ring_has_passed_on() {
         let tape = Tape::default();
         let run = RunId::new("late").unwrap();
         let recording = recording(60);
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let (half, halfway) = tokio::sync::oneshot::channel();
         let (go, gone) = std::sync::mpsc::sync_channel(1);
         let played = recording.clone();
@@ -326,7 +332,7 @@ async fn ticks_go_out_several_to_a_message() {
         let run = RunId::new("several").unwrap();
         let recording = recording(10);
         let mut heard = bus.subscribe(&keys::live_agents(&run), 4096, Overflow::DropOldest).await.unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), Duration::from_secs(30)).await.unwrap();
+        let mut sink = LiveSink::open(Arc::clone(&bus), &run, tape.clone(), &linger()).await.unwrap();
         let sink = tokio::task::spawn_blocking(move || {
             play(&mut sink, &tape, &recording);
             sink
@@ -346,7 +352,8 @@ async fn a_version_tells_a_watcher_what_it_cannot_read() {
     guarded(async {
         let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
         let run = RunId::new("versions").unwrap();
-        let mut sink = LiveSink::open(Arc::clone(&bus), &run, Tape::default(), Duration::ZERO).await.unwrap();
+        let mut sink =
+            LiveSink::open(Arc::clone(&bus), &run, Tape::default(), &Linger::new(Duration::ZERO, 4)).await.unwrap();
         sink.announce(&recording(1).header);
         let reply = bus.query(&keys::live_meta(&run), Vec::new(), PATIENCE).await.unwrap();
         let head: Envelope<serde_json::Value> = decode("live_meta", &reply).unwrap();
@@ -362,6 +369,50 @@ async fn a_version_tells_a_watcher_what_it_cannot_read() {
         let refused = Watch::open(bus, &old, 16).await.err().unwrap();
         served.await.unwrap().unwrap();
         assert!(format!("{:?}", refused).contains("Incompatible { found: 1, needs: 2"), "{refused:?}");
+    })
+    .await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn of_many_finished_runs_the_last_stay_and_those_that_are_watched() {
+    guarded(async {
+        let bus: Arc<dyn Bus> = Arc::new(MemoryBus::new());
+        let linger = Linger::new(Duration::from_secs(30), 2);
+        let recording = recording(1);
+        let runs: Vec<RunId> = (0..6).map(|number| RunId::new(format!("short-{number}")).unwrap()).collect();
+        let watched = runs.first().unwrap().clone();
+        let mut watch = Watch::open(Arc::clone(&bus), &watched, 4096).await.unwrap();
+        let mut done = Vec::new();
+        for run in &runs {
+            let tape = Tape::default();
+            let mut sink = LiveSink::open(Arc::clone(&bus), run, tape.clone(), &linger).await.unwrap();
+            let played = recording.clone();
+            let playing = tokio::task::spawn_blocking(move || {
+                play(&mut sink, &tape, &played);
+                sink
+            });
+            done.push(playing.await.unwrap());
+            if *run == watched {
+                assert_eq!(self::watched(&mut watch).await.end, Some(101));
+            }
+        }
+        // Two of the five others stay, and they are the last.
+        let known = |run: RunId| {
+            let bus = Arc::clone(&bus);
+            async move { bus.query(&keys::live_meta(&run), vec![], PATIENCE).await.is_ok() }
+        };
+        let (mut stay, mut left) = (runs.clone(), runs.clone());
+        left.retain(|run| ["short-1", "short-2", "short-3"].contains(&run.as_str()));
+        stay.retain(|run| !left.contains(run));
+        for run in left {
+            while known(run.clone()).await {
+                tokio::time::sleep(Duration::from_millis(2)).await;
+            }
+        }
+        for run in stay {
+            assert!(known(run.clone()).await, "{run}");
+        }
+        drop(done);
     })
     .await;
 }

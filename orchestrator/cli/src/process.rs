@@ -7,7 +7,7 @@ use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, Work
 use socrates_link::{Bus, Mode, ZenohBus, ZenohConfig};
 use socrates_model::job::Stage;
 use socrates_store::{Durability, StoreError};
-use socrates_stream::ShmConfig;
+use socrates_stream::{ShmConfig, ShmHost};
 use tokio::sync::watch;
 
 use crate::args::{OrchestratorOptions, WorkerOptions};
@@ -56,7 +56,7 @@ pub(crate) async fn worker(config: &Config, options: &WorkerOptions) -> Result<(
             socrates_kit::serve(socrates_behaviors::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await
         }
         Stage::Simulation => {
-            let stage = socrates_simulation::Simulation { shm: shared_memory() };
+            let stage = socrates_simulation::Simulation::new(ShmHost::new(shared_memory()));
             socrates_kit::serve(stage, bus.clone(), settings, shutdown).await
         }
         Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage, bus.clone(), settings, shutdown).await,

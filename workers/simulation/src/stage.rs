@@ -7,7 +7,7 @@ use socrates_engine::Onlooker;
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
 use socrates_model::{AgentState, Event, Fault, FaultCode, Location, Reading, RecordingHeader, Request, RunId, fault};
 use socrates_stream::mcap::{Tape, Writer};
-use socrates_stream::{Fanout, FrameSink as _, LiveSink, ShmConfig, ShmSink, StreamError};
+use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, ShmSink, StreamError};
 use tokio::runtime::Handle;
 
 use crate::pace::Pace;
@@ -16,13 +16,24 @@ use crate::summary::Summary;
 
 /// How long the frames of a finished run can still be fetched from the bus.
 const LINGER: Duration = Duration::from_secs(3);
+/// How many finished runs stay that nobody watches: a batch of short runs would gather many.
+const LINGERING: usize = 4;
 
 /// The simulation stage. Settings: `pace` (`max` or simulated seconds per second), `live` (`off`, `bus`,
 /// `shm`, `on` for both; default `off`).
 #[derive(Debug, Clone)]
 pub struct Simulation {
-    /// Where shared memory is arranged for readers on this machine.
-    pub shm: ShmConfig,
+    /// For readers on this machine.
+    shm: ShmHost,
+    linger: Linger,
+}
+
+impl Simulation {
+    /// A stage that puts runs into this shared memory.
+    #[must_use]
+    pub fn new(shm: ShmHost) -> Self {
+        Self { shm, linger: Linger::new(LINGER, LINGERING) }
+    }
 }
 
 /// Everything of a job, decoded.
@@ -127,7 +138,7 @@ impl Onlooker for Viewers {
     }
 }
 
-async fn viewers(job: &Job, run: &RunId, location: Location, config: &ShmConfig) -> Result<Viewers, Failure> {
+async fn viewers(job: &Job, run: &RunId, location: Location, stage: &Simulation) -> Result<Viewers, Failure> {
     let tape = Tape::default();
     let live = job.setting("live").unwrap_or("off");
     let (bus, shm) = match live {
@@ -137,11 +148,11 @@ async fn viewers(job: &Job, run: &RunId, location: Location, config: &ShmConfig)
         _ => (true, true),
     };
     let mut sinks = Fanout::new(Vec::new());
-    if shm && let Some(sink) = ShmSink::open_or_log(run, config) {
+    if shm && let Some(sink) = ShmSink::open_or_log(run, &stage.shm) {
         sinks.add(Box::new(sink));
     }
     if bus {
-        match LiveSink::open(Arc::clone(&job.live_bus()), run, tape.clone(), LINGER).await {
+        match LiveSink::open(Arc::clone(&job.live_bus()), run, tape.clone(), &stage.linger).await {
             Ok(sink) => sinks.add(Box::new(sink)),
             // Viewers never decide about a run.
             Err(why) => tracing::warn!(%run, %why, "nobody can watch this run over the bus"),
@@ -159,7 +170,7 @@ impl Stage for Simulation {
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
         let Inputs { setup, planner, location } = inputs(job)?;
         let run = setup.run.clone();
-        let mut viewers = viewers(job, &run, location, &self.shm).await?;
+        let mut viewers = viewers(job, &run, location, self).await?;
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
             simulate_into(setup, &planner, &mut viewers)?;

@@ -68,7 +68,10 @@ impl Tape {
     /// The file as it is now.
     #[must_use]
     pub fn bytes(&self) -> Vec<u8> {
-        self.roll().bytes.clone()
+        let mut roll = self.roll();
+        // Whoever asks for all of it has written all of it.
+        roll.bytes.shrink_to_fit();
+        roll.bytes.clone()
     }
 
     /// Ticks that can be read: all before this one.
