@@ -1,17 +1,18 @@
 //! Ticks of the curious tree of HuNavSim 1.0: 16 nodes with its subtree, half of the agents in each branch.
 //!
-//! `cargo bench -p socrates-bt` prints one table; time is CPU time of this process, one thread.
+//! `cargo bench --workspace --bench tick` prints one table; time is CPU time of this process, one thread.
 #![expect(
     clippy::print_stdout,
     clippy::expect_used,
-    clippy::disallowed_methods,
-    reason = "a bench prints its table, stops where its tree is wrong, and reads the clock"
+    reason = "a bench prints its table and stops where its tree is wrong"
 )]
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+#[path = "../../../tests/machine.rs"]
+mod machine;
 
+use std::collections::BTreeMap;
+
+use machine::cpu_s;
 use socrates_bt::{Library, Options, Tree, TreeState, World};
 use socrates_model::{Action, Gesture, HumanId, SimTime};
 
@@ -87,80 +88,49 @@ impl World for Room {
     fn gesture(&mut self, _gesture: Gesture) {}
 }
 
-/// CPU time of this process in ns where the system tells, else wall time.
-struct Meter(Instant);
-
-impl Meter {
-    fn ns(&self) -> f64 {
-        let spent = fs::read_to_string("/proc/self/schedstat").ok();
-        let ns = spent.and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-        ns.unwrap_or_else(|| self.0.elapsed().as_secs_f64() * 1e9)
-    }
-}
-
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-fn ns_per_tick(meter: &Meter, tree: &Tree, agents: usize) -> f64 {
+fn ns_per_tick(tree: &Tree, agents: usize) -> f64 {
     let entries = BTreeMap::from([("id".to_owned(), "1".to_owned()), ("dt".to_owned(), "0.01".to_owned())]);
     let mut states: Vec<TreeState> = (0..agents).map(|_| tree.start_with(&entries)).collect();
     let rounds = TICKS / agents;
     let mut room = Room { visible: true, at_goal: false, acts: 0 };
     let measured = (0..RUNS)
         .map(|_| {
-            let before = meter.ns();
+            let before = cpu_s();
             for _ in 0..rounds {
                 for (agent, state) in states.iter_mut().enumerate() {
                     room.visible = agent % 2 == 0;
                     tree.tick(state, &mut room);
                 }
             }
-            (meter.ns() - before) / (rounds * agents) as f64
+            (cpu_s() - before) * 1e9 / (rounds * agents) as f64
         })
         .collect();
     assert!(room.acts > 0, "nobody acted");
     median(measured)
 }
 
-fn cpu() -> String {
-    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find_map(|line| line.strip_prefix("model name")?.split(':').nth(1));
-    name.map_or_else(|| "unknown CPU".to_owned(), |name| name.trim().to_owned())
-}
-
-/// Year, month and day of a number of days since 1970 (civil from days, proleptic Gregorian calendar).
-fn date(days: u64) -> String {
-    let z = days + 719_468;
-    let (era, day_of_era) = (z / 146_097, z % 146_097);
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted = (5 * day_of_year + 2) / 153;
-    let day = day_of_year - (153 * shifted + 2) / 5 + 1;
-    let month = if shifted < 10 { shifted + 3 } else { shifted - 9 };
-    format!("{:04}-{month:02}-{day:02}", year_of_era + era * 400 + u64::from(month <= 2))
-}
-
 fn main() {
     let options = Options { library: Library::HunavSim1_0, ..Options::default() };
     let tree = Tree::parse_with(CURIOUS, &options).expect("the curious tree loads");
-    let meter = Meter(Instant::now());
-    let days = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |past| past.as_secs() / 86_400);
-    println!("curious tree, {} nodes; one thread of {}; {}", tree.node_names().len(), cpu(), date(days));
+    println!("{}", machine::told(&format!("ticks of the curious tree, {} nodes, one thread", tree.node_names().len())));
     println!(
         "{:>8} {:>12} {:>14} {:>14} {:>12}",
         "agents", "ns per tick", "ticks per s", "budget 150 ns", "bytes each"
     );
     for agents in [50, 1000, 10_000] {
-        let ns = ns_per_tick(&meter, &tree, agents);
+        let ns = ns_per_tick(&tree, agents);
         let bytes = tree.start().bytes();
         println!("{agents:>8} {ns:>12.1} {:>14.2e} {:>13.0}% {bytes:>12}", 1e9 / ns, 100.0 * ns / 150.0);
     }
-    let started = meter.ns();
+    let started = cpu_s();
     let parses = 2000;
     for _ in 0..parses {
         assert!(Tree::parse_with(CURIOUS, &options).is_ok());
     }
-    println!("reading it from XML: {:.1} us", (meter.ns() - started) / f64::from(parses) / 1e3);
+    println!("reading it from XML: {:.1} us", (cpu_s() - started) * 1e6 / f64::from(parses));
 }

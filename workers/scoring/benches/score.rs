@@ -1,12 +1,16 @@
 //! Time to score one recording of 60 s at 100 Hz: process CPU time, one thread, medians and, in brackets, the least.
 //!
-//! `cargo bench -p socrates-scoring --bench score`, or with `-- 12` for so many humans alone
+//! `cargo bench --workspace --bench score`, or with `-- 12` for so many humans alone
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 #![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a bench is no library")]
+
+#[path = "../../../tests/machine.rs"]
+mod machine;
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
 
+use machine::cpu_s;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{
     AgentId, AgentState, Encounter, Gesture, HumanId, Location, NodeId, Paths, Point, Recording, RecordingHeader, RunId,
@@ -18,14 +22,6 @@ const STEP_S: f64 = 0.01;
 const ROUNDS: usize = 15;
 /// Scores in a round: the system's clock of CPU time ticks every 4 ms.
 const EACH: usize = 4;
-
-/// CPU time of this process so far, s; wall time where the system does not tell.
-fn cpu_s() -> f64 {
-    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
-    let told = std::fs::read_to_string("/proc/self/schedstat").ok();
-    let nanos = told.as_ref().and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanos.map_or_else(|| START.elapsed().as_secs_f64(), |nanos| nanos * 1e-9)
-}
 
 /// The longest of the shortest ways between any two nodes.
 fn longest(location: &Location) -> Vec<NodeId> {
@@ -106,6 +102,7 @@ fn scene(location: &Location, humans: u32) -> (Recording, Paths) {
 
 fn main() {
     let only: Vec<u32> = std::env::args().filter_map(|word| word.parse().ok()).collect();
+    println!("{}", machine::told("scoring of one recording of 60 s at 100 Hz"));
     println!("{:<12} {:>7} {:>16} {:>17} {:>17}", "map", "humans", "cells", "tracks only", "with map");
     for name in socrates_maps::shipped::names() {
         let location = socrates_maps::shipped::load(name).unwrap();
