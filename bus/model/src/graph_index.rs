@@ -111,7 +111,7 @@ impl Index {
         }
         for (number, place) in places.iter_mut().enumerate() {
             let own = self.place_of.get(number).filter(|first| **first == short(number));
-            let Some(kind) = own.and(self.kinds.get(number)) else {
+            let Some(kind) = own.and_then(|_| self.kinds.get(number)) else {
                 // The ways at a place are of no class where no node is.
                 place.bits = 0;
                 continue;
@@ -187,7 +187,7 @@ impl Index {
         b: &NodeId,
     ) -> Option<f64> {
         let at = self.edge(nodes, a, b)?;
-        self.node(nodes, a).and(self.node(nodes, b))?;
+        (self.node(nodes, a).is_some() && self.node(nodes, b).is_some()).then_some(())?;
         let forth = edges.get(at)?.from == *a;
         self.lengths_m.get(at).map(|[there, back]| if forth { *there } else { *back })
     }
@@ -297,7 +297,7 @@ fn names(nodes: &[GraphNode], edges: &[GraphEdge]) -> (Vec<u32>, Vec<NodeId>, Ve
     let mut first = BTreeMap::new();
     let mut place_of = Vec::with_capacity(nodes.len());
     for (number, node) in nodes.iter().enumerate() {
-        place_of.push(*first.entry(&node.id).or_insert(short(number)));
+        place_of.push(*first.entry(&node.id).or_insert_with(|| short(number)));
     }
     let mut strays = Vec::new();
     for id in edges.iter().flat_map(|edge| [&edge.from, &edge.to]) {

@@ -134,9 +134,12 @@ fn coarse(grid: &Grid, field: &DistanceField, radius_m: f64) -> Grid {
     rough
 }
 
+/// Coarse maps of one grid by the bits of the radius.
+type Rough = Mutex<VecDeque<(u64, Arc<Ground>)>>;
+
 /// The coarse map of a grid for a disc, kept for the last few grids and robots.
 fn rough(grid: &Grid, field: &DistanceField, radius_m: f64) -> Arc<Ground> {
-    static ROUGH: Kept<Mutex<VecDeque<(u64, Arc<Ground>)>>> = Kept::new();
+    static ROUGH: Kept<Rough> = Kept::new();
     let kept = ROUGH.of(grid, |_| Mutex::default());
     let mut shelf = kept.lock().unwrap_or_else(PoisonError::into_inner);
     let known = shelf.iter().find(|(radius, _)| *radius == radius_m.to_bits()).map(|(_, ground)| Arc::clone(ground));
