@@ -91,20 +91,13 @@ impl Polyline {
     pub fn project_within(&self, point: &Point, from: f64, to: f64) -> (f64, f64) {
         let mut best = (from.clamp(0.0, self.length_m()), f64::INFINITY);
         // Marks only grow: what ends before `from` is left out at once, and nothing comes after `to`.
-        let mut leg = self.along.partition_point(|mark| *mark < from).saturating_sub(1);
-        while let (Some([a, b]), Some([s0, s1])) = (self.points.get(leg..leg + 2), self.along.get(leg..leg + 2)) {
+        let first = self.along.partition_point(|mark| *mark < from).saturating_sub(1);
+        for (ends, marks) in self.points.windows(2).zip(self.along.windows(2)).skip(first) {
+            let ([a, b], [s0, s1]) = (ends, marks) else { continue };
             if *s0 > to {
                 break;
             }
-            leg += 1;
             if *s1 < from {
-                continue;
-            }
-            // The way comes nearer by no more than it is long: what is nearer than the best so far begins beyond this.
-            let beyond = s0 + (point - a).norm() - best.1;
-            if beyond > *s1 {
-                leg += self.along.get(leg..).map_or(0, |marks| marks.partition_point(|mark| *mark < beyond));
-                leg -= 1;
                 continue;
             }
             let (_, nearest) = nearest_on_segment(point, a, b);
@@ -164,57 +157,6 @@ mod tests {
         let (s, _) = corner().project_within(&Point::new(2., 1.), 4.5, 6.0);
         assert!((4.5..=6.0).contains(&s));
         assert!(corner().lateral_m(&Point::new(2., 1.), 2.0) > 0.99);
-    }
-
-    #[test]
-    fn a_projection_is_that_over_every_leg() {
-        let mut dice = 5_u64;
-        let mut roll = || {
-            dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (dice >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        for legs in [1, 3, 40, 1500] {
-            // Long legs and trails of short ones, which come back to themselves.
-            let (mut at, mut turn, mut way) = (Point::origin(), 0.0_f64, Polyline::default());
-            for _ in 0..=legs {
-                way.push(at);
-                turn += 2.0 * roll() - 1.0;
-                at += Vector::new(on_circle(turn).0, on_circle(turn).1) * (roll() * 60.0 / f64::from(legs));
-            }
-            for _ in 0..200 {
-                let point = Point::new(20.0 * roll() - 10.0, 20.0 * roll() - 10.0);
-                let from = way.length_m() * (1.2 * roll() - 0.1);
-                let to = from + 30.0 * roll();
-                let (found, plain) = (way.project_within(&point, from, to), every_leg(&way, &point, from, to));
-                assert_eq!((found.0.to_bits(), found.1.to_bits()), (plain.0.to_bits(), plain.1.to_bits()), "{legs}");
-            }
-        }
-    }
-
-    /// Some point of the unit circle.
-    fn on_circle(turn: f64) -> (f64, f64) {
-        let half = (turn % 3.0) / 2.0;
-        ((1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half))
-    }
-
-    fn every_leg(way: &Polyline, point: &Point, from: f64, to: f64) -> (f64, f64) {
-        let mut best = (from.clamp(0.0, way.length_m()), f64::INFINITY);
-        for (ends, marks) in way.points.windows(2).zip(way.along.windows(2)) {
-            let (a, b, s0, s1) = (ends[0], ends[1], marks[0], marks[1]);
-            if s0 > to || s1 < from {
-                continue;
-            }
-            let (_, nearest) = nearest_on_segment(point, &a, &b);
-            let s = (s0 + (nearest - a).norm()).clamp(from, to);
-            let distance = (point - (a + (b - a) * ((s - s0) / (s1 - s0)))).norm();
-            if distance < best.1 - 1e-9 {
-                best = (s, distance);
-            }
-        }
-        if best.1.is_infinite() {
-            best.1 = (point - way.point(best.0)).norm();
-        }
-        best
     }
 
     #[test]
