@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use socrates_crowd::model::Room;
 use socrates_crowd::{Goal, Params, Person, forces_on};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{GroupId, Point, Vector};
@@ -39,6 +40,7 @@ pub(crate) struct Walker {
     felt: Vec<Person>,
     around: Vec<Other>,
     lanes: Lanes,
+    room: Room,
     /// Whether there are so many that forces are reckoned in lanes.
     many: bool,
 }
@@ -76,7 +78,7 @@ impl Walker {
                 human.anchor = None;
                 if let Walks::Orca(orca) = &human.walks {
                     scene.near.noticed(&human.notice, &mut self.around);
-                    let wished = avoid(orca, human, (&target, want.speed_mps), &self.around);
+                    let wished = avoid(orca, human, (&target, want.speed_mps), &self.around, &mut self.room);
                     let change = wished - human.velocity;
                     human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
                 } else {

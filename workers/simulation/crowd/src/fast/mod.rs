@@ -25,11 +25,11 @@
 //! | `dt` of 0 | nothing changes, headings included |
 //! | somebody at rest | keeps the heading |
 
-mod cells;
+pub(crate) mod cells;
 mod crowd;
 mod density;
 mod elementary;
-mod pairs;
+pub(crate) mod pairs;
 mod prune;
 mod settings;
 mod social;

@@ -20,15 +20,15 @@ const WEAKEST: f64 = 1e-6;
 
 /// Position and velocity of somebody.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Body {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) vx: f64,
-    pub(super) vy: f64,
+pub(crate) struct Body {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) vx: f64,
+    pub(crate) vy: f64,
 }
 
 impl Body {
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.vx.is_finite() && self.vy.is_finite()
     }
 }

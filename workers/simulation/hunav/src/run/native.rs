@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use socrates_crowd::model::View;
+use socrates_crowd::model::{Room, View};
 use socrates_crowd::{Goal, Person, Segment, forces_on};
 use socrates_engine::gait::{self, A_MAX, V_MAX};
 use socrates_engine::{Body, Touch, resolve};
@@ -397,8 +397,9 @@ fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     let walls: Vec<Segment> =
         scene.floor.felt(&agent.at).into_iter().map(|point| Segment { from: point, to: point }).collect();
     let Some(person) = people.first() else { return Vector::zeros() };
-    let view = View { me: person, place: Some(0), people: &people, walls: &walls, now_s: scene.now_s, dt_s: scene.dt };
-    let velocity = scene.orca.velocity(&view);
+    let (now_s, dt_s) = (scene.now_s, scene.dt);
+    let view = View { me: person, place: Some(0), people: &people, walls: &walls, now_s, dt_s, index: None };
+    let velocity = scene.orca.velocity(&view, &mut Room::default());
     if velocity.iter().all(|component| component.is_finite()) { velocity } else { Vector::zeros() }
 }
 
