@@ -289,6 +289,8 @@ impl Near {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use socrates_crowd::cross::SplitMix64;
+    use socrates_model::{Cell, Grid};
 
     #[test]
     fn many_find_the_same_neighbors_as_few() {
@@ -321,5 +323,31 @@ mod tests {
             found.sort_unstable();
             assert_eq!(found, want);
         }
+    }
+
+    #[test]
+    fn what_is_within_the_open_distance_is_seen() {
+        let mut random = SplitMix64::new(21);
+        let mut asked = 0;
+        for (share, resolution_m) in [(0.0, 0.1), (0.002, 0.1), (0.02, 0.05), (0.002, 0.5)] {
+            let size = 160;
+            let cells = (0..size * size).map(|_| if random.next_f64() < share { Cell::Occupied } else { Cell::Free });
+            let origin = socrates_model::Pose::new(-3.0, 2.0, 0.4);
+            let grid = Grid { width: size, height: size, resolution_m, origin, cells: cells.collect() };
+            let mut floor = Floor::new(&grid);
+            floor.close(vec![(Point::new(-2.0, 5.0), Point::new(-1.0, 5.5))]);
+            let side_m = size as f64 * resolution_m;
+            for _ in 0..20_000 {
+                let at = Point::new(side_m * (random.next_f64() * 1.6 - 0.6), side_m * (random.next_f64() * 1.6 - 0.3));
+                let open_m = floor.open_m(&at);
+                if open_m > 0.0 {
+                    let (sin, cos) = libm::sincos(7.0 * random.next_f64());
+                    let to = at + Vector::new(cos, sin) * (open_m * random.next_f64() * (1.0 - 1e-12));
+                    assert!(floor.sees(&at, &to), "{at} {to} {open_m}");
+                    asked += 1;
+                }
+            }
+        }
+        assert!(asked > 10_000, "{asked}");
     }
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use socrates_crowd::model::{Room, View};
-use socrates_crowd::{Goal, Person, Segment, forces_on};
+use socrates_crowd::{Found, Goal, Person, Segment, forces_on};
 use socrates_engine::gait::{self, A_MAX, V_MAX};
 use socrates_engine::{Body, Touch, resolve};
 use socrates_model::{AgentId, Point, Polyline, Vector};
@@ -23,6 +23,8 @@ const JAMMED_S: f64 = 0.8;
 const DODGE_S: f64 = 1.2;
 /// Gap that nobody goes below on purpose: to people, to the robot, m.
 const GAPS_M: (f64, f64) = (0.06, 0.18);
+/// Gap from which on somebody slows down before another, m.
+const STOPS_M: f64 = 0.8;
 /// Distance from the robot's line that lets it through, m.
 const ASIDE_M: f64 = 1.0;
 /// How far somebody scared looks for a better place, m.
@@ -56,10 +58,42 @@ impl Want {
     }
 }
 
+/// Lists that are filled anew for every agent.
+#[derive(Debug, Default)]
+struct Lists {
+    /// The largest radius, m.
+    widest_m: f64,
+    found: Vec<Found>,
+    people: Vec<Person>,
+    room: Room,
+}
+
+impl Lists {
+    /// Others nearer than a distance, in list order.
+    fn others<'a>(&'a mut self, scene: &'a Scene, me: usize, range_m: f64) -> impl Iterator<Item = &'a Agent> {
+        self.found.clear();
+        if let Some(agent) = scene.agents.get(me) {
+            scene.near.within(&agent.at, range_m, &mut self.found);
+        }
+        self.found.sort_unstable_by_key(|found| found.place);
+        let others = self.found.iter().filter(move |found| found.place != me);
+        others.filter_map(|found| scene.agents.get(found.place))
+    }
+}
+
 /// Moves everybody and the robot by one step; the deeds are those of this tick, in list order.
 pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
+    // Whoever is not there is nowhere, and is not found.
+    let nowhere = Point::new(f64::NAN, f64::NAN);
+    let spots = scene.agents.iter().map(|agent| if agent.present { agent.at } else { nowhere });
+    scene.near.fill(spots.map(|at| (at, Vector::zeros())));
     let wants: Vec<Want> = deeds.iter().enumerate().map(|(me, deed)| want(scene, me, *deed)).collect();
-    let velocities: Vec<Vector> = wants.iter().enumerate().map(|(me, want)| steered(scene, me, want)).collect();
+    let mut lists = Lists {
+        widest_m: scene.agents.iter().fold(0.0, |most: f64, agent| most.max(agent.radius_m)),
+        ..Lists::default()
+    };
+    let velocities: Vec<Vector> =
+        wants.iter().enumerate().map(|(me, want)| steered(scene, me, want, &mut lists)).collect();
     let people: Vec<(Point, f64)> =
         scene.agents.iter().filter(|agent| agent.present).map(|agent| (agent.at, agent.radius_m)).collect();
     let (now_s, dt) = (scene.now_s, scene.dt);
@@ -210,15 +244,16 @@ fn go(scene: &mut Scene, me: usize, to: &Point, speed_mps: f64) -> Want {
 /// Spots around an agent where it fits and that it can reach straight, nearest first.
 fn spots(scene: &Scene, agent: &Agent, reach_m: f64) -> Vec<Point> {
     let mut found = Vec::new();
+    let mut around = Vec::new();
+    let widest_m = scene.agents.iter().fold(0.0, |most: f64, agent| most.max(agent.radius_m));
+    scene.near.within(&agent.at, reach_m + widest_m + agent.radius_m + 0.1, &mut around);
     let rings = 8_u32;
     for ring in 1..=rings {
         for turn in 0..16_u32 {
             let (sin, cos) = libm::sincos(f64::from(turn) / 16.0 * TAU);
             let spot = agent.at + Vector::new(cos, sin) * (reach_m * f64::from(ring) / f64::from(rings));
-            let crowded = scene.agents.iter().any(|other| {
-                other.present
-                    && other.human != agent.human
-                    && (other.at - spot).norm() < other.radius_m + agent.radius_m + 0.05
+            let crowded = around.iter().filter_map(|found| scene.agents.get(found.place)).any(|other| {
+                other.human != agent.human && (other.at - spot).norm() < other.radius_m + agent.radius_m + 0.05
             });
             if !crowded
                 && scene.floor.clearance_m(&spot) > agent.radius_m + 0.02
@@ -342,7 +377,7 @@ fn unjammed(scene: &mut Scene, me: usize, want: &Want) -> Option<Point> {
 }
 
 /// Velocity of this tick before contacts.
-fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
+fn steered(scene: &mut Scene, me: usize, want: &Want, lists: &mut Lists) -> Vector {
     let dt = scene.dt;
     let model = scene.agents.get(me).map_or(HumanModel::SocialForces, |agent| agent.model);
     let wished = match unjammed(scene, me, want) {
@@ -351,10 +386,10 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
             if let Some(agent) = scene.agents.get_mut(me) {
                 agent.errand.anchor = None;
             }
-            return avoiding(scene, me, want, &target);
+            return avoiding(scene, me, want, &target, lists);
         }
         Some(target) if want.speed_mps > 0.0 => {
-            let force = pull(scene, me, want, &target);
+            let force = pull(scene, me, want, &target, lists);
             let Some(agent) = scene.agents.get_mut(me) else { return Vector::zeros() };
             agent.errand.anchor = None;
             agent.velocity + force * dt
@@ -370,15 +405,16 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
     if want.target.is_some() && velocity.norm() > most {
         velocity *= most / velocity.norm();
     }
-    let others = scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present);
-    let others = others.map(|(_, other)| (other.at, other.radius_m, GAPS_M.0));
+    // A little farther than the widest at that gap: rounding decides nothing.
+    let reach_m = STOPS_M + agent.radius_m + lists.widest_m + 1e-6;
+    let others = lists.others(scene, me, reach_m).map(|other| (other.at, other.radius_m, GAPS_M.0));
     let robot =
         scene.robot.iter().map(|robot| (robot.at(), robot.spec.radius_m, if want.drawn { GAPS_M.0 } else { GAPS_M.1 }));
     for (at, radius_m, gap_m) in others.chain(robot) {
         let way = at - agent.at;
         let distance = way.norm();
         let gap = distance - agent.radius_m - radius_m;
-        if distance > 1e-6 && gap < 0.8 {
+        if distance > 1e-6 && gap < STOPS_M {
             let toward = way / distance;
             // A person stops before touching; forces alone would let shoulders meet.
             let excess = velocity.dot(&toward) - (2.5 * (gap - gap_m)).max(0.0);
@@ -391,15 +427,16 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
 }
 
 /// Velocity of somebody who avoids collisions with others who do so too.
-fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point, lists: &mut Lists) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
-    let people = felt(scene, me, want, target);
+    felt(scene, me, want, target, lists);
+    let people = &lists.people;
     let walls: Vec<Segment> =
         scene.floor.felt(&agent.at).into_iter().map(|point| Segment { from: point, to: point }).collect();
     let Some(person) = people.first() else { return Vector::zeros() };
     let (now_s, dt_s) = (scene.now_s, scene.dt);
-    let view = View { me: person, place: Some(0), people: &people, walls: &walls, now_s, dt_s, index: None };
-    let velocity = scene.orca.velocity(&view, &mut Room::default());
+    let view = View { me: person, place: Some(0), people, walls: &walls, now_s, dt_s, index: None };
+    let velocity = scene.orca.velocity(&view, &mut lists.room);
     if velocity.iter().all(|component| component.is_finite()) { velocity } else { Vector::zeros() }
 }
 
@@ -412,10 +449,10 @@ fn stand(agent: &mut Agent, dt: f64) -> Vector {
     gait::stand(&mut agent.errand.anchor, &agent.at, &agent.velocity, dt)
 }
 
-fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+fn pull(scene: &Scene, me: usize, want: &Want, target: &Point, lists: &mut Lists) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
-    let people = felt(scene, me, want, target);
-    let mut forces = forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces);
+    felt(scene, me, want, target, lists);
+    let mut forces = forces_on(0, &lists.people, &scene.floor.felt(&agent.at), &agent.forces);
     // Contacts keep everybody out of walls; their force keeps nobody out of a doorway, or from a goal beside one.
     let push = forces.obstacle.norm();
     if push > WALL_MOST_MPS2 {
@@ -424,27 +461,29 @@ fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     gait::limited(&forces.total())
 }
 
-/// The agent with its wish, then everybody it feels: in line of sight and near.
-fn felt(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vec<Person> {
-    let Some(agent) = scene.agents.get(me) else { return Vec::new() };
-    let goal = Some(Goal { at: *target, radius_m: 0.02 });
-    let mut people = vec![Person { goal, speed_mps: want.speed_mps, ..agent.person() }];
-    for (_, other) in scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present) {
-        if (other.at - agent.at).norm() < FEEL_M && scene.floor.sees(&agent.at, &other.at) {
-            people.push(other.person());
+/// Lists the agent with its wish, then everybody it feels: in line of sight and near.
+fn felt(scene: &Scene, me: usize, want: &Want, target: &Point, lists: &mut Lists) {
+    let mut people = std::mem::take(&mut lists.people);
+    people.clear();
+    if let Some(agent) = scene.agents.get(me) {
+        let goal = Some(Goal { at: *target, radius_m: 0.02 });
+        people.push(Person { goal, speed_mps: want.speed_mps, ..agent.person() });
+        let open_m = scene.floor.open_m(&agent.at);
+        let seen = |at: &Point| (at - agent.at).norm() < open_m || scene.floor.sees(&agent.at, at);
+        let others = lists.others(scene, me, FEEL_M).filter(|other| seen(&other.at));
+        people.extend(others.map(Agent::person));
+        if let Some(robot) = scene.robot.as_ref().filter(|_| !want.drawn)
+            && (robot.at() - agent.at).norm() < FEEL_M
+            && seen(&robot.at())
+        {
+            people.push(Person {
+                velocity: robot.velocity,
+                radius_m: robot.spec.radius_m,
+                ..Person::standing(0, robot.at())
+            });
         }
     }
-    if let Some(robot) = scene.robot.as_ref().filter(|_| !want.drawn)
-        && (robot.at() - agent.at).norm() < FEEL_M
-        && scene.floor.sees(&agent.at, &robot.at())
-    {
-        people.push(Person {
-            velocity: robot.velocity,
-            radius_m: robot.spec.radius_m,
-            ..Person::standing(0, robot.at())
-        });
-    }
-    people
+    lists.people = people;
 }
 
 /// Takes over where contacts left it, and turns.
