@@ -29,6 +29,7 @@ pub(crate) mod cells;
 mod crowd;
 mod density;
 mod elementary;
+mod lanes;
 pub(crate) mod pairs;
 mod prune;
 mod settings;
@@ -36,6 +37,7 @@ mod social;
 mod walls;
 
 pub use crowd::Crowd;
+pub use lanes::Lanes;
 pub use settings::{BadSettings, BadStep, ERROR_MPS2, Instructions, Settings, WALL_RANGE_M};
 pub use social::Social;
 pub use walls::WallIndex;
