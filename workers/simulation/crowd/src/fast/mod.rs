@@ -32,6 +32,7 @@ mod elementary;
 mod lanes;
 pub(crate) mod pairs;
 mod prune;
+mod rough;
 mod settings;
 mod social;
 mod walls;

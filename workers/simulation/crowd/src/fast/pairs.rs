@@ -210,7 +210,7 @@ impl Pairs {
 }
 
 #[inline(always)]
-fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
+pub(super) fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
     if let Some(sum) = sums.get_mut(place) {
         *sum += force;
     }
