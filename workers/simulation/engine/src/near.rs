@@ -122,8 +122,11 @@ pub(crate) struct Near {
     cell_m: f64,
     columns: usize,
     rows: usize,
-    /// Places in the list by cells, in the order of the list within a cell.
-    sorted: Vec<usize>,
+    /// Places in the list by cells, in the order of the list within a cell, each with where that is.
+    sorted: Vec<(usize, Point)>,
+    /// Cell of everybody, in the order of the list, and where the next one of a cell goes.
+    cells: Vec<usize>,
+    slots: Vec<usize>,
     /// Where the people of each cell begin in `sorted`; one more than there are cells.
     starts: Vec<usize>,
 }
@@ -223,10 +226,8 @@ impl Near {
             // The cells of a row lie one after the other, and so do the people in them.
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
-            let places = self.sorted.get(start..end).into_iter().flatten().copied();
-            found.extend(
-                places.filter(|place| self.spots.get(*place).is_some_and(near) && other(place)).map(Noticed::at),
-            );
+            let places = self.sorted.get(start..end).into_iter().flatten().filter(|(_, spot)| near(spot));
+            found.extend(places.map(|(place, _)| *place).filter(other).map(Noticed::at));
         }
     }
 
@@ -259,8 +260,9 @@ impl Near {
         let cells = |from: f64, to: f64| ((to - from).max(0.0) / self.cell_m) as usize + 1;
         (self.columns, self.rows) = (cells(low.0, high.0), cells(low.1, high.1));
         let count = self.columns * self.rows;
-        let cells: Vec<usize> =
-            self.others.iter().map(|other| self.cell(&other.at)).map(|(c, r)| r * self.columns + c).collect();
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.clear();
+        cells.extend(self.spots.iter().map(|spot| self.cell(spot)).map(|(column, row)| row * self.columns + column));
         self.starts.clear();
         self.starts.resize(count + 1, 0);
         for cell in &cells {
@@ -273,16 +275,17 @@ impl Near {
             sum += *start;
             *start = sum;
         }
-        let mut next = self.starts.clone();
+        self.slots.clone_from(&self.starts);
         self.sorted.clear();
-        self.sorted.resize(self.others.len(), 0);
-        for (place, cell) in cells.iter().enumerate() {
-            let Some(slot) = next.get_mut(*cell) else { continue };
+        self.sorted.resize(self.others.len(), (0, Point::origin()));
+        for ((place, spot), cell) in self.spots.iter().enumerate().zip(&cells) {
+            let Some(slot) = self.slots.get_mut(*cell) else { continue };
             if let Some(target) = self.sorted.get_mut(*slot) {
-                *target = place;
+                *target = (place, *spot);
             }
             *slot += 1;
         }
+        self.cells = cells;
     }
 }
 
