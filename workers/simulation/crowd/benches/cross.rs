@@ -1,15 +1,18 @@
 //! The crossing crowd: agent-steps per second, ratios to strict, real-time factors, errors, memory.
 //!
-//! `cargo bench -p socrates-crowd --bench cross [SIZE]...` takes the sizes to run (10 50 100 1000 10000);
+//! `cargo bench --workspace --bench cross -- [SIZE]...` takes the sizes to run (10 50 100 1000 10000);
 //! without one, all. One thread, process CPU time, median of several rounds; in each round every mode
 //! has its turn, so that ratios are of the same minute.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
 #![expect(clippy::disallowed_methods, reason = "a bench shows the date and falls back to the wall clock")]
 
-use std::hint::black_box;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+mod common;
 
+use std::hint::black_box;
+use std::time::Instant;
+
+use common::{cpu_s, header, median};
 use nalgebra::{Point2, Vector2};
 use socrates_crowd::cross::{DT_S, WALL_RANGE_M, cross};
 use socrates_crowd::fast::{Instructions, Settings};
@@ -24,40 +27,11 @@ const SLICE_S: f64 = 0.05;
 /// Slow modes get fewer rounds beyond this many pairs of people per step.
 const MANY_PAIRS: f64 = 5e6;
 
-/// CPU time of the process, s; the wall clock where the system does not tell.
-fn cpu_s(start: &Instant) -> f64 {
-    // Fields 14 and 15 of the process line, in hundredths of a second, are too coarse; the scheduler's
-    // own count is in nanoseconds.
-    std::fs::read_to_string("/proc/self/schedstat")
-        .ok()
-        .and_then(|line| line.split_whitespace().next().and_then(|field| field.parse::<f64>().ok()))
-        .map_or_else(|| start.elapsed().as_secs_f64(), |nanoseconds| nanoseconds * 1e-9)
-}
-
 /// Present and peak resident memory, MB.
 fn memory_mb(field: &str) -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with(field)).unwrap_or_default();
     line.split_whitespace().nth(1).and_then(|kb| kb.parse::<f64>().ok()).map_or(f64::NAN, |kb| kb / 1024.0)
-}
-
-fn machine() -> String {
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(": "));
-    let has = |flag: &str| info.lines().find(|line| line.starts_with("flags")).is_some_and(|line| line.contains(flag));
-    let vectors = [" avx2", " avx512f"].into_iter().filter(|flag| has(flag)).collect::<String>();
-    format!("{} ({} seen:{vectors})", name.map_or("unknown processor", |(_, name)| name), std::env::consts::ARCH)
-}
-
-/// The date, by the days-to-civil rule for the Gregorian calendar.
-fn date() -> String {
-    let days = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs() / 86_400) + 719_468;
-    let (era, day_of_era) = (days / 146_097, days % 146_097);
-    let year_of_era = (day_of_era - day_of_era / 1460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
-    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
-    let shifted = (5 * day_of_year + 2) / 153;
-    let (day, month) = (day_of_year - (153 * shifted + 2) / 5 + 1, (shifted + 2) % 12 + 1);
-    format!("{:04}-{month:02}-{day:02}", year_of_era + era * 400 + u64::from(month <= 2))
 }
 
 /// A crowd stepped by the portable functions alone.
@@ -124,11 +98,6 @@ fn steps_per_slice(mode: &mut Mode, start: &Instant) -> u32 {
         }
         steps *= 2;
     }
-}
-
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_by(f64::total_cmp);
-    numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// Largest difference of social forces, m/s².
@@ -216,7 +185,7 @@ fn memory_of_fast(n: u32) {
 fn main() {
     let start = Instant::now();
     let wanted: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    println!("{}, {}", machine(), date());
+    println!("{}", header());
     println!("one thread, process CPU time, median of {ROUNDS} rounds (all pairs at 10000: one)");
     memory_of_fast(10_000);
     for n in SIZES.into_iter().filter(|n| wanted.is_empty() || wanted.contains(n)) {

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::fast::BadStep;
-use crate::model::{CrowdModel, View};
+use crate::fast::{BadStep, WallIndex};
+use crate::model::{CrowdModel, Index, Room, View};
+use crate::near::Near;
 use crate::obstacle::Segment;
 use crate::person::Person;
 use crate::tracks::Track;
@@ -60,15 +61,22 @@ impl Member {
 #[derive(Debug, Clone)]
 pub struct Mix {
     members: Vec<Member>,
-    walls: Vec<Segment>,
     now_s: f64,
+    /// Everybody who is there at the start of a step.
+    people: Vec<Person>,
+    index: Index,
+    room: Room,
 }
+
+/// Walls within this distance are found by looking at a cell, m; whoever asks farther looks at all walls.
+const WALLS_M: f64 = 3.0;
 
 impl Mix {
     /// A crowd among walls at a time, s.
     #[must_use]
     pub fn new(members: Vec<Member>, walls: Vec<Segment>, now_s: f64) -> Self {
-        let mut mix = Self { members, walls, now_s };
+        let index = Index { near: Near::default(), walls: WallIndex::new(&walls, WALLS_M) };
+        let mut mix = Self { members, now_s, people: Vec::new(), index, room: Room::default() };
         for member in &mut mix.members {
             member.person.goal = member.route.goal();
         }
@@ -102,14 +110,18 @@ impl Mix {
             return Err(BadStep { dt: dt_s });
         }
         if dt_s > 0.0 {
-            let people: Vec<Person> = self.people().cloned().collect();
+            self.people.clear();
+            let present = self.members.iter().filter(|member| member.present);
+            self.people.extend(present.map(|member| member.person.clone()));
+            self.index.near.fill(self.people.iter().map(|person| (person.position, person.velocity)));
+            let (people, walls) = (&self.people, self.index.walls.segments());
             let mut there = 0;
             for member in &mut self.members {
                 let place = member.present.then_some(there);
                 there += usize::from(member.present);
-                let view =
-                    View { me: &member.person, place, people: &people, walls: &self.walls, now_s: self.now_s, dt_s };
-                let next = member.model.next(&view);
+                let (me, index) = (&member.person, Some(&self.index));
+                let view = View { me, place, people, walls, now_s: self.now_s, dt_s, index };
+                let next = member.model.next(&view, &mut self.room);
                 member.present = next.is_some();
                 if let Some(mut person) = next {
                     member.route.follow(&mut person);

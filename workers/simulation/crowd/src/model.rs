@@ -2,11 +2,15 @@
 
 use nalgebra::{Point2, Vector2};
 
+use crate::fast::WallIndex;
 use crate::forces::forces_on;
 use crate::integrate::integrate;
-use crate::obstacle::{Segment, points_in_range};
+use crate::near::{Found, Near};
+use crate::obstacle::Segment;
+use crate::orca::HalfPlane;
 use crate::params::{BadParams, Params};
 use crate::person::Person;
+use crate::vector::norm;
 
 /// What one person goes by: the state at the start of a step.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +27,26 @@ pub struct View<'a> {
     pub now_s: f64,
     /// Length of the step, s, above 0.
     pub dt_s: f64,
+    /// The same people and walls, sorted; without it models look at everybody and every wall.
+    pub index: Option<&'a Index>,
+}
+
+/// People and walls of one moment, sorted by place. The answers of a model are the same with it and without it.
+#[derive(Debug, Clone)]
+pub struct Index {
+    /// Everybody who is there.
+    pub near: Near,
+    /// All walls.
+    pub walls: WallIndex,
+}
+
+/// Lists that models fill anew for every person.
+#[derive(Debug, Clone, Default)]
+pub struct Room {
+    pub(crate) found: Vec<Found>,
+    pub(crate) planes: Vec<HalfPlane>,
+    pub(crate) projected: Vec<HalfPlane>,
+    pub(crate) points: Vec<Point2<f64>>,
 }
 
 impl<'a> View<'a> {
@@ -30,6 +54,13 @@ impl<'a> View<'a> {
     pub fn others(&self) -> impl Iterator<Item = (usize, &'a Person)> + use<'a> {
         let place = self.place;
         self.people.iter().enumerate().filter(move |(other, _)| Some(*other) != place)
+    }
+
+    /// Every wall within `range_m` of a place, in the order of walls; some more may be among them.
+    pub fn walls_around(&self, at: &Point2<f64>, range_m: f64) -> impl Iterator<Item = &'a Segment> + use<'a> {
+        let index = self.index.filter(|index| range_m < index.walls.range_m() * (1.0 - 1e-9));
+        let all = if index.is_some() { &[][..] } else { self.walls };
+        index.map(|index| index.walls.around(at)).into_iter().flatten().chain(all)
     }
 }
 
@@ -43,8 +74,8 @@ pub trait CrowdModel {
 
     /// The person after the step; `None` if it is not there then.
     ///
-    /// The goal is handed through: taking the next one is for the caller.
-    fn next(&self, view: &View<'_>) -> Option<Person>;
+    /// The goal is handed through: taking the next one is for the caller. What `room` holds means nothing.
+    fn next(&self, view: &View<'_>, room: &mut Room) -> Option<Person>;
 }
 
 /// Social forces, by the portable functions.
@@ -76,11 +107,14 @@ impl CrowdModel for SocialForces {
         "social-forces"
     }
 
-    fn next(&self, view: &View<'_>) -> Option<Person> {
+    fn next(&self, view: &View<'_>, room: &mut Room) -> Option<Person> {
         let mut next = view.me.clone();
         if let Some(place) = view.place {
-            let walls: Vec<Point2<f64>> = points_in_range(&view.me.position, view.walls, self.wall_range_m);
-            let force: Vector2<f64> = forces_on(place, view.people, &walls, &self.params).total();
+            let (at, range_m) = (view.me.position, self.wall_range_m);
+            room.points.clear();
+            let points = view.walls_around(&at, range_m).map(|wall| wall.closest(&at));
+            room.points.extend(points.filter(|point| norm(&(at - point)) <= range_m));
+            let force: Vector2<f64> = forces_on(place, view.people, &room.points, &self.params).total();
             integrate(&mut next, &force, view.dt_s);
         }
         Some(next)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point2, Vector2};
 
-use crate::model::{CrowdModel, View};
+use crate::model::{CrowdModel, Room, View};
 use crate::person::Person;
 use crate::vector::{norm, wrap};
 
@@ -89,7 +89,7 @@ impl CrowdModel for Track {
         "recorded"
     }
 
-    fn next(&self, view: &View<'_>) -> Option<Person> {
+    fn next(&self, view: &View<'_>, _room: &mut Room) -> Option<Person> {
         self.at(view.now_s + view.dt_s, view.me)
     }
 }

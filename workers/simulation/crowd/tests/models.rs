@@ -6,9 +6,9 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use nalgebra::{Point2, Vector2};
-use socrates_crowd::cross::SplitMix64;
+use socrates_crowd::cross::{self, SplitMix64};
 use socrates_crowd::mix::{Member, Mix};
-use socrates_crowd::model::SocialForces;
+use socrates_crowd::model::{CrowdModel, Room, SocialForces, View};
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::tracks::Tracks;
 use socrates_crowd::{Goal, Params, Person, Route, Segment, Walker};
@@ -147,6 +147,54 @@ fn a_dense_crowd_of_avoiders_stays_finite_and_parts() {
     let apart = run(&mut mix, 1.0);
     assert!(apart > -1e-2, "{apart}");
     assert!(mix.people().all(|person| person.position.iter().all(|number| number.is_finite())));
+}
+
+/// What everybody does next when models look at everybody and every wall.
+fn by_looking_at_all(mix: &Mix, walls: &[Segment], time_s: f64) -> Vec<Person> {
+    let people = people(mix);
+    let mut room = Room::default();
+    let mut next = Vec::new();
+    for (place, (me, member)) in people.iter().zip(mix.members()).enumerate() {
+        let view = View {
+            me,
+            place: Some(place),
+            people: &people,
+            walls,
+            now_s: mix.now_s(),
+            dt_s: time_s - mix.now_s(),
+            index: None,
+        };
+        let mut person = member.model.next(&view, &mut room).unwrap();
+        member.route.clone().follow(&mut person);
+        next.push(person);
+    }
+    next
+}
+
+#[test]
+fn a_crowd_with_an_index_moves_as_one_that_looks_at_everybody() {
+    let far =
+        OrcaSettings { neighbor_range_m: 30.0, most_neighbors: 40, wall_horizon_s: 9.0, ..OrcaSettings::default() };
+    let models: [Arc<dyn CrowdModel + Send + Sync>; 3] = [
+        Arc::new(Orca::new(OrcaSettings::default()).unwrap()),
+        Arc::new(Orca::new(far).unwrap()),
+        Arc::new(SocialForces::new(Params::default(), 2.5).unwrap()),
+    ];
+    let mut floor = cross::cross(90);
+    // Some on one spot, some who are nowhere.
+    floor.walkers[11].person.position = floor.walkers[10].person.position;
+    floor.walkers[12].person = Person { id: 12, ..floor.walkers[10].person.clone() };
+    floor.walkers[30].person.position.x = f64::NAN;
+    let members = floor.walkers.iter().enumerate();
+    let members = members.map(|(place, walker)| Member::walking(walker.clone(), models[place % 3].clone())).collect();
+    let mut mix = Mix::new(members, floor.walls.clone(), 0.0);
+    for step in 1..=200 {
+        let time_s = f64::from(step) * cross::DT_S;
+        let wanted = by_looking_at_all(&mix, &floor.walls, time_s);
+        mix.advance_to(time_s).unwrap();
+        let all = |people: &[Person]| format!("{people:?}");
+        assert_eq!(all(&people(&mix)), all(&wanted), "step {step}");
+    }
 }
 
 const TABLE: &str = "t,id,x,y\n0.0,7,0,0\n1.0,7,2,0\n2.0,7,2,2\n\n0.5,8,5,5\n1.5,8,5,5\n";

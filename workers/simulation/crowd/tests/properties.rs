@@ -371,3 +371,80 @@ fn settings_that_cannot_be_meant_are_refused_by_name() {
     let mut empty = fast::Crowd::new(&[], &[], &good).unwrap();
     empty.step(DT_S).unwrap();
 }
+
+/// Scenes that are hard on an error bound: everybody on one side, on few spots, straight at each other, one runner
+/// against all, thin, dense, in one place at one speed.
+fn hard_scenes(seed: u64) -> Vec<(&'static str, Vec<Person>)> {
+    let mut random = SplitMix64::new(1000 + seed);
+    let mut number = |low: f64, high: f64| low + (high - low) * random.next_f64();
+    let mut crowd = |n: u32, place: &mut dyn FnMut(u32, &mut dyn FnMut(f64, f64) -> f64) -> [f64; 4]| {
+        (0..n)
+            .map(|id| {
+                let [x, y, vx, vy] = place(id, &mut number);
+                Person { velocity: Vector2::new(vx, vy), ..Person::standing(id, Point2::new(x, y)) }
+            })
+            .collect::<Vec<Person>>()
+    };
+    vec![
+        ("sparse", crowd(400, &mut |_, n| [n(0.0, 300.0), n(0.0, 300.0), n(-1.6, 1.6), n(-1.6, 1.6)])),
+        ("dense", crowd(600, &mut |_, n| [n(0.0, 10.0), n(0.0, 10.0), n(-1.6, 1.6), n(-1.6, 1.6)])),
+        ("crush", crowd(300, &mut |_, n| [n(0.0, 1.0), n(0.0, 1.0), n(-0.3, 0.3), n(-0.3, 0.3)])),
+        (
+            "one side",
+            crowd(700, &mut |id, n| {
+                // All come at the first, who walks towards them.
+                if id == 0 { [0.0, 0.0, 1.5, 0.0] } else { [n(9.0, 40.0), n(-9.0, 9.0), n(-1.6, -1.4), n(-0.1, 0.1)] }
+            }),
+        ),
+        (
+            "straight at each other",
+            crowd(500, &mut |id, n| {
+                let (side, y) = (if id % 2 == 0 { 1.0 } else { -1.0 }, f64::from(id / 2 % 25) * 0.8);
+                [side * n(1.0, 30.0), y, -side * n(1.2, 1.6), 0.0]
+            }),
+        ),
+        (
+            "few spots",
+            crowd(500, &mut |id, n| [f64::from(id % 5) * 3.0, f64::from(id % 3) * 3.0, n(-1.5, 1.5), n(-1.5, 1.5)]),
+        ),
+        ("at rest", crowd(500, &mut |_, n| [n(0.0, 40.0), n(0.0, 40.0), n(-1e-6, 1e-6), n(-1e-6, 1e-6)])),
+        (
+            "one runner",
+            crowd(600, &mut |id, n| {
+                if id == 7 { [0.0, 20.0, 9.0, 0.1] } else { [n(0.0, 60.0), n(0.0, 40.0), n(-1.2, -0.4), n(-0.2, 0.2)] }
+            }),
+        ),
+        (
+            "far from the origin",
+            crowd(500, &mut |_, n| [n(4e5, 4e5 + 50.0), n(-3e5, -3e5 + 40.0), n(-1.6, 1.6), n(-1.6, 1.6)]),
+        ),
+    ]
+}
+
+#[test]
+fn hard_scenes_keep_every_error_bound_on_every_processor() {
+    for params in [Params::lightsfm_hunav(), Params::default(), Params::lightsfm_batch()] {
+        for seed in 0..1 {
+            for (name, crowd) in hard_scenes(seed) {
+                let wanted: Vec<Vector2<f64>> = forces(&crowd, &[], &params).iter().map(|force| force.social).collect();
+                for error in [0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-1] {
+                    let found = Social::new(&params, error).unwrap().forces(&crowd).to_vec();
+                    let off = largest(&found, wanted.iter().copied());
+                    let rounding = 1e-11 * wanted.iter().fold(1.0, |most: f64, force| most.max(force.norm()));
+                    assert!(off <= error + rounding, "{name} {seed} {error:e}: {off:e}");
+                    for instructions in [Instructions::Avx2, Instructions::Baseline] {
+                        let social = Social::new(&params, error)
+                            .unwrap()
+                            .with_instructions(instructions)
+                            .forces(&crowd)
+                            .to_vec();
+                        let bits = |forces: &[Vector2<f64>]| -> Vec<u64> {
+                            forces.iter().flat_map(|f| [f.x.to_bits(), f.y.to_bits()]).collect()
+                        };
+                        assert_eq!(bits(&social), bits(&found), "{name} {seed} {error:e}");
+                    }
+                }
+            }
+        }
+    }
+}

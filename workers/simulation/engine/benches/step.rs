@@ -168,7 +168,15 @@ fn main() {
     let only: Option<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).next();
     let uptime = std::process::Command::new("date").arg("-u").output();
     let date = uptime.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned()).unwrap_or_default();
-    println!("{} · {date} · process CPU time, one thread", told("/proc/cpuinfo", "model name"));
+    let flags = told("/proc/cpuinfo", "flags");
+    let seen: Vec<&str> = ["avx2", "avx512f"].into_iter().filter(|flag| flags.contains(flag)).collect();
+    println!(
+        "{} ({} seen: {}), {} build · {date} · process CPU time, one thread",
+        told("/proc/cpuinfo", "model name"),
+        std::env::consts::ARCH,
+        seen.join(" "),
+        if cfg!(debug_assertions) { "debug" } else { "optimized" },
+    );
     let asked = |part: &str| {
         let words = || std::env::args().filter(|argument| ["scan", "step"].contains(&argument.as_str()));
         words().count() == 0 || words().any(|word| word == part)

@@ -106,6 +106,12 @@ impl Floor {
         clearance_m - 2.0 * self.walls.ground.grid().resolution_m
     }
 
+    /// Whatever is nearer than this to a point is seen from it, m; 0 or less where nothing is certain.
+    #[must_use]
+    pub fn open_m(&self, point: &Point) -> f64 {
+        self.open_of(self.clearance_m(point))
+    }
+
     /// Whether two points see each other now.
     #[must_use]
     pub fn sees(&self, a: &Point, b: &Point) -> bool {

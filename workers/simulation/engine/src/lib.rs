@@ -32,7 +32,6 @@ mod ending;
 mod ends;
 mod gathering;
 mod human;
-mod lanes;
 mod make_room;
 mod meetings;
 mod motion;

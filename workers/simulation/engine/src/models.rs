@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_bt::compile;
-use socrates_crowd::model::View;
+use socrates_crowd::model::{Room, View};
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::tracks::Track;
 use socrates_crowd::{Goal, Person, Segment};
@@ -140,7 +140,13 @@ impl Human {
 }
 
 /// The velocity that avoidance takes towards a target.
-pub(crate) fn avoid(orca: &Orca, human: &Human, (target, speed_mps): (&Point, f64), others: &[Other]) -> Vector {
+pub(crate) fn avoid(
+    orca: &Orca,
+    human: &Human,
+    (target, speed_mps): (&Point, f64),
+    others: &[Other],
+    room: &mut Room,
+) -> Vector {
     let person =
         |id: u32, at: Point, velocity: Vector, radius_m: f64| Person { velocity, radius_m, ..Person::standing(id, at) };
     let goal = Some(Goal { at: *target, radius_m: 0.02 });
@@ -154,6 +160,8 @@ pub(crate) fn avoid(orca: &Orca, human: &Human, (target, speed_mps): (&Point, f6
     let point = |at: Point| Segment { from: at, to: at };
     let walls: Vec<Segment> = human.notice.walls.iter().copied().map(point).collect();
     people.first().map_or_else(Vector::zeros, |me| {
-        orca.velocity(&View { me, place: Some(0), people: &people, walls: &walls, now_s: 0.0, dt_s: STEP_SECS })
+        let (place, now_s, dt_s) = (Some(0), 0.0, STEP_SECS);
+        let view = View { me, place, people: &people, walls: &walls, now_s, dt_s, index: None };
+        orca.velocity(&view, room)
     })
 }

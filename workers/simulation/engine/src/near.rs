@@ -122,8 +122,11 @@ pub(crate) struct Near {
     cell_m: f64,
     columns: usize,
     rows: usize,
-    /// Places in the list by cells, in the order of the list within a cell.
-    sorted: Vec<usize>,
+    /// Places in the list by cells, in the order of the list within a cell, each with where that is.
+    sorted: Vec<(usize, Point)>,
+    /// Cell of everybody, in the order of the list, and where the next one of a cell goes.
+    cells: Vec<usize>,
+    slots: Vec<usize>,
     /// Where the people of each cell begin in `sorted`; one more than there are cells.
     starts: Vec<usize>,
 }
@@ -223,10 +226,8 @@ impl Near {
             // The cells of a row lie one after the other, and so do the people in them.
             let start = self.starts.get(row * self.columns + from).copied().unwrap_or(0);
             let end = self.starts.get(row * self.columns + to).copied().unwrap_or(0);
-            let places = self.sorted.get(start..end).into_iter().flatten().copied();
-            found.extend(
-                places.filter(|place| self.spots.get(*place).is_some_and(near) && other(place)).map(Noticed::at),
-            );
+            let places = self.sorted.get(start..end).into_iter().flatten().filter(|(_, spot)| near(spot));
+            found.extend(places.map(|(place, _)| *place).filter(other).map(Noticed::at));
         }
     }
 
@@ -259,8 +260,9 @@ impl Near {
         let cells = |from: f64, to: f64| ((to - from).max(0.0) / self.cell_m) as usize + 1;
         (self.columns, self.rows) = (cells(low.0, high.0), cells(low.1, high.1));
         let count = self.columns * self.rows;
-        let cells: Vec<usize> =
-            self.others.iter().map(|other| self.cell(&other.at)).map(|(c, r)| r * self.columns + c).collect();
+        let mut cells = std::mem::take(&mut self.cells);
+        cells.clear();
+        cells.extend(self.spots.iter().map(|spot| self.cell(spot)).map(|(column, row)| row * self.columns + column));
         self.starts.clear();
         self.starts.resize(count + 1, 0);
         for cell in &cells {
@@ -273,22 +275,25 @@ impl Near {
             sum += *start;
             *start = sum;
         }
-        let mut next = self.starts.clone();
+        self.slots.clone_from(&self.starts);
         self.sorted.clear();
-        self.sorted.resize(self.others.len(), 0);
-        for (place, cell) in cells.iter().enumerate() {
-            let Some(slot) = next.get_mut(*cell) else { continue };
+        self.sorted.resize(self.others.len(), (0, Point::origin()));
+        for ((place, spot), cell) in self.spots.iter().enumerate().zip(&cells) {
+            let Some(slot) = self.slots.get_mut(*cell) else { continue };
             if let Some(target) = self.sorted.get_mut(*slot) {
-                *target = place;
+                *target = (place, *spot);
             }
             *slot += 1;
         }
+        self.cells = cells;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use socrates_crowd::cross::SplitMix64;
+    use socrates_model::{Cell, Grid};
 
     #[test]
     fn many_find_the_same_neighbors_as_few() {
@@ -321,5 +326,31 @@ mod tests {
             found.sort_unstable();
             assert_eq!(found, want);
         }
+    }
+
+    #[test]
+    fn what_is_within_the_open_distance_is_seen() {
+        let mut random = SplitMix64::new(21);
+        let mut asked = 0;
+        for (share, resolution_m) in [(0.0, 0.1), (0.002, 0.1), (0.02, 0.05), (0.002, 0.5)] {
+            let size = 160;
+            let cells = (0..size * size).map(|_| if random.next_f64() < share { Cell::Occupied } else { Cell::Free });
+            let origin = socrates_model::Pose::new(-3.0, 2.0, 0.4);
+            let grid = Grid { width: size, height: size, resolution_m, origin, cells: cells.collect() };
+            let mut floor = Floor::new(&grid);
+            floor.close(vec![(Point::new(-2.0, 5.0), Point::new(-1.0, 5.5))]);
+            let side_m = size as f64 * resolution_m;
+            for _ in 0..20_000 {
+                let at = Point::new(side_m * (random.next_f64() * 1.6 - 0.6), side_m * (random.next_f64() * 1.6 - 0.3));
+                let open_m = floor.open_m(&at);
+                if open_m > 0.0 {
+                    let (sin, cos) = libm::sincos(7.0 * random.next_f64());
+                    let to = at + Vector::new(cos, sin) * (open_m * random.next_f64() * (1.0 - 1e-12));
+                    assert!(floor.sees(&at, &to), "{at} {to} {open_m}");
+                    asked += 1;
+                }
+            }
+        }
+        assert!(asked > 10_000, "{asked}");
     }
 }

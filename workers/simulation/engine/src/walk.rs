@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use socrates_crowd::fast::Lanes;
+use socrates_crowd::model::Room;
 use socrates_crowd::{Goal, Params, Person, forces_on};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{GroupId, Point, Vector};
@@ -12,7 +14,6 @@ use socrates_model::{GroupId, Point, Vector};
 use crate::floor::Floor;
 use crate::gait::{self, A_MAX, V_MAX};
 use crate::human::Human;
-use crate::lanes::Lanes;
 use crate::models::{Walks, avoid};
 use crate::motion::Want;
 use crate::near::{CLOSE_M, FEEL_M, Near, Other};
@@ -21,8 +22,8 @@ use crate::near::{CLOSE_M, FEEL_M, Near, Other};
 const DOORWAY_M: f64 = 0.22;
 /// Gap to a robot at which somebody stops who does not seek it, surface to surface, m.
 const ROBOT_GAP_M: f64 = 0.3;
-/// Up to so many people forces are those of the crowd library to the last bit; more are reckoned in lanes, within
-/// 1e-9 m/s² of them.
+/// Up to so many people forces are those of the crowd library to the last bit; more are worked out in lanes, within
+/// 1e-12 m/s² of them.
 const FEW: usize = 24;
 
 /// The pairs of one person whose forces are reckoned together with those of others.
@@ -39,6 +40,7 @@ pub(crate) struct Walker {
     felt: Vec<Person>,
     around: Vec<Other>,
     lanes: Lanes,
+    room: Room,
     /// Whether there are so many that forces are reckoned in lanes.
     many: bool,
 }
@@ -65,7 +67,7 @@ impl Walker {
     /// Reckons the forces of all pairs that were noted.
     pub(crate) fn reckon(&mut self, params: &Params) {
         if self.many {
-            self.lanes.reckon(params);
+            self.lanes.work_out(params);
         }
     }
 
@@ -76,7 +78,7 @@ impl Walker {
                 human.anchor = None;
                 if let Walks::Orca(orca) = &human.walks {
                     scene.near.noticed(&human.notice, &mut self.around);
-                    let wished = avoid(orca, human, (&target, want.speed_mps), &self.around);
+                    let wished = avoid(orca, human, (&target, want.speed_mps), &self.around, &mut self.room);
                     let change = wished - human.velocity;
                     human.velocity + change * (A_MAX * STEP_SECS / change.norm().max(A_MAX * STEP_SECS))
                 } else {

@@ -276,3 +276,47 @@ fn people_get_where_they_want_to_go() {
     // Who stands at a goal in a doorway keeps others from going through.
     assert!(reached * 100 >= all * 90, "{reached} of {all} are at their goal after 90 s");
 }
+
+/// Frames of the first people of a crowd around the middle of the hall, some in groups, with others who stand far off.
+fn crossing(people: u32, far_off: u32) -> Vec<(f64, f64)> {
+    let mut draw = Draw(3);
+    let mut walkers = Vec::new();
+    for id in 0..people {
+        let (x, y) = (1.5 * f64::from(id % 5) - 3.0, 1.5 * f64::from(id / 5) - 3.0);
+        let start = (x + draw.real(-0.2, 0.2), y + draw.real(-0.2, 0.2), 0.0);
+        walkers.push(Walker {
+            group: if id % 6 == 0 { 4 } else { -1 },
+            ..Walker::new(
+                i64::from(id) + 1,
+                &section(1, 1),
+                start,
+                &[(-start.1 * 2.0, start.0 * 2.0), (start.0, start.1)],
+            )
+        });
+    }
+    for id in 0..far_off {
+        let start = (-18.0 + f64::from(id % 30), 18.0 - f64::from(id / 30), 0.0);
+        walkers.push(Walker::new(i64::from(people + id) + 1, &section(1, 1), start, &[(start.0, start.1)]));
+    }
+    let text = file(&walkers);
+    let agents = read(&text);
+    let grid = common::hall();
+    let inputs = Inputs { grid: Some(&grid), duration_s: 3.0, ..Inputs::new(&agents, "agents.yaml") };
+    let recording = simulate(&inputs).unwrap_or_else(|problems| panic!("{}", shown(&problems)));
+    recording.frames.iter().filter(|state| u32::from(state.agent) <= people).map(|state| (state.x, state.y)).collect()
+}
+
+#[test]
+fn people_far_off_change_nothing_beyond_rounding() {
+    let largest = |a: &[(f64, f64)], b: &[(f64, f64)]| {
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(b).map(|(a, b)| (a.0 - b.0).abs().max((a.1 - b.1).abs())).fold(0.0, f64::max)
+    };
+    // With 24 people every force is that of the library to the last bit, with 25 and more within 1e-12 of it.
+    let (alone, one_more, many) = (crossing(24, 0), crossing(24, 1), crossing(24, 150));
+    let walked = largest(&alone[..24], &alone[alone.len() - 24..]);
+    assert!(walked > 1.0, "nobody walked: {walked}");
+    let off = largest(&alone, &one_more);
+    assert!(off > 0.0 && off < 1e-9, "{off}");
+    assert_eq!(one_more, many);
+}

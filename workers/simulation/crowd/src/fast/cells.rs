@@ -9,7 +9,7 @@ const MOST_COLUMNS: f64 = 512.0;
 
 /// Rows of cells, each row from left to right.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Cells {
+pub(crate) struct Cells {
     left: f64,
     bottom: f64,
     width_m: f64,
@@ -24,16 +24,16 @@ pub(super) struct Cells {
 
 /// What the finite part of a crowd covers.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Extent {
-    pub(super) left: f64,
-    pub(super) right: f64,
-    pub(super) bottom: f64,
-    pub(super) top: f64,
+pub(crate) struct Extent {
+    pub(crate) left: f64,
+    pub(crate) right: f64,
+    pub(crate) bottom: f64,
+    pub(crate) top: f64,
 }
 
 impl Extent {
     /// The rectangle around all bodies; `None` without any.
-    pub(super) fn of<'a>(bodies: impl Iterator<Item = &'a Body>) -> Option<Self> {
+    pub(crate) fn of<'a>(bodies: impl Iterator<Item = &'a Body>) -> Option<Self> {
         bodies.fold(None, |extent, body| {
             let point = Self { left: body.x, right: body.x, bottom: body.y, top: body.y };
             Some(extent.map_or(point, |extent: Self| Self {
@@ -46,12 +46,12 @@ impl Extent {
     }
 
     /// The longer side, m.
-    pub(super) fn size_m(&self) -> f64 {
+    pub(crate) fn size_m(&self) -> f64 {
         (self.right - self.left).max(self.top - self.bottom)
     }
 
     /// The middle.
-    pub(super) fn middle(&self) -> (f64, f64) {
+    pub(crate) fn middle(&self) -> (f64, f64) {
         (self.left / 2.0 + self.right / 2.0, self.bottom / 2.0 + self.top / 2.0)
     }
 }
@@ -64,7 +64,7 @@ fn whole(number: f64) -> usize {
 impl Cells {
     /// Sorts the bodies by cell; `order` becomes the place of each sorted one in `bodies`. People whose
     /// state is not finite are left out.
-    pub(super) fn sort(&mut self, bodies: &[Body], extent: &Extent, width_m: f64, height_m: f64, order: &mut Vec<u32>) {
+    pub(crate) fn sort(&mut self, bodies: &[Body], extent: &Extent, width_m: f64, height_m: f64, order: &mut Vec<u32>) {
         let (across, up) = (extent.right - extent.left, extent.top - extent.bottom);
         self.left = extent.left;
         self.bottom = extent.bottom;
@@ -109,13 +109,13 @@ impl Cells {
     }
 
     /// Number of rows.
-    pub(super) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.rows
     }
 
     /// Row of a height.
     #[inline(always)]
-    pub(super) fn row(&self, y: f64) -> usize {
+    pub(crate) fn row(&self, y: f64) -> usize {
         whole((y - self.bottom) / self.height_m).min(self.rows - 1)
     }
 
@@ -127,7 +127,7 @@ impl Cells {
     /// How far a height is below (negative) or above (positive) a row; 0 within it.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "there are few rows")]
-    pub(super) fn off_row(&self, row: usize, y: f64) -> f64 {
+    pub(crate) fn off_row(&self, row: usize, y: f64) -> f64 {
         let low = self.bottom + row as f64 * self.height_m;
         let high = low + self.height_m;
         if y < low {
@@ -142,7 +142,7 @@ impl Cells {
     /// Where the people of a row from `left` to `right` stand in the sorted crowd; some more may be
     /// among them.
     #[inline(always)]
-    pub(super) fn span(&self, row: usize, left: f64, right: f64) -> (usize, usize) {
+    pub(crate) fn span(&self, row: usize, left: f64, right: f64) -> (usize, usize) {
         let start = row * self.columns;
         let at = |cell: usize| self.starts.get(cell).map_or(0, |start| *start as usize);
         (at(start + self.column(left)), at(start + self.column(right) + 1))

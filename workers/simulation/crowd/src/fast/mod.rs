@@ -25,17 +25,20 @@
 //! | `dt` of 0 | nothing changes, headings included |
 //! | somebody at rest | keeps the heading |
 
-mod cells;
+pub(crate) mod cells;
 mod crowd;
 mod density;
 mod elementary;
-mod pairs;
+mod lanes;
+pub(crate) mod pairs;
 mod prune;
+mod rough;
 mod settings;
 mod social;
 mod walls;
 
 pub use crowd::Crowd;
+pub use lanes::Lanes;
 pub use settings::{BadSettings, BadStep, ERROR_MPS2, Instructions, Settings, WALL_RANGE_M};
 pub use social::Social;
 pub use walls::WallIndex;

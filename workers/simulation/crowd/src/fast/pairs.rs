@@ -9,7 +9,7 @@ use crate::params::Params;
 use crate::vector::known;
 
 /// Pairs per block: several registers of every width.
-const LANES: usize = 16;
+pub(super) const LANES: usize = 16;
 /// Pairs that are gathered before they are worked out; their blocks fit the first cache.
 const CAPACITY: usize = 256;
 
@@ -20,22 +20,22 @@ const WEAKEST: f64 = 1e-6;
 
 /// Position and velocity of somebody.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Body {
-    pub(super) x: f64,
-    pub(super) y: f64,
-    pub(super) vx: f64,
-    pub(super) vy: f64,
+pub(crate) struct Body {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) vx: f64,
+    pub(crate) vy: f64,
 }
 
 impl Body {
-    pub(super) fn is_finite(&self) -> bool {
+    pub(crate) fn is_finite(&self) -> bool {
         self.x.is_finite() && self.y.is_finite() && self.vx.is_finite() && self.vy.is_finite()
     }
 }
 
 /// Constants of the pair force, ready for use.
 #[derive(Debug, Clone, Copy)]
-struct Constants {
+pub(super) struct Constants {
     lambda: f64,
     gamma_m: f64,
     per_gamma: f64,
@@ -45,9 +45,23 @@ struct Constants {
     social: f64,
 }
 
+impl Constants {
+    pub(super) fn new(params: &Params) -> Self {
+        Self {
+            lambda: params.lambda,
+            gamma_m: params.gamma_m,
+            per_gamma: 1.0 / params.gamma_m,
+            epsilon: params.epsilon,
+            n2: params.n * params.n,
+            n_prime2: params.n_prime * params.n_prime,
+            social: params.social,
+        }
+    }
+}
+
 /// Some pairs, field by field.
 #[derive(Debug, Clone)]
-struct Block {
+pub(super) struct Block {
     dx: [f64; LANES],
     dy: [f64; LANES],
     dvx: [f64; LANES],
@@ -60,7 +74,7 @@ struct Block {
 
 impl Block {
     /// A pair far apart in every lane, so that lanes without a pair are harmless.
-    const EMPTY: Self = Self {
+    pub(super) const EMPTY: Self = Self {
         dx: [1.0; LANES],
         dy: [1.0; LANES],
         dvx: [0.0; LANES],
@@ -70,6 +84,40 @@ impl Block {
         first: [0; LANES],
         second: [0; LANES],
     };
+
+    /// Puts a pair into a lane: where the other is, and how much faster the first is.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, way: &Vector2<f64>, faster: &Vector2<f64>) {
+        let numbers = [way.x, way.y, faster.x, faster.y];
+        let fields = [&mut self.dx, &mut self.dy, &mut self.dvx, &mut self.dvy];
+        for (field, number) in fields.into_iter().zip(numbers) {
+            if let Some(slot) = field.get_mut(lane) {
+                *slot = number;
+            }
+        }
+    }
+
+    /// The pair of a lane.
+    pub(super) fn pair(&self, lane: usize) -> (Vector2<f64>, Vector2<f64>) {
+        let number = |field: &[f64; LANES]| field.get(lane).copied().unwrap_or(f64::NAN);
+        (Vector2::new(number(&self.dx), number(&self.dy)), Vector2::new(number(&self.dvx), number(&self.dvy)))
+    }
+
+    /// The force on the first of the pair of a lane, once worked out.
+    #[inline(always)]
+    pub(super) fn force(&self, lane: usize) -> Vector2<f64> {
+        let number = |field: &[f64; LANES]| field.get(lane).copied().unwrap_or(0.0);
+        Vector2::new(number(&self.fx), number(&self.fy))
+    }
+
+    /// Another force for a lane.
+    pub(super) fn set_force(&mut self, lane: usize, force: &Vector2<f64>) {
+        for (field, number) in [&mut self.fx, &mut self.fy].into_iter().zip([force.x, force.y]) {
+            if let Some(slot) = field.get_mut(lane) {
+                *slot = number;
+            }
+        }
+    }
 }
 
 /// Gathers pairs and adds their forces to both of each pair.
@@ -89,15 +137,7 @@ impl Pairs {
         Self {
             blocks: vec![Block::EMPTY; CAPACITY / LANES],
             len: 0,
-            constants: Constants {
-                lambda: params.lambda,
-                gamma_m: params.gamma_m,
-                per_gamma: 1.0 / params.gamma_m,
-                epsilon: params.epsilon,
-                n2: params.n * params.n,
-                n_prime2: params.n_prime * params.n_prime,
-                social: params.social,
-            },
+            constants: Constants::new(params),
             params: params.clone(),
         }
     }
@@ -163,16 +203,14 @@ impl Pairs {
     #[cold]
     #[inline(never)]
     fn edge(&self, block: &Block, lane: usize, first: usize, second: usize, sums: &mut [Vector2<f64>]) {
-        let number = |field: &[f64; LANES]| field.get(lane).copied().unwrap_or(f64::NAN);
-        let way = Vector2::new(number(&block.dx), number(&block.dy));
-        let closing = Vector2::new(number(&block.dvx), number(&block.dvy));
+        let (way, closing) = block.pair(lane);
         add(sums, first, known(pair::<Portable>(&way, &closing, &self.params)));
         add(sums, second, known(pair::<Portable>(&-way, &-closing, &self.params)));
     }
 }
 
 #[inline(always)]
-fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
+pub(super) fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
     if let Some(sum) = sums.get_mut(place) {
         *sum += force;
     }
@@ -185,7 +223,7 @@ fn add(sums: &mut [Vector2<f64>], place: usize, force: Vector2<f64>) {
 /// the two change places.
 #[inline(always)]
 #[expect(clippy::indexing_slicing, reason = "every array has LANES items; an indexed loop becomes vector code")]
-fn work_out(block: &mut Block, c: &Constants) {
+pub(super) fn work_out(block: &mut Block, c: &Constants) {
     for k in 0..LANES {
         let (dx, dy) = (block.dx[k], block.dy[k]);
         let r2 = dx * dx + dy * dy;

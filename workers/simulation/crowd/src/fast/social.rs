@@ -6,14 +6,15 @@ use super::cells::{Cells, Extent};
 use super::density::Density;
 use super::pairs::{Body, Pairs};
 use super::prune::{Me, Prune, Test, WIDTH};
+use super::rough::{self, Rough};
 use super::settings::{BadSettings, Instructions, check_error};
 use crate::params::Params;
 use crate::person::Person;
 use crate::vector::norm;
 
 /// Rows and columns of cells per reach: few enough that a span is worth its look-up.
-const ROWS_PER_REACH: f64 = 8.0;
-const COLUMNS_PER_REACH: f64 = 24.0;
+const ROWS_PER_REACH: f64 = 4.0;
+const COLUMNS_PER_REACH: f64 = 48.0;
 
 /// From this size on a crowd is counted before its threshold is chosen.
 const LARGE: usize = 500;
@@ -35,6 +36,8 @@ pub struct Social {
     order: Vec<u32>,
     sorted: Sorted,
     pairs: Pairs,
+    /// Where the bound leaves room for f32.
+    rough: Option<Rough>,
     /// Those who are kept with one person.
     kept: Vec<u32>,
     sums: Vec<Vector2<f64>>,
@@ -87,6 +90,7 @@ impl Social {
             order: Vec::new(),
             sorted: Sorted::default(),
             pairs: Pairs::new(params),
+            rough: (error_mps2 >= rough::FROM_MPS2).then(|| Rough::new(params)),
             kept: Vec::new(),
             sums: Vec::new(),
             forces: Vec::new(),
@@ -123,7 +127,9 @@ impl Social {
 
     /// The threshold for the people loaded: of a large crowd, from how dense it is.
     fn prune(&mut self, extent: &Extent, fastest_mps: f64) -> Prune {
-        let prune = Prune::new(&self.params, self.bodies.len(), self.error_mps2);
+        // What rounding may take is not there for what is left out.
+        let error_mps2 = self.error_mps2 * if self.rough.is_some() { 1.0 - rough::SHARE } else { 1.0 };
+        let prune = Prune::new(&self.params, self.bodies.len(), error_mps2);
         let most_range_m = self.params.gamma_m * (1.0 + 2.0 * self.params.lambda * fastest_mps);
         let reach_m = prune.threshold() * most_range_m;
         if self.bodies.len() < LARGE || reach_m >= extent.size_m() {
@@ -131,7 +137,7 @@ impl Social {
         }
         self.density.count(self.bodies.iter().filter(|body| body.is_finite()), extent, most_range_m);
         let within = COUNTED_REACHES.map(|share| self.density.within(share * reach_m));
-        prune.with_density(&self.params, self.error_mps2, &within, most_range_m)
+        prune.with_density(&self.params, error_mps2, &within, most_range_m)
     }
 
     /// Works out the forces on the people loaded.
@@ -148,6 +154,8 @@ impl Social {
         self.sorted.fill(&self.bodies, &self.order, extent.middle());
         self.sums.clear();
         self.sums.resize(self.order.len(), Vector2::zeros());
+        // Room for everybody, so that none has to be made while pairs are tested.
+        self.kept.resize(self.order.len() + 2 * WIDTH, 0);
         let sweep = Sweep {
             sorted: &self.sorted,
             cells: &self.cells,
@@ -155,7 +163,8 @@ impl Social {
             test: prune.test(extent.size_m()),
             fastest_mps: fastest,
         };
-        self.arch.dispatch(Pass { sweep, pairs: &mut self.pairs, kept: &mut self.kept, sums: &mut self.sums });
+        let (pairs, rough) = (&mut self.pairs, self.rough.as_mut());
+        self.arch.dispatch(Pass { sweep, pairs, rough, kept: &mut self.kept, sums: &mut self.sums });
         for (place, sum) in self.order.iter().zip(&self.sums) {
             if let Some(force) = self.forces.get_mut(*place as usize) {
                 *force = *sum;
@@ -178,7 +187,8 @@ struct Sweep<'a> {
 struct Pass<'a> {
     sweep: Sweep<'a>,
     pairs: &'a mut Pairs,
-    kept: &'a mut Vec<u32>,
+    rough: Option<&'a mut Rough>,
+    kept: &'a mut [u32],
     sums: &'a mut [Vector2<f64>],
 }
 
@@ -189,7 +199,7 @@ impl pulp::WithSimd for Pass<'_> {
     // the set of instructions that this is compiled for. Everything called here must be inlined.
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.sweep.run(self.pairs, self.kept, self.sums);
+        self.sweep.run(self.pairs, self.rough, self.kept, self.sums);
     }
 }
 
@@ -197,13 +207,14 @@ impl Sweep<'_> {
     /// Everybody with those who come later in the sorted crowd: to the right in the own row, and all in
     /// reach in the rows above.
     #[inline(always)]
-    fn run(&self, pairs: &mut Pairs, kept: &mut Vec<u32>, sums: &mut [Vector2<f64>]) {
+    fn run(&self, pairs: &mut Pairs, mut rough: Option<&mut Rough>, kept: &mut [u32], sums: &mut [Vector2<f64>]) {
         for (place, me) in self.sorted.bodies.iter().enumerate() {
             let speed = norm(&Vector2::new(me.vx, me.vy));
             let circle = self.prune.circle(speed, self.fastest_mps);
             let ahead = if speed > 0.0 { circle.ahead_m / speed } else { 0.0 };
             let (x, y, radius) = (me.x + me.vx * ahead, me.y + me.vy * ahead, circle.radius_m);
             let own_row = self.cells.row(me.y);
+            let mut count = 0;
             for row in own_row..self.cells.rows() {
                 let off = self.cells.off_row(row, y);
                 if off < -radius {
@@ -215,29 +226,36 @@ impl Sweep<'_> {
                 let half = (radius * radius - off * off).sqrt();
                 let (from, to) = self.cells.span(row, x - half, x + half);
                 let from = if row == own_row { from.max(place + 1) } else { from };
-                self.span(place, from, to, kept);
+                count = self.span(place, (from, to), kept, count);
             }
-            for other in kept.drain(..) {
-                if let Some(body) = self.sorted.bodies.get(other as usize) {
+            let others = kept.get(..count).unwrap_or_default();
+            if let Some(rough) = &mut rough {
+                rough.extend(place, others, &self.sorted.bodies, pairs, sums);
+                continue;
+            }
+            for other in others {
+                if let Some(body) = self.sorted.bodies.get(*other as usize) {
                     #[expect(clippy::cast_possible_truncation, reason = "places are u32 in the order as well")]
-                    pairs.push(place as u32, me, other, body, sums);
+                    pairs.push(place as u32, me, *other, body, sums);
                 }
             }
+        }
+        if let Some(rough) = rough {
+            rough.flush(&self.sorted.bodies, pairs, sums);
         }
         pairs.flush(sums);
     }
 
-    /// Adds to `kept` those from `from` to `to` whose pair with the person at `place` must be kept.
+    /// Adds to the first `count` of `kept` those from `from` to `to` whose pair with the person at `place` must be kept;
+    /// gives the new count.
     ///
     /// Without branches on the outcome: they would be guessed wrong, and a wrong guess waits for the whole
     /// test. Every place is written, and only the kept ones are counted.
     #[inline(always)]
-    fn span(&self, place: usize, from: usize, to: usize, kept: &mut Vec<u32>) {
+    fn span(&self, place: usize, (from, to): (usize, usize), kept: &mut [u32], mut count: usize) -> usize {
         let all = (&self.sorted.x, &self.sorted.y, &self.sorted.vx, &self.sorted.vy);
         let at = |row: &[f32]| row.get(place).copied().unwrap_or(f32::NAN);
         let me = Me { x: at(all.0), y: at(all.1), vx: at(all.2), vy: at(all.3) };
-        let mut count = kept.len();
-        kept.resize(count + to.saturating_sub(from) + WIDTH, 0);
         let mut start = from;
         while start < to {
             let (Some(x), Some(y), Some(vx), Some(vy)) =
@@ -251,7 +269,7 @@ impl Sweep<'_> {
             }
             start += WIDTH;
         }
-        kept.truncate(count);
+        count
     }
 }
 

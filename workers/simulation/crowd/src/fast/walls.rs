@@ -60,11 +60,20 @@ impl WallIndex {
         &self.segments
     }
 
+    /// The range, m.
+    #[must_use]
+    pub fn range_m(&self) -> f64 {
+        self.range_m
+    }
+
+    /// Every segment within the range of `position`, in the order given; some more may be among them.
+    pub fn around(&self, position: &Point2<f64>) -> impl Iterator<Item = &Segment> + use<'_> {
+        self.near(position).iter().filter_map(|place| self.segments.get(*place as usize))
+    }
+
     /// The closest point of every segment within the range of `position`, in the order of the segments.
     pub fn points(&self, position: Point2<f64>) -> impl Iterator<Item = Point2<f64>> + '_ {
-        self.near(&position)
-            .iter()
-            .filter_map(|place| self.segments.get(*place as usize))
+        self.around(&position)
             .map(move |segment| segment.closest(&position))
             .filter(move |point| norm(&(position - point)) <= self.range_m)
     }

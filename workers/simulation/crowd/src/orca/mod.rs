@@ -13,11 +13,13 @@ mod program;
 
 use nalgebra::Vector2;
 
-use crate::model::{CrowdModel, View};
+use crate::model::{CrowdModel, Room, View};
+use crate::near::{Found, nearest_first};
 use crate::obstacle::Segment;
 use crate::person::Person;
 use crate::vector::{dot, norm, unit};
-use program::{HalfPlane, solve};
+pub(crate) use program::HalfPlane;
+use program::solve;
 
 /// How people who avoid each other look ahead.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +69,8 @@ pub struct BadOrca {
 #[derive(Debug, Clone, Copy)]
 pub struct Orca {
     settings: OrcaSettings,
+    /// Sine and cosine of the turn to the right.
+    turn: (f64, f64),
 }
 
 impl Orca {
@@ -89,40 +93,46 @@ impl Orca {
             let value = settings.keep_right_rad;
             return Err(BadOrca { name: "keep_right_rad", value, allowed: "0 to pi/2" });
         }
-        Ok(Self { settings })
+        let turn = (libm::sin(-settings.keep_right_rad), libm::cos(settings.keep_right_rad));
+        Ok(Self { settings, turn })
     }
 
-    /// The velocity that somebody takes, m/s.
+    /// The velocity that somebody takes, m/s. What `room` holds means nothing.
     #[must_use]
-    pub fn velocity(&self, view: &View<'_>) -> Vector2<f64> {
+    pub fn velocity(&self, view: &View<'_>, room: &mut Room) -> Vector2<f64> {
         let me = view.me;
         let most_mps = me.speed_mps * self.settings.speed_factor;
-        let mut planes: Vec<HalfPlane> =
-            view.walls.iter().filter_map(|wall| self.around_wall(me, wall, most_mps, view.dt_s)).collect();
-        let n_walls = planes.len();
-        let neighbors = self.neighbors(view);
-        planes.extend(neighbors.iter().map(|(place, other)| {
-            let first = view.place.is_none_or(|own| own < *place);
-            around_person(me, other, self.settings.horizon_s, view.dt_s, first)
-        }));
+        let walls = view.walls_around(&me.position, me.radius_m + self.settings.wall_horizon_s * most_mps);
+        room.planes.clear();
+        room.planes.extend(walls.filter_map(|wall| self.around_wall(me, wall, most_mps, view.dt_s)));
+        let n_walls = room.planes.len();
+        self.neighbors(view, &mut room.found);
         let mut wish = wished(me, view.dt_s);
-        if neighbors.iter().any(|(_, other)| dot(&(other.position - me.position), &wish) > 0.0) {
-            let (sin, cos) = (libm::sin(-self.settings.keep_right_rad), libm::cos(self.settings.keep_right_rad));
+        let mut ahead = false;
+        for (place, other) in room.found.iter().filter_map(|found| Some((found.place, view.people.get(found.place)?))) {
+            let first = view.place.is_none_or(|own| own < place);
+            room.planes.push(around_person(me, other, self.settings.horizon_s, view.dt_s, first));
+            ahead |= dot(&(other.position - me.position), &wish) > 0.0;
+        }
+        if ahead {
+            let (sin, cos) = self.turn;
             wish = Vector2::new(wish.x * cos - wish.y * sin, wish.x * sin + wish.y * cos);
         }
-        solve(&planes, n_walls, most_mps, &wish)
+        solve(&room.planes, n_walls, most_mps, &wish, &mut room.projected)
     }
 
     /// The nearest others in range, the nearest first; those at one distance in the order of places.
-    fn neighbors<'a>(&self, view: &View<'a>) -> Vec<(usize, &'a Person)> {
-        let distance = |other: &Person| norm(&(other.position - view.me.position));
-        let mut near: Vec<(usize, &Person)> = view
-            .others()
-            .filter(|(_, other)| distance(other) < self.settings.neighbor_range_m && is_finite(other))
-            .collect();
-        near.sort_by(|a, b| distance(a.1).total_cmp(&distance(b.1)).then(a.0.cmp(&b.0)));
-        near.truncate(self.settings.most_neighbors);
-        near
+    fn neighbors(&self, view: &View<'_>, found: &mut Vec<Found>) {
+        let (at, range_m, most) = (&view.me.position, self.settings.neighbor_range_m, self.settings.most_neighbors);
+        if let Some(index) = view.index {
+            index.near.nearest(at, view.place, range_m, most, found);
+            return;
+        }
+        found.clear();
+        let finite = view.others().filter(|(_, other)| is_finite(other));
+        let all = finite.map(|(place, other)| Found { distance_m: norm(&(other.position - at)), place });
+        found.extend(all.filter(|found| found.distance_m < range_m));
+        nearest_first(found, most);
     }
 
     /// Velocities that do not reach the line in front of a wall within the horizon. None for somebody
@@ -194,10 +204,10 @@ impl CrowdModel for Orca {
     }
 
     /// Somebody whose own state is not finite stays as it is.
-    fn next(&self, view: &View<'_>) -> Option<Person> {
+    fn next(&self, view: &View<'_>, room: &mut Room) -> Option<Person> {
         let mut next = view.me.clone();
         if is_finite(view.me) {
-            next.velocity = self.velocity(view);
+            next.velocity = self.velocity(view, room);
             next.position += next.velocity * view.dt_s;
             if norm(&next.velocity) > 0.0 {
                 next.yaw = libm::atan2(next.velocity.y, next.velocity.x);

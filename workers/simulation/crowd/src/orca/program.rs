@@ -12,7 +12,7 @@ const PARALLEL: f64 = 1e-9;
 
 /// Velocities on one side of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct HalfPlane {
+pub(crate) struct HalfPlane {
     /// A velocity on the edge.
     point: Vector2<f64>,
     /// Unit vector into the allowed side.
@@ -47,12 +47,20 @@ impl HalfPlane {
 
 /// The velocity nearest to `wish` that is no faster than `most_mps` and allowed by all planes; where no
 /// velocity is, one that violates the planes after the first `n_firm` as little as can be.
-pub(super) fn solve(planes: &[HalfPlane], n_firm: usize, most_mps: f64, wish: &Vector2<f64>) -> Vector2<f64> {
+///
+/// `projected` is room for planes; what it holds means nothing.
+pub(super) fn solve(
+    planes: &[HalfPlane],
+    n_firm: usize,
+    most_mps: f64,
+    wish: &Vector2<f64>,
+    projected: &mut Vec<HalfPlane>,
+) -> Vector2<f64> {
     let speed = norm(wish);
     let start = if speed > most_mps { wish * (most_mps / speed) } else { *wish };
     match within(planes, most_mps, Aim::Near(*wish), start) {
         Ok(velocity) => velocity,
-        Err((failed, velocity)) => least_violation(planes, n_firm, failed, most_mps, velocity),
+        Err((failed, velocity)) => least_violation(planes, n_firm, (failed, velocity), most_mps, projected),
     }
 }
 
@@ -117,9 +125,9 @@ fn on_edge(plane: &HalfPlane, before: &[HalfPlane], radius: f64, aim: Aim) -> Op
 fn least_violation(
     planes: &[HalfPlane],
     n_firm: usize,
-    failed: usize,
+    (failed, start): (usize, Vector2<f64>),
     radius: f64,
-    start: Vector2<f64>,
+    projected: &mut Vec<HalfPlane>,
 ) -> Vector2<f64> {
     let (mut best, mut largest) = (start, 0.0);
     for (number, plane) in planes.iter().enumerate().skip(failed) {
@@ -127,7 +135,8 @@ fn least_violation(
             continue;
         }
         // Where this plane is violated as much as an earlier one.
-        let mut projected: Vec<HalfPlane> = planes.iter().take(n_firm.min(number)).copied().collect();
+        projected.clear();
+        projected.extend(planes.iter().take(n_firm.min(number)));
         for other in planes.iter().take(number).skip(n_firm) {
             let sine = plane.normal.x * other.normal.y - plane.normal.y * other.normal.x;
             let point = if sine.abs() <= PARALLEL {
@@ -144,7 +153,7 @@ fn least_violation(
         }
         // By rounding alone there may be none: then the present one is as good as any.
         let aim = Aim::Along(plane.normal);
-        if let Ok(velocity) = within(&projected, radius, aim, plane.normal * radius) {
+        if let Ok(velocity) = within(projected, radius, aim, plane.normal * radius) {
             best = velocity;
         }
         largest = plane.violation(&best);
@@ -181,7 +190,7 @@ mod tests {
             let planes: Vec<HalfPlane> =
                 (0..6).map(|_| plane(number(-0.8, 0.8), number(-0.8, 0.8), number(-3.2, 3.2))).collect();
             let wish = Vector2::new(number(-1.0, 1.0), number(-1.0, 1.0));
-            let found = solve(&planes, 0, 1.2, &wish);
+            let found = solve(&planes, 0, 1.2, &wish, &mut Vec::new());
             assert!(norm(&found) <= 1.2 + 1e-9);
             let violation = |velocity: &Vector2<f64>| {
                 planes.iter().fold(0.0_f64, |worst, plane| worst.max(plane.violation(velocity)))
@@ -202,7 +211,7 @@ mod tests {
     #[test]
     fn firm_planes_are_kept_when_the_others_cannot_be() {
         let planes = [plane(0.0, 0.0, 0.0), plane(-0.5, 0.0, std::f64::consts::PI), plane(0.2, 0.0, 0.0)];
-        let found = solve(&planes, 1, 1.0, &Vector2::new(-1.0, 0.0));
+        let found = solve(&planes, 1, 1.0, &Vector2::new(-1.0, 0.0), &mut Vec::new());
         assert!(found.x >= -1e-9, "{found}");
     }
 }

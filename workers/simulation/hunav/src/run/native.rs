@@ -1,9 +1,11 @@
 //! Motion as we do it: ways round walls, rates per second, nobody through anybody.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
-use socrates_crowd::model::View;
-use socrates_crowd::{Goal, Person, Segment, forces_on};
+use socrates_crowd::fast::Lanes;
+use socrates_crowd::model::{Room, View};
+use socrates_crowd::{Found, Goal, Params, Person, Segment, forces_on};
 use socrates_engine::gait::{self, A_MAX, V_MAX};
 use socrates_engine::{Body, Touch, resolve};
 use socrates_model::{AgentId, Point, Polyline, Vector};
@@ -11,6 +13,11 @@ use socrates_model::{AgentId, Point, Polyline, Vector};
 use super::agent::{Agent, HumanModel};
 use super::scene::{Deed, Scene, Target};
 
+/// Up to so many people social forces are those of `forces_on` to the last bit; more are worked out many at a time,
+/// within 1e-12 m/s² of them.
+const FEW: usize = 24;
+/// So many people's forces are worked out at once: enough to fill the lanes, few enough for the nearest cache.
+const AT_ONCE: usize = 32;
 /// Others farther away are not felt, m.
 const FEEL_M: f64 = 5.0;
 /// Lengths of a planned way that a walker looks ahead, m, the farthest first.
@@ -23,6 +30,8 @@ const JAMMED_S: f64 = 0.8;
 const DODGE_S: f64 = 1.2;
 /// Gap that nobody goes below on purpose: to people, to the robot, m.
 const GAPS_M: (f64, f64) = (0.06, 0.18);
+/// Gap from which on somebody slows down before another, m.
+const STOPS_M: f64 = 0.8;
 /// Distance from the robot's line that lets it through, m.
 const ASIDE_M: f64 = 1.0;
 /// How far somebody scared looks for a better place, m.
@@ -56,10 +65,40 @@ impl Want {
     }
 }
 
+/// Lists that are filled anew for every agent.
+#[derive(Debug, Default)]
+struct Lists {
+    /// The largest radius, m.
+    widest_m: f64,
+    found: Vec<Found>,
+    people: Vec<Person>,
+    lanes: Lanes,
+    room: Room,
+}
+
+impl Lists {
+    /// Others nearer than a distance, in list order.
+    fn others<'a>(&'a mut self, scene: &'a Scene, me: usize, range_m: f64) -> impl Iterator<Item = &'a Agent> {
+        self.found.clear();
+        if let Some(agent) = scene.agents.get(me) {
+            scene.near.within(&agent.at, range_m, &mut self.found);
+        }
+        self.found.sort_unstable_by_key(|found| found.place);
+        let others = self.found.iter().filter(move |found| found.place != me);
+        others.filter_map(|found| scene.agents.get(found.place))
+    }
+}
+
 /// Moves everybody and the robot by one step; the deeds are those of this tick, in list order.
 pub(crate) fn advance(scene: &mut Scene, deeds: &[Deed]) -> Vec<Touch> {
+    // Whoever is not there is nowhere, and is not found.
+    let nowhere = Point::new(f64::NAN, f64::NAN);
+    let spots = scene.agents.iter().map(|agent| if agent.present { agent.at } else { nowhere });
+    scene.near.fill(spots.map(|at| (at, Vector::zeros())));
     let wants: Vec<Want> = deeds.iter().enumerate().map(|(me, deed)| want(scene, me, *deed)).collect();
-    let velocities: Vec<Vector> = wants.iter().enumerate().map(|(me, want)| steered(scene, me, want)).collect();
+    let targets: Vec<Option<Point>> =
+        wants.iter().enumerate().map(|(me, want)| unjammed(scene, me, want).filter(|_| want.speed_mps > 0.0)).collect();
+    let velocities = velocities(scene, &wants, &targets);
     let people: Vec<(Point, f64)> =
         scene.agents.iter().filter(|agent| agent.present).map(|agent| (agent.at, agent.radius_m)).collect();
     let (now_s, dt) = (scene.now_s, scene.dt);
@@ -210,15 +249,16 @@ fn go(scene: &mut Scene, me: usize, to: &Point, speed_mps: f64) -> Want {
 /// Spots around an agent where it fits and that it can reach straight, nearest first.
 fn spots(scene: &Scene, agent: &Agent, reach_m: f64) -> Vec<Point> {
     let mut found = Vec::new();
+    let mut around = Vec::new();
+    let widest_m = scene.agents.iter().fold(0.0, |most: f64, agent| most.max(agent.radius_m));
+    scene.near.within(&agent.at, reach_m + widest_m + agent.radius_m + 0.1, &mut around);
     let rings = 8_u32;
     for ring in 1..=rings {
         for turn in 0..16_u32 {
             let (sin, cos) = libm::sincos(f64::from(turn) / 16.0 * TAU);
             let spot = agent.at + Vector::new(cos, sin) * (reach_m * f64::from(ring) / f64::from(rings));
-            let crowded = scene.agents.iter().any(|other| {
-                other.present
-                    && other.human != agent.human
-                    && (other.at - spot).norm() < other.radius_m + agent.radius_m + 0.05
+            let crowded = around.iter().filter_map(|found| scene.agents.get(found.place)).any(|other| {
+                other.human != agent.human && (other.at - spot).norm() < other.radius_m + agent.radius_m + 0.05
             });
             if !crowded
                 && scene.floor.clearance_m(&spot) > agent.radius_m + 0.02
@@ -341,25 +381,60 @@ fn unjammed(scene: &mut Scene, me: usize, want: &Want) -> Option<Point> {
     Some(free.map_or(target, |way| at + way))
 }
 
-/// Velocity of this tick before contacts.
-fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
+/// Velocities of this tick before contacts; the targets are where everybody who walks goes now.
+fn velocities(scene: &mut Scene, wants: &[Want], targets: &[Option<Point>]) -> Vec<Vector> {
+    let mut lists = Lists {
+        widest_m: scene.agents.iter().fold(0.0, |most: f64, agent| most.max(agent.radius_m)),
+        ..Lists::default()
+    };
+    let present = scene.agents.iter().filter(|agent| agent.present).count() + usize::from(scene.robot.is_some());
+    let plain = Params { social: 1.0, ..Params::default() };
+    let mut velocities = Vec::with_capacity(wants.len());
+    let mut pairs = Vec::with_capacity(AT_ONCE);
+    let whole: Vec<(&Want, &Option<Point>)> = wants.iter().zip(targets).collect();
+    for group in whole.chunks(AT_ONCE) {
+        pairs.clear();
+        if present > FEW {
+            lists.lanes.clear();
+            for (me, (want, target)) in (velocities.len()..).zip(group) {
+                pairs.push(target.map(|_| noted(scene, me, want, &mut lists)));
+            }
+            lists.lanes.work_out(&plain);
+        }
+        for (place, (want, target)) in group.iter().enumerate() {
+            let pairs = pairs.get(place).cloned().flatten();
+            let velocity = steered(scene, velocities.len(), want, (**target, pairs), &mut lists);
+            velocities.push(velocity);
+        }
+    }
+    velocities
+}
+
+/// Velocity of this tick before contacts, to a target if it has one; `pairs` are those whose forces are in the lanes.
+fn steered(
+    scene: &mut Scene,
+    me: usize,
+    want: &Want,
+    (target, pairs): (Option<Point>, Option<Range<usize>>),
+    lists: &mut Lists,
+) -> Vector {
     let dt = scene.dt;
     let model = scene.agents.get(me).map_or(HumanModel::SocialForces, |agent| agent.model);
-    let wished = match unjammed(scene, me, want) {
+    let wished = match target {
         _ if model == HumanModel::Track => return scene.velocity(Target::Agent(me)),
-        Some(target) if want.speed_mps > 0.0 && model == HumanModel::Orca => {
+        Some(target) if model == HumanModel::Orca => {
             if let Some(agent) = scene.agents.get_mut(me) {
                 agent.errand.anchor = None;
             }
-            return avoiding(scene, me, want, &target);
+            return avoiding(scene, me, want, &target, lists);
         }
-        Some(target) if want.speed_mps > 0.0 => {
-            let force = pull(scene, me, want, &target);
+        Some(target) => {
+            let force = pull(scene, me, want, (&target, pairs), lists);
             let Some(agent) = scene.agents.get_mut(me) else { return Vector::zeros() };
             agent.errand.anchor = None;
             agent.velocity + force * dt
         }
-        Some(_) | None => match scene.agents.get_mut(me) {
+        None => match scene.agents.get_mut(me) {
             Some(agent) => stand(agent, dt),
             None => return Vector::zeros(),
         },
@@ -370,15 +445,16 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
     if want.target.is_some() && velocity.norm() > most {
         velocity *= most / velocity.norm();
     }
-    let others = scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present);
-    let others = others.map(|(_, other)| (other.at, other.radius_m, GAPS_M.0));
+    // A little farther than the widest at that gap: rounding decides nothing.
+    let reach_m = STOPS_M + agent.radius_m + lists.widest_m + 1e-6;
+    let others = lists.others(scene, me, reach_m).map(|other| (other.at, other.radius_m, GAPS_M.0));
     let robot =
         scene.robot.iter().map(|robot| (robot.at(), robot.spec.radius_m, if want.drawn { GAPS_M.0 } else { GAPS_M.1 }));
     for (at, radius_m, gap_m) in others.chain(robot) {
         let way = at - agent.at;
         let distance = way.norm();
         let gap = distance - agent.radius_m - radius_m;
-        if distance > 1e-6 && gap < 0.8 {
+        if distance > 1e-6 && gap < STOPS_M {
             let toward = way / distance;
             // A person stops before touching; forces alone would let shoulders meet.
             let excess = velocity.dot(&toward) - (2.5 * (gap - gap_m)).max(0.0);
@@ -391,14 +467,16 @@ fn steered(scene: &mut Scene, me: usize, want: &Want) -> Vector {
 }
 
 /// Velocity of somebody who avoids collisions with others who do so too.
-fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+fn avoiding(scene: &Scene, me: usize, want: &Want, target: &Point, lists: &mut Lists) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
-    let people = felt(scene, me, want, target);
+    felt(scene, me, want, target, lists);
+    let people = &lists.people;
     let walls: Vec<Segment> =
         scene.floor.felt(&agent.at).into_iter().map(|point| Segment { from: point, to: point }).collect();
     let Some(person) = people.first() else { return Vector::zeros() };
-    let view = View { me: person, place: Some(0), people: &people, walls: &walls, now_s: scene.now_s, dt_s: scene.dt };
-    let velocity = scene.orca.velocity(&view);
+    let (now_s, dt_s) = (scene.now_s, scene.dt);
+    let view = View { me: person, place: Some(0), people, walls: &walls, now_s, dt_s, index: None };
+    let velocity = scene.orca.velocity(&view, &mut lists.room);
     if velocity.iter().all(|component| component.is_finite()) { velocity } else { Vector::zeros() }
 }
 
@@ -411,10 +489,27 @@ fn stand(agent: &mut Agent, dt: f64) -> Vector {
     gait::stand(&mut agent.errand.anchor, &agent.at, &agent.velocity, dt)
 }
 
-fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
+fn pull(
+    scene: &Scene,
+    me: usize,
+    want: &Want,
+    (target, pairs): (&Point, Option<Range<usize>>),
+    lists: &mut Lists,
+) -> Vector {
     let Some(agent) = scene.agents.get(me) else { return Vector::zeros() };
-    let people = felt(scene, me, want, target);
-    let mut forces = forces_on(0, &people, &scene.floor.felt(&agent.at), &agent.forces);
+    let social = pairs.map(|pairs| lists.lanes.sum(&pairs) * agent.forces.social);
+    if social.is_none() || agent.group.is_some() {
+        felt(scene, me, want, target, lists);
+    } else {
+        lists.people.clear();
+        lists.people.push(wishing(agent, want, target));
+    }
+    if social.is_some() {
+        // Nothing but the forces inside a group is left to be found.
+        lists.people.retain(|person| person.goal.is_some() || person.group == agent.group);
+    }
+    let mut forces = forces_on(0, &lists.people, &scene.floor.felt(&agent.at), &agent.forces);
+    forces.social = social.unwrap_or(forces.social);
     // Contacts keep everybody out of walls; their force keeps nobody out of a doorway, or from a goal beside one.
     let push = forces.obstacle.norm();
     if push > WALL_MOST_MPS2 {
@@ -423,27 +518,55 @@ fn pull(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vector {
     gait::limited(&forces.total())
 }
 
-/// The agent with its wish, then everybody it feels: in line of sight and near.
-fn felt(scene: &Scene, me: usize, want: &Want, target: &Point) -> Vec<Person> {
-    let Some(agent) = scene.agents.get(me) else { return Vec::new() };
-    let goal = Some(Goal { at: *target, radius_m: 0.02 });
-    let mut people = vec![Person { goal, speed_mps: want.speed_mps, ..agent.person() }];
-    for (_, other) in scene.agents.iter().enumerate().filter(|(place, other)| *place != me && other.present) {
-        if (other.at - agent.at).norm() < FEEL_M && scene.floor.sees(&agent.at, &other.at) {
-            people.push(other.person());
-        }
+/// The agent with its wish.
+fn wishing(agent: &Agent, want: &Want, target: &Point) -> Person {
+    Person { goal: Some(Goal { at: *target, radius_m: 0.02 }), speed_mps: want.speed_mps, ..agent.person() }
+}
+
+/// Lists the agent with its wish, then everybody it feels: in line of sight and near.
+fn felt(scene: &Scene, me: usize, want: &Want, target: &Point, lists: &mut Lists) {
+    let mut people = std::mem::take(&mut lists.people);
+    people.clear();
+    if let Some(agent) = scene.agents.get(me) {
+        people.push(wishing(agent, want, target));
+        let seen = seen_from(scene, agent);
+        people.extend(lists.others(scene, me, FEEL_M).filter(|other| seen(&other.at)).map(Agent::person));
+        people.extend(felt_robot(scene, agent, want).filter(|robot| seen(&robot.position)));
     }
-    if let Some(robot) = scene.robot.as_ref().filter(|_| !want.drawn)
-        && (robot.at() - agent.at).norm() < FEEL_M
-        && scene.floor.sees(&agent.at, &robot.at())
-    {
-        people.push(Person {
-            velocity: robot.velocity,
-            radius_m: robot.spec.radius_m,
-            ..Person::standing(0, robot.at())
-        });
+    lists.people = people;
+}
+
+/// Puts everybody whom an agent feels into the lanes.
+fn noted(scene: &Scene, me: usize, want: &Want, lists: &mut Lists) -> Range<usize> {
+    let mut lanes = std::mem::take(&mut lists.lanes);
+    let mut pairs = 0..0;
+    if let Some(agent) = scene.agents.get(me).filter(|agent| agent.model == HumanModel::SocialForces) {
+        let seen = seen_from(scene, agent);
+        let others = lists.others(scene, me, FEEL_M).filter(|other| seen(&other.at));
+        let robot = felt_robot(scene, agent, want).filter(|robot| seen(&robot.position));
+        let others = others.map(|other| (other.at, other.velocity));
+        let all = others.chain(robot.map(|robot| (robot.position, robot.velocity)));
+        pairs = lanes.extend(all.map(|(at, velocity)| (at - agent.at, agent.velocity - velocity)));
     }
-    people
+    lists.lanes = lanes;
+    pairs
+}
+
+/// Whether an agent sees a place.
+fn seen_from<'a>(scene: &'a Scene, agent: &'a Agent) -> impl Fn(&Point) -> bool + 'a {
+    let open_m = scene.floor.open_m(&agent.at);
+    move |at| (at - agent.at).norm() < open_m || scene.floor.sees(&agent.at, at)
+}
+
+/// The robot as somebody near it feels it who has not come for it.
+fn felt_robot<'a>(scene: &'a Scene, agent: &Agent, want: &Want) -> impl Iterator<Item = Person> + use<'a> {
+    let (at, drawn) = (agent.at, want.drawn);
+    let robot = scene.robot.iter().filter(move |robot| !drawn && (robot.at() - at).norm() < FEEL_M);
+    robot.map(|robot| Person {
+        velocity: robot.velocity,
+        radius_m: robot.spec.radius_m,
+        ..Person::standing(0, robot.at())
+    })
 }
 
 /// Takes over where contacts left it, and turns.

@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use socrates_crowd::Near;
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_engine::Floor;
 use socrates_model::ids::BadId;
@@ -88,6 +89,7 @@ impl Run {
             agents,
             robot: inputs.robot.as_ref().map(Robot::new),
             floor,
+            near: Near::default(),
             orca,
             boxes: inputs.boxes.clone(),
             goals: inputs.agents.global_goals.clone(),

@@ -1,7 +1,7 @@
 //! Everybody on the floor, and what can be asked about them.
 
 use socrates_crowd::orca::Orca;
-use socrates_crowd::{Forces, Goal, Person, forces_on};
+use socrates_crowd::{Forces, Goal, Near, Person, forces_on};
 use socrates_engine::Floor;
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{EventKind, NodeId, Point, Vector};
@@ -67,6 +67,8 @@ pub(crate) struct Scene {
     pub(crate) agents: Vec<Agent>,
     pub(crate) robot: Option<Robot>,
     pub(crate) floor: Floor,
+    /// Where everybody who is present was when native motion began this tick, by place in the list.
+    pub(crate) near: Near,
     pub(crate) orca: Orca,
     pub(crate) boxes: Vec<Bounds>,
     /// Global goals: number k is entry k - 1.
