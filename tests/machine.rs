@@ -14,8 +14,13 @@ pub fn told(what: &str) -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let load = read_to_string("/proc/loadavg").unwrap_or_default();
     let profile = if cfg!(debug_assertions) { "debug" } else { "release" };
+    let built = match (cfg!(target_feature = "avx512f"), cfg!(target_feature = "avx2")) {
+        (true, _) => "avx512f",
+        (_, true) => "avx2",
+        _ => "baseline",
+    };
     format!(
-        "{what} · version {} · {profile} build for {}\n{} · {} · {cores} cores · load {} before",
+        "{what} · version {} · {profile} build for {} {built}\n{} · seen {} · {cores} cores · load {} before",
         env!("CARGO_PKG_VERSION"),
         std::env::consts::ARCH,
         value("model name").unwrap_or("unknown processor"),

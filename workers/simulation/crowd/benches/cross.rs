@@ -5,14 +5,13 @@
 //! has its turn, so that ratios are of the same minute.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
-#![expect(clippy::disallowed_methods, reason = "a bench shows the date and falls back to the wall clock")]
 
 mod common;
 
 use std::hint::black_box;
-use std::time::Instant;
 
-use common::{cpu_s, header, median};
+use common::machine::{cpu_s, told};
+use common::median;
 use nalgebra::{Point2, Vector2};
 use socrates_crowd::cross::{DT_S, WALL_RANGE_M, cross};
 use socrates_crowd::fast::{Instructions, Settings};
@@ -80,19 +79,19 @@ impl Mode {
 }
 
 /// How long one of `steps` steps takes, s.
-fn time(mode: &mut Mode, start: &Instant, steps: u32) -> f64 {
-    let before = cpu_s(start);
+fn time(mode: &mut Mode, steps: u32) -> f64 {
+    let before = cpu_s();
     for _ in 0..steps {
         mode.step();
     }
-    (cpu_s(start) - before) / f64::from(steps)
+    (cpu_s() - before) / f64::from(steps)
 }
 
 /// How many steps take a slice of time.
-fn steps_per_slice(mode: &mut Mode, start: &Instant) -> u32 {
+fn steps_per_slice(mode: &mut Mode) -> u32 {
     let mut steps = 1;
     loop {
-        let slice = time(mode, start, steps) * f64::from(steps);
+        let slice = time(mode, steps) * f64::from(steps);
         if slice >= SLICE_S / 2.0 || steps >= 1 << 20 {
             return steps;
         }
@@ -105,7 +104,7 @@ fn error_mps2(fast: &mut fast::Crowd, wanted: &[Vector2<f64>]) -> f64 {
     fast.forces().iter().zip(wanted).map(|(found, wanted)| (found.social - wanted).norm()).fold(0.0, f64::max)
 }
 
-fn run(n: u32, start: &Instant) {
+fn run(n: u32) {
     let floor = cross(n);
     let params = Model::Hunav.params();
     let before_mb = memory_mb("VmHWM");
@@ -132,14 +131,12 @@ fn run(n: u32, start: &Instant) {
     let mut seconds = vec![Vec::new(); modes.len()];
     // Modes over all pairs take minutes at the largest size: once is what there is time for.
     let all_pairs = |error: &Option<f64>| error.is_none() && pairs > MANY_PAIRS;
-    let steps: Vec<u32> = modes
-        .iter_mut()
-        .map(|(_, mode, error)| if all_pairs(error) { 1 } else { steps_per_slice(mode, start) })
-        .collect();
+    let steps: Vec<u32> =
+        modes.iter_mut().map(|(_, mode, error)| if all_pairs(error) { 1 } else { steps_per_slice(mode) }).collect();
     for round in 0..ROUNDS {
         for (((_, mode, error), seconds), steps) in modes.iter_mut().zip(&mut seconds).zip(&steps) {
             if round == 0 || !all_pairs(error) {
-                seconds.push(time(mode, start, *steps));
+                seconds.push(time(mode, *steps));
             }
         }
     }
@@ -183,12 +180,11 @@ fn memory_of_fast(n: u32) {
 }
 
 fn main() {
-    let start = Instant::now();
     let wanted: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    println!("{}", header());
+    println!("{}", told("social forces of crossing crowds, one thread"));
     println!("one thread, process CPU time, median of {ROUNDS} rounds (all pairs at 10000: one)");
     memory_of_fast(10_000);
     for n in SIZES.into_iter().filter(|n| wanted.is_empty() || wanted.contains(n)) {
-        run(n, &start);
+        run(n);
     }
 }

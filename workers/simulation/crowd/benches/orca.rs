@@ -6,7 +6,6 @@
 //! `PYTHON` names another interpreter. Without the package its column says so.
 
 #![expect(clippy::print_stdout, reason = "a bench prints its figures")]
-#![expect(clippy::disallowed_methods, reason = "a bench shows the date and falls back to the wall clock")]
 
 mod common;
 
@@ -15,9 +14,9 @@ use std::hint::black_box;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
-use std::time::Instant;
 
-use common::{cpu_s, header, median};
+use common::machine::{cpu_s, told};
+use common::median;
 use socrates_crowd::cross::{Cross, DT_S, cross};
 use socrates_crowd::orca::{Orca, OrcaSettings};
 use socrates_crowd::{Member, Mix};
@@ -114,9 +113,8 @@ fn peer(floor: &Cross, steps: u32) -> Option<f64> {
 }
 
 fn main() {
-    let start = Instant::now();
     let wanted: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    println!("{}", header());
+    println!("{}", told("avoidance (ORCA) in crossing crowds, one thread"));
     println!("CROSS-N, all by Orca, 10 neighbors in 5 m, horizons 2 s and 0.5 s, steps of {DT_S} s; one thread,");
     println!("process CPU time, median of {ROUNDS} rounds; RVO2 by pyrvo, its doStep alone");
     println!(
@@ -129,12 +127,12 @@ fn main() {
         let steps = AGENT_STEPS.div_ceil(n);
         let mut done = 0;
         let rounds = (0..ROUNDS).map(|_| {
-            let before = cpu_s(&start);
+            let before = cpu_s();
             for _ in 0..steps {
                 done += 1;
                 assert!(black_box(mix.advance_to(f64::from(done) * DT_S)).is_ok(), "time goes on");
             }
-            (cpu_s(&start) - before) / f64::from(steps)
+            (cpu_s() - before) / f64::from(steps)
         });
         let ours = median(rounds.collect());
         let theirs = peer(&floor, steps);

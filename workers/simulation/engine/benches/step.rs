@@ -6,21 +6,16 @@
 
 #[path = "../tests/common/mod.rs"]
 mod common;
+#[path = "../../../../tests/machine.rs"]
+mod machine;
 
 use std::hint::black_box;
 
 use common::hall::crowd;
 use common::scene::{Oracle, Scene, cross};
+use machine::cpu_s;
 use socrates_engine::{BEAMS, Disc, Engine, Floor, scan, scan_shapes};
 use socrates_model::{Command, Observation, Point, Pose, RobotDriver};
-
-/// CPU time of this process so far, s; wall time where the system does not tell.
-fn cpu_s() -> f64 {
-    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
-    let told = std::fs::read_to_string("/proc/self/schedstat").ok();
-    let nanos = told.as_ref().and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanos.map_or_else(|| START.elapsed().as_secs_f64(), |nanos| nanos * 1e-9)
-}
 
 /// A line of a file of the system that begins with this word.
 fn told(path: &str, word: &str) -> String {
@@ -166,17 +161,7 @@ fn map_scans(name: &str) {
 
 fn main() {
     let only: Option<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).next();
-    let uptime = std::process::Command::new("date").arg("-u").output();
-    let date = uptime.map(|out| String::from_utf8_lossy(&out.stdout).trim().to_owned()).unwrap_or_default();
-    let flags = told("/proc/cpuinfo", "flags");
-    let seen: Vec<&str> = ["avx2", "avx512f"].into_iter().filter(|flag| flags.contains(flag)).collect();
-    println!(
-        "{} ({} seen: {}), {} build · {date} · process CPU time, one thread",
-        told("/proc/cpuinfo", "model name"),
-        std::env::consts::ARCH,
-        seen.join(" "),
-        if cfg!(debug_assertions) { "debug" } else { "optimized" },
-    );
+    println!("{}", machine::told("whole steps and scans of the engine, process CPU time, one thread"));
     let asked = |part: &str| {
         let words = || std::env::args().filter(|argument| ["scan", "step"].contains(&argument.as_str()));
         words().count() == 0 || words().any(|word| word == part)

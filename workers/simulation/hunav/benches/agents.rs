@@ -4,33 +4,18 @@
 //! `cargo bench --workspace --bench agents -- [SIZE]...` takes the sizes to run (10 30 100 300 1000); without one, all.
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 #![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a bench is no library")]
-#![expect(clippy::disallowed_methods, reason = "a bench falls back to the wall clock")]
+
+#[path = "../../../../tests/machine.rs"]
+mod machine;
 
 use std::fmt::Write as _;
 
+use machine::cpu_s;
 use socrates_hunav::{AgentsFile, Inputs, simulate};
 
 const SIZES: [u32; 5] = [10, 30, 100, 300, 1000];
 const ROUNDS: usize = 5;
 const SECS: f64 = 5.0;
-
-/// CPU time of this process so far, s; wall time where the system does not tell.
-fn cpu_s() -> f64 {
-    static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
-    let told = std::fs::read_to_string("/proc/self/schedstat").ok();
-    let nanos = told.as_ref().and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanos.map_or_else(|| START.elapsed().as_secs_f64(), |nanos| nanos * 1e-9)
-}
-
-/// The processor, the vector instructions seen on it, and the build.
-fn header() -> String {
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let line = |word: &str| info.lines().find(|line| line.starts_with(word)).unwrap_or("").to_owned();
-    let name = line("model name").split_once(": ").map_or("unknown processor".to_owned(), |(_, name)| name.to_owned());
-    let seen: String = [" avx2", " avx512f"].into_iter().filter(|flag| line("flags").contains(flag)).collect();
-    let build = if cfg!(debug_assertions) { "debug" } else { "optimized" };
-    format!("{name} ({} seen:{seen}), {build} build", std::env::consts::ARCH)
-}
 
 /// An agents file of people on a lattice, who walk to and fro along x or y at different speeds.
 fn file(people: u32) -> String {
@@ -66,10 +51,8 @@ fn file(people: u32) -> String {
 
 fn main() {
     let wanted: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
-    println!("{}", header());
-    println!(
-        "agents files, native, {SECS} s each, open floor, 0.25 people per m²; process CPU time, one thread, median of {ROUNDS}"
-    );
+    let what = format!("agents files, native, {SECS} s each, open floor, 0.25 people per m²");
+    println!("{}", machine::told(&format!("{what}; process CPU time, one thread, median of {ROUNDS}")));
     for people in SIZES.into_iter().filter(|people| wanted.is_empty() || wanted.contains(people)) {
         let agents = AgentsFile::read(&file(people), "agents.yaml").unwrap();
         let inputs = Inputs { duration_s: SECS, ..Inputs::new(&agents, "agents.yaml") };
