@@ -4,7 +4,6 @@
 //! `cargo bench --workspace --bench agents -- [SIZE]...` takes the sizes to run (10 30 100 300 1000); without one, all.
 #![expect(clippy::print_stdout, reason = "a bench prints its table")]
 #![expect(clippy::unwrap_used, clippy::indexing_slicing, reason = "a bench is no library")]
-#![expect(clippy::disallowed_methods, reason = "a bench falls back to the wall clock")]
 
 use std::fmt::Write as _;
 
@@ -26,7 +25,8 @@ fn cpu_s() -> f64 {
 fn header() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let line = |word: &str| info.lines().find(|line| line.starts_with(word)).unwrap_or("").to_owned();
-    let name = line("model name").split_once(": ").map_or("unknown processor".to_owned(), |(_, name)| name.to_owned());
+    let name =
+        line("model name").split_once(": ").map_or_else(|| "unknown processor".to_owned(), |(_, name)| name.to_owned());
     let seen: String = [" avx2", " avx512f"].into_iter().filter(|flag| line("flags").contains(flag)).collect();
     let build = if cfg!(debug_assertions) { "debug" } else { "optimized" };
     format!("{name} ({} seen:{seen}), {build} build", std::env::consts::ARCH)
