@@ -372,12 +372,16 @@ fn settings_that_cannot_be_meant_are_refused_by_name() {
     empty.step(DT_S).unwrap();
 }
 
+/// Numbers between two bounds, and place and velocity of somebody from them.
+type Draw<'a> = dyn FnMut(f64, f64) -> f64 + 'a;
+type Spot<'a> = dyn FnMut(u32, &mut Draw<'_>) -> [f64; 4] + 'a;
+
 /// Scenes that are hard on an error bound: everybody on one side, on few spots, straight at each other, one runner
 /// against all, thin, dense, in one place at one speed.
 fn hard_scenes(seed: u64) -> Vec<(&'static str, Vec<Person>)> {
     let mut random = SplitMix64::new(1000 + seed);
     let mut number = |low: f64, high: f64| low + (high - low) * random.next_f64();
-    let mut crowd = |n: u32, place: &mut dyn FnMut(u32, &mut dyn FnMut(f64, f64) -> f64) -> [f64; 4]| {
+    let mut crowd = |n: u32, place: &mut Spot<'_>| {
         (0..n)
             .map(|id| {
                 let [x, y, vx, vy] = place(id, &mut number);

@@ -303,7 +303,7 @@ fn crossing(people: u32, far_off: u32) -> Vec<(f64, f64)> {
     let grid = common::hall();
     let inputs = Inputs { grid: Some(&grid), duration_s: 3.0, ..Inputs::new(&agents, "agents.yaml") };
     let recording = simulate(&inputs).unwrap_or_else(|problems| panic!("{}", shown(&problems)));
-    recording.frames.iter().filter(|state| u32::from(state.agent) <= people).map(|state| (state.x, state.y)).collect()
+    recording.frames.iter().filter(|state| state.agent <= people).map(|state| (state.x, state.y)).collect()
 }
 
 #[test]
