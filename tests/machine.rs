@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 /// Two lines: what is run and how it was built; the processor, the vector instructions seen on it, cores and load before.
-pub fn told(what: &str) -> String {
+pub(crate) fn told(what: &str) -> String {
     let info = read_to_string("/proc/cpuinfo").unwrap_or_default();
     let value = |name: &str| info.lines().find_map(|line| Some(line.strip_prefix(name)?.split_once(": ")?.1));
     let flags: Vec<&str> = value("flags").unwrap_or_default().split_whitespace().collect();
@@ -30,7 +30,7 @@ pub fn told(what: &str) -> String {
 }
 
 /// CPU time of this thread's process so far, s; wall time where the system does not tell.
-pub fn cpu_s() -> f64 {
+pub(crate) fn cpu_s() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     let told = read_to_string("/proc/self/schedstat").ok();
     let nanos = told.as_ref().and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());

@@ -1,6 +1,8 @@
 //! SVG to PNG, with the font compiled in: the same picture on every machine, but for characters that only a font of the
 //! system has.
 
+use std::io::Write as _;
+
 use resvg::{tiny_skia, usvg};
 
 use crate::fonts;
@@ -87,13 +89,12 @@ impl Ground {
         let tree = tree(svg)?;
         let mut pixels = self.pixels.clone();
         resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels.as_mut());
-        Ok(opaque(&pixels))
+        Ok(opaque(pixels.pixels()))
     }
 }
 
 /// A picture as PNG: opaque, lightly compressed, for pictures are made on the way of every run.
 fn encode(pixels: &tiny_skia::Pixmap, dpi: Option<f32>) -> Result<Vec<u8>, PngError> {
-    let colors = opaque(pixels);
     let wrong = |why: png::EncodingError| PngError::Encode(why.to_string());
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
@@ -110,15 +111,20 @@ fn encode(pixels: &tiny_skia::Pixmap, dpi: Option<f32>) -> Result<Vec<u8>, PngEr
         encoder.set_pixel_dims(Some(png::PixelDimensions { xppu: per_meter, yppu: per_meter, unit: png::Unit::Meter }));
     }
     let mut writer = encoder.write_header().map_err(wrong)?;
-    writer.write_image_data(&colors).map_err(wrong)?;
+    // Row by row: the colors of the whole picture once more would be most of what a bundle needs.
+    let mut rows = writer.stream_writer().map_err(wrong)?;
+    for row in pixels.pixels().chunks(pixels.width().max(1) as usize) {
+        rows.write_all(&opaque(row)).map_err(|why| PngError::Encode(why.to_string()))?;
+    }
+    rows.finish().map_err(wrong)?;
     writer.finish().map_err(wrong)?;
     Ok(bytes)
 }
 
 /// Colors over white: they are stored multiplied with their opacity, so what is missing to opaque is added.
-fn opaque(pixels: &tiny_skia::Pixmap) -> Vec<u8> {
-    let mut colors = vec![0; pixels.pixels().len() * 3];
-    for (color, pixel) in colors.as_chunks_mut::<3>().0.iter_mut().zip(pixels.pixels()) {
+fn opaque(pixels: &[tiny_skia::PremultipliedColorU8]) -> Vec<u8> {
+    let mut colors = vec![0; pixels.len() * 3];
+    for (color, pixel) in colors.as_chunks_mut::<3>().0.iter_mut().zip(pixels) {
         let rest = 255 - pixel.alpha();
         *color = [pixel.red(), pixel.green(), pixel.blue()].map(|part| part.saturating_add(rest));
     }

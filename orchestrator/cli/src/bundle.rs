@@ -114,6 +114,8 @@ pub(crate) struct Past<'a> {
     pub(crate) fetch: &'a Fetch<'a>,
     /// Work folder on the same file system: files are written there, then moved to where they belong.
     pub(crate) work: &'a Path,
+    /// Whether it is the only one: then its picture is painted by a thread of its own. Of many, each has a thread anyway.
+    pub(crate) alone: bool,
 }
 
 /// Writes the bundle of a finished scenario. The folder is there whole or, whatever happens on the way, not finished.
@@ -126,7 +128,7 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
 
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
 fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
-    let Past { status, jobs: past, fetch, .. } = *past;
+    let Past { status, jobs: past, fetch, alone, .. } = *past;
     let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
     let text = |role: &str, stage: Stage| -> Result<String, Complaint> {
         // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
@@ -156,8 +158,9 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     let title = format!("{} · {}", proposal.title, prepared.location.name);
     let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
     out.put("run.svg", svg.as_bytes())?;
-    // Painting takes as long as everything else of a bundle, so it goes on beside it.
-    let painted = std::thread::spawn(move || socrates_draw::png_from_svg(&svg, 1.5));
+    let paint = move || socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()));
+    // Painting takes as long as everything else of a bundle, so it goes on beside it where a core is free.
+    let (painting, painted) = if alone { (Some(std::thread::spawn(paint)), None) } else { (None, Some(paint())) };
     out.put("story.txt", story(&title, &proposal, report).as_bytes())?;
     out.put("metrics.csv", metrics(runs.iter().map(|(_, report)| report)).as_bytes())?;
     let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
@@ -175,8 +178,9 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     for (id, human) in &behaviors.humans {
         out.put(&format!("details/behaviors/{id}.xml"), human.tree.as_bytes())?;
     }
-    let painted = painted.join().map_err(|_broke| ours("the thread that painted `run.png` broke"))?;
-    out.put("run.png", &painted.map_err(|why| ours(&why.to_string()))?)?;
+    let broke = || Err(ours("the thread that painted `run.png` broke"));
+    let painted = painted.or_else(|| painting?.join().ok()).unwrap_or_else(broke)?;
+    out.put("run.png", &painted)?;
     let stages = stage_rows(past);
     let provenance = provenance(prepared, seed, status, past, fetch);
     out.put_outside("details/provenance.json", pretty(&provenance)?.as_bytes())?;

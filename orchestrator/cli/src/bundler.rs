@@ -16,6 +16,7 @@ use std::time::Duration;
 
 use socrates_model::{Digest, Location, Report, ScenarioId};
 use socrates_store::Reader;
+use tokio::sync::Notify;
 
 use crate::batch::Card;
 use crate::bundle::{self, Bundle, Past};
@@ -24,13 +25,13 @@ use crate::history::History;
 use crate::prepare::Prepared;
 use crate::progress::Progress;
 use crate::run::conclude;
-use crate::session::{self, Wanted};
+use crate::session::{self, Signals, Wanted};
 use crate::talk::Talk;
 
 /// Scenarios of the store that are looked at in one look: those before the first that is not done are not looked at again.
 const WINDOW: u64 = 4096;
-/// Between two looks at how far the threads are, once nothing more is made.
-const PAUSE: Duration = Duration::from_millis(200);
+/// Between two looks at whether the threads are still at work, once nothing more is made.
+const PAUSE: Duration = Duration::from_secs(1);
 
 /// What a scenario is bundled from.
 #[derive(Debug, Clone)]
@@ -62,7 +63,10 @@ struct Shared {
     work: PathBuf,
     orders: BTreeMap<ScenarioId, Order>,
     line: Mutex<Line>,
+    /// For the threads: something waits, or the line is closed.
     news: Condvar,
+    /// For whoever waits for the last bundle: one more is there.
+    written: Notify,
 }
 
 /// Scenarios that wait for a thread, and what became of the others.
@@ -89,6 +93,7 @@ impl Bundler {
             orders: wanted.iter().filter_map(order).collect(),
             line: Mutex::default(),
             news: Condvar::new(),
+            written: Notify::new(),
         });
         let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = (0..cores.min(wanted.len()).max(1))
@@ -122,8 +127,10 @@ impl Bundler {
         Ok(())
     }
 
-    /// Waits for the bundles that are not written yet, and hands back what became of every scenario.
-    pub(crate) fn finish(mut self, talk: &Talk) -> Result<BTreeMap<ScenarioId, Bundled>, Complaint> {
+    /// Waits for the bundles that are not written yet, and hands back what became of every scenario. A signal ends the wait; what is
+    /// written stays.
+    pub(crate) async fn finish(mut self, talk: &Talk) -> Result<BTreeMap<ScenarioId, Bundled>, Complaint> {
+        let mut signals = Signals::listen()?;
         // A look moves on by its window at most.
         while {
             let before = self.first_open;
@@ -133,13 +140,21 @@ impl Bundler {
         self.shared.line().closed = true;
         self.shared.news.notify_all();
         let mut progress = Progress::new(*talk, "writing", self.handed_on.len());
-        let mut line = self.shared.line();
-        while line.bundled.len() < self.handed_on.len() && self.threads.iter().any(|thread| !thread.is_finished()) {
-            progress.at(line.bundled.len(), "");
-            line = self.shared.news.wait_timeout(line, PAUSE).unwrap_or_else(PoisonError::into_inner).0;
+        loop {
+            let done = self.shared.line().bundled.len();
+            if done == self.handed_on.len() || self.threads.iter().all(JoinHandle::is_finished) {
+                break;
+            }
+            progress.at(done, "");
+            tokio::select! {
+                () = self.shared.written.notified() => {}
+                // A thread that broke tells nobody.
+                () = tokio::time::sleep(PAUSE) => {}
+                why = signals.come() => return Err(why),
+            }
         }
         drop(progress);
-        Ok(std::mem::take(&mut line.bundled))
+        Ok(std::mem::take(&mut self.shared.line().bundled))
     }
 }
 
@@ -179,7 +194,7 @@ impl Shared {
             drop(line);
             let bundled = self.bundle(&id, &mut reader);
             self.line().bundled.insert(id, bundled);
-            self.news.notify_all();
+            self.written.notify_one();
         }
     }
 
@@ -196,13 +211,14 @@ impl Shared {
             *reader = Some(Reader::open(&session::store(&self.work)).map_err(session::unread)?);
         }
         let gone = || ours(&format!("the job store has lost `{id}`"));
-        let bundle = bundled(&dir, &self.work, id, prepared, *seed, reader.as_ref().ok_or_else(gone)?)?;
+        let bundle = bundled(&dir, &self.work, id, prepared, *seed, reader.as_ref().ok_or_else(gone)?, false)?;
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         Card::of(&bundle, Arc::clone(location), id.as_str(), &reports)
     }
 }
 
-/// The bundle of one finished scenario, written from what the job store and the artifacts of a work folder tell of it.
+/// The bundle of one finished scenario, written from what the job store and the artifacts of a work folder tell of it. `alone`: no
+/// other is written meanwhile.
 pub(crate) fn bundled(
     dir: &Path,
     work: &Path,
@@ -210,13 +226,14 @@ pub(crate) fn bundled(
     prepared: &Prepared,
     seed: u64,
     reader: &Reader,
+    alone: bool,
 ) -> Result<Bundle, Complaint> {
     let gone = || ours(&format!("the job store has lost `{id}`"));
     let rows = reader.scenario(id).map_err(session::unread)?;
     let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
     let (history, blobs) = (History::of_rows(rows), session::blobs(work));
     let fetch = |digest: &Digest| session::fetch(&blobs, digest);
-    conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch: &fetch, work })
+    conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch: &fetch, work, alone })
 }
 
 fn ours(what: &str) -> Complaint {

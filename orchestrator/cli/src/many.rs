@@ -53,7 +53,7 @@ pub(crate) async fn batch(
     let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
     // Until the last bundle is written, nobody else makes them.
     let _hold = make_into(talk, &cli.flags, config, options, &work, &wanted, &mut bundler).await?;
-    let (rows, cards) = rows(talk, &root, &wanted, bundler.finish(talk)?);
+    let (rows, cards) = rows(talk, &root, &wanted, bundler.finish(talk).await?);
     let readings = prepared.iter().map(|one| one.reading.clone()).collect();
     library::write(&root, &library::Library { wish, count, readings, scenarios: rows })?;
     if let Err(why) = crate::batch::write(talk, &root, cards)?.figures {

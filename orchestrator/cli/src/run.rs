@@ -162,7 +162,7 @@ async fn single(
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
         move || -> Result<Bundle, Complaint> {
             let reader = Reader::open(&session::store(&work)).map_err(session::unread)?;
-            bundled(&dir, &work, &id, &prepared, seed, &reader)
+            bundled(&dir, &work, &id, &prepared, seed, &reader, true)
         }
     };
     let want = Wanted { id, seed: options.seed, prepared: &prepared };

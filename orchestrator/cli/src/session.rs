@@ -9,6 +9,7 @@ use socrates_link::{Bus, LinkError, Overflow, call, keys};
 use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
 use socrates_model::{Digest, ScenarioId};
 use socrates_store::{Reader, StoreError};
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::time::Instant;
 
 use crate::args::{Flags, RunOptions};
@@ -306,11 +307,8 @@ async fn follow(
     let mut notices =
         bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
     submit(bus.as_ref(), BATCH, specs).await?;
-    let mut interrupted = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())
-        .map_err(|why| ours(&why.to_string()))?;
     // Listened to all the time: a signal between two rounds must not get lost.
-    let mut stop = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::interrupt())
-        .map_err(|why| ours(&why.to_string()))?;
+    let mut signals = Signals::listen()?;
     let mut last_heard = Instant::now();
     // Notices hasten; the poll behind them decides.
     let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
@@ -335,10 +333,10 @@ async fn follow(
                 return Err(complaint.with_code(Code::Ours));
             }
             complaint = left(&mut asking) => return Err(complaint),
-            _ = stop.recv() => if !looking || !talk.live {
+            _ = signals.interrupt.recv() => if !looking || !talk.live {
                 return Err(stopped());
             },
-            _ = interrupted.recv() => return Err(stopped()),
+            _ = signals.terminate.recv() => return Err(stopped()),
         }
         if !looks_done {
             continue;
@@ -388,6 +386,30 @@ async fn left(asking: &mut Option<&mut Asking>) -> Complaint {
     match asking {
         Some(asking) => asking.left().await,
         None => std::future::pending().await,
+    }
+}
+
+/// The signals that end a run, from the moment on at which they are listened to: from then on nobody else hears them.
+#[derive(Debug)]
+pub(crate) struct Signals {
+    interrupt: Signal,
+    terminate: Signal,
+}
+
+impl Signals {
+    /// Begins to listen.
+    pub(crate) fn listen() -> Result<Self, Complaint> {
+        let on = |kind| signal(kind).map_err(|why| ours(&why.to_string()));
+        Ok(Self { interrupt: on(SignalKind::interrupt())?, terminate: on(SignalKind::terminate())? })
+    }
+
+    /// Waits for one of them and says what it means.
+    pub(crate) async fn come(&mut self) -> Complaint {
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        stopped()
     }
 }
 

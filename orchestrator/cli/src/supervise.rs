@@ -215,9 +215,17 @@ fn roles(work: &Path, endpoint: &str, namespace: &str, simulations: u32, passed_
     roles
 }
 
+/// Pools of memory of a process, for the C library of most Linux systems: with one for each of its threads a worker keeps twice
+/// what it needs.
+const ARENAS: (&str, &str) = ("MALLOC_ARENA_MAX", "2");
+
 fn spawn(role: &Role, more: &[String]) -> Result<Child, Complaint> {
     let program = std::env::current_exe().map_err(|why| ours(&format!("this program cannot find itself: {why}")))?;
-    Command::new(program)
+    let mut command = Command::new(program);
+    if std::env::var_os(ARENAS.0).is_none() {
+        command.env(ARENAS.0, ARENAS.1);
+    }
+    command
         .args(&role.args)
         .args(more)
         .stdin(Stdio::piped())
