@@ -139,7 +139,10 @@ pub(crate) async fn make_into(
     bundler: &mut Bundler,
 ) -> Result<Hold, Complaint> {
     let hold = Hold::take(work)?;
-    let making = Making { talk, flags, config, options, work, wanted };
+    // One of each request, then the next of each: whatever is there when it is stopped is of all kinds.
+    let mut wanted = wanted.to_vec();
+    wanted.sort_by_key(|want| want.seed);
+    let making = Making { talk, flags, config, options, work, wanted: &wanted };
     making.carry_out(&hold, wanted.len(), Some(bundler), async {}).await?;
     Ok(hold)
 }
@@ -208,23 +211,22 @@ fn passed_on(flags: &Flags) -> Vec<String> {
 }
 
 /// Stores the inputs of scenarios and names them. Those that are made from one request differ by name and seed alone.
-pub(crate) fn specs(
-    wanted: &[Wanted<'_>],
+pub(crate) fn specs<'a>(
+    wanted: &[Wanted<'a>],
     config: &Config,
     options: &RunOptions,
     blobs: &LocalBlobs,
 ) -> Result<Vec<ScenarioSpec>, Complaint> {
-    let mut specs: Vec<ScenarioSpec> = Vec::with_capacity(wanted.len());
-    for (index, want) in wanted.iter().enumerate() {
-        let before = index.checked_sub(1).and_then(|before| Some((wanted.get(before)?, specs.get(before)?)));
-        specs.push(match before {
-            Some((alike, spec)) if std::ptr::eq(alike.prepared, want.prepared) => {
-                ScenarioSpec { id: want.id.clone(), seed: want.seed, ..spec.clone() }
-            }
-            Some(_) | None => spec(want, config, options, blobs)?,
-        });
-    }
-    Ok(specs)
+    let mut known: Vec<(&'a Prepared, ScenarioSpec)> = Vec::new();
+    let mut of = |want: &Wanted<'a>| {
+        if let Some((_, alike)) = known.iter().find(|(prepared, _)| std::ptr::eq(*prepared, want.prepared)) {
+            return Ok(ScenarioSpec { id: want.id.clone(), seed: want.seed, ..alike.clone() });
+        }
+        let spec = spec(want, config, options, blobs)?;
+        known.push((want.prepared, spec.clone()));
+        Ok(spec)
+    };
+    wanted.iter().map(&mut of).collect()
 }
 
 /// Stores the inputs of a scenario and names them.

@@ -113,7 +113,8 @@ async fn watched(mut child: Child, out: &Path, cost: &mut Cost) -> Result<std::p
             names.filter(|name| !name.as_encoded_bytes().starts_with(b".")).count()
         });
         cost.samples.push(Sample { bundles, cpu_s });
-        for Used { name, peak_mb, .. } in family.into_values() {
+        // One that has just been started has no name yet.
+        for Used { name, peak_mb, .. } in family.into_values().filter(|used| !used.name.is_empty()) {
             let name = if name.starts_with("run") { "run".to_owned() } else { name };
             let peak = cost.peaks_mb.entry(name).or_default();
             *peak = peak.max(peak_mb);
