@@ -6,21 +6,23 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::json;
+use socrates_store::Reader;
 
 use super::machine::{self, Used};
 use crate::args::Flags;
 use crate::exit::{Code, Complaint};
 use crate::talk::Talk;
+use crate::{place, session};
 
 /// Scenarios of a block.
 const BLOCK: usize = 100;
 /// Between two looks at the processes.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// Processor time when so many bundles were there.
+/// Processor time when so many scenarios were done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
-    bundles: usize,
+    done: usize,
     cpu_s: f64,
 }
 
@@ -29,7 +31,10 @@ struct Sample {
 struct Cost {
     wall_s: f64,
     cpu_s: f64,
-    samples: Vec<Sample>,
+    /// Processes that make scenarios, as those are made.
+    making: Vec<Sample>,
+    /// The process that writes bundles and carries messages, as bundles appear: they appear later than they are made.
+    writing: Vec<Sample>,
     peaks_mb: BTreeMap<String, f64>,
 }
 
@@ -57,22 +62,19 @@ pub(super) async fn bench(talk: &Talk, flags: &Flags, scenarios: u32, folder: &P
         cost.cpu_s * 1e3 / total,
         cost.cpu_s / cost.wall_s
     ));
-    let blocks = blocks(&cost.samples);
-    if !blocks.is_empty() {
+    let parts = [("making", blocks(&cost.making)), ("writing", blocks(&cost.writing))];
+    for (name, blocks) in parts.iter().filter(|(_, blocks)| !blocks.is_empty()) {
         let told: Vec<String> = blocks.iter().map(|ms| format!("{ms:.0}")).collect();
-        talk.line(&format!("blocks     {} ms a scenario, by {BLOCK} as their bundles appear", told.join(" ")));
-        let (least, mean, most) = span(&blocks);
-        talk.line(&format!(
-            "           mean {mean:.0} · {:+.1} % to {:+.1} %",
-            (least / mean - 1.0) * 1e2,
-            (most / mean - 1.0) * 1e2
-        ));
+        let (least, mean, most) = span(blocks);
+        talk.line(&format!("{name:<10} {} ms a scenario, by blocks of {BLOCK}", told.join(" ")));
+        let off = |value: f64| (value / mean - 1.0) * 1e2;
+        talk.line(&format!("           mean {mean:.1} · {:+.1} % to {:+.1} %", off(least), off(most)));
     }
     let peaks: Vec<String> = cost.peaks_mb.iter().map(|(name, mb)| format!("{name} {mb:.0}")).collect();
     talk.line(&format!("memory     {} MB at most", peaks.join(" · ")));
     talk.result(&json!({
         "scenarios": count * variants, "wall_s": cost.wall_s, "cpu_s": cost.cpu_s, "cpu_ms_per_scenario": cost.cpu_s * 1e3 / total,
-        "cores_busy": cost.cpu_s / cost.wall_s, "block": BLOCK, "blocks_ms": blocks, "peaks_mb": cost.peaks_mb,
+        "cores_busy": cost.cpu_s / cost.wall_s, "block": BLOCK, "blocks_ms": BTreeMap::from(parts), "peaks_mb": cost.peaks_mb,
     }));
     Ok(())
 }
@@ -107,12 +109,19 @@ async fn watched(mut child: Child, out: &Path, cost: &mut Cost) -> Result<std::p
             return Ok(status);
         }
         let family = machine::family(id);
-        let cpu_s = family.values().map(|used| used.cpu_s).sum();
+        let made =
+            Reader::open(&session::store(&out.join(place::WORK))).and_then(|reader| reader.standings(0, u64::MAX));
+        let made = made.map_or(0, |all| all.iter().filter(|one| one.result.is_some()).count());
         let bundles = std::fs::read_dir(out).map_or(0, |entries| {
             let names = entries.filter_map(Result::ok).map(|entry| entry.file_name());
             names.filter(|name| !name.as_encoded_bytes().starts_with(b".")).count()
         });
-        cost.samples.push(Sample { bundles, cpu_s });
+        let cpu_s =
+            |of: bool| family.iter().filter(|(other, _)| (**other == id) == of).map(|(_, used)| used.cpu_s).sum();
+        // The store goes with the work folder, when everything is made.
+        let made = made.max(cost.making.last().map_or(0, |last| last.done));
+        cost.making.push(Sample { done: made, cpu_s: cpu_s(false) });
+        cost.writing.push(Sample { done: bundles, cpu_s: cpu_s(true) });
         // One that has just been started has no name yet.
         for Used { name, peak_mb, .. } in family.into_values().filter(|used| !used.name.is_empty()) {
             let name = if name.starts_with("run") { "run".to_owned() } else { name };
@@ -123,19 +132,19 @@ async fn watched(mut child: Child, out: &Path, cost: &mut Cost) -> Result<std::p
     }
 }
 
-/// Processor time per scenario of each whole block, ms: the time between the moments at which its first and its last bundle
-/// appeared, between two samples in proportion.
+/// Processor time per scenario of each whole block, ms: the time between the moments at which its first and its last scenario
+/// was done, between two samples in proportion.
 fn blocks(samples: &[Sample]) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "counts of scenarios")]
-    let at = |bundles: usize| -> Option<f64> {
-        let after = samples.iter().position(|sample| sample.bundles >= bundles)?;
+    let at = |done: usize| -> Option<f64> {
+        let after = samples.iter().position(|sample| sample.done >= done)?;
         let later = samples.get(after)?;
         let earlier = after.checked_sub(1).and_then(|before| samples.get(before)).unwrap_or(later);
-        let gained = later.bundles.saturating_sub(earlier.bundles).max(1) as f64;
-        let share = bundles.saturating_sub(earlier.bundles) as f64 / gained;
+        let gained = later.done.saturating_sub(earlier.done).max(1) as f64;
+        let share = done.saturating_sub(earlier.done) as f64 / gained;
         Some(earlier.cpu_s + (later.cpu_s - earlier.cpu_s) * share.min(1.0))
     };
-    let most = samples.iter().map(|sample| sample.bundles).max().unwrap_or(0);
+    let most = samples.iter().map(|sample| sample.done).max().unwrap_or(0);
     #[expect(clippy::cast_precision_loss, reason = "a hundred")]
     let per = 1e3 / BLOCK as f64;
     (0..most / BLOCK).filter_map(|block| Some((at((block + 1) * BLOCK)? - at(block * BLOCK)?) * per)).collect()
@@ -154,9 +163,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_block_costs_what_was_used_between_its_first_and_its_last_bundle() {
+    fn a_block_costs_what_was_used_between_its_first_and_its_last_scenario() {
         let samples: Vec<Sample> = [(0, 0.0), (0, 2.0), (50, 7.0), (150, 17.0), (200, 27.0)]
-            .map(|(bundles, cpu_s)| Sample { bundles, cpu_s })
+            .map(|(done, cpu_s)| Sample { done, cpu_s })
             .into();
         // The start belongs to the first block: 12 s for 100, then 10 s and the rest.
         assert_eq!(blocks(&samples), [120.0, 150.0]);

@@ -28,7 +28,7 @@ pub(super) fn told() -> Vec<String> {
 pub(super) struct Used {
     /// Its name: what it was started as.
     pub(super) name: String,
-    /// Processor time, s, its ended and waited-for children included.
+    /// Processor time of its own, s.
     pub(super) cpu_s: f64,
     /// Largest resident memory, MB.
     pub(super) peak_mb: f64,
@@ -52,7 +52,7 @@ pub(super) fn family(of: u32) -> BTreeMap<u32, Used> {
     } {}
     let used = |id: u32| {
         let stat = parents.get(&id)?;
-        Some((id, Used { name: name(id), cpu_s: stat.cpu_s + stat.children_s, peak_mb: peak_mb(id) }))
+        Some((id, Used { name: name(id), cpu_s: stat.cpu_s, peak_mb: peak_mb(id) }))
     };
     family.into_iter().filter_map(used).collect()
 }
