@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point};
+use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
 
 use crate::ground::Ground;
-use crate::read::{EXTRA, GRAPH};
+use crate::read::{EXTRA, GRAPH, edge_at};
 
 /// Longest opening that counts as a door, m.
 const DOOR_MAX_M: f64 = 8.0;
@@ -70,7 +70,7 @@ fn grid_problems(grid: &Grid, faults: &mut Vec<Fault>) {
 fn node_problems<'a>(location: &'a Location, faults: &mut Vec<Fault>) -> BTreeSet<&'a NodeId> {
     let mut on_wall = BTreeSet::new();
     for node in location.graph.nodes() {
-        let at = format!("{GRAPH} node `{}`", node.id);
+        let at = Where::file(GRAPH).node(node.id.clone());
         if !location.grid.is_free(&node.at) {
             let found = location.grid.cell_of(&node.at).map_or("outside the map", |(column, row)| {
                 match location.grid.at(column, row) {
@@ -98,7 +98,7 @@ fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut 
     let ground = Ground::of(&location.grid);
     let sight = ground.sight();
     for edge in location.graph.edges() {
-        let at = format!("{GRAPH} edge `{}` – `{}`", edge.from, edge.to);
+        let at = edge_at(edge);
         if edge.kind.trim().is_empty() {
             faults.push(Fault::new(FaultCode::MType, &at, "the type is empty; say what kind of way it is"));
         }
@@ -132,7 +132,7 @@ fn part_problems(location: &Location, faults: &mut Vec<Fault>) {
     parts.sort_by_key(|part| std::cmp::Reverse(part.len()));
     let listed: Vec<String> = parts.iter().map(|part| names(part)).collect();
     let message = format!("the graph falls into {} parts: {}; join them by edges", parts.len(), listed.join(" | "));
-    faults.push(Fault::new(FaultCode::MParts, GRAPH, message));
+    faults.push(Fault::new(FaultCode::MParts, Where::file(GRAPH), message));
 }
 
 /// Ids in a row, at most a dozen.
@@ -144,7 +144,7 @@ fn names(ids: &[NodeId]) -> String {
 
 fn door_problems(location: &Location, index: usize, door: &Door, faults: &mut Vec<Fault>) {
     let mut fault = |code: FaultCode, message: String| {
-        faults.push(Fault::new(code, format!("{EXTRA} door `{}`", door.id), message))
+        faults.push(Fault::new(code, Where::file(EXTRA).at_key(format_args!("door `{}`", door.id)), message))
     };
     if door.id.trim().is_empty() {
         fault(FaultCode::MId, format!("door {} has an empty id", index + 1));
@@ -272,7 +272,7 @@ mod tests {
         bad.graph = bad.graph.edited(|_, edges| edges.clear());
         let faults = check(&bad);
         assert_eq!(faults[0].code, FaultCode::MParts);
-        assert!(faults[0].message.contains("2 parts: a | b"), "{}", faults[0]);
+        assert!(faults[0].message.to_string().contains("2 parts: a | b"), "{}", faults[0]);
     }
 
     #[test]
@@ -286,7 +286,7 @@ mod tests {
         bad.doors[1].opens = DoorOpens::AtTimes(vec![4.0, 1e9]);
         assert_eq!(codes(&bad), ["M-ID", "M-VALUE", "M-VALUE", "M-ID", "M-VALUE"]);
         bad.doors[1].opens = DoorOpens::AtTimes(vec![]);
-        assert!(check(&bad).iter().any(|fault| fault.message.contains("at_times")));
+        assert!(check(&bad).iter().any(|fault| fault.message.to_string().contains("at_times")));
         bad.doors[1].from = bad.doors[1].to;
         assert!(codes(&bad).contains(&"M-VALUE"));
         let mut open = location();

@@ -1,9 +1,13 @@
 //! `location.toml`: the description and the doors of a location.
 
 use serde::Deserialize;
-use socrates_model::{Door, Fault, FaultCode};
+use socrates_model::{Door, Fault, Where};
 
+use crate::keys::{DOOR, Keys};
 use crate::read::EXTRA;
+
+/// The keys of the file.
+pub(crate) const LOCATION: Keys = Keys { needed: &[], other: &["description", "doors"], tables: &[("doors", &DOOR)] };
 
 /// What the file may say; unknown keys are refused.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -23,24 +27,20 @@ pub(crate) fn read(bytes: &[u8], faults: &mut Vec<Fault>) -> Option<LocationFile
     match toml::from_str(&text) {
         Ok(file) => Some(file),
         Err(why) => {
-            faults.push(toml_fault(EXTRA, &text, &why));
+            faults.push(toml_fault(EXTRA, &LOCATION, &text, &why));
             None
         }
     }
 }
 
 /// A fault of a TOML file with its line.
-pub(crate) fn toml_fault(file: &str, text: &str, why: &toml::de::Error) -> Fault {
-    let at = why.span().map_or_else(|| file.to_owned(), |span| format!("{file}:{}", line_at(text, span.start)));
-    let message = why.message().replace('\n', " ");
-    let code = if message.contains("unknown field") || message.contains("missing field") {
-        FaultCode::MKey
-    } else if message.contains("unknown variant") || message.contains("invalid") && message.contains("expected") {
-        FaultCode::MValue
-    } else {
-        FaultCode::MRead
+pub(crate) fn toml_fault(file: &str, keys: &Keys, text: &str, why: &toml::de::Error) -> Fault {
+    let at = Where::file(file);
+    let at = match why.span() {
+        Some(span) => at.line(line_at(text, span.start)),
+        None => at,
     };
-    Fault::new(code, at, message)
+    Fault::new(keys.mistake(text), at, why.message().replace('\n', " "))
 }
 
 /// Line of a byte offset, from 1.
@@ -51,7 +51,7 @@ pub(crate) fn line_at(text: &str, offset: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use socrates_model::{DoorKind, DoorOpens};
+    use socrates_model::{DoorKind, DoorOpens, FaultCode};
 
     #[test]
     fn doors_are_read_and_unknown_keys_are_named_with_their_line() {
@@ -61,7 +61,7 @@ mod tests {
         assert_eq!(faults, []);
         assert_eq!((file.doors[0].kind, &file.doors[0].opens), (DoorKind::Elevator, &DoorOpens::RobotNear(3.0)));
         assert_eq!(read(good.replace("hold_s", "hold").as_bytes(), &mut faults), None);
-        assert_eq!((faults[0].code, faults[0].at.as_str()), (FaultCode::MKey, "location.toml:8"));
-        assert!(faults[0].message.contains("hold"), "{}", faults[0]);
+        assert_eq!((faults[0].code, faults[0].at.to_string()), (FaultCode::MKey, "location.toml:8".to_owned()));
+        assert!(faults[0].message.to_string().contains("hold"), "{}", faults[0]);
     }
 }

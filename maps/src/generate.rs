@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Cell, DoorKind, DoorOpens, Fault, FaultCode, Grid, Point, Pose};
+use socrates_model::{Cell, DoorKind, DoorOpens, Fault, FaultCode, Grid, Point, Pose, Where};
 
 use crate::image::gray_png;
 use crate::plan::{PLAN, Plan};
@@ -38,8 +38,9 @@ pub fn generate(plan_toml: &str) -> Result<BTreeMap<String, Vec<u8>>, Vec<Fault>
         return Err(faults);
     }
     let shades: Vec<u8> = grid.cells.iter().map(shade).collect();
-    let image = gray_png(grid.width, grid.height, &shades)
-        .map_err(|why| vec![Fault::new(FaultCode::MImage, PLAN, format!("the image cannot be written: {why}"))])?;
+    let image = gray_png(grid.width, grid.height, &shades).map_err(|why| {
+        vec![Fault::new(FaultCode::MImage, Where::file(PLAN), format!("the image cannot be written: {why}"))]
+    })?;
     let files = BTreeMap::from([
         (MAP.to_owned(), map_yaml(&grid).into_bytes()),
         (IMAGE.to_owned(), image),
@@ -47,7 +48,7 @@ pub fn generate(plan_toml: &str) -> Result<BTreeMap<String, Vec<u8>>, Vec<Fault>
         (EXTRA.to_owned(), extra_toml(&plan).into_bytes()),
     ]);
     parse(&files, "plan").map(|_| files).map_err(|faults| {
-        let moved = |fault: Fault| Fault { at: format!("{PLAN} -> {}", fault.at), ..fault };
+        let moved = |fault: Fault| Fault { at: fault.at.made_from(PLAN), ..fault };
         faults.into_iter().map(moved).collect()
     })
 }
@@ -244,12 +245,12 @@ inside = ["b"]
             assert!(faults.contains(part), "{part} not in\n{faults}");
         }
         let in_wall = generate(&PLAN_TEXT.replace("at = [6.0, 2.5]", "at = [4.0, 1.0]")).unwrap_err();
-        assert_eq!((in_wall[0].code, in_wall[0].at.as_str()), (FaultCode::MWall, "plan.toml:10"));
+        assert_eq!((in_wall[0].code, in_wall[0].at.to_string()), (FaultCode::MWall, "plan.toml:10".to_owned()));
         let closed = generate(&PLAN_TEXT.replace("openings = [[4.0, 2.0, 4.0, 3.0]]", "")).unwrap_err();
         assert!(closed.iter().any(|fault| fault.code == FaultCode::GFree), "{closed:?}");
         let huge =
             PLAN_TEXT.replace("[8.0, 5.0]", "[400.0, 400.0]").replace("resolution_m = 0.1", "resolution_m = 0.02");
-        assert!(generate(&huge).unwrap_err()[0].message.contains("pixels"));
-        assert!(generate("size_m = 3").unwrap_err()[0].at.starts_with("plan.toml:1"));
+        assert!(generate(&huge).unwrap_err()[0].message.to_string().contains("pixels"));
+        assert!(generate("size_m = 3").unwrap_err()[0].at.to_string().starts_with("plan.toml:1"));
     }
 }

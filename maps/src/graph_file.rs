@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value};
-use socrates_model::{Fault, FaultCode, GraphEdge, GraphNode, Grid, NodeId, Point, SceneGraph};
+use socrates_model::{Fault, FaultCode, GraphEdge, GraphNode, Grid, NodeId, Point, SceneGraph, Where};
 
 use crate::json_lines::object_lines;
 use crate::read::GRAPH;
@@ -22,33 +22,41 @@ pub(crate) fn read(bytes: &[u8], grid: Option<&Grid>, faults: &mut Vec<Fault>) -
     let value: Value = match serde_json::from_str(&text) {
         Ok(value) => value,
         Err(why) => {
-            let at = format!("{GRAPH}:{}", why.line());
+            let at = Where::file(GRAPH).line(why.line());
             faults.push(Fault::new(FaultCode::MRead, at, format!("is no JSON: {why}")));
             return None;
         }
     };
     let Some(top) = value.as_object() else {
-        faults.push(Fault::new(FaultCode::MRead, GRAPH, "is no object; node-link data has `nodes` and `links`"));
+        faults.push(Fault::new(
+            FaultCode::MRead,
+            Where::file(GRAPH),
+            "is no object; node-link data has `nodes` and `links`",
+        ));
         return None;
     };
     let mut reading = Reading { text: &text, faults };
-    reading.unknown_keys(GRAPH, top, &TOP_KEYS);
+    reading.unknown_keys(&Where::file(GRAPH), top, &TOP_KEYS);
     let edges_key = if top.contains_key("links") { "links" } else { "edges" };
     if top.contains_key("links") && top.contains_key("edges") {
-        reading.fault(FaultCode::MKey, GRAPH, "has both `links` and `edges`; keep one");
+        reading.fault(FaultCode::MKey, Where::file(GRAPH), "has both `links` and `edges`; keep one");
     }
     let nodes = reading.nodes(reading.elements(top, "nodes"), grid);
     let edges = reading.elements(top, edges_key);
     let edges = reading.edges(edges_key, edges, &nodes);
     if nodes.is_empty() {
-        reading.fault(FaultCode::MId, GRAPH, "has no node; at least two and an edge between them are needed");
+        reading.fault(
+            FaultCode::MId,
+            Where::file(GRAPH),
+            "has no node; at least two and an edge between them are needed",
+        );
         return None;
     }
     Some(SceneGraph::new(nodes, edges))
 }
 
 /// An element with the place to name in a fault.
-type Element<'v> = (String, Option<&'v Map<String, Value>>);
+type Element<'v> = (Where, Option<&'v Map<String, Value>>);
 
 struct Reading<'a> {
     text: &'a str,
@@ -56,11 +64,11 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn fault(&mut self, code: FaultCode, at: impl std::fmt::Display, message: impl Into<String>) {
+    fn fault(&mut self, code: FaultCode, at: impl Into<Where>, message: impl Into<String>) {
         self.faults.push(Fault::new(code, at, message));
     }
 
-    fn unknown_keys(&mut self, at: &str, object: &Map<String, Value>, allowed: &[&str]) {
+    fn unknown_keys(&mut self, at: &Where, object: &Map<String, Value>, allowed: &[&str]) {
         for key in object.keys().filter(|key| !allowed.contains(&key.as_str())) {
             self.fault(FaultCode::MKey, at, format!("unknown key `{key}`; allowed: {}", allowed.join(", ")));
         }
@@ -71,18 +79,18 @@ impl Reading<'_> {
         let lines = object_lines(self.text, key);
         let array = top.get(key)?.as_array()?;
         let at = |index: usize| match lines.get(index).filter(|_| lines.len() == array.len()) {
-            Some(line) => format!("{GRAPH}:{line}"),
-            None => format!("{GRAPH} {key}[{index}]"),
+            Some(line) => Where::file(GRAPH).line(*line),
+            None => Where::file(GRAPH).at_key(format_args!("{key}[{index}]")),
         };
         Some(array.iter().enumerate().map(|(index, value)| (at(index), value.as_object())).collect())
     }
 
     fn nodes(&mut self, elements: Option<Vec<Element<'_>>>, grid: Option<&Grid>) -> Vec<GraphNode> {
         let Some(elements) = elements else {
-            self.fault(FaultCode::MKey, GRAPH, "the array `nodes` is missing");
+            self.fault(FaultCode::MKey, Where::file(GRAPH), "the array `nodes` is missing");
             return Vec::new();
         };
-        let mut seen: BTreeMap<NodeId, String> = BTreeMap::new();
+        let mut seen: BTreeMap<NodeId, Where> = BTreeMap::new();
         let mut nodes = Vec::new();
         for (at, object) in elements {
             let Some(object) = object else {
@@ -106,11 +114,11 @@ impl Reading<'_> {
 
     fn edges(&mut self, key: &str, elements: Option<Vec<Element<'_>>>, nodes: &[GraphNode]) -> Vec<GraphEdge> {
         let Some(elements) = elements else {
-            self.fault(FaultCode::MKey, GRAPH, format!("the array `{key}` is missing"));
+            self.fault(FaultCode::MKey, Where::file(GRAPH), format!("the array `{key}` is missing"));
             return Vec::new();
         };
         let known: BTreeSet<&NodeId> = nodes.iter().map(|node| &node.id).collect();
-        let mut seen: BTreeMap<(NodeId, NodeId), String> = BTreeMap::new();
+        let mut seen: BTreeMap<(NodeId, NodeId), Where> = BTreeMap::new();
         let mut edges = Vec::new();
         for (at, object) in elements {
             let Some(object) = object else {
@@ -149,7 +157,7 @@ impl Reading<'_> {
         edges
     }
 
-    fn id(&mut self, at: &str, object: &Map<String, Value>, key: &str) -> Option<NodeId> {
+    fn id(&mut self, at: &Where, object: &Map<String, Value>, key: &str) -> Option<NodeId> {
         let text = match object.get(key) {
             Some(Value::String(text)) => text.clone(),
             // networkx takes numbers as ids too.
@@ -166,7 +174,7 @@ impl Reading<'_> {
         NodeId::new(text).map_err(|why| self.fault(FaultCode::MId, at, why.to_string())).ok()
     }
 
-    fn kind(&mut self, at: &str, object: &Map<String, Value>) -> Option<String> {
+    fn kind(&mut self, at: &Where, object: &Map<String, Value>) -> Option<String> {
         match object.get("type") {
             Some(Value::String(kind)) => Some(kind.clone()),
             Some(other) => {
@@ -180,7 +188,7 @@ impl Reading<'_> {
         }
     }
 
-    fn position(&mut self, at: &str, object: &Map<String, Value>, grid: Option<&Grid>) -> Option<Point> {
+    fn position(&mut self, at: &Where, object: &Map<String, Value>, grid: Option<&Grid>) -> Option<Point> {
         let Some(value) = object.get("pos") else {
             self.fault(FaultCode::MKey, at, "the key `pos` is missing; it is [x, y] in pixels from the top left");
             return None;

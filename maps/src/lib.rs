@@ -22,6 +22,7 @@ mod graph_file;
 mod ground;
 mod image;
 mod json_lines;
+mod keys;
 mod layer;
 mod map_file;
 mod plan;

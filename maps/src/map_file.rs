@@ -1,7 +1,7 @@
 //! `map.yaml` as the ROS map server knows it.
 
-use serde_norway::Value;
-use socrates_model::{Cell, Fault, FaultCode, Grid, Pose};
+use socrates_model::{Cell, Fault, FaultCode, Grid, Pose, Where};
+use yaml_serde::Value;
 
 use crate::check::{CELL_M, ORIGIN_MAX};
 use crate::image::Picture;
@@ -27,7 +27,7 @@ enum Mode {
 pub(crate) struct MapFile {
     pub(crate) image: String,
     /// File and line that names the image.
-    pub(crate) image_at: String,
+    pub(crate) image_at: Where,
     resolution_m: f64,
     origin: Pose,
     negate: bool,
@@ -76,7 +76,7 @@ impl MapFile {
 
 /// Only the image's name, as far as it can be read.
 pub(crate) fn image_name(bytes: &[u8]) -> Option<String> {
-    let value: Value = serde_norway::from_slice(bytes).ok()?;
+    let value: Value = yaml_serde::from_slice(bytes).ok()?;
     value.get("image")?.as_str().map(str::to_owned)
 }
 
@@ -84,10 +84,11 @@ pub(crate) fn image_name(bytes: &[u8]) -> Option<String> {
 pub(crate) fn read(bytes: &[u8], faults: &mut Vec<Fault>, warnings: &mut Vec<String>) -> Option<MapFile> {
     let before = faults.len();
     let text = String::from_utf8_lossy(bytes);
-    let value: Value = match serde_norway::from_str(&text) {
+    let value: Value = match yaml_serde::from_str(&text) {
         Ok(value) => value,
         Err(why) => {
-            let at = why.location().map_or_else(|| MAP.to_owned(), |at| format!("{MAP}:{}", at.line()));
+            let at = Where::file(MAP);
+            let at = why.location().map_or_else(|| at.clone(), |place| at.clone().line(place.line()));
             faults.push(Fault::new(FaultCode::MRead, at, format!("is no YAML: {why}")));
             return None;
         }
@@ -95,15 +96,21 @@ pub(crate) fn read(bytes: &[u8], faults: &mut Vec<Fault>, warnings: &mut Vec<Str
     let Some(entries) = value.as_mapping() else {
         faults.push(Fault::new(
             FaultCode::MRead,
-            MAP,
+            Where::file(MAP),
             "holds no keys; a ROS map file has `image`, `resolution`, `origin` …",
         ));
         return None;
     };
-    let at = |key: &str| line_of(&text, key).map_or_else(|| MAP.to_owned(), |line| format!("{MAP}:{line}"));
+    let at = |key: &str| {
+        let file = Where::file(MAP);
+        match line_of(&text, key) {
+            Some(line) => file.line(line),
+            None => file,
+        }
+    };
     for key in entries.keys() {
         let Some(name) = key.as_str() else {
-            faults.push(Fault::new(FaultCode::MKey, MAP, format!("the key {key:?} is no word")));
+            faults.push(Fault::new(FaultCode::MKey, Where::file(MAP), format!("the key {key:?} is no word")));
             continue;
         };
         if FOREIGN_KEYS.contains(&name) {
@@ -153,20 +160,24 @@ fn line_of(text: &str, key: &str) -> Option<usize> {
     text.lines().position(starts).map(|line| line + 1)
 }
 
-struct Reader<'a, At: Fn(&str) -> String> {
+struct Reader<'a, At: Fn(&str) -> Where> {
     value: &'a Value,
     at: &'a At,
     faults: &'a mut Vec<Fault>,
 }
 
-impl<At: Fn(&str) -> String> Reader<'_, At> {
+impl<At: Fn(&str) -> Where> Reader<'_, At> {
     fn wrong(&mut self, key: &str, found: &str, allowed: &str) {
         let message = format!("`{key}` is {found}; allowed: {allowed}");
         self.faults.push(Fault::new(FaultCode::MValue, (self.at)(key), message));
     }
 
     fn missing(&mut self, key: &str, allowed: &str) {
-        self.faults.push(Fault::new(FaultCode::MKey, MAP, format!("the key `{key}` is missing; {allowed}")));
+        self.faults.push(Fault::new(
+            FaultCode::MKey,
+            Where::file(MAP),
+            format!("the key `{key}` is missing; {allowed}"),
+        ));
     }
 
     fn image(&mut self) -> Option<String> {
@@ -247,7 +258,7 @@ impl<At: Fn(&str) -> String> Reader<'_, At> {
 
 /// A value as the file has it, short.
 fn shown(value: &Value) -> String {
-    let text = serde_norway::to_string(value).unwrap_or_default();
+    let text = yaml_serde::to_string(value).unwrap_or_default();
     let flat: String = text.trim().replace('\n', " ").chars().take(60).collect();
     format!("`{flat}`")
 }

@@ -1,16 +1,28 @@
 //! `plan.toml`: a small floor plan from which a location folder is made.
 
 use serde::Deserialize;
-use socrates_model::{Door, Fault, FaultCode};
+use socrates_model::{Door, Fault, FaultCode, Where};
 use toml::Spanned;
 
 use crate::doors_file::{line_at, toml_fault};
+use crate::keys::{DOOR, Keys};
 use crate::map_file::MAX_PIXELS;
 
 /// Name of the file in messages.
 pub(crate) const PLAN: &str = "plan.toml";
 /// Largest side of a plan, m.
 const SIDE_MAX_M: f64 = 500.0;
+
+/// The keys of the file.
+pub(crate) const PLAN_KEYS: Keys = Keys {
+    needed: &["description", "size_m", "resolution_m", "floors", "nodes", "edges"],
+    other: &["wall_thickness_m", "walls", "openings", "blocks", "doors"],
+    tables: &[
+        ("nodes", &Keys { needed: &["id", "type", "at"], other: &[], tables: &[] }),
+        ("edges", &Keys { needed: &["type", "along"], other: &[], tables: &[] }),
+        ("doors", &DOOR),
+    ],
+};
 
 /// Two corners or two ends: `[x0, y0, x1, y1]`, m.
 pub(crate) type Quad = Spanned<[f64; 4]>;
@@ -62,13 +74,13 @@ fn default_thickness_m() -> f64 {
 impl Plan {
     /// Reads a plan and checks its numbers and names.
     pub(crate) fn read(text: &str) -> Result<Self, Vec<Fault>> {
-        let plan: Self = toml::from_str(text).map_err(|why| vec![toml_fault(PLAN, text, &why)])?;
+        let plan: Self = toml::from_str(text).map_err(|why| vec![toml_fault(PLAN, &PLAN_KEYS, text, &why)])?;
         let faults = plan.problems(text);
         if faults.is_empty() { Ok(plan) } else { Err(faults) }
     }
 
-    pub(crate) fn line<T>(text: &str, item: &Spanned<T>) -> String {
-        format!("{PLAN}:{}", line_at(text, item.span().start))
+    pub(crate) fn line<T>(text: &str, item: &Spanned<T>) -> Where {
+        Where::file(PLAN).line(line_at(text, item.span().start))
     }
 
     fn problems(&self, text: &str) -> Vec<Fault> {
@@ -92,7 +104,7 @@ impl Plan {
         }
         if !(0.02..=2.0).contains(&self.wall_thickness_m) {
             let message = format!("`wall_thickness_m` is {}; allowed: 0.02 to 2", self.wall_thickness_m);
-            faults.push(Fault::new(FaultCode::MValue, PLAN, message));
+            faults.push(Fault::new(FaultCode::MValue, Where::file(PLAN), message));
         }
         for (key, quads) in
             [("floors", &self.floors), ("walls", &self.walls), ("openings", &self.openings), ("blocks", &self.blocks)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
-use socrates_model::{Fault, FaultCode, Grid, Location, SceneGraph};
+use socrates_model::{Fault, FaultCode, GraphEdge, Grid, Location, SceneGraph, Where};
 
 use crate::field::DistanceField;
 use crate::{check, doors_file, graph_file, image, map_file, route};
@@ -36,7 +36,7 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
         Err(why) if !needed && why.kind() == std::io::ErrorKind::NotFound => {}
         Err(why) => faults.push(Fault::new(
             FaultCode::MRead,
-            dir.join(name).display(),
+            Where::file(dir.join(name).display()),
             format!("cannot be read: {why}; a location folder holds `{MAP}`, its image and `{GRAPH}`"),
         )),
     };
@@ -56,13 +56,11 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
         .unwrap_or(dir)
         .file_name()
         .map_or_else(|| "location".to_owned(), |name| name.to_string_lossy().into_owned());
-    let parsed = parse(&files, &name);
     if faults.is_empty() {
-        return parsed;
+        return parse(&files, &name);
     }
-    // Files that could not be read are already named; the parser's "missing" would say it twice.
-    let named = |fault: &Fault| fault.code == FaultCode::MRead && [MAP, GRAPH].contains(&fault.at.as_str());
-    faults.extend(parsed.err().unwrap_or_default().into_iter().filter(|fault| !named(fault)));
+    // Files that could not be read are already named; "missing" would say it twice.
+    faults.extend(assemble(&files, &name, Missing::Named).err().unwrap_or_default());
     Err(faults)
 }
 
@@ -73,8 +71,9 @@ pub fn load(dir: &Path) -> Result<Location, Vec<Fault>> {
 /// # Errors
 /// Every problem found in the two files.
 pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
-    let bytes = std::fs::read(file)
-        .map_err(|why| vec![Fault::new(FaultCode::MRead, file.display(), format!("cannot be read: {why}"))])?;
+    let bytes = std::fs::read(file).map_err(|why| {
+        vec![Fault::new(FaultCode::MRead, Where::file(file.display()), format!("cannot be read: {why}"))]
+    })?;
     let folder = file.parent().unwrap_or_else(|| Path::new("."));
     let mut files = BTreeMap::new();
     if let Some(name) = map_file::image_name(&bytes).filter(|name| stays_inside(name))
@@ -84,7 +83,7 @@ pub fn load_map(file: &Path) -> Result<Location, Vec<Fault>> {
     }
     files.insert(MAP.to_owned(), bytes);
     let (mut faults, mut warnings) = (Vec::new(), Vec::new());
-    let grid = read_grid(&files, &mut faults, &mut warnings);
+    let grid = read_grid(&files, Missing::Unnamed, &mut faults, &mut warnings);
     let (soft, hard): (Vec<Fault>, Vec<Fault>) = faults.into_iter().partition(Fault::is_soft);
     let Some(grid) = grid.filter(|_| hard.is_empty()) else { return Err(hard) };
     let name = file.file_stem().map_or_else(|| "map".to_owned(), |stem| stem.to_string_lossy().into_owned());
@@ -110,14 +109,33 @@ pub(crate) fn stays_inside(name: &str) -> bool {
 /// # Errors
 /// Every problem found, as for [`load`].
 pub fn parse(files: &BTreeMap<String, Vec<u8>>, name: &str) -> Result<Location, Vec<Fault>> {
+    assemble(files, name, Missing::Unnamed)
+}
+
+/// Whether a file that is not there was named before.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Missing {
+    Named,
+    Unnamed,
+}
+
+impl Missing {
+    fn say(self, file: &str, why: &str, faults: &mut Vec<Fault>) {
+        if self == Self::Unnamed {
+            faults.push(Fault::new(FaultCode::MRead, Where::file(file), why));
+        }
+    }
+}
+
+fn assemble(files: &BTreeMap<String, Vec<u8>>, name: &str, missing: Missing) -> Result<Location, Vec<Fault>> {
     let mut faults = Vec::new();
     let mut warnings: Vec<String> = Vec::new();
-    let grid = read_grid(files, &mut faults, &mut warnings);
+    let grid = read_grid(files, missing, &mut faults, &mut warnings);
     // Node positions need the map; without one the graph is still read, over a map of no cells.
     let graph = match files.get(GRAPH) {
         Some(bytes) => graph_file::read(bytes, grid.as_ref(), &mut faults),
         None => {
-            faults.push(Fault::new(FaultCode::MRead, GRAPH, "is missing; it holds the nodes and edges of the map"));
+            missing.say(GRAPH, "is missing; it holds the nodes and edges of the map", &mut faults);
             None
         }
     };
@@ -138,7 +156,7 @@ pub fn parse(files: &BTreeMap<String, Vec<u8>>, name: &str) -> Result<Location, 
     };
     route_edges(&mut location, &mut faults, &mut warnings);
     // An edge that could not be routed is named already, with the reason.
-    let named: Vec<(FaultCode, String)> = faults.iter().map(|fault| (fault.code, fault.at.clone())).collect();
+    let named: Vec<(FaultCode, Where)> = faults.iter().map(|fault| (fault.code, fault.at.clone())).collect();
     let fresh = |fault: &Fault| !named.contains(&(fault.code, fault.at.clone()));
     faults.extend(check(&location).into_iter().filter(fresh));
     faults.sort();
@@ -151,9 +169,14 @@ pub fn parse(files: &BTreeMap<String, Vec<u8>>, name: &str) -> Result<Location, 
     Ok(location)
 }
 
-fn read_grid(files: &BTreeMap<String, Vec<u8>>, faults: &mut Vec<Fault>, warnings: &mut Vec<String>) -> Option<Grid> {
+fn read_grid(
+    files: &BTreeMap<String, Vec<u8>>,
+    missing: Missing,
+    faults: &mut Vec<Fault>,
+    warnings: &mut Vec<String>,
+) -> Option<Grid> {
     let Some(bytes) = files.get(MAP) else {
-        faults.push(Fault::new(FaultCode::MRead, MAP, "is missing; it names the map image, its resolution and origin"));
+        missing.say(MAP, "is missing; it names the map image, its resolution and origin", faults);
         return None;
     };
     let map = map_file::read(bytes, faults, warnings)?;
@@ -165,10 +188,15 @@ fn read_grid(files: &BTreeMap<String, Vec<u8>>, faults: &mut Vec<Fault>, warning
     match image::read(bytes) {
         Ok(picture) => Some(map.grid(&picture)),
         Err(why) => {
-            faults.push(Fault::new(FaultCode::MImage, &map.image, why));
+            faults.push(Fault::new(FaultCode::MImage, Where::file(&map.image), why));
             None
         }
     }
+}
+
+/// An edge of the scene graph.
+pub(crate) fn edge_at(edge: &GraphEdge) -> Where {
+    Where::file(GRAPH).at_key(format_args!("edge `{}` – `{}`", edge.from, edge.to))
 }
 
 /// Leads every edge whose straight line meets walls round them, or says that there is no way.
@@ -185,7 +213,7 @@ fn route_edges(location: &mut Location, faults: &mut Vec<Fault>, warnings: &mut 
         }
         let field = field.get_or_insert_with(|| DistanceField::new(&location.grid));
         let way = ROUTE_RADII_M.iter().find_map(|radius| route::shortest_path(&location.grid, field, &a, &b, *radius));
-        let at = format!("{GRAPH} edge `{}` – `{}`", edge.from, edge.to);
+        let at = edge_at(edge);
         let straight_m = (b - a).norm();
         let length = |way: &[socrates_model::Point]| -> f64 {
             way.windows(2).map(|pair| if let [p, q] = pair { (q - p).norm() } else { 0.0 }).sum()
@@ -258,7 +286,7 @@ edges = [{ type = "DOORWAY", along = ["a", "b"] }]
         let faults = parse(&files, "two").unwrap_err();
         assert_eq!(faults.len(), 1, "{faults:#?}");
         assert_eq!(faults[0].code, FaultCode::GFree);
-        assert!(faults[0].message.contains("no way round"), "{}", faults[0]);
+        assert!(faults[0].message.to_string().contains("no way round"), "{}", faults[0]);
     }
 
     #[test]

@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use socrates_model::{Fault, FaultCode, Location};
+use socrates_model::{Fault, FaultCode, Location, Where};
 
 use crate::read::parse;
 
@@ -71,7 +71,7 @@ pub fn load(name: &str) -> Result<Location, Vec<Fault>> {
     let Some((place, shipped)) = CATALOG.iter().enumerate().find(|(_, shipped)| shipped.name == name) else {
         let message =
             format!("there is no shipped location `{name}`; shipped are {}, or name a folder", NAMES.join(", "));
-        return Err(vec![Fault::new(FaultCode::MRead, name, message)]);
+        return Err(vec![Fault::new(FaultCode::MRead, Where::key(name), message)]);
     };
     // Read once: a catalog of scenarios asks for the same three again and again.
     static READ: [OnceLock<Location>; NAMES.len()] = [const { OnceLock::new() }; NAMES.len()];

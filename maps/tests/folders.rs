@@ -3,21 +3,10 @@
 #[cfg(test)]
 mod folders {
     use std::collections::BTreeMap;
-    use std::path::PathBuf;
 
     use socrates_maps::{DistanceField, generate, load, parse, shipped};
     use socrates_model::{Fault, FaultCode, NodeId, PlaceClass};
-
-    /// The folder of foreign test data, where there is one.
-    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
-    fn shared(path: &str) -> Option<PathBuf> {
-        let dir = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data/socrates_hunav")).join(path);
-        if dir.is_dir() {
-            return Some(dir);
-        }
-        eprintln!("skipped: there is no folder {}", dir.display());
-        None
-    }
+    use socrates_tests::skip::shared;
 
     fn codes(faults: &[Fault]) -> Vec<FaultCode> {
         faults.iter().map(|fault| fault.code).collect()
@@ -25,7 +14,7 @@ mod folders {
 
     #[test]
     fn a_foreign_location_is_read_with_its_extra_key_as_a_warning() {
-        let Some(dir) = shared("socrates/locations/small_warehouse") else { return };
+        let Some(dir) = shared("socrates_hunav/socrates/locations/small_warehouse") else { return };
         let location = load(&dir).unwrap_or_else(|faults| panic!("{faults:#?}"));
         assert_eq!((location.graph.nodes().len(), location.graph.edges().len()), (18, 19));
         assert_eq!(location.name, "small_warehouse");
@@ -45,7 +34,7 @@ mod folders {
             ("hunav_sim_v1_1/maps", ["cafe", "map_cafe2", "small_house", "small_warehouse"].as_slice()),
             ("isaac_wrapper_v2/maps", ["office", "warehouse"].as_slice()),
         ] {
-            let Some(dir) = shared(folder) else { return };
+            let Some(dir) = shared(&format!("socrates_hunav/{folder}")) else { return };
             for map in maps {
                 let mut files = BTreeMap::new();
                 for entry in std::fs::read_dir(&dir).unwrap() {
@@ -101,7 +90,7 @@ mod folders {
         let dir = tempfile::tempdir().unwrap();
         let faults = load(dir.path()).unwrap_err();
         assert_eq!(codes(&faults), [FaultCode::MRead, FaultCode::MRead], "{faults:#?}");
-        assert!(faults[0].message.contains("scene_graph.json"));
+        assert!(faults[0].message.to_string().contains("scene_graph.json"));
     }
 
     #[test]
@@ -127,11 +116,8 @@ mod folders {
 
     /// Bytes of a little generator; the same every time.
     fn numbers() -> impl FnMut(usize) -> usize {
-        let mut state = 0x9e37_79b9_u64;
-        move |below| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            usize::try_from(state >> 33).unwrap() % below.max(1)
-        }
+        let mut random = socrates_model::seeds::SplitMix64::new(0x9e37_79b9);
+        move |n| random.below(n.max(1))
     }
 
     #[test]
@@ -156,7 +142,7 @@ mod folders {
                         refused += 1;
                         assert!(
                             !faults.is_empty()
-                                && faults.iter().all(|fault| !fault.at.is_empty() && !fault.message.is_empty())
+                                && faults.iter().all(|fault| !fault.at.is_nowhere() && fault.message.bytes() > 0)
                         );
                     }
                 }

@@ -226,7 +226,7 @@ impl Turn<'_> {
 /// About how many bytes a job's spec takes on the bus.
 fn weight(job: &crate::state::Job) -> usize {
     let spec = &job.spec;
-    let faults: usize = spec.feedback.iter().map(|fault| fault.at.len() + fault.message.len() + 40).sum();
+    let faults: usize = spec.feedback.iter().map(|fault| fault.text_bytes() + 90).sum();
     let settings: usize = spec.settings.iter().map(|(name, value)| name.len() + value.len()).sum();
     600 + spec.inputs.len() * 90 + faults + settings
 }

@@ -217,7 +217,7 @@ mod tests {
         let key = socrates_model::job::JobKey {
             scenario: socrates_model::ScenarioId::new("a").unwrap(),
             stage: Stage::Paths,
-            item: String::new(),
+            item: socrates_model::job::Item::Whole,
             revision: 0,
         };
         let of = |author: &str, stage: Stage| {
@@ -225,8 +225,6 @@ mod tests {
                 key: socrates_model::job::JobKey { stage, ..key.clone() },
                 inputs: BTreeMap::new(),
                 seed: 0,
-                planner: String::new(),
-                run_seed: 0,
                 feedback: Vec::new(),
                 refused: None,
                 settings: BTreeMap::from([("author".to_owned(), author.to_owned())]),

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use socrates_model::fault::{Fault, FaultCode};
-use socrates_model::job::{JobKey, Stage};
-use socrates_model::{ScenarioId, job};
+use socrates_model::job::{Item, JobKey, Stage};
+use socrates_model::{ScenarioId, Where, job};
 
 use crate::bucket::asked_by;
 use crate::pipeline;
@@ -20,7 +20,7 @@ impl Turn<'_> {
         if tokens_limit == 0 && ms_limit == 0 && money_limit == 0 {
             return None;
         }
-        let first = JobKey { scenario: id.clone(), stage: Stage::Proposal, item: String::new(), revision: 0 };
+        let first = JobKey { scenario: id.clone(), stage: Stage::Proposal, item: Item::Whole, revision: 0 };
         let own = self.state.jobs.range(first..).take_while(|(key, _)| key.scenario == *id);
         let attempts = own.filter(|(key, _)| pipeline::is_authored(key.stage)).flat_map(|(_, job)| &job.attempts);
         let (input, output, ms) = attempts.fold((0_u64, 0_u64, 0_u64), |(input, output, ms), attempt| {
@@ -47,7 +47,7 @@ impl Turn<'_> {
         } else {
             return None;
         };
-        Some(Fault::new(FaultCode::JBudget, id, message))
+        Some(Fault::new(FaultCode::JBudget, Where::key(id), message))
     }
 
     /// Ends a job whose author would have to be asked again, where nothing is left to ask with.

@@ -1,4 +1,4 @@
-//! Failures: what is done about each class (`spec/orchestration` §1.7, `spec/llm` §5.6).
+//! Failures: what is done about each class of them.
 //!
 //! ```text
 //! wrong answer:  1st, 2nd ─► ask again with the reasons
@@ -166,12 +166,12 @@ impl Turn<'_> {
         }
     }
 
-    /// Whether the answer before was refused for the same reasons.
+    /// Whether the answer before was refused for the same reasons: the same codes at the same places.
     fn said_before(&self, key: &JobKey, number: u32, faults: &[Fault]) -> bool {
         let Some(job) = self.job(key) else { return false };
         let ended = Some(AttemptEnd::Failed);
         let before = job.attempts.iter().rev().find(|attempt| attempt.number < number && attempt.end == ended);
-        before.is_some_and(|before| before.class == Some(FailureClass::Semantic) && before.faults == faults)
+        before.is_some_and(|before| before.class == Some(FailureClass::Semantic) && are_like(&before.faults, faults))
     }
 
     /// Whether the answer before was cut off.
@@ -232,18 +232,17 @@ fn is_cut(faults: &[Fault]) -> bool {
     faults.iter().any(|fault| fault.code == FaultCode::ETrunc)
 }
 
-/// The reasons a job carries: those it was sent back with, then the newest refusal.
+fn are_like(before: &[Fault], now: &[Fault]) -> bool {
+    before.len() == now.len() && before.iter().zip(now).all(|(one, other)| one.is_like(other))
+}
+
+/// The reasons a job carries: the newest refusal, then those it was sent back with. One that came twice counts twice.
 pub(crate) fn feedback(sent_back: &[Fault], newest: &[Fault]) -> Vec<Fault> {
-    let mut all: Vec<Fault> = Vec::new();
-    for fault in newest.iter().chain(sent_back) {
-        let message: String = fault.message.chars().take(FEEDBACK_CHARS).collect();
-        let at: String = fault.at.chars().take(FEEDBACK_CHARS).collect();
-        let short = Fault::new(fault.code, at, message);
-        if all.len() < FEEDBACK && !all.contains(&short) {
-            all.push(short);
-        }
-    }
-    all
+    let short = |fault: &Fault| {
+        let whole = Fault { quotes: Vec::new(), ..fault.clone() };
+        whole.shortened(FEEDBACK_CHARS, FEEDBACK_CHARS)
+    };
+    newest.iter().chain(sent_back).take(FEEDBACK).map(short).collect()
 }
 
 /// The codes of the faults for status lines: `G-DISC, G-MEET`.

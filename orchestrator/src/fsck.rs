@@ -1,10 +1,22 @@
-//! The checker: what must hold after every step (`spec/orchestration` §1.6, I1–I10).
+//! The checker: what must hold after every step.
+//!
+//! | name | what must hold |
+//! |---|---|
+//! | I1 | a job has at most one result, and only a succeeded job has one |
+//! | I2 | a job has one running attempt exactly while it is held |
+//! | I3 | a job that ended leaves its state only by a requeue |
+//! | I4 | counters equal the rows that they count |
+//! | I5 | a job is ready exactly when all it needs has results |
+//! | I6 | every acknowledged report is in the store |
+//! | I7 | a job that has not ended has a timer, or a parent that can still run |
+//! | I8 | scenarios done are those submitted without the failed, dead and canceled ones |
+//! | I9 | fences of one job only grow |
+//! | I10 | tokens spent are the sum over all attempts, late ones as well |
 
 use std::collections::BTreeMap;
 
 use crate::pipeline;
 use crate::state::{Attempt, AttemptEnd, Job, JobState, State};
-use crate::submit::is_beside;
 
 /// Everything that is wrong with a state; empty when nothing is.
 #[must_use]
@@ -36,7 +48,7 @@ fn check_job(state: &State, job: &Job, wrong: &mut Vec<String>) {
     }
     // I5: ready exactly when all it needs has results, and what stands beside has ended. Who went on without such an
     // input does not wait for it when it is tried once more.
-    let parents = || job.sources.iter().map(|(role, source)| (is_beside(role), state.jobs.get(source)));
+    let parents = || job.sources.iter().map(|(role, source)| (role.is_beside(), state.jobs.get(source)));
     let lacks = parents().any(|(beside, parent)| !beside && parent.is_none_or(|parent| parent.result.is_none()));
     let waits = lacks || parents().any(|(_, parent)| parent.is_none_or(|parent| !parent.state.is_terminal()));
     match job.state {

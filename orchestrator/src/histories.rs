@@ -3,12 +3,12 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::ScenarioId;
 use socrates_model::fault::{FailureClass, FaultCode};
-use socrates_model::hash::derive_seed;
-use socrates_model::job::{JobKey, Stage};
+use socrates_model::job::{JobKey, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
+use socrates_model::seeds::derive_seed;
 use socrates_model::wire::{Control, Grant, Outcome, Report};
+use socrates_model::{Role, ScenarioId};
 
 use crate::world::{World, fault, report, spec, success};
 use crate::{Attempt, Event, Job, JobResult, JobState, Policy, Row, Scenario, Snapshot, State};
@@ -61,7 +61,7 @@ fn some_report(dice: &mut Dice, grant: &Grant) -> Report {
         }
         _ if grant.spec.key.stage == Stage::Review && dice.below(2) == 0 => {
             let draft = [Stage::Proposal, Stage::Paths, Stage::Behaviors];
-            let seen = if grant.spec.key.item == crate::pipeline::DRAFT_LOOK { &draft[..] } else { &draft[..1] };
+            let seen = if grant.spec.key.item.look() == Some(Look::Draft) { &draft[..] } else { &draft[..1] };
             let stage = dice.pick(seen);
             Report { anew: vec![Repair { stage, faults: faults(dice) }], ..success(grant) }
         }
@@ -73,7 +73,8 @@ fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
     (0..1 + dice.below(3))
         .map(|n| {
             let mut spec = spec(&format!("s{n}"));
-            spec.planners = dice.pick(&[vec![], vec!["mppi".to_owned()], vec!["none".to_owned(), "mppi".to_owned()]]);
+            spec.planners =
+                dice.pick(&[&[][..], &["mppi"], &["none", "mppi"]]).iter().map(|name| name.parse().unwrap()).collect();
             spec.run_seeds = dice.pick(&[vec![1], vec![1, 2], vec![]]);
             spec.review = dice.below(4) == 0;
             if dice.below(4) == 0 {
@@ -81,8 +82,8 @@ fn scenarios(dice: &mut Dice) -> Vec<socrates_model::wire::ScenarioSpec> {
                 spec.request = socrates_model::Digest::of(b"same");
             }
             if dice.below(4) == 0 {
-                let role = dice.pick(&["proposal", "paths", "behaviors"]);
-                spec.pinned.insert(role.to_owned(), socrates_model::Digest::of(role.as_bytes()));
+                let role = dice.pick(&Role::PINNED);
+                spec.pinned.insert(role, socrates_model::Digest::of(role.name().as_bytes()));
             }
             spec
         })

@@ -1,10 +1,10 @@
 //! What a person's look does: accepting, changing, having stages made again.
 
-use socrates_model::Digest;
 use socrates_model::fault::FaultCode;
-use socrates_model::job::{Artifact, Stage};
+use socrates_model::job::{Artifact, Look, Stage};
 use socrates_model::report::Repair;
 use socrates_model::wire::{Grant, Report};
+use socrates_model::{Digest, Role};
 
 use crate::pipeline;
 use crate::world::{World, fault, spec, success};
@@ -17,9 +17,9 @@ fn looked_at(id: &str) -> World {
     world
 }
 
-fn left(role: &str, bytes: &[u8]) -> Artifact {
+fn left(role: Role, bytes: &[u8]) -> Artifact {
     Artifact {
-        role: role.to_owned(),
+        role,
         digest: Digest::of(bytes),
         len: bytes.len() as u64,
         media: "application/json".to_owned(),
@@ -27,7 +27,7 @@ fn left(role: &str, bytes: &[u8]) -> Artifact {
     }
 }
 
-fn made(world: &World, grant: &Grant, role: &str) -> Digest {
+fn made(world: &World, grant: &Grant, role: Role) -> Digest {
     let result = world.state.jobs[&grant.spec.key].result.as_ref().unwrap();
     pipeline::output(&result.artifacts, role).unwrap()
 }
@@ -42,25 +42,25 @@ fn a_person_may_send_the_proposal_back_or_change_it() {
     world.pass(Stage::Proposal);
     assert!(world.grants("w", Stage::Paths).is_empty(), "nothing goes on before the person has looked");
     let review = world.grant("person", Stage::Review);
-    assert_eq!(review.spec.key.item, pipeline::PROPOSAL_LOOK);
+    assert_eq!(review.spec.key.item, Look::Proposal.into());
     world.send_report(Report { anew: anew(Stage::Proposal, "no child"), ..success(&review) });
     let again = world.pass(Stage::Proposal);
-    assert_eq!(again.spec.feedback[0].message, "no child");
+    assert_eq!(again.spec.feedback[0].message, "no child".into());
     let review = world.grant("person", Stage::Review);
-    let (mine, wish) = (left("proposal", b"mine"), left("reading", b"wish"));
+    let (mine, wish) = (left(Role::Proposal, b"mine"), left(Role::Reading, b"wish"));
     world.send_report(Report { artifacts: vec![mine.clone(), wish.clone()], ..success(&review) });
     for stage in [Stage::Paths, Stage::Behaviors] {
         let grant = world.grant("w", stage);
-        assert_eq!(grant.spec.inputs["proposal"], mine.digest, "{stage} takes what the person left");
-        assert_eq!(grant.spec.inputs["reading"], wish.digest, "{stage} is held against what the person wants");
+        assert_eq!(grant.spec.inputs[&Role::Proposal], mine.digest, "{stage} takes what the person left");
+        assert_eq!(grant.spec.inputs[&Role::Reading], wish.digest, "{stage} is held against what the person wants");
         world.succeed(&grant);
     }
     let review = world.grant("person", Stage::Review);
-    assert_eq!(review.spec.key.item, pipeline::DRAFT_LOOK);
+    assert_eq!(review.spec.key.item, Look::Draft.into());
     world.succeed(&review);
     let simulated = world.pass(Stage::Simulation);
-    assert_eq!(simulated.spec.inputs["proposal"], mine.digest);
-    assert_eq!(simulated.spec.inputs["reading"], wish.digest);
+    assert_eq!(simulated.spec.inputs[&Role::Proposal], mine.digest);
+    assert_eq!(simulated.spec.inputs[&Role::Reading], wish.digest);
     let scenario = world.scenario("a");
     assert_eq!((scenario.repairs, scenario.reviews), (0, 1));
 }
@@ -73,24 +73,24 @@ fn a_person_may_have_one_stage_made_again_and_keep_the_others() {
     let paths = world.pass(Stage::Paths);
     let behaviors = world.pass(Stage::Behaviors);
     let look = world.grant("person", Stage::Review);
-    let mine = left("proposal", b"mine");
+    let mine = left(Role::Proposal, b"mine");
     let artifacts = vec![mine.clone()];
     world.send_report(Report { artifacts, anew: anew(Stage::Paths, "longer"), ..success(&look) });
     assert!(world.grants("w", Stage::Simulation).is_empty(), "the old paths are not simulated");
     assert!(world.grants("w", Stage::Behaviors).is_empty(), "the behaviors are kept");
     let again = world.pass(Stage::Paths);
-    assert_eq!(again.spec.inputs["proposal"], mine.digest, "the paths are made for what the person left");
+    assert_eq!(again.spec.inputs[&Role::Proposal], mine.digest, "the paths are made for what the person left");
     let look = world.grant("person", Stage::Review);
-    assert_eq!(look.spec.inputs["behaviors"], made(&world, &behaviors, "behaviors"));
-    assert_eq!(look.spec.inputs["paths"], made(&world, &again, "paths"));
-    assert_ne!(made(&world, &again, "paths"), made(&world, &paths, "paths"));
+    assert_eq!(look.spec.inputs[&Role::Behaviors], made(&world, &behaviors, Role::Behaviors));
+    assert_eq!(look.spec.inputs[&Role::Paths], made(&world, &again, Role::Paths));
+    assert_ne!(made(&world, &again, Role::Paths), made(&world, &paths, Role::Paths));
     // Undone: the paths from before are what the person leaves.
-    let before = left("paths", b"before");
+    let before = left(Role::Paths, b"before");
     world.send_report(Report { artifacts: vec![before.clone()], ..success(&look) });
     let simulated = world.pass(Stage::Simulation);
-    assert_eq!(simulated.spec.inputs["paths"], before.digest);
-    assert_eq!(simulated.spec.inputs["proposal"], mine.digest);
-    assert_eq!(simulated.spec.inputs["behaviors"], made(&world, &behaviors, "behaviors"));
+    assert_eq!(simulated.spec.inputs[&Role::Paths], before.digest);
+    assert_eq!(simulated.spec.inputs[&Role::Proposal], mine.digest);
+    assert_eq!(simulated.spec.inputs[&Role::Behaviors], made(&world, &behaviors, Role::Behaviors));
 }
 
 #[test]
@@ -101,13 +101,13 @@ fn after_a_new_proposal_nothing_of_the_old_look_is_left() {
     world.pass(Stage::Paths);
     world.pass(Stage::Behaviors);
     let look = world.grant("person", Stage::Review);
-    let artifacts = vec![left("proposal", b"mine"), left("paths", b"mine")];
+    let artifacts = vec![left(Role::Proposal, b"mine"), left(Role::Paths, b"mine")];
     world.send_report(Report { artifacts, anew: anew(Stage::Proposal, "somewhere else"), ..success(&look) });
     let proposal = world.pass(Stage::Proposal);
     world.pass(Stage::Review);
     let paths = world.pass(Stage::Paths);
-    assert_eq!(paths.spec.inputs["proposal"], made(&world, &proposal, "proposal"));
+    assert_eq!(paths.spec.inputs[&Role::Proposal], made(&world, &proposal, Role::Proposal));
     world.pass(Stage::Behaviors);
     let look = world.grant("person", Stage::Review);
-    assert_eq!(look.spec.inputs["paths"], made(&world, &paths, "paths"));
+    assert_eq!(look.spec.inputs[&Role::Paths], made(&world, &paths, Role::Paths));
 }

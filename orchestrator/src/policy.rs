@@ -1,7 +1,7 @@
-//! Limits and budgets (`spec/orchestration` §1.7 and §1.8), all in one place.
+//! Limits and budgets, all in one place: leases, pauses, deadlines, and how often each class of failure is tried again.
 
 use socrates_model::job::{JobKey, Stage};
-use socrates_model::{Digest, hash};
+use socrates_model::{Digest, seeds};
 
 use crate::state::Millis;
 
@@ -146,7 +146,7 @@ impl Policy {
     pub fn backoff(&self, key: &JobKey, attempt: u32, failures: u32) -> Millis {
         let doubled = self.backoff_ms.saturating_mul(1_u64 << failures.saturating_sub(1).min(20));
         let longest = doubled.min(self.backoff_cap_ms);
-        hash::derive_seed(u64::from(attempt), &[&key.to_string(), "backoff"]) % longest.saturating_add(1)
+        seeds::derive_seed(u64::from(attempt), &[&key.to_string(), "backoff"]) % longest.saturating_add(1)
     }
 
     /// Key under which a result may be used again.
@@ -164,8 +164,12 @@ mod tests {
     #[test]
     fn backoff_grows_to_its_cap_and_repeats_itself() {
         let policy = Policy::default();
-        let key =
-            JobKey { scenario: ScenarioId::new("a").unwrap(), stage: Stage::Paths, item: String::new(), revision: 0 };
+        let key = JobKey {
+            scenario: ScenarioId::new("a").unwrap(),
+            stage: Stage::Paths,
+            item: socrates_model::job::Item::Whole,
+            revision: 0,
+        };
         for failures in 1..40 {
             let pause = policy.backoff(&key, failures, failures);
             assert!(pause <= policy.backoff_cap_ms.min(500 << (failures - 1).min(20)));

@@ -116,7 +116,7 @@ fn a_scenario_whose_tokens_are_spent_is_asked_about_no_more() {
     assert_eq!(world.state_of(&again), JobState::Failed, "1 020 of 1 000");
     let told = world.state.jobs[&again.spec.key].attempts.last().unwrap().faults.clone();
     assert!(
-        told.iter().any(|fault| fault.code == FaultCode::JBudget && fault.message.contains("1020 tokens")),
+        told.iter().any(|fault| fault.code == FaultCode::JBudget && fault.message.to_string().contains("1020 tokens")),
         "{told:?}"
     );
 }

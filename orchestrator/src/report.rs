@@ -1,5 +1,6 @@
 //! Report and Release: an attempt ends. At most one of them becomes the job's result.
 
+use socrates_model::Role;
 use socrates_model::fault::{FailureClass, Fault, FaultCode};
 use socrates_model::job::{Artifact, JobKey, Stage};
 use socrates_model::wire::{Outcome, Recorded, Release, Report};
@@ -106,7 +107,7 @@ impl Turn<'_> {
 
     /// Whether the main output of the stage is there.
     fn is_whole(&self, report: &Report) -> bool {
-        let role = pipeline::main_role(report.key.stage);
+        let role = Role::made_by(report.key.stage);
         role.is_none_or(|role| pipeline::output(&report.artifacts, role).is_some())
     }
 
@@ -194,7 +195,7 @@ impl Turn<'_> {
 
 /// A success without its main output: the worker's code is at fault, and would be again.
 fn hollow(report: &Report) -> Failure {
-    let role = pipeline::main_role(report.key.stage).unwrap_or_default();
+    let role = Role::made_by(report.key.stage).map_or("", Role::name);
     let message = format!("attempt `{}` reports success without an artifact `{role}`", report.attempt);
     Failure {
         class: FailureClass::Poison,

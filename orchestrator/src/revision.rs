@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::ScenarioId;
 use socrates_model::fault::Fault;
-use socrates_model::job::{JobKey, Stage};
+use socrates_model::job::{Item, JobKey, Stage};
 use socrates_model::report::Verdict;
+use socrates_model::{Run, ScenarioId};
 
 use crate::failure::feedback;
 use crate::pipeline;
@@ -18,7 +18,7 @@ impl Turn<'_> {
     pub(crate) fn judged(&mut self, key: &JobKey, result: &JobResult) {
         let id = &key.scenario;
         let Some(scenario) = self.scenario(id) else { return };
-        let leads = key.item == pipeline::lead(&scenario.spec).item();
+        let leads = key.item.run() == Some(&pipeline::lead(&scenario.spec));
         if !leads || scenario.settled.is_some() || scenario.end.is_some() || key.revision != self.newest_score(id) {
             return;
         }
@@ -40,7 +40,7 @@ impl Turn<'_> {
     fn newest_score(&self, id: &ScenarioId) -> u32 {
         self.scenario(id)
             .and_then(|scenario| {
-                let item = pipeline::lead(&scenario.spec).item();
+                let item = pipeline::lead(&scenario.spec).into();
                 self.state.place(id, Stage::Scoring, &item, scenario.revision)
             })
             .map_or(0, |key| key.revision)
@@ -107,19 +107,13 @@ impl Turn<'_> {
         }
         let lead = pipeline::lead(&scenario.spec);
         let (former, revision) = (scenario.revision, scenario.revision + 1);
-        let anew = |(stage, item): &(Stage, &str)| {
+        let anew = |(stage, item): &(Stage, Item)| {
             targets.contains_key(stage) || targets.keys().any(|target| pipeline::is_after(*stage, item, *target))
         };
-        let steps: Vec<(Stage, &str)> =
-            authored.into_iter().chain([(Stage::Simulation, ""), (Stage::Scoring, "")]).filter(anew).collect();
-        let run = |stage: Stage| matches!(stage, Stage::Simulation | Stage::Scoring).then_some(&lead);
-        let old: Vec<JobKey> = steps
-            .iter()
-            .filter_map(|(stage, item)| {
-                let item = run(*stage).map_or_else(|| (*item).to_owned(), pipeline::Run::item);
-                self.state.place(id, *stage, &item, former).cloned()
-            })
-            .collect();
+        let played = [Stage::Simulation, Stage::Scoring].map(|stage| (stage, Item::Run(lead.clone())));
+        let steps: Vec<(Stage, Item)> = authored.into_iter().chain(played).filter(anew).collect();
+        let old: Vec<JobKey> =
+            steps.iter().filter_map(|(stage, item)| self.state.place(id, *stage, item, former).cloned()).collect();
         for key in &old {
             // The look that asks for it has its result and stands.
             if self.job(key).is_none_or(|job| job.state.is_terminal() || job.result.is_some()) {
@@ -143,7 +137,7 @@ impl Turn<'_> {
                     own.cloned().unwrap_or_default()
                 };
                 let reasons = feedback(&reasons, &[]);
-                self.make(id, (*stage, item), run(*stage), revision, &reasons)
+                self.make(id, (*stage, item.clone()), revision, &reasons)
             })
             .collect();
         for key in made {
@@ -157,13 +151,13 @@ impl Turn<'_> {
         let Some(scenario) = self.scenario(id) else { return };
         let Some((revision, _)) = best(scenario) else { return };
         let lead = pipeline::lead(&scenario.spec);
-        let runs: Vec<pipeline::Run> = pipeline::runs(&scenario.spec).into_iter().filter(|run| *run != lead).collect();
+        let runs: Vec<Run> = pipeline::runs(&scenario.spec).into_iter().filter(|run| *run != lead).collect();
         if let Some(scenario) = self.scenario_mut(id) {
             scenario.settled = Some(revision);
         }
         let mut made = Vec::with_capacity(runs.len() * 2);
         for stage in [Stage::Simulation, Stage::Scoring] {
-            made.extend(runs.iter().filter_map(|run| self.make(id, (stage, ""), Some(run), revision, &[])));
+            made.extend(runs.iter().filter_map(|run| self.make(id, (stage, run.clone().into()), revision, &[])));
         }
         for key in made {
             self.unblock(&key);

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use socrates_model::fault::FailureClass;
-use socrates_model::job::{Artifact, JobKey, JobSpec, Stage};
+use socrates_model::job::{Artifact, Item, JobKey, JobSpec, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{Hello, ScenarioSpec};
-use socrates_model::{Digest, Fault, ScenarioId};
+use socrates_model::{Digest, Fault, Role, ScenarioId};
 
 use crate::bucket::Bucket;
 use crate::policy::Policy;
@@ -51,7 +51,7 @@ impl JobState {
         }
     }
 
-    /// Whether this move is one of the table in `spec/orchestration` §1.6.
+    /// Whether a job may go from this state to the next one; the arms below are the whole table.
     #[must_use]
     pub const fn may_become(self, next: Self) -> bool {
         match self {
@@ -187,7 +187,7 @@ pub struct Job {
     /// Where it stands.
     pub state: JobState,
     /// The jobs its inputs come from, by role of the input.
-    pub sources: BTreeMap<String, JobKey>,
+    pub sources: BTreeMap<Role, JobKey>,
     /// What a worker is given; inputs are bound when it becomes ready.
     pub spec: JobSpec,
     /// Revision that the seed is drawn from: the last one in which this very stage was sent back.
@@ -432,14 +432,14 @@ impl State {
     }
 
     /// The job that stands in this place of the plan at a revision: the newest not newer than it.
-    pub(crate) fn place(&self, id: &ScenarioId, stage: Stage, item: &str, revision: u32) -> Option<&JobKey> {
-        let key = |revision| JobKey { scenario: id.clone(), stage, item: item.to_owned(), revision };
+    pub(crate) fn place(&self, id: &ScenarioId, stage: Stage, item: &Item, revision: u32) -> Option<&JobKey> {
+        let key = |revision| JobKey { scenario: id.clone(), stage, item: item.clone(), revision };
         self.jobs.range(key(0)..=key(revision)).next_back().map(|(key, _)| key)
     }
 
     /// The newest look at a revision, or before it, that has a result or may still get one.
-    pub(crate) fn look(&self, id: &ScenarioId, look: &str, revision: u32) -> Option<&JobKey> {
-        let key = |revision| JobKey { scenario: id.clone(), stage: Stage::Review, item: look.to_owned(), revision };
+    pub(crate) fn look(&self, id: &ScenarioId, look: Look, revision: u32) -> Option<&JobKey> {
+        let key = |revision| JobKey { scenario: id.clone(), stage: Stage::Review, item: look.into(), revision };
         let counts = |job: &Job| job.state == JobState::Succeeded || !job.state.is_terminal();
         self.jobs.range(key(0)..=key(revision)).rev().find(|(_, job)| counts(job)).map(|(key, _)| key)
     }

@@ -119,11 +119,7 @@ fn job_status(job: &Job) -> JobStatus {
     let last = job.attempts.last();
     let failed = job.attempts.iter().rev().find(|attempt| !attempt.faults.is_empty());
     let faults = failed.map(|attempt| attempt.faults.iter().take(FAULTS).cloned().collect()).unwrap_or_default();
-    let shorten = |mut fault: socrates_model::Fault| {
-        fault.message = fault.message.chars().take(FAULT_CHARS).collect();
-        fault.at = fault.at.chars().take(FAULT_CHARS).collect();
-        fault
-    };
+    let shorten = |fault: socrates_model::Fault| fault.shortened(FAULT_CHARS, FAULT_CHARS);
     let faults: Vec<_> = Vec::into_iter(faults).map(shorten).collect();
     let (remark, wall_ms, artifacts) = match &job.result {
         Some(result) => (result.remark.clone(), result.wall_ms, result.artifacts.clone()),
@@ -142,7 +138,7 @@ fn job_status(job: &Job) -> JobStatus {
 
 /// About how many bytes a line takes on the bus.
 fn weight(job: &JobStatus) -> usize {
-    let faults: usize = job.faults.iter().map(|fault| 60 + fault.at.len() + fault.message.len()).sum();
-    let artifacts: usize = job.artifacts.iter().map(|a| 140 + a.role.len() + a.media.len()).sum();
-    220 + job.key.scenario.as_str().len() + job.key.item.len() + job.remark.len() + faults + artifacts
+    let faults: usize = job.faults.iter().map(|fault| 110 + fault.text_bytes()).sum();
+    let artifacts: usize = job.artifacts.iter().map(|a| 140 + a.role.name().len() + a.media.len()).sum();
+    220 + job.key.scenario.as_str().len() + job.key.item.to_string().len() + job.remark.len() + faults + artifacts
 }

@@ -2,28 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::ScenarioId;
 use socrates_model::fault::Fault;
-use socrates_model::job::{JobKey, JobSpec, Stage};
+use socrates_model::job::{Item, JobKey, JobSpec, Look, Stage};
 use socrates_model::wire::{Hello, ScenarioSpec, Submit, Submitted, Welcome};
+use socrates_model::{Role, Run, ScenarioId};
 
 use crate::event::{Answer, Token};
-use crate::pipeline::{self, Run};
+use crate::pipeline;
 use crate::state::{Job, JobState, Scenario, Tries, Worker};
 use crate::turn::Turn;
-
-/// Role of the recording that other planners' runs are compared with; its absence stops nobody.
-const REFERENCE_ROLE: &str = "reference";
-/// Input of a scoring job: the recording of the same run without a robot, where one was asked for.
-const TWIN_ROLE: &str = "twin";
-
-/// Input of a look at the proposal: what passed between the stage and its author.
-const EXCHANGE_ROLE: &str = "exchange";
-
-/// Whether a scoring job waits for this input but does without it.
-pub(crate) fn is_beside(role: &str) -> bool {
-    role == REFERENCE_ROLE || role == TWIN_ROLE
-}
 
 impl Turn<'_> {
     pub(crate) fn hello(&mut self, hello: Hello, to: Token) {
@@ -94,20 +81,8 @@ impl Turn<'_> {
         if asked > most.saturating_mul(2) || pipeline::runs(spec).len() > most {
             return Err(format!("scenario `{id}` asks for `{asked}` runs; allowed: at most `{most}`"));
         }
-        let fits = |name: &str| {
-            let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-' | ':');
-            !name.is_empty() && name.len() <= 64 && name.chars().all(plain)
-        };
-        if let Some(planner) = spec.planners.iter().find(|planner| !fits(planner)) {
-            let shown: String = planner.chars().take(80).collect();
-            return Err(format!(
-                "scenario `{id}`: `{shown}` is no planner name; allowed: 1 to 64 of a-z A-Z 0-9 . _ - :"
-            ));
-        }
-        let roles = ["proposal", "paths", "behaviors"];
-        if let Some(role) = spec.pinned.keys().find(|role| !roles.contains(&role.as_str())) {
-            let shown: String = role.chars().take(80).collect();
-            return Err(format!("scenario `{id}` pins `{shown}`; allowed: proposal, paths, behaviors"));
+        if let Some(role) = spec.pinned.keys().find(|role| !Role::PINNED.contains(role)) {
+            return Err(format!("scenario `{id}` pins `{role}`; allowed: proposal, paths, behaviors"));
         }
         Ok(())
     }
@@ -123,9 +98,9 @@ impl Turn<'_> {
         self.state.by_order.insert(order, id.clone());
         self.scenario_mut(&id);
         let mut made: Vec<JobKey> =
-            stages.iter().filter_map(|(stage, item)| self.make(&id, (*stage, item), None, 0, &[])).collect();
+            stages.into_iter().filter_map(|(stage, item)| self.make(&id, (stage, item), 0, &[])).collect();
         for stage in [Stage::Simulation, Stage::Scoring] {
-            made.extend(self.make(&id, (stage, ""), Some(&lead), 0, &[]));
+            made.extend(self.make(&id, (stage, lead.clone().into()), 0, &[]));
         }
         for key in made {
             self.unblock(&key);
@@ -137,33 +112,29 @@ impl Turn<'_> {
     pub(crate) fn make(
         &mut self,
         id: &ScenarioId,
-        (stage, item): (Stage, &str),
-        run: Option<&Run>,
+        (stage, item): (Stage, Item),
         revision: u32,
         sent_back: &[Fault],
     ) -> Option<JobKey> {
         let scenario = self.scenario(id)?;
-        let item = run.map_or_else(|| item.to_owned(), Run::item);
-        let key = JobKey { scenario: id.clone(), stage, item: item.clone(), revision };
-        let former = revision.checked_sub(1).and_then(|last| self.state.place(id, stage, &item, last));
+        let key = JobKey { scenario: id.clone(), stage, item, revision };
+        let former = revision.checked_sub(1).and_then(|last| self.state.place(id, stage, &key.item, last));
         let former = former.and_then(|former| self.job(former));
         let seed_revision =
             if sent_back.is_empty() { former.map_or(0, |former| former.seed_revision) } else { revision };
         let refused = former.filter(|_| !sent_back.is_empty()).and_then(|former| {
             let artifacts = &former.result.as_ref()?.artifacts;
-            pipeline::refused(artifacts).or_else(|| pipeline::output(artifacts, stage.name()))
+            pipeline::refused(artifacts).or_else(|| pipeline::output(artifacts, Role::made_by(stage)?))
         });
         let spec = JobSpec {
             key: key.clone(),
             inputs: BTreeMap::new(),
-            seed: pipeline::seed(&scenario.spec, stage, run, seed_revision, 0),
-            planner: run.map(|run| run.planner.clone()).unwrap_or_default(),
-            run_seed: run.map_or(0, |run| run.seed),
+            seed: pipeline::seed(&scenario.spec, stage, key.item.run(), seed_revision, 0),
             feedback: sent_back.to_vec(),
             refused,
             settings: scenario.spec.settings.clone(),
         };
-        let sources = self.sources(&key, run);
+        let sources = self.sources(&key);
         self.enter(Job {
             key: key.clone(),
             state: JobState::Blocked,
@@ -189,30 +160,29 @@ impl Turn<'_> {
     }
 
     /// Which job each input comes from.
-    fn sources(&self, key: &JobKey, run: Option<&Run>) -> BTreeMap<String, JobKey> {
+    fn sources(&self, key: &JobKey) -> BTreeMap<Role, JobKey> {
         let written = [Stage::Proposal, Stage::Paths, Stage::Behaviors]
             .into_iter()
             .filter(|stage| pipeline::is_after(key.stage, &key.item, *stage))
-            .filter_map(|stage| Some((stage.name().to_owned(), self.writer(key, Some(stage))?)));
-        let mut sources: BTreeMap<String, JobKey> = written.collect();
+            .filter_map(|stage| Some((Role::made_by(stage)?, self.writer(key, Some(stage))?)));
+        let mut sources: BTreeMap<Role, JobKey> = written.collect();
         // A person's wishes may change what the request is read as.
-        sources.extend(self.writer(key, None).map(|look| ("reading".to_owned(), look)));
-        if key.stage == Stage::Review && key.item == pipeline::PROPOSAL_LOOK {
+        sources.extend(self.writer(key, None).map(|look| (Role::Reading, look)));
+        if key.stage == Stage::Review && key.item.look() == Some(Look::Proposal) {
             // The author may have proposed several; the person may take another.
-            let author = self.state.place(&key.scenario, Stage::Proposal, "", key.revision);
-            sources.extend(author.map(|author| (EXCHANGE_ROLE.to_owned(), author.clone())));
+            let author = self.state.place(&key.scenario, Stage::Proposal, &Item::Whole, key.revision);
+            sources.extend(author.map(|author| (Role::Exchange, author.clone())));
         }
-        let Some(run) = run.filter(|_| key.stage == Stage::Scoring) else { return sources };
-        let beside = |planner: &str| Run { planner: planner.to_owned(), seed: run.seed };
+        let Some(run) = key.item.run().filter(|_| key.stage == Stage::Scoring) else { return sources };
         let roles = [
-            ("recording", Some(run.clone())),
-            ("simulation", Some(run.clone())),
-            (REFERENCE_ROLE, (run.planner != pipeline::REFERENCE).then(|| beside(pipeline::REFERENCE))),
-            (TWIN_ROLE, (run.planner != pipeline::NO_ROBOT).then(|| beside(pipeline::NO_ROBOT))),
+            (Role::Recording, Some(run.clone())),
+            (Role::Simulation, Some(run.clone())),
+            (Role::Reference, (!run.planner.is_reference()).then(|| Run::reference(run.seed))),
+            (Role::Twin, (!run.planner.is_no_robot()).then(|| run.without_robot())),
         ];
         sources.extend(roles.into_iter().filter_map(|(role, run)| {
-            let simulated = self.state.place(&key.scenario, Stage::Simulation, &run?.item(), key.revision)?;
-            Some((role.to_owned(), simulated.clone()))
+            let simulated = self.state.place(&key.scenario, Stage::Simulation, &run?.into(), key.revision)?;
+            Some((role, simulated.clone()))
         }));
         sources
     }
@@ -220,12 +190,12 @@ impl Turn<'_> {
     /// The job whose version of a stage's output holds for the job `key`: the newest, and among equally new ones what a
     /// person left of it. Without a stage: the newest look, for what only a look changes.
     fn writer(&self, key: &JobKey, stage: Option<Stage>) -> Option<JobKey> {
-        let author = stage.and_then(|stage| self.state.place(&key.scenario, stage, "", key.revision));
-        let looks = [pipeline::PROPOSAL_LOOK, pipeline::DRAFT_LOOK].into_iter().filter_map(|look| {
+        let author = stage.and_then(|stage| self.state.place(&key.scenario, stage, &Item::Whole, key.revision));
+        let looks = Look::ALL.into_iter().filter_map(|look| {
             // A look that comes later in the plan speaks for the next revision only.
             let waits = pipeline::is_after_look(key.stage, &key.item, look);
             let newest = if waits { key.revision } else { key.revision.checked_sub(1)? };
-            let saw = stage.is_none_or(|stage| pipeline::is_after(Stage::Review, look, stage));
+            let saw = stage.is_none_or(|stage| pipeline::is_after(Stage::Review, &look.into(), stage));
             saw.then(|| self.state.look(&key.scenario, look, newest))?
         });
         // `max_by_key` takes the last of equals: the look at the draft, the look at the proposal, the author.
@@ -245,7 +215,7 @@ impl Turn<'_> {
             if !parent.state.is_terminal() {
                 return;
             }
-            if parent.state != JobState::Succeeded && !is_beside(role) {
+            if parent.state != JobState::Succeeded && !role.is_beside() {
                 failed = Some((parent.state, source.clone()));
             }
         }
@@ -268,25 +238,24 @@ impl Turn<'_> {
     fn bind(&mut self, key: &JobKey) {
         let (Some(job), Some(scenario)) = (self.job(key), self.scenario(&key.scenario)) else { return };
         let mut inputs = BTreeMap::from([
-            ("request".to_owned(), scenario.spec.request),
-            ("location".to_owned(), scenario.spec.location),
-            ("reading".to_owned(), scenario.spec.reading),
+            (Role::Request, scenario.spec.request),
+            (Role::Location, scenario.spec.location),
+            (Role::Reading, scenario.spec.reading),
         ]);
-        let wanted = |role: &str| {
+        let wanted = |role: Role| {
             Stage::WORKERS
                 .into_iter()
-                .any(|stage| stage.name() == role && pipeline::is_after(key.stage, &key.item, stage))
+                .any(|stage| Role::made_by(stage) == Some(role) && pipeline::is_after(key.stage, &key.item, stage))
         };
-        inputs.extend(scenario.spec.pinned.iter().filter(|(role, _)| wanted(role)).map(|(role, d)| (role.clone(), *d)));
+        inputs.extend(scenario.spec.pinned.iter().filter(|(role, _)| wanted(**role)).map(|(role, d)| (*role, *d)));
         for (role, source) in &job.sources {
             let Some(parent) = self.job(source) else { continue };
             let Some(result) = &parent.result else { continue };
-            let made_as = if is_beside(role) { "recording" } else { role.as_str() };
-            let digest = pipeline::output(&result.artifacts, made_as).or_else(|| {
+            let digest = pipeline::output(&result.artifacts, role.made_as()).or_else(|| {
                 // A look that hands nothing back leaves it as it was.
                 (source.stage == Stage::Review).then(|| parent.spec.inputs.get(role).copied()).flatten()
             });
-            inputs.extend(digest.map(|digest| (role.clone(), digest)));
+            inputs.extend(digest.map(|digest| (*role, digest)));
         }
         if let Some(job) = self.job_mut(key) {
             job.spec.inputs = inputs;

@@ -300,7 +300,7 @@ impl<'a> Turn<'a> {
         let job = self.job(key)?;
         let scenario = self.scenario(&key.scenario)?;
         // The reference robot goes before the planners under test, whatever their names.
-        let rank = usize::from(!job.spec.planner.is_empty() && job.spec.planner != pipeline::REFERENCE);
+        let rank = usize::from(job.spec.run().is_some_and(|run| !run.planner.is_reference()));
         Some((scenario.order, rank, key.clone()))
     }
 

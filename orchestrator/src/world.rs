@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::fault::{FailureClass, Fault, FaultCode};
-use socrates_model::job::{Artifact, JobKey, Stage};
+use socrates_model::fault::{FailureClass, Fault, FaultCode, Where};
+use socrates_model::job::{Artifact, Item, JobKey, Stage};
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, Control, Grant, Held, Outcome, Recorded, Release, Report, ScenarioSpec, Submit,
     Submitted,
 };
-use socrates_model::{Digest, ScenarioId};
+use socrates_model::{Digest, PlannerName, Role, ScenarioId};
 
 use crate::{Answer, Effect, Event, Job, JobState, Policy, Row, Scenario, State, Token, fsck, step};
 
@@ -29,7 +29,7 @@ pub(crate) fn spec(id: &str) -> ScenarioSpec {
         location: Digest::of(b"map"),
         reading: Digest::of(b"reading"),
         seed: 7,
-        planners: vec!["reference".to_owned()],
+        planners: vec![PlannerName::reference()],
         run_seeds: vec![1],
         pinned: BTreeMap::new(),
         settings: BTreeMap::new(),
@@ -37,8 +37,9 @@ pub(crate) fn spec(id: &str) -> ScenarioSpec {
     }
 }
 
+/// A fault at a place of this name.
 pub(crate) fn fault(code: FaultCode, text: &str) -> Fault {
-    Fault::new(code, "robot", text)
+    Fault::new(code, Where::key(text), text)
 }
 
 impl World {
@@ -189,8 +190,8 @@ impl World {
         &self.state.scenarios[&ScenarioId::new(id).unwrap()]
     }
 
-    pub(crate) fn job(&self, id: &str, stage: Stage, item: &str, revision: u32) -> &Job {
-        let key = JobKey { scenario: ScenarioId::new(id).unwrap(), stage, item: item.to_owned(), revision };
+    pub(crate) fn job(&self, id: &str, stage: Stage, item: Item, revision: u32) -> &Job {
+        let key = JobKey { scenario: ScenarioId::new(id).unwrap(), stage, item, revision };
         self.state.jobs.get(&key).unwrap_or_else(|| panic!("no {key}"))
     }
 
@@ -219,10 +220,10 @@ pub(crate) fn report(grant: &Grant, outcome: Outcome) -> Report {
 
 /// A success whose outputs are a function of the inputs, as with real workers.
 pub(crate) fn success(grant: &Grant) -> Report {
-    let role = crate::pipeline::main_role(grant.spec.key.stage);
+    let role = Role::made_by(grant.spec.key.stage);
     let artifacts = role
         .map(|role| Artifact {
-            role: role.to_owned(),
+            role,
             digest: Digest::of(format!("{role} {}", grant.idem_key).as_bytes()),
             len: 4,
             media: "application/json".to_owned(),

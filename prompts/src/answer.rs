@@ -2,11 +2,11 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
-use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal};
+use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Where};
 
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
-use crate::validate::differences;
+use crate::validate::differences_at;
 use crate::{terse, ways};
 
 /// Most differences named at once.
@@ -57,12 +57,17 @@ pub(crate) fn typed<T: DeserializeOwned + schemars::JsonSchema>(value: Value) ->
 
 /// E-SCHEMA for every difference, at most five.
 pub(crate) fn schema_faults(schema: &Value, value: &Value) -> Result<(), Vec<Fault>> {
-    let found = differences(schema, value);
+    schema_faults_at("$", schema, value)
+}
+
+/// The same for a value that stands at this path of the answer.
+pub(crate) fn schema_faults_at(path: &str, schema: &Value, value: &Value) -> Result<(), Vec<Fault>> {
+    let found = differences_at(path, schema, value);
     if found.is_empty() {
         return Ok(());
     }
     let fault = |d: crate::validate::Difference| {
-        Fault::new(FaultCode::ESchema, d.path, format!("expected {}, found {}", d.expected, d.found))
+        Fault::new(FaultCode::ESchema, Where::key(d.path), format!("expected {}, found {}", d.expected, d.found))
     };
     Err(found.into_iter().take(MOST).map(fault).collect())
 }
@@ -115,9 +120,12 @@ mod tests {
         value["humans"][1]["relation"] = json!("sideways");
         value["robot"]["color"] = json!("red");
         let faults = parse_proposal(&value.to_string(), &asked()).unwrap_err();
-        let places: Vec<&str> = faults.iter().map(|fault| fault.at.as_str()).collect();
+        let places: Vec<String> = faults.iter().map(|fault| fault.at.to_string()).collect();
         assert_eq!(places, ["$.humans[1].relation", "$.place", "$.robot.color"]);
-        assert!(faults[1].message.contains("\"intersection\"") && faults[1].message.contains("found `\"moon\"`"));
+        assert!(
+            faults[1].message.to_string().contains("\"intersection\"")
+                && faults[1].message.to_string().contains("found `\"moon\"`")
+        );
     }
 
     #[test]
@@ -125,6 +133,6 @@ mod tests {
         let text = json!({"robot": ["a b"], "humans": {"human_1": ["c"]}, "encounters": []}).to_string();
         let faults = parse_paths(&text, &question(Stage::Paths)).unwrap_err();
         assert_eq!(faults[0].code, FaultCode::ESchema);
-        assert!(faults[0].message.contains("without blanks"), "{}", faults[0].message);
+        assert!(faults[0].message.to_string().contains("without blanks"), "{}", faults[0].message);
     }
 }

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use serde_json::Value;
-use socrates_model::{Behaviors, FORMAT, Fault, FaultCode, HumanBehavior, HumanId, Rule};
+use socrates_model::{Behaviors, FORMAT, Fault, FaultCode, HumanBehavior, HumanId, Rule, Where};
 
-use crate::answer::{prepared, schema_faults};
+use crate::answer::{prepared, schema_faults_at};
 use crate::question::Question;
 use crate::schema::derived;
 use crate::trees;
@@ -33,14 +33,16 @@ pub fn parse_behaviors(text: &str, question: &Question) -> Result<Behaviors, Vec
     for name in value.as_object().into_iter().flatten().map(|(name, _)| name) {
         if !matches!(name.as_str(), "humans" | "format" | "author") {
             let message = format!("expected no such member; allowed: analysis, humans, found `{name}`");
-            faults.push(Fault::new(FaultCode::ESchema, format!("$.{name}"), message));
+            faults.push(Fault::new(FaultCode::ESchema, Where::key(format_args!("$.{name}")), message));
         }
     }
     let mut humans = BTreeMap::new();
     for (name, member) in members {
         let read = name
             .parse::<HumanId>()
-            .map_err(|bad| vec![Fault::new(FaultCode::ESchema, format!("$.humans.{name}"), bad.to_string())])
+            .map_err(|bad| {
+                vec![Fault::new(FaultCode::ESchema, Where::key(format_args!("$.humans.{name}")), bad.to_string())]
+            })
             .and_then(|id| Ok((id, behavior(id, member, question)?)));
         match read {
             Ok((id, behavior)) => {
@@ -54,7 +56,7 @@ pub fn parse_behaviors(text: &str, question: &Question) -> Result<Behaviors, Vec
 
 fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBehavior, Vec<Fault>> {
     let path = format!("$.humans.{id}");
-    let fault = |at: String, message: &str| vec![Fault::new(FaultCode::ESchema, at, message)];
+    let fault = |at: String, message: &str| vec![Fault::new(FaultCode::ESchema, Where::key(at), message)];
     let Some(members) = value.as_object() else {
         return Err(fault(path, "expected an object with `description` and `rules`"));
     };
@@ -66,18 +68,18 @@ fn behavior(id: HumanId, value: &Value, question: &Question) -> Result<HumanBeha
         (Some(rules), None) => {
             let rules = rules_of(rules, &path)?;
             let tree = socrates_bt::compile(id, &rules)
-                .map_err(|faults| faults.into_iter().map(|f| named(id, f)).collect::<Vec<_>>())?;
+                .map_err(|faults| faults.into_iter().map(|fault| fault.of(id)).collect::<Vec<_>>())?;
             Ok(HumanBehavior { tree, description: told(description, &rules, id, question) })
         }
         (None, Some(Value::String(tree))) => {
             if let Some(foreign) = foreign(tree) {
                 let message = format!("holds {foreign}; write elements and attributes alone");
-                return Err(vec![Fault::new(FaultCode::BXml, format!("{id} tree"), message)]);
+                return Err(vec![Fault::new(FaultCode::BXml, Where::agent(id).at_key("tree"), message)]);
             }
             Ok(HumanBehavior { tree: tree.clone(), description: told(description, &[], id, question) })
         }
         (None, Some(tree @ Value::Object(_))) => {
-            let tree = trees::xml(id, tree, &format!("{path}.tree"))?;
+            let tree = trees::read(tree, &format!("{path}.tree"))?.xml(id);
             Ok(HumanBehavior { tree, description: told(description, &[], id, question) })
         }
         (None, Some(_)) => Err(fault(format!("{path}.tree"), "expected a text with the XML of the tree")),
@@ -94,22 +96,26 @@ fn foreign(tree: &str) -> Option<&'static str> {
 
 fn rules_of(value: &Value, path: &str) -> Result<Vec<Rule>, Vec<Fault>> {
     let Some(items) = value.as_array() else {
-        return Err(vec![Fault::new(FaultCode::ESchema, format!("{path}.rules"), "expected a list of rules")]);
+        return Err(vec![Fault::new(
+            FaultCode::ESchema,
+            Where::key(format_args!("{path}.rules")),
+            "expected a list of rules",
+        )]);
     };
     if items.len() > MOST_RULES {
         let message = format!("expected at most {MOST_RULES} rules, found {}", items.len());
-        return Err(vec![Fault::new(FaultCode::ESchema, format!("{path}.rules"), message)]);
+        return Err(vec![Fault::new(FaultCode::ESchema, Where::key(format_args!("{path}.rules")), message)]);
     }
     let schema = derived::<Rule>();
     let mut rules = Vec::new();
     let mut faults = Vec::new();
     for (index, item) in items.iter().enumerate() {
         let at = format!("{path}.rules[{index}]");
-        match schema_faults(&schema, item) {
-            Err(wrong) => faults.extend(wrong.into_iter().map(|f| Fault { at: f.at.replacen('$', &at, 1), ..f })),
+        match schema_faults_at(&at, &schema, item) {
+            Err(wrong) => faults.extend(wrong),
             Ok(()) => match serde_json::from_value(item.clone()) {
                 Ok(rule) => rules.push(rule),
-                Err(error) => faults.push(Fault::new(FaultCode::ESchema, at, error.to_string())),
+                Err(error) => faults.push(Fault::new(FaultCode::ESchema, Where::key(&at), error.to_string())),
             },
         }
     }
@@ -137,11 +143,6 @@ fn in_words(rules: &[Rule], id: HumanId, question: &Question) -> String {
             format!("{}; otherwise they walk their path", parts.join("; "))
         }
     })
-}
-
-fn named(id: HumanId, fault: Fault) -> Fault {
-    let name = id.to_string();
-    if fault.at.starts_with(&name) { fault } else { Fault { at: format!("{name} {}", fault.at), ..fault } }
 }
 
 #[cfg(test)]
@@ -176,7 +177,7 @@ mod tests {
             "robot": {},
         }}))
         .unwrap_err();
-        let places: Vec<&str> = faults.iter().map(|fault| fault.at.as_str()).collect();
+        let places: Vec<String> = faults.iter().map(|fault| fault.at.to_string()).collect();
         assert_eq!(places, ["$.humans.human_1.rules[0].act", "$.humans.human_2", "$.humans.robot"]);
     }
 

@@ -4,13 +4,14 @@
 
 use serde::Deserialize;
 use serde_json::{Value, json};
+use socrates_bt::TreeSpec;
 use socrates_model::job::Stage;
 use socrates_model::reading::Fact;
 use socrates_model::{Cell, FORMAT, Grid, Location, Paths, Pose, Proposal, Reading, Request, SceneGraph};
 
 use crate::question::Question;
 use crate::style::{BehaviorsForm, Style};
-use crate::{terse, trees, ways};
+use crate::{terse, ways};
 
 /// The map of the examples.
 pub(crate) const MAP: &str = include_str!("../examples/map.json");
@@ -70,7 +71,7 @@ fn answer(example: &Example, stage: Stage, style: &Style) -> Value {
                 .map(|human| {
                     let (key, value) = match style.behaviors {
                         BehaviorsForm::Rules => ("rules", json!(human.rules)),
-                        BehaviorsForm::JsonTree => ("tree", trees::of_rules(&human.rules)),
+                        BehaviorsForm::JsonTree => ("tree", TreeSpec::of_rules(&human.rules).json()),
                         BehaviorsForm::Xml => {
                             ("tree", json!(socrates_bt::compile(human.id, &human.rules).unwrap_or_default()))
                         }

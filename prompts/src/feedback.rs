@@ -69,14 +69,28 @@ mod tests {
         let texts = messages(&[fault.clone(), fault], Some("{}"));
         let text = &texts.last().unwrap().text;
         assert_eq!(text.matches("To mend P-VERIFY: expected_events").count(), 1, "{text}");
-        let other = messages(&[Fault::new(FaultCode::GDisc, "robot step 1", "jumps")], Some("{}"));
+        let other = messages(
+            &[Fault::new(
+                FaultCode::GDisc,
+                socrates_model::Where::agent(socrates_model::AgentId::Robot).step(1),
+                "jumps",
+            )],
+            Some("{}"),
+        );
         assert!(!other.last().unwrap().text.contains("To mend"));
     }
 
     #[test]
     fn at_most_eight_reasons_are_given_and_none_twice() {
-        let mut faults: Vec<Fault> =
-            (0..10).map(|k| Fault::new(FaultCode::GDisc, format!("robot step {k}"), "jumps")).collect();
+        let mut faults: Vec<Fault> = (0..10)
+            .map(|k| {
+                Fault::new(
+                    FaultCode::GDisc,
+                    socrates_model::Where::agent(socrates_model::AgentId::Robot).step(k),
+                    "jumps",
+                )
+            })
+            .collect();
         faults.push(faults[9].clone());
         let messages = messages(&faults, Some("{}"));
         let text = &messages[1].text;

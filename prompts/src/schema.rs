@@ -199,7 +199,7 @@ fn behaviors(question: &Question, form: BehaviorsForm) -> Value {
             ("rules", list(&json!({"$ref": "#/$defs/Rule"})), Value::Object(defs))
         }
         BehaviorsForm::JsonTree => {
-            let tags: Vec<&str> = crate::trees::TAGS.into_iter().chain([crate::trees::WALK]).collect();
+            let tags: Vec<&str> = crate::trees::TAGS.into_iter().chain([socrates_bt::WALK]).collect();
             let node = json!({"$ref": "#/$defs/node"});
             let each = object(&[
                 ("children", list(&node)),

@@ -6,7 +6,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
-use socrates_model::{Fault, FaultCode};
+use socrates_model::{Fault, FaultCode, Where};
 
 /// Prefix of the settings that choose a style.
 const PREFIX: &str = "prompt.";
@@ -184,7 +184,7 @@ impl Style {
                           prompt.feedback, prompt.variants"
                     .to_owned()),
             };
-            read.map_err(|why| Fault::new(FaultCode::JRequest, key, why))?;
+            read.map_err(|why| Fault::new(FaultCode::JRequest, Where::key(key), why))?;
         }
         if style.mode == Mode::Naive {
             // Who explains nothing shows nothing, and asks for what the baseline asks for.
@@ -242,7 +242,7 @@ mod tests {
             [("prompt.paths", "edges"), ("prompt.color", "red"), ("prompt.variants", "9"), ("prompt.variants", "0")]
         {
             let fault = Style::from_settings(&settings(&[(key, word)])).unwrap_err();
-            assert!(fault.at.contains(key) && fault.message.contains("allowed: "), "{fault}");
+            assert!(fault.at.to_string().contains(key) && fault.message.to_string().contains("allowed: "), "{fault}");
         }
     }
 

@@ -17,9 +17,15 @@ pub(crate) struct Difference {
 const SHOWN: usize = 60;
 
 /// Every difference, in document order.
+#[cfg(test)]
 pub(crate) fn differences(schema: &Value, value: &Value) -> Vec<Difference> {
+    differences_at("$", schema, value)
+}
+
+/// Every difference, in document order, of a value that stands at a path.
+pub(crate) fn differences_at(path: &str, schema: &Value, value: &Value) -> Vec<Difference> {
     let mut found = Vec::new();
-    Reader { root: schema }.hold(schema, value, "$", &mut found);
+    Reader { root: schema }.hold(schema, value, path, &mut found);
     found
 }
 

@@ -7,15 +7,16 @@ use serde_json::{Value, json};
 use socrates_model::proposal::Relation;
 use socrates_model::reading::FactKind;
 use socrates_model::rule::{RobotDo, RobotWhen};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, PlaceClass, Predicate, Proposal, RobotRule, Trigger};
+use socrates_model::{
+    Action, AgentId, ClauseRole, Gesture, GroupId, HumanId, PlaceClass, Predicate, Proposal, RobotRule, Trigger,
+};
 
 use crate::terse;
 
 /// Everything a proposal may say, in its short form.
 pub(crate) fn proposal_tables() -> String {
-    let (setup, outcome): (Vec<_>, Vec<_>) =
-        predicates().into_iter().partition(|(_, meaning)| meaning.ends_with(" (setup)"));
-    let tests = |rows: Vec<(Value, String)>| -> String {
+    let (setup, outcome): (Vec<_>, Vec<_>) = predicates().into_iter().partition(|test| test.role == ClauseRole::Setup);
+    let tests = |rows: Vec<Test>| -> String {
         let told = |form: &Value, meaning: &str| {
             let line = signature(form);
             let said = line.split(' ').next().unwrap_or_default().replace('_', " ");
@@ -26,7 +27,7 @@ pub(crate) fn proposal_tables() -> String {
                 format!("{line}: {meaning}\n")
             }
         };
-        rows.iter().map(|(form, meaning)| told(form, bare(meaning))).collect()
+        rows.iter().map(|test| told(&test.form, test.meaning)).collect()
     };
     format!(
         "# Lines\nA rule: `robot_near:2 + robot_moving -> run_away for=5 gesture=WAIT latched`; after the action only what is needed. \
@@ -64,15 +65,10 @@ pub(crate) fn test_in_words(test: &Value) -> Option<String> {
         Value::Null | Value::Bool(_) | Value::Number(_) | Value::Array(_) => None,
     };
     let wanted = name(test)?;
-    let (_, meaning) = predicates().into_iter().find(|(form, _)| name(form).as_ref() == Some(&wanted))?;
+    let meaning = predicates().into_iter().find(|row| name(&row.form).as_ref() == Some(&wanted))?.meaning;
     let line = terse::line(test);
     let values = line.split_once(' ').map_or_else(String::new, |(_, values)| format!(" ({values})"));
-    Some(format!("{}{values}", bare(&meaning)))
-}
-
-/// A meaning without its role.
-fn bare(meaning: &str) -> &str {
-    meaning.rfind(" (").and_then(|end| meaning.get(..end)).unwrap_or(meaning)
+    Some(format!("{meaning}{values}"))
 }
 
 /// The name of a test and of its values; in full where the values have forms of their own.
@@ -90,9 +86,7 @@ fn forms<T: Serialize>(values: &[T]) -> String {
 
 /// Codes and names of gestures.
 pub(crate) fn gestures() -> String {
-    let names: Vec<String> =
-        Gesture::ALL.iter().map(|gesture| format!("{} {}", gesture.code(), gesture.name())).collect();
-    names.join(", ")
+    Gesture::table()
 }
 
 /// Who meets the robot more than once by the clauses of a proposal, and how often.
@@ -148,6 +142,21 @@ fn spelled<T: Serialize>(value: &T) -> String {
 
 fn row<T: Serialize>(value: &T, meaning: &str) -> (Value, String) {
     (json!(value), meaning.to_owned())
+}
+
+/// A test of a clause.
+struct Test {
+    form: Value,
+    meaning: &'static str,
+    role: ClauseRole,
+}
+
+fn setup(test: &Predicate, meaning: &'static str) -> Test {
+    Test { form: json!(test), meaning, role: ClauseRole::Setup }
+}
+
+fn outcome(test: &Predicate, meaning: &'static str) -> Test {
+    Test { form: json!(test), meaning, role: ClauseRole::Outcome }
 }
 
 fn other() -> HumanId {
@@ -220,81 +229,72 @@ fn robot_do() -> Vec<(Value, String)> {
     ]
 }
 
-fn predicates() -> Vec<(Value, String)> {
+fn predicates() -> Vec<Test> {
     let human = HumanId::new(1);
     let group = GroupId(1);
     vec![
-        row(&Predicate::Humans { count: 2 }, "so many are there all the time (setup)"),
-        row(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter (setup)"),
-        row(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for (setup)"),
-        row(&Predicate::HeadOn { human }, "comes straight at the robot (setup)"),
-        row(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses its way, both there within gap_s (setup)"),
-        row(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot (setup)"),
-        row(&Predicate::Overtakes { human }, "overtakes the robot (setup)"),
-        row(&Predicate::RobotPasses { human }, "the robot passes it (setup)"),
-        row(
+        setup(&Predicate::Humans { count: 2 }, "so many are there all the time"),
+        setup(&Predicate::Meets { human, within_m: 2.5 }, "so near at their encounter"),
+        setup(&Predicate::MeetsAgain { human, nth: 2, within_m: 3.0 }, "they meet an nth time, if asked for"),
+        setup(&Predicate::HeadOn { human }, "comes straight at the robot"),
+        setup(&Predicate::Crosses { human, gap_s: 3.0 }, "crosses its way, both there within gap_s"),
+        setup(&Predicate::Ahead { human, within_m: 4.0, for_s: 3.0 }, "is ahead of the robot"),
+        setup(&Predicate::Overtakes { human }, "overtakes the robot"),
+        setup(&Predicate::RobotPasses { human }, "the robot passes it"),
+        setup(
             &Predicate::Follows {
                 follower: AgentId::Human(human),
                 leader: AgentId::Robot,
                 gap_m: [0.5, 3.5],
                 for_s: 5.0,
             },
-            "goes behind the leader (setup)",
+            "goes behind the leader",
         ),
-        row(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot (setup)"),
-        row(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it (setup)"),
-        row(
+        setup(&Predicate::Abreast { human, for_s: 5.0 }, "side by side with the robot"),
+        setup(&Predicate::Parallel { human, for_s: 5.0 }, "goes the robot's way near it"),
+        setup(
             &Predicate::Flow { count: 4, within_m: 4.0, angle_deg: [0.0, 30.0] },
-            "so many walk by at such angles to the robot's heading (setup)",
+            "so many walk by at such angles to the robot's heading",
         ),
-        row(
-            &Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 },
-            "people per m² round the robot (setup)",
-        ),
-        row(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once (setup)"),
-        row(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time (setup)"),
-        row(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way (setup)"),
-        row(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at the robot (setup)"),
-        row(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still (setup)"),
-        row(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot (setup)"),
-        row(&Predicate::GivesWay { human }, "leaves the robot's way free (setup)"),
-        row(
+        setup(&Predicate::Density { per_m2: [0.1, 0.6], radius_m: 4.0, for_s: 3.0 }, "people per m² round the robot"),
+        setup(&Predicate::Surrounds { count: 3, within_m: 1.5, for_s: 3.0 }, "so many so near at once"),
+        setup(&Predicate::Converges { within_m: 2.5, within_s: 4.0 }, "all are there at about the same time"),
+        setup(&Predicate::Blocks { human, for_s: 3.0 }, "is in the robot's way"),
+        setup(&Predicate::Looks { human, for_s: 2.0 }, "stands and looks at the robot"),
+        setup(&Predicate::StandsStill { human, for_s: 5.0 }, "stands still"),
+        setup(&Predicate::RunsAway { human, by_m: 2.0 }, "gets away from the robot"),
+        setup(&Predicate::GivesWay { human }, "leaves the robot's way free"),
+        setup(
             &Predicate::Reacts { human, when: vec![Trigger::RobotNear(3.0)], act: Action::StandStill, within_s: 2.0 },
-            "the action follows the triggers (setup)",
+            "the action follows the triggers",
         ),
-        row(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it (setup)"),
-        row(&Predicate::Leaves { human, door: String::new() }, "comes out through the door (setup)"),
-        row(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door (setup)"),
-        row(&Predicate::Enters { human, door: String::new() }, "goes in through the door (setup)"),
-        row(
-            &Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] },
-            "opens while the robot is so near (setup)",
-        ),
-        row(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near (setup)"),
-        row(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together (setup)"),
-        row(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together (setup)"),
-        row(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line (setup)"),
-        row(
+        setup(&Predicate::Gestures { agent: AgentId::Human(human), gesture: Gesture::Wait }, "makes it"),
+        setup(&Predicate::Leaves { human, door: String::new() }, "comes out through the door"),
+        setup(&Predicate::StaysInside { human, door: String::new() }, "stays behind the door"),
+        setup(&Predicate::Enters { human, door: String::new() }, "goes in through the door"),
+        setup(&Predicate::DoorOpens { door: String::new(), robot_m: [1.0, 4.0] }, "opens while the robot is so near"),
+        setup(&Predicate::HiddenUntil { human, within_m: 4.0 }, "hidden from each other until so near"),
+        setup(&Predicate::Formation { group, spread_m: 1.5 }, "the group stands together"),
+        setup(&Predicate::WalksTogether { group, spread_m: 3.0 }, "the group walks together"),
+        setup(&Predicate::Queues { group, gap_m: [0.5, 1.5] }, "the group stands in a line"),
+        setup(
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
-            "one clause (c1, c2, …) before another (setup)",
+            "one clause (c1, c2, …) before another",
         ),
-        row(&Predicate::Before { first: AgentId::Robot, then: human.into() }, "is at its encounter first (setup)"),
-        row(
+        setup(&Predicate::Before { first: AgentId::Robot, then: human.into() }, "is at its encounter first"),
+        setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
-            "the encounter is at such a place (setup)",
+            "the encounter is at such a place",
         ),
-        row(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time (setup)"),
-        row(&Predicate::Plausible, "everybody moves as people do (setup)"),
-        row(&Predicate::RobotArrives, "the robot gets to its goal (outcome)"),
-        row(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance (outcome)"),
-        row(&Predicate::RobotEntersLast, "the robot enters after everybody is out (outcome)"),
-        row(&Predicate::RobotLeavesFirst, "the robot is out before others go in (outcome)"),
-        row(&Predicate::RobotJoins { group }, "the robot ends at the rim of the group (outcome)"),
-        row(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group, ends away (outcome)"),
-        row(
-            &Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 },
-            "the robot stops on the gesture (outcome)",
-        ),
+        setup(&Predicate::OnTime { human, gap_s: 4.0 }, "there at most so far apart in time"),
+        setup(&Predicate::Plausible, "everybody moves as people do"),
+        outcome(&Predicate::RobotArrives, "the robot gets to its goal"),
+        outcome(&Predicate::RobotKeeps { min_m: 0.3 }, "the robot keeps this distance"),
+        outcome(&Predicate::RobotEntersLast, "the robot enters after everybody is out"),
+        outcome(&Predicate::RobotLeavesFirst, "the robot is out before others go in"),
+        outcome(&Predicate::RobotJoins { group }, "the robot ends at the rim of the group"),
+        outcome(&Predicate::RobotLeavesGroup { group }, "the robot begins at the group, ends away"),
+        outcome(&Predicate::RobotObeys { gesture: Gesture::Wait, within_s: 2.0 }, "the robot stops on the gesture"),
     ]
 }
 
@@ -323,7 +323,7 @@ mod tests {
 
     #[test]
     fn every_test_of_the_table_is_read_back_as_it_was_meant() {
-        for (form, _) in predicates() {
+        for Test { form, .. } in predicates() {
             let mut proposal = json!({"expected_events": [{"test": terse::line(&form)}]});
             terse::expand(&mut proposal, "");
             let read: Predicate = serde_json::from_value(proposal["expected_events"][0]["predicate"].clone()).unwrap();

@@ -88,7 +88,7 @@ const WORDS: &[&str] =
 const FILES: &[(&str, &str)] = &[
     ("prompts/offline/", "requests are read however people spell: tables, sentences of tests, corpus"),
     ("tests/house/spelling.rs", "lists them"),
-    ("orchestrator/cli/src/ask/command.rs", "a person may type `again behaviours`"),
+    ("orchestrator/app/src/ask/command.rs", "a person may type `again behaviours`"),
 ];
 /// `(text, reason)`: a line with it may hold one.
 const LINES: &[(&str, &str)] = &[("is_cancelled", "a name of tokio")];

@@ -54,6 +54,39 @@ fn wrong_requests_are_refused_with_the_value_and_a_hint() {
 }
 
 #[test]
+fn everything_wrong_with_a_request_is_told_at_once_with_line_and_column_before_an_author_is_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = WAREHOUSE.lines().count();
+    // The author would have to be asked over the network, where nobody listens: an ask would end with another code.
+    let request = format!(
+        "{}\n[robot]\nmodel = \"hal\"\nplanners = [\"telepathy\"]\ngestures = [{{ when = \"whenever\", say = \"WAIT\" }}]\n\
+         [run]\nseeds = \"9..1\"\nduration = \"long\"\nauthor = \"ollama:none\"\n",
+        WAREHOUSE.trim_end()
+    );
+    let line = |below: usize| line + below;
+    let (model, planner, when) = (
+        format!("much.toml:{}:9 ", line(2)),
+        format!("much.toml:{}:13 ", line(3)),
+        format!("much.toml:{}:22 ", line(4)),
+    );
+    let (seeds, duration) = (format!("much.toml:{}:9 ", line(6)), format!("much.toml:{}:12 ", line(7)));
+    let words = [
+        "has 5 problems",
+        &model,
+        "`hal` is not a robot model; allowed: linorobot2, turtlebot4",
+        &planner,
+        "J-PLANNER",
+        "telepathy",
+        "reactive",
+        &when,
+        "`whenever` is not a moment; allowed: `start`, `blocked 3 s`",
+        &seeds,
+        &duration,
+    ];
+    refused(folder.path(), "much", &request, &words);
+}
+
+#[test]
 fn wrong_locations_are_refused_with_file_and_value() {
     let folder = tempfile::tempdir().unwrap();
     let files = socrates_maps::shipped::files("office").unwrap();

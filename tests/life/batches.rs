@@ -3,11 +3,10 @@
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use socrates_tests::program::{finish, poll, signal, start};
 
-use crate::{PROGRAM, WAREHOUSE, make, socrates};
+use crate::{PROGRAM, WAREHOUSE, socrates};
 
 fn write(path: &Path, text: &str) {
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -165,7 +164,6 @@ fn an_author_who_cannot_be_asked_is_found_before_a_folder_is_made() {
     for (author, code, words) in [
         ("openai:gpt-4o", 5, vec!["needs a key", "T-AUTH"]),
         ("vllm:smal", 5, vec!["has no model `smal`", "small, large"]),
-        ("gpt", 2, vec!["`gpt` is no author"]),
         ("cassette:no-such-tape", 2, vec!["no-such-tape"]),
     ] {
         let more = ["--author", author, "--set", "author.key_variable=", "--set", &url];
@@ -177,6 +175,10 @@ fn an_author_who_cannot_be_asked_is_found_before_a_folder_is_made() {
         }
         assert!(!folder.path().join("runs").exists(), "{author} left a folder");
     }
+    let nobody = socrates(folder.path(), "nobody", &["run", "key.toml", "--author", "gpt"]);
+    assert_eq!(nobody.code, 2, "{}", nobody.err);
+    assert!(nobody.err.contains("`gpt` is not a name of an author; allowed: auto, offline"), "{}", nobody.err);
+    assert!(!folder.path().join("runs").exists(), "an author who is nobody left a folder");
     let more = ["run", "key.toml", "other.toml", "--author", "vllm:smal", "--set", &url];
     assert_eq!(socrates(folder.path(), "batch", &more).code, 5);
     assert!(!folder.path().join("runs").exists());
@@ -195,36 +197,6 @@ fn a_log_file_gets_lines_of_progress_and_no_codes_of_a_terminal() {
     assert!(finished.err.contains(" INFO "), "the log was read");
     for text in [&finished.err, &finished.out] {
         assert!(!text.contains('\u{1b}') && !text.contains('\r'), "{text:?}");
-    }
-}
-
-/// What a terminal of its own shows while a command runs there; none where there is no program that makes one.
-fn on_a_terminal(folder: &Path, words: &[&str]) -> Option<String> {
-    let line: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
-    let mut script = Command::new("script");
-    script.args(["-qec", &format!("{PROGRAM} {}", line.join(" ")), "/dev/null"]);
-    let out = script.current_dir(folder).env("TERM", "xterm").stdin(Stdio::null()).output().ok()?;
-    Some(String::from_utf8_lossy(&out.stdout).into_owned())
-}
-
-#[test]
-#[expect(clippy::print_stdout, reason = "a skipped test says why")]
-fn what_takes_time_shows_a_bar_on_a_terminal_and_leaves_nothing_of_it() {
-    let folder = tempfile::tempdir().unwrap();
-    let (finished, _) = make(folder.path(), "shown", WAREHOUSE, &["--require", "any", "--variants", "2"]);
-    assert_eq!(finished.code, 0, "{}", finished.err);
-    let film = ["video", "bundle-shown/shown-1-00001", "--out", "film.gif", "--size", "320x180"];
-    for (words, bar, last) in [
-        (film.as_slice(), "filming", "wrote      film.gif"),
-        (["report", "bundle-shown"].as_slice(), "reading", "look       bundle-shown/report.html"),
-        (["scenarios", "rate", "a", "--seeds", "2"].as_slice(), "playing", "pooled "),
-    ] {
-        let Some(shown) = on_a_terminal(folder.path(), words) else {
-            return println!("skipped: there is no program `script` that makes a terminal");
-        };
-        assert!(shown.contains(&format!("{bar:<10} [")) && shown.contains(last), "{words:?}: {shown:?}");
-        let plain = socrates(folder.path(), "plain", words);
-        assert!(!plain.err.contains(bar) && !plain.out.contains(bar), "{words:?}: {}", plain.err);
     }
 }
 

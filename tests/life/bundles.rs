@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use socrates_app::layout::{LAYOUT, rows};
+
 use crate::{WAREHOUSE, make, socrates};
 
 fn copy(from: &Path, to: &Path) {
@@ -15,6 +17,53 @@ fn copy(from: &Path, to: &Path) {
             std::fs::copy(&path, &target).unwrap();
         }
     }
+}
+
+/// Every file below a folder, by its path in it.
+fn files(root: &Path) -> Vec<String> {
+    let (mut found, mut open) = (Vec::new(), vec![root.to_path_buf()]);
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                found.push(path.strip_prefix(root).unwrap().display().to_string());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_bundle_holds_the_files_of_its_layout_and_no_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let (finished, _) = make(folder.path(), "listed", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    let bundle = folder.path().join("bundle-listed");
+    let there = files(&bundle);
+    for file in &there {
+        assert!(LAYOUT.iter().any(|sheet| sheet.is(file)), "`{file}` is not in the layout");
+    }
+    for sheet in LAYOUT {
+        assert!(there.iter().any(|file| sheet.is(file)), "the bundle has no `{}`", sheet.path);
+    }
+    // What counts stands in the manifest with its digest, and nothing else does.
+    let manifest = std::fs::read_to_string(bundle.join("details/manifest.json")).unwrap();
+    let manifest: serde_json::Value = serde_json::from_str(&manifest).unwrap();
+    let mut listed: Vec<&String> = manifest["files"].as_object().unwrap().keys().collect();
+    let mut counted: Vec<&String> =
+        there.iter().filter(|file| LAYOUT.iter().any(|sheet| sheet.counted && sheet.is(file))).collect();
+    listed.sort();
+    counted.sort();
+    assert_eq!(listed, counted);
+}
+
+#[test]
+fn architecture_lists_the_layout_of_a_bundle() {
+    let text = std::fs::read_to_string(socrates_tests::root().join("ARCHITECTURE.md")).unwrap();
+    let table = rows().join("\n");
+    assert!(text.contains(&table), "ARCHITECTURE.md, `## The bundle`, has to hold:\n{table}");
 }
 
 #[test]

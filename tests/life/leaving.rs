@@ -10,7 +10,7 @@ use socrates_orchestrator::{Attempt, AttemptEnd};
 use socrates_store::{SqliteStore, Store as _};
 use socrates_tests::program::{naming, poll, signal};
 
-use crate::asking::asked;
+use crate::life::asking::asked;
 use crate::{PROGRAM, WAREHOUSE};
 
 /// Departures of the long test.

@@ -1,7 +1,8 @@
 //! Crowds, trees and agents files from outside, through the program.
-#![expect(clippy::print_stdout, reason = "a skipped test says why")]
 
 use std::path::{Path, PathBuf};
+
+use socrates_tests::skip::shared;
 
 use crate::socrates;
 
@@ -25,14 +26,11 @@ fn same(name: &str, ours: &Path, theirs: &Path) {
 
 #[test]
 fn every_reference_tree_is_ticked_alike() {
-    let Some(data) = socrates_tests::shared_data() else {
-        println!("skipped: there is no shared data beside this checkout");
-        return;
-    };
+    let Some(data) = shared("bt_reference") else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).display().to_string();
     for version in ["v3", "v4"] {
-        let from = data.join("bt_reference").join(version);
+        let from = data.join(version);
         let all = cases(&from, ".script.json");
         assert!(all.len() > 40);
         for (name, script) in all {
@@ -53,12 +51,9 @@ fn every_reference_tree_is_ticked_alike() {
 
 #[test]
 fn every_reference_crowd_walks_alike() {
-    let Some(data) = socrates_tests::shared_data() else {
-        println!("skipped: there is no shared data beside this checkout");
-        return;
-    };
+    let Some(data) = shared("sfm_reference") else { return };
     let folder = tempfile::tempdir().unwrap();
-    let (from, out) = (data.join("sfm_reference"), folder.path().join("trajectory.csv").display().to_string());
+    let (from, out) = (data, folder.path().join("trajectory.csv").display().to_string());
     let scenes = cases(&from, ".json");
     assert!(scenes.len() >= 8);
     for (name, scene) in scenes {

@@ -1,6 +1,8 @@
 //! Every shipped request, and the published tool's sample, is realised.
 
-use crate::{make, socrates};
+use socrates_tests::skip::shared;
+
+use crate::{WAREHOUSE, make, socrates};
 
 fn realised(location: &str) {
     let folder = tempfile::tempdir().unwrap();
@@ -35,19 +37,31 @@ fn every_request_of_the_office_is_realised() {
 }
 
 #[test]
-#[expect(clippy::print_stdout, reason = "a skipped test says why")]
-fn a_foreign_location_is_realised_with_its_own_request_and_without_any() {
-    let Some(data) = socrates_tests::shared_data() else {
-        println!("skipped: there is no shared data beside this checkout");
-        return;
-    };
+fn seeds_that_a_request_writes_are_kept_and_those_it_does_not_write_are_that_of_the_flag() {
     let folder = tempfile::tempdir().unwrap();
-    let config = std::fs::read_to_string(data.join("socrates_hunav/socrates/config/inputs.yaml")).unwrap();
+    let written = format!("{WAREHOUSE}\n[run]\nseeds = \"1\"\n");
+    for (name, request, more, seed) in [
+        ("unwritten", WAREHOUSE, &["--require", "any", "--seed", "7"][..], 7),
+        ("written", &written, &["--require", "any", "--seed", "7"], 1),
+        ("flag", &written, &["--require", "any", "--seed", "7", "--seeds", "3"], 3),
+    ] {
+        let (finished, json) = make(folder.path(), name, request, more);
+        assert_eq!(finished.code, 0, "{name}: {}", finished.err);
+        let seeds: Vec<&serde_json::Value> = json["runs"].as_array().unwrap().iter().map(|run| &run["seed"]).collect();
+        assert_eq!(seeds, [&serde_json::json!(seed)], "{name}");
+    }
+}
+
+#[test]
+fn a_foreign_location_is_realised_with_its_own_request_and_without_any() {
+    let Some(data) = shared("socrates_hunav/socrates") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let config = std::fs::read_to_string(data.join("config/inputs.yaml")).unwrap();
     let value = |key: &str| {
         let line = config.lines().find(|line| line.starts_with(&format!("{key}:"))).unwrap();
         line.split_once(':').unwrap().1.trim().to_owned()
     };
-    let location = data.join("socrates_hunav/socrates/locations/small_warehouse").display().to_string();
+    let location = data.join("locations/small_warehouse").display().to_string();
     let base = format!("location = {location:?}\nsocial_context = {}\ntask = {}\n", value("context"), value("task"));
     let guided = format!("{base}rough_scenario = {}\n", value("rough_scenario"));
     for (name, text) in [("guided", &guided), ("unguided", &base)] {

@@ -3,22 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use crate::program::run;
+use crate::skip;
 
 /// Names under which the browser is installed.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// The browser, if there is one; else a line on standard output says that a test was skipped.
-#[must_use]
-#[expect(clippy::print_stdout, reason = "whoever reads the output of the tests sees what was left out")]
-pub fn chromium(test: &str) -> Option<PathBuf> {
-    let paths = std::env::var_os("PATH").unwrap_or_default();
-    let found = std::env::split_paths(&paths)
-        .flat_map(|dir| NAMES.map(|name| dir.join(name)))
-        .find(|program| program.is_file());
-    if found.is_none() {
-        println!("skipped: {test} needs a Chromium in PATH");
-    }
-    found
+/// The browser; where there is none, the running test is left out.
+#[track_caller]
+pub fn chromium() -> Option<PathBuf> {
+    let found = NAMES.into_iter().find_map(skip::program);
+    skip::installed(found.ok_or_else(|| "there is no Chromium in PATH".to_owned()))
 }
 
 /// Opens a page in a window of this width, px, and hands back what a script finds there: the value of its last expression.

@@ -1,16 +1,18 @@
 //! Tests that need more than one room: the house rules, the main job with real processes, and chaos.
 //!
 //! ```text
-//! house/   walls, homes of foreign libraries, file cap, fault pages, links in documents
-//! golden/  recording hashes of everything that is shipped
-//! life/    requests in, bundles out, with real processes
-//! chaos/   kill -9 of any process during a batch
+//! house/    walls, homes of foreign libraries, file cap, fault pages, links in documents
+//! golden/   recording hashes of everything that is shipped
+//! life/     requests in, bundles out, with real processes
+//! chaos/    kill -9 of any process during a batch
+//! foreign/  with programs of others: browsers, servers of models, players, readers
 //! ```
 //!
 //! *Never here:* product code.
 
 pub mod browser;
 pub mod program;
+pub mod skip;
 
 pub use tempfile;
 
@@ -20,11 +22,4 @@ use std::path::PathBuf;
 #[must_use]
 pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).parent().map(PathBuf::from).unwrap_or_default()
-}
-
-/// The folder of data made by others, if this checkout has one beside it.
-#[must_use]
-pub fn shared_data() -> Option<PathBuf> {
-    let data = root().parent()?.join("shared/data");
-    data.is_dir().then_some(data)
 }

@@ -20,7 +20,7 @@ pub fn check_behaviors(behaviors: &Behaviors, proposal: &Proposal, _location: &L
             Ok(tree) => {
                 trees.insert(*id, tree);
             }
-            Err(wrong) => faults.extend(wrong.into_iter().map(|fault| of(*id, fault))),
+            Err(wrong) => faults.extend(wrong.into_iter().map(|fault| fault.of(*id))),
         }
     }
     let human_says: BTreeMap<HumanId, Vec<Gesture>> =
@@ -30,7 +30,7 @@ pub fn check_behaviors(behaviors: &Behaviors, proposal: &Proposal, _location: &L
     for (id, tree) in &trees {
         let rules: &[Rule] = proposal.human(*id).map_or(&[], |human| human.rules.as_slice());
         let ctx = CheckContext { human: *id, humans, robot_says: &said, human_says: &human_says, rules };
-        faults.extend(socrates_bt::check(tree, &ctx).into_iter().map(|fault| of(*id, fault)));
+        faults.extend(socrates_bt::check(tree, &ctx).into_iter().map(|fault| fault.of(*id)));
     }
     faults
 }
@@ -48,19 +48,6 @@ fn agents(behaviors: &Behaviors, proposal: &Proposal) -> Vec<Fault> {
         list(&wanted)
     );
     vec![Fault::new(FaultCode::BAgents, "humans", message)]
-}
-
-/// The fault with the human in front of the place it already names.
-fn of(human: HumanId, fault: Fault) -> Fault {
-    let name = human.to_string();
-    let at = if fault.at.starts_with(&name) {
-        fault.at
-    } else if fault.at.is_empty() {
-        name
-    } else {
-        format!("{name} {}", fault.at)
-    };
-    Fault { at, ..fault }
 }
 
 #[cfg(test)]
@@ -102,7 +89,7 @@ mod tests {
         }
         let faults = check_behaviors(&behaviors, &proposal, &plus_map());
         assert!(
-            faults.iter().any(|fault| fault.code == FaultCode::BXml && fault.at.starts_with("human_1")),
+            faults.iter().any(|fault| fault.code == FaultCode::BXml && fault.at.to_string().starts_with("human_1")),
             "{faults:?}"
         );
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Cell, Fault, FaultCode, Location, NodeId, Paths, Point};
+use socrates_model::{Cell, Fault, FaultCode, Location, NodeId, Paths, Point, Where};
 
 use crate::routes::walks;
 
@@ -28,7 +28,7 @@ pub(crate) fn check(paths: &Paths, location: &Location) -> Vec<Fault> {
                 "the way between `{a}` and `{b}` is not free at ({:.2}, {:.2}); this is a fault of the map, not of the paths",
                 hit.x, hit.y
             );
-            Some(Fault::new(FaultCode::GFree, format!("edge {a} {b}"), message))
+            Some(Fault::new(FaultCode::GFree, Where::key(format_args!("edge {a} {b}")), message))
         })
         .collect()
 }

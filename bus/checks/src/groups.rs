@@ -1,6 +1,6 @@
 //! Who starts where: groups together (G-GRP), everybody else apart (G-COLL).
 
-use socrates_model::{AgentId, Fault, FaultCode, HumanId, Location, NodeId, Paths, Proposal, Relation};
+use socrates_model::{AgentId, Fault, FaultCode, HumanId, Location, NodeId, Paths, Proposal, Relation, Where};
 
 use crate::list;
 use crate::routes::walks;
@@ -62,7 +62,7 @@ fn starts(paths: &Paths, proposal: &Proposal, location: &Location) -> Vec<Fault>
                     "{one} and {other} start at `{here}` and `{there}`, {distance_m:.1} m apart; at least {APART_M} m are needed \
                      unless they are one group, share a room, or start as two or three at one node"
                 );
-                faults.push(Fault::new(FaultCode::GColl, format!("{one}, {other}"), message));
+                faults.push(Fault::new(FaultCode::GColl, Where::agents([*one, *other]), message));
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::request::MAX_HUMANS;
-use socrates_model::{Action, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger};
+use socrates_model::{Action, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger, Where};
 use socrates_model::{HumanProposal, Relation};
 
 use crate::lexicon::{ABILITIES, humans_named, impossible};
@@ -41,7 +41,7 @@ fn count(proposal: &Proposal) -> Vec<Fault> {
             && count as usize != listed
         {
             let message = format!("says {count} humans, but {listed} are listed; the two must agree");
-            faults.push(Fault::new(FaultCode::PCount, format!("clause {}", clause.id), message));
+            faults.push(Fault::new(FaultCode::PCount, Where::clause(&clause.id), message));
         }
     }
     faults
@@ -58,7 +58,7 @@ fn names(proposal: &Proposal) -> Vec<Fault> {
     for clause in &proposal.expected_events {
         if let Some(id) = clause.predicate.human().filter(|id| !found.contains(id)) {
             let message = format!("speaks of {id}; humans of the proposal: {}", list(&found));
-            faults.push(Fault::new(FaultCode::PName, format!("clause {}", clause.id), message));
+            faults.push(Fault::new(FaultCode::PName, Where::clause(&clause.id), message));
         }
     }
     faults
@@ -66,23 +66,23 @@ fn names(proposal: &Proposal) -> Vec<Fault> {
 
 fn groups(proposal: &Proposal) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut bad = |at: String, message: String| faults.push(Fault::new(FaultCode::PName, at, message));
+    let mut bad = |at: Where, message: String| faults.push(Fault::new(FaultCode::PName, at, message));
     let mut seen = BTreeSet::new();
     for group in &proposal.groups {
         if !seen.insert(group.id) {
-            bad(group.id.to_string(), "is listed twice; number the groups 1, 2, …".to_owned());
+            bad(group.id.into(), "is listed twice; number the groups 1, 2, …".to_owned());
         }
         let members: BTreeSet<HumanId> = group.members.iter().copied().collect();
         if members.len() < 2 {
-            bad(group.id.to_string(), format!("has the members {}; a group needs two or more", list(&members)));
+            bad(group.id.into(), format!("has the members {}; a group needs two or more", list(&members)));
         }
         for member in &members {
             match proposal.human(*member) {
-                None => bad(group.id.to_string(), format!("has the member {member}, who is not in the proposal")),
+                None => bad(group.id.into(), format!("has the member {member}, who is not in the proposal")),
                 Some(human) if human.group != Some(group.id) => {
                     let own = human.group.map_or_else(|| "none".to_owned(), |id| id.0.to_string());
                     bad(
-                        member.to_string(),
+                        (*member).into(),
                         format!(
                             "is a member of {}, but their own `group` says {own}; expected {}",
                             group.id, group.id.0
@@ -97,7 +97,7 @@ fn groups(proposal: &Proposal) -> Vec<Fault> {
         if let Some(id) = human.group
             && !proposal.groups.iter().any(|group| group.id == id && group.members.contains(&human.id))
         {
-            bad(human.id.to_string(), format!("says group {}, but that group does not list it as a member", id.0));
+            bad(human.id.into(), format!("says group {}, but that group does not list it as a member", id.0));
         }
     }
     faults
@@ -106,20 +106,20 @@ fn groups(proposal: &Proposal) -> Vec<Fault> {
 /// P-CAP: words and numbers that cannot be simulated.
 fn abilities(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut bad = |at: String, message: String| faults.push(Fault::new(FaultCode::PCap, at, message));
+    let mut bad = |at: Where, message: String| faults.push(Fault::new(FaultCode::PCap, at, message));
     if human.behavior.trim().is_empty() {
-        bad(human.id.to_string(), format!("has an empty behavior; say what it does. A human can: {ABILITIES}"));
+        bad(human.id.into(), format!("has an empty behavior; say what it does. A human can: {ABILITIES}"));
     }
     let phrases = impossible(&human.behavior);
     if !phrases.is_empty() {
-        bad(human.id.to_string(), format!("cannot be simulated: {}. A human can: {ABILITIES}", list(phrases)));
+        bad(human.id.into(), format!("cannot be simulated: {}. A human can: {ABILITIES}", list(phrases)));
     }
     if let Some(speed) = human.speed_mps.filter(|speed| !(SPEED_MPS.0..=SPEED_MPS.1).contains(speed)) {
-        bad(human.id.to_string(), format!("walks at {speed} m/s; allowed: {} to {} m/s", SPEED_MPS.0, SPEED_MPS.1));
+        bad(human.id.into(), format!("walks at {speed} m/s; allowed: {} to {} m/s", SPEED_MPS.0, SPEED_MPS.1));
     }
     for (index, rule) in human.rules.iter().enumerate() {
         for message in rule_faults(human.id, rule, proposal) {
-            bad(format!("{} rule {}", human.id, index + 1), message);
+            bad(Where::rule(human.id, index + 1), message);
         }
     }
     faults
@@ -225,7 +225,7 @@ mod tests {
     fn hands_are_not_simulated_and_all_phrases_are_named_at_once() {
         let faults = faults(|proposal| proposal.humans[0].behavior = "picks up a box, then sits.".into());
         assert_eq!(codes(&faults), ["P-CAP"]);
-        assert!(faults[0].message.contains("`picks up`, `sits`"), "{}", faults[0].message);
+        assert!(faults[0].message.to_string().contains("`picks up`, `sits`"), "{}", faults[0].message);
     }
 
     #[test]

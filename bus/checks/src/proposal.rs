@@ -1,6 +1,6 @@
 //! The proposal against the request's reading and the map: `P-` faults.
 
-use socrates_model::{Fault, FaultCode, Location, NodeId, PlaceClass, Predicate, Proposal, Reading, RobotRule};
+use socrates_model::{Fault, FaultCode, Location, NodeId, PlaceClass, Predicate, Proposal, Reading, RobotRule, Where};
 use socrates_model::{Gesture, HumanId, Trigger};
 
 use socrates_model::rule::{RobotDo, RobotWhen};
@@ -32,16 +32,16 @@ pub(crate) fn check_alone(proposal: &Proposal, location: &Location) -> Vec<Fault
 /// P-PLACE: a class that no node or edge of the map has.
 fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
     let graph = &location.graph;
-    let mut wanted: Vec<(String, PlaceClass)> = vec![("place".to_owned(), proposal.place)];
+    let mut wanted: Vec<(Where, PlaceClass)> = vec![("place".into(), proposal.place)];
     for human in &proposal.humans {
-        wanted.extend(human.start.map(|class| (format!("{} start", human.id), class)));
-        wanted.extend(human.goal.map(|class| (format!("{} goal", human.id), class)));
+        wanted.extend(human.start.map(|class| (Where::agent(human.id).at_key("start"), class)));
+        wanted.extend(human.goal.map(|class| (Where::agent(human.id).at_key("goal"), class)));
     }
-    wanted.extend(proposal.robot.start.map(|class| ("robot start".to_owned(), class)));
-    wanted.extend(proposal.robot.goal.map(|class| ("robot goal".to_owned(), class)));
+    wanted.extend(proposal.robot.start.map(|class| (Where::robot("start"), class)));
+    wanted.extend(proposal.robot.goal.map(|class| (Where::robot("goal"), class)));
     for clause in &proposal.expected_events {
         if let Predicate::EncounterAt { place, .. } = clause.predicate {
-            wanted.push((format!("clause {}", clause.id), place));
+            wanted.push((Where::clause(&clause.id), place));
         }
     }
     let mut faults: Vec<Fault> = wanted
@@ -57,7 +57,7 @@ fn places(proposal: &Proposal, location: &Location) -> Vec<Fault> {
         let unknown: Vec<&NodeId> = nodes.iter().filter(|node| graph.node(node).is_none()).collect();
         if !unknown.is_empty() {
             let message = format!("the map has no node {}; leave `nodes` out to mean the whole class", list(unknown));
-            faults.push(Fault::new(FaultCode::PPlace, format!("clause {}", clause.id), message));
+            faults.push(Fault::new(FaultCode::PPlace, Where::clause(&clause.id), message));
         }
     }
     // Only words that are never used for another place are looked for in prose.
@@ -105,16 +105,16 @@ fn labels(proposal: &Proposal, location: &Location) -> Vec<Fault> {
 /// P-ROBOT: the robot's part.
 fn robot(proposal: &Proposal) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut bad = |at: &str, message: String| faults.push(Fault::new(FaultCode::PRobot, at, message));
+    let mut bad = |at: Where, message: String| faults.push(Fault::new(FaultCode::PRobot, at, message));
     if proposal.robot.expected_behavior.trim().is_empty() {
-        bad("robot expected_behavior", "is empty; say in a sentence what a good robot would do".to_owned());
+        bad(Where::robot("expected_behavior"), "is empty; say in a sentence what a good robot would do".to_owned());
     }
     if proposal.robot.task.trim().is_empty() {
-        bad("robot task", "is empty; say what the robot has to do".to_owned());
+        bad(Where::robot("task"), "is empty; say what the robot has to do".to_owned());
     }
     for (index, line) in proposal.robot.script.iter().enumerate() {
         for message in script_line(line, proposal) {
-            bad(&format!("robot script line {}", index + 1), message);
+            bad(Where::robot(format!("script line {}", index + 1)), message);
         }
     }
     let said = robot_says(proposal);
@@ -129,7 +129,7 @@ fn robot(proposal: &Proposal) -> Vec<Fault> {
                          that says {gesture}, or change the rule",
                         list(&said)
                     );
-                    bad(&format!("{} rule {}", human.id, index + 1), message);
+                    bad(Where::rule(human.id, index + 1), message);
                 }
             }
         }
@@ -201,7 +201,7 @@ mod tests {
         proposal.place = PlaceClass::Elevator;
         let faults = check_alone(&proposal, &plus_map());
         assert_eq!(codes(&faults), ["P-PLACE"]);
-        assert!(faults[0].message.contains("`intersection`"), "{}", faults[0].message);
+        assert!(faults[0].message.to_string().contains("`intersection`"), "{}", faults[0].message);
     }
 
     #[test]

@@ -68,7 +68,7 @@ mod tests {
         };
         let fault = check_repeats(&first, &id, &first).unwrap();
         assert_eq!(fault.code, FaultCode::PDup);
-        assert!(fault.is_soft() && fault.message.contains("`first`: 100 %"), "{fault}");
+        assert!(fault.is_soft() && fault.message.to_string().contains("`first`: 100 %"), "{fault}");
         let mut elsewhere = first.clone();
         elsewhere.place = if first.place == PlaceClass::Room { PlaceClass::Corridor } else { PlaceClass::Room };
         assert_eq!(check_repeats(&elsewhere, &id, &first), None);

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{AgentId, Fault, FaultCode, HumanId, Location, NodeId, Paths, Proposal, Relation, SceneGraph};
+use socrates_model::{
+    AgentId, Fault, FaultCode, HumanId, Location, NodeId, Paths, Proposal, Relation, SceneGraph, Where,
+};
 
 use crate::nearest::nodes_like;
 use crate::places::nodes_of;
@@ -89,7 +91,7 @@ fn steps(agent: AgentId, nodes: &[NodeId], place: socrates_model::PlaceClass, gr
                 list(nodes_like(graph, node, 3)),
                 list(candidates.iter().take(LISTED))
             );
-            faults.push(Fault::new(FaultCode::GUnknown, format!("{agent} step {}", index + 1), message));
+            faults.push(Fault::new(FaultCode::GUnknown, Where::agent(agent).step(index + 1), message));
         }
     }
     for (index, pair) in nodes.windows(2).enumerate() {
@@ -97,7 +99,7 @@ fn steps(agent: AgentId, nodes: &[NodeId], place: socrates_model::PlaceClass, gr
         if graph.node(from).is_none() || graph.node(to).is_none() || graph.edge(from, to).is_some() {
             continue;
         }
-        let at = format!("{agent} step {}", index + 2);
+        let at = Where::agent(agent).step(index + 2);
         let message = if from == to {
             format!("names `{from}` twice in a row; name it once")
         } else {
@@ -195,8 +197,12 @@ mod tests {
     fn a_path_may_not_skip_an_edge() {
         let faults = faults(|paths| paths.robot = nodes(&["w_2", "w_1", "e_1", "e_2"]));
         let jump = faults.iter().find(|fault| fault.code == FaultCode::GDisc).unwrap();
-        assert_eq!(jump.at, "robot step 3");
-        assert!(jump.message.contains("shortest way between them: `w_1`, `n_center`, `e_1`"), "{}", jump.message);
+        assert_eq!(jump.at, Where::agent(AgentId::Robot).step(3));
+        assert!(
+            jump.message.to_string().contains("shortest way between them: `w_1`, `n_center`, `e_1`"),
+            "{}",
+            jump.message
+        );
     }
 
     #[test]
@@ -213,7 +219,7 @@ mod tests {
         let faults = faults(|paths| paths.robot[1] = node("w_11"));
         assert!(!codes(&faults).contains(&"G-DISC".to_owned()));
         let unknown = faults.iter().find(|fault| fault.code == FaultCode::GUnknown).unwrap();
-        assert!(unknown.message.contains("nearest: `w_1`"), "{}", unknown.message);
+        assert!(unknown.message.to_string().contains("nearest: `w_1`"), "{}", unknown.message);
     }
 
     #[test]
@@ -224,7 +230,7 @@ mod tests {
         });
         let codes = hard_codes(&faults);
         assert!(codes.contains(&"G-SHORT".to_owned()), "{codes:?}");
-        assert!(faults.iter().any(|fault| fault.message.contains("3 nodes and 6.0 m")), "{faults:?}");
+        assert!(faults.iter().any(|fault| fault.message.to_string().contains("3 nodes and 6.0 m")), "{faults:?}");
     }
 
     #[test]
@@ -234,7 +240,11 @@ mod tests {
             paths.humans.insert(HumanId::new(9), path);
         });
         let agents = faults.iter().find(|fault| fault.code == FaultCode::GAgents).unwrap();
-        assert!(agents.message.contains("missing for `human_2`, surplus for `human_9`"), "{}", agents.message);
+        assert!(
+            agents.message.to_string().contains("missing for `human_2`, surplus for `human_9`"),
+            "{}",
+            agents.message
+        );
     }
 
     #[test]

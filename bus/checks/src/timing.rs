@@ -112,13 +112,13 @@ mod tests {
         assert!(faults(&["s_1"]).is_empty());
         let late = faults(&["s_1", "s_2"].repeat(8));
         assert_eq!(codes(&late), ["G-TIME"]);
-        assert!(late[0].is_soft() && late[0].message.contains("takes at least"), "{}", late[0].message);
+        assert!(late[0].is_soft() && late[0].message.to_string().contains("takes at least"), "{}", late[0].message);
         paths.robot = nodes(&["w_1", "n_center"]).into_iter().chain(nodes(&["n_1", "n_2"].repeat(4))).collect();
         paths.robot.extend(nodes(&["n_1", "n_center", "e_1"]));
         let mut early = paths.clone();
         early.humans.insert(human, nodes(&["s_1", "n_center", "s_1", "n_center", "w_1"]));
         let early = check(&early, &crossing_proposal(), &plus_map().graph);
-        assert!(early[0].message.contains("can take at most"), "{}", early[0].message);
+        assert!(early[0].message.to_string().contains("can take at most"), "{}", early[0].message);
     }
 
     #[test]

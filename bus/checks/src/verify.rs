@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading};
+use socrates_model::{
+    Clause, ClauseRole, Fact, FactKind, Fault, FaultCode, HumanId, Predicate, Proposal, Reading, Where,
+};
 
 use crate::{limits, list};
 
@@ -27,7 +29,7 @@ pub(crate) fn facts(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
         if carriers.is_empty() {
             let message =
                 format!("\"{}\" was asked for, and no clause of the proposal shows whether it happens", fact.quote);
-            faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));
+            faults.push(Fault::new(FaultCode::PVerify, Where::key(format_args!("fact {}", fact.id)), message));
         } else if let Some(owner) = human_of(fact)
             && !carriers.iter().any(|clause| speaks_of(clause, owner, proposal))
         {
@@ -36,7 +38,7 @@ pub(crate) fn facts(proposal: &Proposal, reading: &Reading) -> Vec<Fault> {
                 fact.quote,
                 list(carriers.iter().map(|clause| &clause.id))
             );
-            faults.push(Fault::new(FaultCode::PVerify, format!("fact {}", fact.id), message));
+            faults.push(Fault::new(FaultCode::PVerify, Where::key(format_args!("fact {}", fact.id)), message));
         }
     }
     faults
@@ -48,8 +50,7 @@ pub(crate) fn clauses(proposal: &Proposal) -> Vec<Fault> {
     let mut seen = BTreeSet::new();
     let ids: BTreeSet<&str> = proposal.expected_events.iter().map(|clause| clause.id.as_str()).collect();
     for clause in &proposal.expected_events {
-        let mut bad =
-            |message: String| faults.push(Fault::new(FaultCode::PVerify, format!("clause {}", clause.id), message));
+        let mut bad = |message: String| faults.push(Fault::new(FaultCode::PVerify, Where::clause(&clause.id), message));
         if !seen.insert(clause.id.as_str()) {
             bad("is listed twice; number the clauses c1, c2, …".to_owned());
         }
@@ -138,8 +139,8 @@ mod tests {
         proposal.expected_events[0].predicate = Predicate::Flow { count: 3, within_m: 4.0, angle_deg: [90.0, 60.0] };
         let faults = clauses(&proposal);
         assert_eq!(faults.len(), 2, "{faults:?}");
-        assert!(faults[0].message.contains("asks for 3 humans where the proposal has 2"), "{faults:?}");
-        assert!(faults[1].message.contains("`angle_deg`, largest less smallest, is -30"), "{faults:?}");
+        assert!(faults[0].message.to_string().contains("asks for 3 humans where the proposal has 2"), "{faults:?}");
+        assert!(faults[1].message.to_string().contains("`angle_deg`, largest less smallest, is -30"), "{faults:?}");
         // Two of two are everybody: nobody needs a clause of its own then.
         proposal.expected_events[0].predicate = Predicate::Flow { count: 2, within_m: 4.0, angle_deg: [0.0, 30.0] };
         proposal.expected_events.truncate(1);
@@ -154,7 +155,7 @@ mod tests {
         proposal.expected_events.retain(|clause| clause.predicate.human() != Some(second));
         let faults = humans(&proposal);
         assert_eq!(codes(&faults), ["P-VERIFY"]);
-        assert_eq!(faults[0].at, "human_2");
+        assert_eq!(faults[0].at, Where::agent(HumanId::new(2)));
     }
 
     #[test]

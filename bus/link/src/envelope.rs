@@ -9,8 +9,11 @@ use socrates_model::job::MESSAGE_BYTES;
 
 use crate::error::LinkError;
 
-/// Version of the messages written here. Since 2, the ticks of a live run come several to a message.
-pub const VERSION: u32 = 2;
+/// Version of the messages written here. Since 2, the ticks of a live run come several to a message; since 3, the run
+/// of a job stands in its key alone.
+pub const VERSION: u32 = 3;
+/// Oldest reader of a message with grants: an older one would take every run for that of the reference planner.
+pub const GRANTS_VERSION: u32 = 3;
 /// Oldest version read here.
 pub const MIN_VERSION: u32 = 1;
 /// Deepest nesting that is read: far more than any message has, far less than a stack holds.
@@ -177,6 +180,24 @@ mod tests {
         let bytes = rmp_serde::to_vec_named(&Newer { v: 1, kind: "n", body: 7, color: vec![(1, "x")] }).unwrap();
         let read = decode::<u32>("n", &bytes).unwrap();
         assert_eq!((read.body, read.epoch, read.sender.as_str()), (7, 0, ""));
+    }
+
+    #[test]
+    fn a_fault_travels_with_its_place_and_one_of_the_version_before_is_read() {
+        use socrates_model::{AgentId, Fault, FaultCode, Where};
+        #[derive(Serialize)]
+        struct Before {
+            code: &'static str,
+            at: &'static str,
+            message: &'static str,
+        }
+        let fault = Fault::new(FaultCode::GDisc, Where::agent(AgentId::Robot).step(3), "jumps");
+        let bytes = encode(&Envelope::fresh("f", "", 0, fault.clone())).unwrap();
+        assert_eq!(decode::<Fault>("f", &bytes).unwrap().body, fault);
+        let before = Before { code: "G-DISC", at: "robot step 3", message: "jumps" };
+        let bytes = encode(&Envelope::fresh("f", "", 0, before)).unwrap();
+        let read = decode::<Fault>("f", &bytes).unwrap().body;
+        assert_eq!((read.to_string(), read.at), (fault.to_string(), Where::key("robot step 3")));
     }
 
     #[test]

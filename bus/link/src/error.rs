@@ -77,6 +77,14 @@ pub enum LinkError {
         /// The other side's words.
         why: String,
     },
+    /// The program was built without the bus between processes.
+    #[error(
+        "this program was built without the feature `{feature}`, so its processes cannot reach each other; build it with that feature"
+    )]
+    Absent {
+        /// The feature of the build that is missing.
+        feature: &'static str,
+    },
     /// The bus is closed.
     #[error("the bus is closed")]
     Closed,
@@ -108,6 +116,7 @@ impl LinkError {
             | Self::BadKey { .. }
             | Self::Encode { .. }
             | Self::Incompatible { .. }
+            | Self::Absent { .. }
             | Self::Refused { .. } => FailureClass::Permanent,
             Self::Decode { .. } => FailureClass::Poison,
         }

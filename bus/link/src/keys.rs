@@ -11,7 +11,6 @@
 
 use socrates_model::RunId;
 use socrates_model::job::Stage;
-use zenoh::key_expr::keyexpr;
 
 use crate::error::LinkError;
 
@@ -153,9 +152,25 @@ impl Namespace {
     }
 }
 
-/// The key expression, if it is one.
-pub(crate) fn checked(key: &str) -> Result<&keyexpr, LinkError> {
-    keyexpr::new(key).map_err(|why| LinkError::BadKey { key: key.chars().take(200).collect(), why: why.to_string() })
+/// The chunks of a key expression, if it is one: chunks between `/`, of which `*` stands for any one and `**` for any number.
+/// These are the key expressions of zenoh without its `$*` inside a chunk, so every bus takes the same keys.
+///
+/// # Errors
+/// [`LinkError::BadKey`] for an empty chunk, a sign that has a meaning of its own, or wildcards in another order than `*/**`.
+pub(crate) fn checked(key: &str) -> Result<Vec<&str>, LinkError> {
+    let chunks: Vec<&str> = key.split('/').collect();
+    let bad = |why: &str| Err(LinkError::BadKey { key: key.chars().take(200).collect(), why: why.to_owned() });
+    if chunks.iter().any(|chunk| chunk.is_empty()) {
+        return bad("it begins or ends with `/`, or has nothing between two; chunks such as `a/b` are allowed");
+    }
+    let odd = |chunk: &&str| chunk.contains(['#', '?', '$']) || chunk.contains('*') && !matches!(*chunk, "*" | "**");
+    if let Some(chunk) = chunks.iter().find(|chunk| odd(chunk)) {
+        return bad(&format!("`{chunk}` holds `#`, `?`, `$` or a `*` beside letters; `*` and `**` stand alone"));
+    }
+    if chunks.windows(2).any(|pair| matches!(pair, ["**", "*" | "**"])) {
+        return bad("after `**` comes another wildcard; `*/**` is allowed");
+    }
+    Ok(chunks)
 }
 
 /// Whether a key falls under a key expression (`*` is one chunk, `**` any number).
@@ -163,7 +178,26 @@ pub(crate) fn checked(key: &str) -> Result<&keyexpr, LinkError> {
 /// # Errors
 /// [`LinkError::BadKey`] when either is not well formed.
 pub fn covers(expression: &str, key: &str) -> Result<bool, LinkError> {
-    Ok(checked(expression)?.intersects(checked(key)?))
+    Ok(meet(&checked(expression)?, &checked(key)?))
+}
+
+/// Whether a key exists that falls under both.
+fn meet(a: &[&str], b: &[&str]) -> bool {
+    match (a, b) {
+        ([], []) => true,
+        (["**", rest @ ..], other) | (other, ["**", rest @ ..]) => {
+            // A chunk that begins with `@` is met by its own name alone.
+            let most = other.iter().position(|chunk| chunk.starts_with('@')).unwrap_or(other.len());
+            (0..=most).any(|taken| other.get(taken..).is_some_and(|left| meet(rest, left)))
+        }
+        ([], _) | (_, []) => false,
+        ([first, rest @ ..], [other, left @ ..]) => one_meets(first, other) && meet(rest, left),
+    }
+}
+
+/// Whether two chunks, none of them `**`, name a common one.
+fn one_meets(a: &str, b: &str) -> bool {
+    a == b || a == "*" && !b.starts_with('@') || b == "*" && !a.starts_with('@')
 }
 
 #[cfg(test)]
@@ -192,6 +226,38 @@ mod tests {
         assert!(!covers(RUNS, "live/a/agents").unwrap());
         assert!(covers(WORKERS_ALIVE, &worker_alive(Stage::Scoring, "x")).unwrap());
         assert!(covers("a//b", "a").is_err());
+    }
+
+    /// The other bus would refuse a key that this one takes, or deliver to others: its own words decide.
+    #[cfg(feature = "zenoh")]
+    #[test]
+    fn keys_are_taken_and_covered_as_zenoh_does() {
+        use zenoh::key_expr::keyexpr;
+        // All expressions of up to four of these chunks.
+        let chunks = ["a", "b", "*", "**", "", "a*", "@v", "#"];
+        let mut all = vec![String::new()];
+        for chunk in chunks {
+            all.push(chunk.to_owned());
+        }
+        for _longer in 0..3 {
+            let longer: Vec<String> =
+                all.iter().flat_map(|begin| chunks.iter().map(move |chunk| format!("{begin}/{chunk}"))).collect();
+            all.extend(longer);
+            all.sort();
+            all.dedup();
+        }
+        let mut good = Vec::new();
+        for text in &all {
+            let theirs = keyexpr::new(text.as_str());
+            assert_eq!(checked(text).is_ok(), theirs.is_ok(), "`{text}`: {:?} {theirs:?}", checked(text));
+            good.extend(theirs.ok());
+        }
+        assert!(good.len() > 300, "{}", good.len());
+        for (place, a) in good.iter().enumerate() {
+            for b in good.iter().skip(place % 7).step_by(7) {
+                assert_eq!(covers(a, b).unwrap(), a.intersects(b), "`{a}` and `{b}`");
+            }
+        }
     }
 
     #[test]

@@ -3,11 +3,12 @@
 //! ```text
 //! caller ── call(key, kind, &request) ──► envelope ──► Bus ──► Ask ──► answer ──► envelope ──► reply
 //!                                                       │
-//!                                     MemoryBus (tests) ┴ ZenohBus (everything else)
+//!                          MemoryBus (always, one process) ┴ ZenohBus (feature `zenoh`, between processes)
 //! ```
 //!
 //! Modules in reading order: errors, keys, the envelope and its one codec, the trait with the
-//! things it hands out, then the two buses and the typed calls on top of either.
+//! things it hands out, then the two buses, how to join the second, and the typed calls on top of either.
+//! Without the feature `zenoh`, [`join()`] is an error that names it.
 //!
 //! *Never here:* a job's meaning, a retry (the caller owns its backoff), a file, a word of zenoh in
 //! a public signature, a callback that does more than hand a message to a bounded mailbox.
@@ -16,7 +17,7 @@ mod error;
 pub mod keys;
 
 mod envelope;
-pub use envelope::{Envelope, MIN_VERSION, VERSION, decode, encode};
+pub use envelope::{Envelope, GRANTS_VERSION, MIN_VERSION, VERSION, decode, encode};
 
 mod bus;
 mod mailbox;
@@ -25,10 +26,14 @@ pub use bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Ser
 mod call;
 pub use call::{KIND_REFUSED, Refusal, call, call_envelope};
 
+mod join;
 mod memory;
+#[cfg(feature = "zenoh")]
 mod zenoh_bus;
+pub use join::{Mode, ZenohConfig, join};
 pub use memory::MemoryBus;
-pub use zenoh_bus::{Mode, ZenohBus, ZenohConfig};
+#[cfg(feature = "zenoh")]
+pub use zenoh_bus::ZenohBus;
 
 pub use async_trait::async_trait;
 pub use error::LinkError;

@@ -67,6 +67,7 @@ impl<T> Mailbox<T> {
     }
 
     /// Puts a message in and holds the thread up while the mailbox is full, at most 5 s; then it is lost and counted.
+    #[cfg(feature = "zenoh")]
     pub(crate) fn push_blocking(&self, message: T) {
         let full = |state: &mut State<T>| state.queue.len() >= self.0.depth && !state.closed;
         let waited = self.0.space.wait_timeout_while(self.lock(), PATIENCE, full);
@@ -153,6 +154,7 @@ impl<T> Mailbox<T> {
     }
 
     /// A handle that keeps nothing alive: closes the mailbox when given `true`, says whether it still takes messages.
+    #[cfg(feature = "zenoh")]
     pub(crate) fn ending(&self) -> Box<dyn Fn(bool) -> bool + Send>
     where
         T: Send + 'static,

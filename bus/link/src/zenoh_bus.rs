@@ -18,6 +18,7 @@ use zenoh::sample::{Sample, SampleKind};
 use crate::bus::{AliveToken, Ask, Bus, Overflow, Presence, Publish, Qos, Reply, Serving, Subscription};
 use crate::envelope::fits;
 use crate::error::LinkError;
+use crate::join::{Mode, ZenohConfig};
 use crate::keys::Namespace;
 use crate::mailbox::Mailbox;
 
@@ -28,95 +29,39 @@ const CLOSE_LIMIT: Duration = Duration::from_secs(3);
 /// A peer that is silent for so long is gone, ms. Announced to the other side, so every participant sets it.
 const LEASE_MS: u64 = 3000;
 
-/// The part a participant plays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mode {
-    /// Passes messages on between all that connect to it.
-    Router,
-    /// Talks to those it is connected to.
-    Peer,
-    /// Has one connection, to a router.
-    Client,
-}
-
-/// How to join.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ZenohConfig {
-    /// Part played.
-    pub mode: Mode,
-    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447` or `unixsock-stream//run/socrates.sock`; none by default.
-    pub listen: Vec<String>,
-    /// Endpoints to connect to. There is no discovery: what is not listed is not found.
-    pub connect: Vec<String>,
-    /// Deployment that this participant belongs to.
-    pub namespace: String,
-    /// Name written into envelopes.
-    pub name: String,
-    /// How long opening keeps trying to connect. Default 10 s. Once open, a lost connection is sought for ever.
-    pub patience: Duration,
-}
-
-impl ZenohConfig {
-    /// The settings of a participant that neither listens nor connects yet.
-    #[must_use]
-    pub fn new(mode: Mode, namespace: &str, name: &str) -> Self {
-        Self {
-            mode,
-            listen: Vec::new(),
-            connect: Vec::new(),
-            namespace: namespace.to_owned(),
-            name: name.to_owned(),
-            patience: Duration::from_secs(10),
-        }
+/// What is said to the library about a participant.
+fn settings(of: &ZenohConfig) -> Result<Config, LinkError> {
+    let mode = match of.mode {
+        Mode::Router => "router",
+        Mode::Peer => "peer",
+        Mode::Client => "client",
+    };
+    // Debug of a string vector is a JSON5 list of strings.
+    let rows: [(&str, String); 17] = [
+        ("mode", format!("{mode:?}")),
+        ("listen/endpoints", format!("{:?}", of.listen)),
+        ("listen/timeout_ms", "0".to_owned()),
+        ("connect/endpoints", format!("{:?}", of.connect)),
+        ("connect/timeout_ms", of.patience.as_millis().to_string()),
+        ("connect/exit_on_failure", "true".to_owned()),
+        ("connect/retry", "{ period_init_ms: 100, period_max_ms: 1000, period_increase_factor: 1.5 }".to_owned()),
+        ("scouting/multicast/enabled", "false".to_owned()),
+        ("scouting/gossip/enabled", "false".to_owned()),
+        ("scouting/delay", "0".to_owned()),
+        ("adminspace/enabled", "false".to_owned()),
+        ("transport/shared_memory/enabled", "false".to_owned()),
+        ("transport/link/tx/lease", LEASE_MS.to_string()),
+        ("transport/link/tx/keep_alive", "4".to_owned()),
+        ("transport/unicast/accept_timeout", "5000".to_owned()),
+        ("transport/unicast/open_timeout", "5000".to_owned()),
+        ("queries_default_timeout", "10000".to_owned()),
+    ];
+    let mut config = Config::default();
+    for (key, value) in rows {
+        let set = config.insert_json5(key, &value);
+        set.map_err(|why| transport(&format!("setting `{key}` to `{value}`"), &why.to_string()))?;
     }
-
-    /// Listens on this endpoint too.
-    #[must_use]
-    pub fn listen(mut self, endpoint: &str) -> Self {
-        self.listen.push(endpoint.to_owned());
-        self
-    }
-
-    /// Connects to this endpoint too.
-    #[must_use]
-    pub fn connect(mut self, endpoint: &str) -> Self {
-        self.connect.push(endpoint.to_owned());
-        self
-    }
-
-    fn settings(&self) -> Result<Config, LinkError> {
-        let mode = match self.mode {
-            Mode::Router => "router",
-            Mode::Peer => "peer",
-            Mode::Client => "client",
-        };
-        // Debug of a string vector is a JSON5 list of strings.
-        let rows: [(&str, String); 17] = [
-            ("mode", format!("{mode:?}")),
-            ("listen/endpoints", format!("{:?}", self.listen)),
-            ("listen/timeout_ms", "0".to_owned()),
-            ("connect/endpoints", format!("{:?}", self.connect)),
-            ("connect/timeout_ms", self.patience.as_millis().to_string()),
-            ("connect/exit_on_failure", "true".to_owned()),
-            ("connect/retry", "{ period_init_ms: 100, period_max_ms: 1000, period_increase_factor: 1.5 }".to_owned()),
-            ("scouting/multicast/enabled", "false".to_owned()),
-            ("scouting/gossip/enabled", "false".to_owned()),
-            ("scouting/delay", "0".to_owned()),
-            ("adminspace/enabled", "false".to_owned()),
-            ("transport/shared_memory/enabled", "false".to_owned()),
-            ("transport/link/tx/lease", LEASE_MS.to_string()),
-            ("transport/link/tx/keep_alive", "4".to_owned()),
-            ("transport/unicast/accept_timeout", "5000".to_owned()),
-            ("transport/unicast/open_timeout", "5000".to_owned()),
-            ("queries_default_timeout", "10000".to_owned()),
-        ];
-        let mut config = Config::default();
-        for (key, value) in rows {
-            let set = config.insert_json5(key, &value);
-            set.map_err(|why| transport(&format!("setting `{key}` to `{value}`"), &why.to_string()))?;
-        }
-        Ok(config)
-    }
+    Ok(config)
 }
 
 fn transport(what: &str, why: &str) -> LinkError {
@@ -143,9 +88,9 @@ impl ZenohBus {
     /// [`LinkError::BadKey`] for the namespace; [`LinkError::Transport`] when an endpoint cannot be bound or reached.
     pub async fn open(config: ZenohConfig) -> Result<Self, LinkError> {
         let namespace = Namespace::new(&config.namespace)?;
-        let settings = config.settings()?;
+        let joined = settings(&config)?;
         let what = format!("joining the bus (listen {:?}, connect {:?})", config.listen, config.connect);
-        let session = zenoh::open(settings).await.map_err(|why| transport(&what, &why.to_string()))?;
+        let session = zenoh::open(joined).await.map_err(|why| transport(&what, &why.to_string()))?;
         Ok(Self { session, namespace, name: config.name, endings: Arc::default() })
     }
 

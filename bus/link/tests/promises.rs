@@ -1,11 +1,10 @@
 //! What every bus promises; run on the one in memory and on zenoh through a router on loopback.
 #![expect(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests may fail the test")]
 
-use std::net::TcpListener;
 use std::sync::Arc;
 use std::time::Duration;
 
-use socrates_link::{Bus, LinkError, MemoryBus, Mode, Overflow, Qos, ZenohBus, ZenohConfig, call, keys};
+use socrates_link::{Bus, LinkError, MemoryBus, Overflow, Qos, call, keys};
 use socrates_model::job::{MESSAGE_BYTES, Stage};
 use socrates_model::wire::{StatusAsk, StatusReply};
 
@@ -27,18 +26,6 @@ struct Pair {
 fn memory() -> Pair {
     let bus = MemoryBus::new();
     Pair { a: Arc::new(bus.named("a")), b: Arc::new(bus.named("b")), router: None }
-}
-
-fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
-}
-
-async fn zenoh() -> Pair {
-    let endpoint = format!("tcp/127.0.0.1:{}", free_port());
-    let router = ZenohBus::open(ZenohConfig::new(Mode::Router, "t", "router").listen(&endpoint)).await.unwrap();
-    let a = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "a").connect(&endpoint)).await.unwrap();
-    let b = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "b").connect(&endpoint)).await.unwrap();
-    Pair { a: Arc::new(a), b: Arc::new(b), router: Some(Arc::new(router)) }
 }
 
 async fn end(pair: Pair) {
@@ -255,66 +242,89 @@ async fn memory_keeps_every_promise() {
     .await;
 }
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn zenoh_keeps_every_promise() {
-    guarded(async {
-        let pair = zenoh().await;
-        every_promise(&pair).await;
-        closing_ends_what_was_handed_out(pair).await;
-    })
-    .await;
-}
+/// The same over zenoh, and what only a bus between processes can break.
+#[cfg(feature = "zenoh")]
+mod over_zenoh {
+    use std::net::TcpListener;
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn a_client_outlives_a_restart_of_its_router() {
-    guarded(async {
-        let endpoint = format!("tcp/127.0.0.1:{}", free_port());
-        let open_router = || ZenohBus::open(ZenohConfig::new(Mode::Router, "t", "router").listen(&endpoint));
-        let router = open_router().await.unwrap();
-        let client = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "c").connect(&endpoint)).await.unwrap();
-        let mut first = router.serve("rpc/x").await.unwrap();
-        let one = tokio::spawn(async move { first.next().await.unwrap().reply(vec![1]).await.unwrap() });
-        assert_eq!(ask_until_served(&client, "rpc/x", &[]).await, [1]);
-        one.await.unwrap();
-        router.close().await;
-        drop(router);
-        assert!(client.query("rpc/x", vec![], SOON).await.unwrap_err().is_transient());
-        let router = open_router().await.unwrap();
-        let mut second = router.serve("rpc/x").await.unwrap();
-        let two = tokio::spawn(async move { second.next().await.unwrap().reply(vec![2]).await.unwrap() });
-        assert_eq!(ask_until_served(&client, "rpc/x", &[]).await, [2]);
-        two.await.unwrap();
-        client.close().await;
-        router.close().await;
-    })
-    .await;
-}
+    use socrates_link::{Mode, ZenohBus, ZenohConfig};
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn other_namespaces_hear_nothing() {
-    guarded(async {
-        let endpoint = format!("tcp/127.0.0.1:{}", free_port());
-        let router = ZenohBus::open(ZenohConfig::new(Mode::Router, "one", "router").listen(&endpoint)).await.unwrap();
-        let other = ZenohBus::open(ZenohConfig::new(Mode::Client, "two", "c").connect(&endpoint)).await.unwrap();
-        let mut serving = router.serve("rpc/x").await.unwrap();
-        let server = tokio::spawn(async move { serving.next().await.unwrap().reply(vec![1]).await });
-        let error = other.query("rpc/x", vec![], SOON).await.unwrap_err();
-        assert!(matches!(error, LinkError::NoReply { .. }), "{error}");
-        server.abort();
-        other.close().await;
-        router.close().await;
-    })
-    .await;
-}
+    use super::*;
 
-#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn an_unreachable_router_is_an_error_that_names_it() {
-    guarded(async {
+    fn free_port() -> u16 {
+        TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    }
+
+    async fn zenoh() -> Pair {
         let endpoint = format!("tcp/127.0.0.1:{}", free_port());
-        let mut config = ZenohConfig::new(Mode::Client, "t", "c").connect(&endpoint);
-        config.patience = Duration::from_millis(300);
-        let error = ZenohBus::open(config).await.err().expect("nobody listens there").to_string();
-        assert!(error.contains(&endpoint), "{error}");
-    })
-    .await;
+        let router = ZenohBus::open(ZenohConfig::new(Mode::Router, "t", "router").listen(&endpoint)).await.unwrap();
+        let a = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "a").connect(&endpoint)).await.unwrap();
+        let b = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "b").connect(&endpoint)).await.unwrap();
+        Pair { a: Arc::new(a), b: Arc::new(b), router: Some(Arc::new(router)) }
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn zenoh_keeps_every_promise() {
+        guarded(async {
+            let pair = zenoh().await;
+            every_promise(&pair).await;
+            closing_ends_what_was_handed_out(pair).await;
+        })
+        .await;
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn a_client_outlives_a_restart_of_its_router() {
+        guarded(async {
+            let endpoint = format!("tcp/127.0.0.1:{}", free_port());
+            let open_router = || ZenohBus::open(ZenohConfig::new(Mode::Router, "t", "router").listen(&endpoint));
+            let router = open_router().await.unwrap();
+            let client = ZenohBus::open(ZenohConfig::new(Mode::Client, "t", "c").connect(&endpoint)).await.unwrap();
+            let mut first = router.serve("rpc/x").await.unwrap();
+            let one = tokio::spawn(async move { first.next().await.unwrap().reply(vec![1]).await.unwrap() });
+            assert_eq!(ask_until_served(&client, "rpc/x", &[]).await, [1]);
+            one.await.unwrap();
+            router.close().await;
+            drop(router);
+            assert!(client.query("rpc/x", vec![], SOON).await.unwrap_err().is_transient());
+            let router = open_router().await.unwrap();
+            let mut second = router.serve("rpc/x").await.unwrap();
+            let two = tokio::spawn(async move { second.next().await.unwrap().reply(vec![2]).await.unwrap() });
+            assert_eq!(ask_until_served(&client, "rpc/x", &[]).await, [2]);
+            two.await.unwrap();
+            client.close().await;
+            router.close().await;
+        })
+        .await;
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn other_namespaces_hear_nothing() {
+        guarded(async {
+            let endpoint = format!("tcp/127.0.0.1:{}", free_port());
+            let router =
+                ZenohBus::open(ZenohConfig::new(Mode::Router, "one", "router").listen(&endpoint)).await.unwrap();
+            let other = ZenohBus::open(ZenohConfig::new(Mode::Client, "two", "c").connect(&endpoint)).await.unwrap();
+            let mut serving = router.serve("rpc/x").await.unwrap();
+            let server = tokio::spawn(async move { serving.next().await.unwrap().reply(vec![1]).await });
+            let error = other.query("rpc/x", vec![], SOON).await.unwrap_err();
+            assert!(matches!(error, LinkError::NoReply { .. }), "{error}");
+            server.abort();
+            other.close().await;
+            router.close().await;
+        })
+        .await;
+    }
+
+    #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+    async fn an_unreachable_router_is_an_error_that_names_it() {
+        guarded(async {
+            let endpoint = format!("tcp/127.0.0.1:{}", free_port());
+            let mut config = ZenohConfig::new(Mode::Client, "t", "c").connect(&endpoint);
+            config.patience = Duration::from_millis(300);
+            let error = ZenohBus::open(config).await.err().expect("nobody listens there").to_string();
+            assert!(error.contains(&endpoint), "{error}");
+        })
+        .await;
+    }
 }

@@ -1,14 +1,20 @@
 //! What passes between a simulated world and the planner that drives the robot.
 
 use std::fmt;
+use std::str::FromStr;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use crate::geometry::{Point, Pose, Vector};
 use crate::gesture::Gesture;
-use crate::ids::HumanId;
+use crate::ids::{BadId, HumanId};
 use crate::time::SimTime;
 
 /// A robot body: a disc with the motion limits of its base.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[serde(into = "String")]
+#[schemars(with = "String")]
 pub struct RobotModel {
     /// Name as in `robot.model` of a request.
     pub name: &'static str,
@@ -61,10 +67,30 @@ impl RobotModel {
         },
     ];
 
-    /// The body of this name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|model| model.name == name)
+    /// The names, for messages.
+    pub const ALLOWED: &'static str = "linorobot2, turtlebot4, jackal, tiago";
+}
+
+impl FromStr for RobotModel {
+    type Err = BadId;
+    fn from_str(text: &str) -> Result<Self, BadId> {
+        Self::ALL.into_iter().find(|model| model.name == text).ok_or_else(|| BadId {
+            what: "robot model",
+            found: text.chars().take(80).collect(),
+            allowed: Self::ALLOWED,
+        })
+    }
+}
+
+impl<'de> Deserialize<'de> for RobotModel {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from)?.parse().map_err(serde::de::Error::custom)
+    }
+}
+
+impl From<RobotModel> for String {
+    fn from(model: RobotModel) -> Self {
+        model.name.to_owned()
     }
 }
 
@@ -95,7 +121,7 @@ pub struct SeenPerson {
     /// Body radius, m.
     pub radius_m: f64,
     /// Gesture being made.
-    pub gesture: Gesture,
+    pub gesture: Option<Gesture>,
 }
 
 /// A door as the robot sees it.

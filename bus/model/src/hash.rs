@@ -92,17 +92,3 @@ impl From<Digest> for String {
         digest.to_string()
     }
 }
-
-/// A seed for a part of a scenario: one base seed, and words that name the part.
-///
-/// The attempt number never enters, so that a retried job repeats itself byte for byte.
-#[must_use]
-pub fn derive_seed(base: u64, parts: &[&str]) -> u64 {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update(&base.to_le_bytes());
-    for part in parts {
-        hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part.as_bytes());
-    }
-    Digest(*hasher.finalize().as_bytes()).seed()
-}

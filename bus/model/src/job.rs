@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::fault::Fault;
 use crate::hash::Digest;
 use crate::ids::{BadId, ScenarioId};
+use crate::role::Role;
+use crate::run::Run;
 
 /// The stages, in pipeline order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
@@ -64,8 +66,112 @@ impl FromStr for Stage {
     }
 }
 
-/// Which job: a row of the store. `item` is empty but for simulation and scoring, where it names
-/// planner and seed (`reference-1`).
+/// What a person looks at in a job of stage `review`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Look {
+    /// The proposal.
+    Proposal,
+    /// Proposal, paths and behaviors together.
+    Draft,
+}
+
+impl Look {
+    /// Every look in pipeline order.
+    pub const ALL: [Self; 2] = [Self::Proposal, Self::Draft];
+
+    /// Name as in files and logs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Proposal => "proposal",
+            Self::Draft => "draft",
+        }
+    }
+}
+
+/// Which job of its stage: an authored stage has one, a review is a look, simulation and scoring are of a run.
+///
+/// As text, in files and in the job store, it is empty, `proposal` or `draft`, or a run such as `reference-1`.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(try_from = "String", into = "String")]
+#[schemars(with = "String")]
+pub enum Item {
+    /// The only one.
+    #[default]
+    Whole,
+    /// A person's look.
+    Look(Look),
+    /// A run.
+    Run(Run),
+}
+
+impl Item {
+    /// The run, where it is of one.
+    #[must_use]
+    pub const fn run(&self) -> Option<&Run> {
+        match self {
+            Self::Run(run) => Some(run),
+            Self::Whole | Self::Look(_) => None,
+        }
+    }
+
+    /// The look, where it is one.
+    #[must_use]
+    pub const fn look(&self) -> Option<Look> {
+        match self {
+            Self::Look(look) => Some(*look),
+            Self::Whole | Self::Run(_) => None,
+        }
+    }
+}
+
+impl From<Run> for Item {
+    fn from(run: Run) -> Self {
+        Self::Run(run)
+    }
+}
+
+impl From<Look> for Item {
+    fn from(look: Look) -> Self {
+        Self::Look(look)
+    }
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Look(look) => f.write_str(look.name()),
+            Self::Run(run) => run.fmt(f),
+        }
+    }
+}
+
+impl FromStr for Item {
+    type Err = BadId;
+    fn from_str(text: &str) -> Result<Self, BadId> {
+        if text.is_empty() {
+            return Ok(Self::Whole);
+        }
+        let look = Look::ALL.into_iter().find(|look| look.name() == text);
+        look.map_or_else(|| text.parse().map(Self::Run), |look| Ok(Self::Look(look)))
+    }
+}
+
+impl TryFrom<String> for Item {
+    type Error = BadId;
+    fn try_from(text: String) -> Result<Self, BadId> {
+        text.parse()
+    }
+}
+
+impl From<Item> for String {
+    fn from(item: Item) -> Self {
+        item.to_string()
+    }
+}
+
+/// Which job: a row of the store.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct JobKey {
@@ -73,9 +179,9 @@ pub struct JobKey {
     pub scenario: ScenarioId,
     /// Stage.
     pub stage: Stage,
-    /// Planner and seed, or empty.
+    /// Which of the stage.
     #[serde(default)]
-    pub item: String,
+    pub item: Item,
     /// Revision, from 0.
     pub revision: u32,
 }
@@ -83,29 +189,25 @@ pub struct JobKey {
 impl fmt::Display for JobKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.scenario, self.stage)?;
-        if !self.item.is_empty() {
+        if self.item != Item::Whole {
             write!(f, "/{}", self.item)?;
         }
         write!(f, "/r{}", self.revision)
     }
 }
 
-/// Everything a worker needs to do a job. Inputs are content addresses by role:
-/// `request`, `location`, `reading`, `proposal`, `paths`, `behaviors`, `recording`, `simulation`.
+/// Everything a worker needs to do a job. Inputs are content addresses by role.
+///
+/// Until message version 2 the run stood here twice more, as `planner` and `run_seed`; readers of today pass over
+/// them, and a reader of then would take every run for the reference, so a grant needs a reader of version 3.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct JobSpec {
     /// Which job.
     pub key: JobKey,
     /// Inputs by role.
-    pub inputs: BTreeMap<String, Digest>,
+    pub inputs: BTreeMap<Role, Digest>,
     /// Seed of this job, derived from scenario seed, stage and revision; never from the attempt.
     pub seed: u64,
-    /// Planner (simulation, scoring), else empty.
-    #[serde(default)]
-    pub planner: String,
-    /// Simulation seed (simulation, scoring), else 0.
-    #[serde(default)]
-    pub run_seed: u64,
     /// Reasons why earlier attempts or revisions were refused; the author reads them.
     #[serde(default)]
     pub feedback: Vec<Fault>,
@@ -118,24 +220,17 @@ pub struct JobSpec {
 }
 
 impl JobSpec {
-    /// Name of the run this job makes or judges: scenario, planner, seed.
+    /// The run that this job makes or judges.
     #[must_use]
-    pub fn run_name(&self) -> String {
-        format!("{}.{}-{}", self.key.scenario, self.planner, self.run_seed)
+    pub const fn run(&self) -> Option<&Run> {
+        self.key.item.run()
     }
 
     /// Idempotency key: stage, inputs, versions, seed, feedback; the same key is the same result.
     #[must_use]
     pub fn idem_key(&self, code_version: &str) -> Digest {
-        let mut text = format!(
-            "{}|{}|{}|{}|{}|{}",
-            crate::FORMAT,
-            self.key.stage,
-            code_version,
-            self.seed,
-            self.planner,
-            self.run_seed
-        );
+        let (planner, seed) = self.run().map_or(("", 0), |run| (run.planner.as_str(), run.seed));
+        let mut text = format!("{}|{}|{}|{}|{planner}|{seed}", crate::FORMAT, self.key.stage, code_version, self.seed);
         for (role, digest) in &self.inputs {
             text.push_str(&format!("|{role}={digest}"));
         }
@@ -155,8 +250,8 @@ impl JobSpec {
 /// An output of an attempt.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Artifact {
-    /// Role: `proposal`, `paths`, `behaviors`, `recording`, `simulation`, `report`, `picture`, `exchange` …
-    pub role: String,
+    /// What it is.
+    pub role: Role,
     /// Content address.
     pub digest: Digest,
     /// Length, bytes.
@@ -172,3 +267,32 @@ pub struct Artifact {
 pub const INLINE_BYTES: usize = 16 * 1024;
 /// Largest message on the bus, bytes.
 pub const MESSAGE_BYTES: usize = 64 * 1024;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A job of before, as an orchestrator of message version 2 wrote it.
+    const OF_VERSION_2: &str = r#"{"key": {"scenario": "a", "stage": "simulation", "item": "my-planner-3", "revision": 1},
+        "inputs": {"paths": "0000000000000000000000000000000000000000000000000000000000000000"}, "seed": 5,
+        "planner": "my-planner", "run_seed": 3}"#;
+
+    #[test]
+    fn a_job_of_before_is_read_and_its_run_is_that_of_its_key() {
+        let spec: JobSpec = serde_json::from_str(OF_VERSION_2).unwrap();
+        assert_eq!(spec.run().unwrap(), &Run { planner: "my-planner".parse().unwrap(), seed: 3 });
+        assert_eq!(spec.inputs.keys().collect::<Vec<_>>(), [&Role::Paths]);
+        let written = serde_json::to_value(&spec).unwrap();
+        assert_eq!(written["key"]["item"], "my-planner-3");
+        assert!(written.get("planner").is_none() && written.get("run_seed").is_none(), "a run stands in one place");
+    }
+
+    #[test]
+    fn an_item_is_nothing_a_look_or_a_run() {
+        for text in ["", "proposal", "draft", "reference-1"] {
+            assert_eq!(text.parse::<Item>().unwrap().to_string(), text);
+        }
+        assert_eq!("draft".parse::<Item>().unwrap().look(), Some(Look::Draft));
+        assert!("sketch".parse::<Item>().is_err());
+    }
+}

@@ -8,13 +8,15 @@
 //! Modules in reading order: ids and units first, then the artifacts in the order in which a
 //! scenario meets them, then what passes between processes.
 //!
-//! *Never here:* a runtime, a file, a socket, a clock, a random number, another room's rule.
+//! *Never here:* a runtime, a file, a socket, a clock, a generator of random numbers, another room's rule.
 
 pub mod geometry;
 pub mod gesture;
 pub mod hash;
 pub mod ids;
 pub mod polyline;
+pub mod run;
+pub mod seeds;
 pub mod time;
 
 pub mod graph;
@@ -38,6 +40,7 @@ mod telling;
 
 pub mod fault;
 pub mod job;
+pub mod role;
 pub mod schema;
 pub mod wire;
 pub mod words;
@@ -47,13 +50,13 @@ pub use nalgebra;
 pub use behaviors::{Behaviors, HumanBehavior};
 pub use clause::{Clause, ClauseRole, Predicate};
 pub use drive::{Command, Cues, Observation, RobotDriver, RobotModel, SeenDoor, SeenPerson};
-pub use fault::{FailureClass, Fault, FaultCode, Remedy};
+pub use fault::{FailureClass, Family, Fault, FaultCode, Payload, Remedy, Where};
 pub use geometry::{Point, Pose, Vector};
 pub use gesture::Gesture;
 pub use graph::{GraphEdge, GraphNode, SceneGraph};
 pub use grid::{Cell, Grid};
 pub use hash::{Digest, DigestWriter};
-pub use ids::{AgentId, GroupId, HumanId, NodeId, RunId, ScenarioId};
+pub use ids::{AgentId, GroupId, HumanId, NodeId, PlannerName, RunId, ScenarioId};
 pub use location::{Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use place::PlaceClass;
@@ -62,8 +65,10 @@ pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotPropos
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
 pub use report::{ClauseResult, MetricValue, Missing, Report, Verdict};
-pub use request::Request;
+pub use request::{AuthorSpec, BadRequest, Moment, Request, Seeds};
+pub use role::Role;
 pub use rule::{Action, RobotRule, Rule, Trigger};
+pub use run::Run;
 pub use time::SimTime;
 
 /// Format number written into every artifact. A reader refuses a larger one.

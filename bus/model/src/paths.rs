@@ -105,7 +105,16 @@ pub fn ordinal(nth: u32) -> String {
         1 => "first".to_owned(),
         2 => "second".to_owned(),
         3 => "third".to_owned(),
-        more => format!("{more}th"),
+        more => {
+            let suffix = match (more % 100, more % 10) {
+                (11..=13, _) => "th",
+                (_, 1) => "st",
+                (_, 2) => "nd",
+                (_, 3) => "rd",
+                _ => "th",
+            };
+            format!("{more}{suffix}")
+        }
     }
 }
 
@@ -130,6 +139,12 @@ mod tests {
         assert_eq!(paths.encounters_of(HumanId::new(2)).count(), 0);
         assert_eq!(paths.encounter_of(who), paths.encounters_of(who).next());
         paths.visits(who).iter().map(|visit| (visit.robot_step, visit.human_step)).collect()
+    }
+
+    #[test]
+    fn ordinals_end_as_in_english() {
+        let found = [1, 4, 11, 12, 13, 21, 22, 23, 101, 111, 112].map(ordinal).join(" ");
+        assert_eq!(found, "first 4th 11th 12th 13th 21st 22nd 23rd 101st 111th 112th");
     }
 
     #[test]

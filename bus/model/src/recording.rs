@@ -41,12 +41,12 @@ pub const AGENT_STATE_BYTES: usize = 64;
 impl AgentState {
     /// Packs kind, gesture and leaf.
     #[must_use]
-    pub const fn flags(agent: AgentId, gesture: Gesture, leaf: u16) -> u32 {
+    pub const fn flags(agent: AgentId, said: Option<Gesture>, leaf: u16) -> u32 {
         let kind = match agent {
             AgentId::Robot => 0_u32,
             AgentId::Human(_) => 1,
         };
-        kind | ((gesture.code() as u32) << 8) | ((leaf as u32) << 16)
+        kind | ((Gesture::code_of(said) as u32) << 8) | ((leaf as u32) << 16)
     }
 
     /// Who.
@@ -55,10 +55,10 @@ impl AgentState {
         AgentId::from_number(self.agent)
     }
 
-    /// The gesture being made.
+    /// The gesture being made; none for a code that is not in the table.
     #[must_use]
-    pub fn gesture(&self) -> Gesture {
-        u8::try_from((self.flags >> 8) & 0xff).ok().and_then(Gesture::from_code).unwrap_or_default()
+    pub fn gesture(&self) -> Option<Gesture> {
+        u8::try_from((self.flags >> 8) & 0xff).ok().and_then(|code| Gesture::from_code(code).ok()).flatten()
     }
 
     /// Index of the running leaf in [`RecordingHeader::leaves`].
@@ -141,7 +141,9 @@ pub enum EventKind {
         /// Who.
         agent: AgentId,
         /// Which.
-        gesture: Gesture,
+        #[serde(with = "crate::gesture::or_none")]
+        #[schemars(with = "String")]
+        gesture: Option<Gesture>,
     },
     /// Another leaf of a human's tree runs.
     Leaf {
@@ -408,7 +410,7 @@ mod tests {
         let state = AgentState {
             tick: 7,
             agent: 2,
-            flags: AgentState::flags(AgentId::from_number(2), Gesture::Wait, 513),
+            flags: AgentState::flags(AgentId::from_number(2), Some(Gesture::Wait), 513),
             x: 1.5,
             y: -2.25,
             yaw: 0.1,
@@ -418,7 +420,7 @@ mod tests {
         };
         let back = AgentState::from_bytes(&state.to_bytes()).unwrap();
         assert_eq!(back, state);
-        assert_eq!(back.gesture(), Gesture::Wait);
+        assert_eq!(back.gesture(), Some(Gesture::Wait));
         assert_eq!(back.leaf(), 513);
         assert!((back.speed() - 0.5).abs() < 1e-12);
     }

@@ -1,14 +1,31 @@
 //! The request: what the user gives.
+//!
+//! It is parsed once, where it is read ([`Request::of_toml`], [`Request::of_json`], or serde, which goes the same way),
+//! into types that cannot be wrong. Nobody behind that door sees the text of a seed, a duration, a moment or an author.
 
-use std::collections::BTreeMap;
+mod author;
+mod read;
+mod tree;
+mod values;
+
+use std::fmt;
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
+pub use author::{AuthorSpec, ServerKind};
+pub use tree::TextPlace;
+pub use values::{Duration, Moment, Seeds};
+
+use crate::drive::RobotModel;
+use crate::fault::FaultCode;
 use crate::gesture::Gesture;
+use crate::ids::PlannerName;
+use crate::place::PlaceClass;
+use crate::rule::{RobotDo, RobotRule};
 
 /// A request as written in its TOML file. Unknown keys are refused.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Request {
     /// A shipped location's name, or a folder.
@@ -57,23 +74,31 @@ pub enum Waypoints {
 }
 
 /// A gesture of the robot: `{ when = "blocked 3 s", say = "EXCUSE_ME" }`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct RobotGesture {
     /// `start`, `blocked N s`, `human within N m`, `after N s`.
-    pub when: String,
+    pub when: Moment,
     /// The gesture.
     pub say: Gesture,
 }
 
+impl RobotGesture {
+    /// The line of the robot script that plays it.
+    #[must_use]
+    pub const fn line(&self) -> RobotRule {
+        RobotRule { when: self.when.when(), act: RobotDo::Say(self.say) }
+    }
+}
+
 /// The robot of a request.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RobotRequest {
     /// Robot model; default `linorobot2`.
-    pub model: String,
+    pub model: RobotModel,
     /// Planners under test; `reference` is always run, first. Default `["reference"]`.
-    pub planners: Vec<String>,
+    pub planners: Vec<PlannerName>,
     /// Which nodes of its path the planner is given. Default `via`.
     pub waypoints: Waypoints,
     /// Gestures the robot makes by itself.
@@ -83,8 +108,8 @@ pub struct RobotRequest {
 impl Default for RobotRequest {
     fn default() -> Self {
         Self {
-            model: "linorobot2".to_owned(),
-            planners: vec!["reference".to_owned()],
+            model: RobotModel::default(),
+            planners: vec![PlannerName::reference()],
             waypoints: Waypoints::Via,
             gestures: Vec::new(),
         }
@@ -92,43 +117,36 @@ impl Default for RobotRequest {
 }
 
 /// How a request is run.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RunRequest {
-    /// Simulation seeds: `"1"`, `"1..20"`, `"1,4,9"`. Default `"1"`.
-    #[serde(deserialize_with = "seeds_text")]
-    pub seeds: String,
+    /// Simulation seeds: `"1"`, `"1..20"`, `"1,4,9"`. Default: the base seed of the run, which is 1 unless it is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seeds: Option<Seeds>,
     /// `"auto"` (until done, at most 120 s) or seconds such as `"60s"`. Default `auto`.
-    pub duration: String,
+    pub duration: Duration,
     /// `auto`, `offline`, or `provider:model`. Default `auto`.
-    pub author: String,
+    pub author: AuthorSpec,
     /// Number of scenarios to make from this request, 1 to 100 000. Default 1.
     pub variants: u32,
 }
 
 impl Default for RunRequest {
     fn default() -> Self {
-        Self { seeds: "1".to_owned(), duration: "auto".to_owned(), author: "auto".to_owned(), variants: 1 }
+        Self { seeds: None, duration: Duration::Auto, author: AuthorSpec::Auto, variants: 1 }
     }
 }
 
-/// Reads the seeds, and says how to write them where they are no text.
-fn seeds_text<'de, D: serde::Deserializer<'de>>(from: D) -> Result<String, D::Error> {
-    struct Text;
-    impl serde::de::Visitor<'_> for Text {
-        type Value = String;
-        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("seeds as a text in quotation marks: \"1..3\" or \"1,2,3\"")
-        }
-        fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<String, E> {
-            Ok(text.to_owned())
-        }
+impl RunRequest {
+    /// The simulation seeds in order; 1 where none are named.
+    #[must_use]
+    pub fn seeds(&self) -> &[u64] {
+        self.seeds.as_ref().map_or(&[1], Seeds::list)
     }
-    from.deserialize_str(Text)
 }
 
 /// Facts that win over what the text says.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Expect {
     /// Number of humans.
@@ -136,7 +154,7 @@ pub struct Expect {
     pub humans: Option<u32>,
     /// Place class of the encounter.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<String>,
+    pub place: Option<PlaceClass>,
     /// Groups as lists of human numbers.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<Vec<u32>>,
@@ -151,33 +169,6 @@ impl Expect {
     pub fn headcount(&self) -> Option<u32> {
         self.humans.or_else(|| self.groups.iter().flatten().copied().max())
     }
-
-    /// What is wrong with the groups: members that are nobody, or somebody twice.
-    fn group_problems(&self) -> Vec<BadRequest> {
-        let most = self.humans.unwrap_or(MAX_HUMANS).min(MAX_HUMANS);
-        let mut problems = Vec::new();
-        let mut bad = |found: String, hint: String| problems.push(BadRequest { key: "expect.groups", found, hint });
-        let mut seen: Vec<u32> = Vec::new();
-        for group in &self.groups {
-            if !GROUP_SIZES.contains(&group.len()) {
-                let hint = format!("{} to {} members", GROUP_SIZES.start(), GROUP_SIZES.end());
-                bad(format!("{group:?} has {} members", group.len()), hint);
-            }
-            for member in group {
-                if *member == 0 || *member > most {
-                    bad(format!("{group:?} names human_{member}"), format!("numbers of humans, 1 to {most}"));
-                }
-                if seen.contains(member) {
-                    bad(
-                        format!("{group:?} names human_{member} again"),
-                        "each human is in one group at most".to_owned(),
-                    );
-                }
-                seen.push(*member);
-            }
-        }
-        problems
-    }
 }
 
 /// How many members a group has.
@@ -187,183 +178,165 @@ pub const MAX_HUMANS: u32 = 40;
 /// Longest text of one field, characters.
 pub const MAX_TEXT_CHARS: usize = 8_000;
 
-/// One thing wrong with a request: which key, what was found, and a hint.
+/// Largest number of scenarios made of one request.
+pub const MAX_VARIANTS: u32 = 100_000;
+
+/// One thing wrong with a request: which key, what was found, where, and a hint.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{key}`: {found}")]
 pub struct BadRequest {
-    /// The key, dotted.
-    pub key: &'static str,
+    /// `J-REQUEST`, or `J-PLANNER` for a planner that does not exist.
+    pub code: FaultCode,
+    /// The key, dotted; empty where the text is no table at all.
+    pub key: String,
     /// What is wrong, with the value.
     pub found: String,
     /// What would be taken.
     pub hint: String,
+    /// Where the value stands, if the request came as a text.
+    pub at: Option<TextPlace>,
 }
 
-impl Request {
-    /// Every problem of the request's own texts and numbers; empty when it is good.
+impl fmt::Display for BadRequest {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.key.as_str() {
+            "" => f.write_str(&self.found),
+            key => write!(f, "`{key}`: {}", self.found),
+        }
+    }
+}
+
+impl BadRequest {
+    /// One line with everything: `J-REQUEST my.toml:12:9 ‘run.seeds’: … (hint)`.
     #[must_use]
-    pub fn problems(&self) -> Vec<BadRequest> {
-        let mut problems = Vec::new();
-        let texts: BTreeMap<&'static str, Option<&String>> = BTreeMap::from([
-            ("social_context", Some(&self.social_context)),
-            ("task", Some(&self.task)),
-            ("rough_scenario", self.rough_scenario.as_ref()),
-            ("location_description", self.location_description.as_ref()),
-            ("location", Some(&self.location)),
-        ]);
-        for (key, text) in texts {
-            let Some(text) = text else { continue };
-            problems.extend(text_problems(key, text));
-        }
-        if self.task.trim().is_empty() {
-            problems.push(BadRequest {
-                key: "task",
-                found: "is empty".to_owned(),
-                hint: "say what the robot has to do, for example \"Deliver coffee to the meeting room\"".to_owned(),
-            });
-        }
-        if let Err(why) = self.seeds() {
-            problems.push(BadRequest {
-                key: "run.seeds",
-                found: why,
-                hint: "\"1\", \"1..20\" or \"1,4,9\"".to_owned(),
-            });
-        }
-        if let Err(why) = self.duration_s() {
-            problems.push(BadRequest {
-                key: "run.duration",
-                found: why,
-                hint: "\"auto\" or \"60s\" (1 to 600 s)".to_owned(),
-            });
-        }
-        if self.run.variants == 0 || self.run.variants > 100_000 {
-            problems.push(BadRequest {
-                key: "run.variants",
-                found: format!("{} is out of range", self.run.variants),
-                hint: "1 to 100000".to_owned(),
-            });
-        }
-        if let Some(humans) = self.expect.humans.filter(|n| *n == 0 || *n > MAX_HUMANS) {
-            problems.push(BadRequest {
-                key: "expect.humans",
-                found: format!("{humans} humans"),
-                hint: format!("1 to {MAX_HUMANS}; a social scenario needs somebody to meet"),
-            });
-        }
-        if let Some(Err(bad)) = self.expect.place.as_ref().map(|place| place.parse::<crate::PlaceClass>()) {
-            problems.push(BadRequest { key: "expect.place", found: bad.to_string(), hint: bad.allowed.to_owned() });
-        }
-        problems.extend(self.expect.group_problems());
-        problems
-    }
-
-    /// The simulation seeds in order.
-    ///
-    /// # Errors
-    /// A sentence that names the value when it is not of the form `1`, `1..20` or `1,4,9`.
-    pub fn seeds(&self) -> Result<Vec<u64>, String> {
-        let text = self.run.seeds.trim();
-        let number = |part: &str| {
-            part.trim().parse::<u64>().map_err(|_digits| format!("`{}` is not a whole number", part.trim()))
-        };
-        if let Some((from, to)) = text.split_once("..") {
-            let (from, to) = (number(from)?, number(to.trim_start_matches('='))?);
-            if from > to || to - from >= 10_000 {
-                return Err(format!("`{text}` is no range of 1 to 10000 seeds"));
-            }
-            return Ok((from..=to).collect());
-        }
-        text.split(',').map(number).collect()
-    }
-
-    /// The fixed duration in seconds; `None` for `auto`.
-    ///
-    /// # Errors
-    /// A sentence that names the value when it is neither `auto` nor 1 to 600 seconds.
-    pub fn duration_s(&self) -> Result<Option<f64>, String> {
-        let text = self.run.duration.trim();
-        if text == "auto" {
-            return Ok(None);
-        }
-        let digits = text.trim_end_matches('s').trim();
-        match digits.parse::<f64>() {
-            Ok(secs) if (1.0..=600.0).contains(&secs) => Ok(Some(secs)),
-            Ok(_) | Err(_) => Err(format!("`{text}` is not a duration")),
-        }
+    pub fn told(&self, file: &str) -> String {
+        let at = self.at.map_or_else(|| file.to_owned(), |at| format!("{file}:{at}"));
+        format!("{} {at} {self} ({})", self.code, self.hint)
     }
 }
 
-fn text_problems(key: &'static str, text: &str) -> Vec<BadRequest> {
-    let mut problems = Vec::new();
-    let mut bad = |found: String, hint: &str| problems.push(BadRequest { key, found, hint: hint.to_owned() });
-    let length = text.chars().count();
-    if length > MAX_TEXT_CHARS {
-        bad(format!("has {length} characters"), "at most 8000; a few sentences are enough");
+impl<'de> Deserialize<'de> for Request {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let value = serde_json::Value::deserialize(from)?;
+        Self::of_json(&value, None).map_err(|problems| {
+            let told: Vec<String> = problems.iter().map(|bad| format!("{bad} ({})", bad.hint)).collect();
+            serde::de::Error::custom(told.join("; "))
+        })
     }
-    if let Some(control) = text.chars().find(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t')) {
-        bad(
-            format!("holds the control character U+{:04X}", u32::from(control)),
-            "remove it; only text, line breaks and tabs are taken",
-        );
-    }
-    if matches!(text.trim(), "None" | "none" | "NONE" | "null" | "nil") {
-        bad(format!("is the word `{}`", text.trim()), "leave the key out for an unguided scenario");
-    }
-    problems
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn request(rough: &str) -> Request {
-        Request {
-            location: "office".into(),
-            social_context: "An office".into(),
-            task: "Deliver mail".into(),
-            rough_scenario: Some(rough.into()),
-            location_description: None,
-            robot: RobotRequest::default(),
-            run: RunRequest::default(),
-            expect: Expect::default(),
-            proposal: None,
-            paths: None,
-            behaviors: None,
-        }
+    const PLAIN: &str = "location = \"office\"\nsocial_context = \"An office\"\ntask = \"Deliver mail\"\n";
+
+    /// What is told of a request with these lines.
+    fn told(more: &str) -> Vec<String> {
+        let problems =
+            Request::of_toml(&format!("{PLAIN}{more}"), Some(&["reference", "none"])).err().unwrap_or_default();
+        problems.iter().map(|bad| bad.told("my.toml")).collect()
     }
 
     #[test]
     fn the_word_none_is_an_error_with_a_hint() {
-        let problems = request("None").problems();
-        assert_eq!(problems[0].key, "rough_scenario");
-        assert!(problems[0].hint.contains("leave the key out"));
+        let told = told("rough_scenario = \"None\"\n");
+        assert_eq!(
+            told,
+            [
+                "J-REQUEST my.toml:4:18 `rough_scenario`: is the word `None` (leave the key out for an unguided scenario)"
+            ]
+        );
     }
 
     #[test]
     fn groups_of_people_who_are_not_expected_are_refused() {
-        let mut request = request("two people");
-        let keys = |request: &Request| request.problems().iter().map(|bad| bad.found.clone()).collect::<Vec<_>>();
-        (request.expect.humans, request.expect.groups) = (Some(3), vec![vec![1, 2]]);
-        assert_eq!(keys(&request), Vec::<String>::new());
-        request.expect.groups = vec![vec![1, 2], vec![2, 3]];
-        assert_eq!(keys(&request), ["[2, 3] names human_2 again"]);
-        request.expect.groups = vec![vec![0, 4], vec![1]];
-        assert_eq!(keys(&request), ["[0, 4] names human_0", "[0, 4] names human_4", "[1] has 1 members"]);
-        (request.expect.humans, request.expect.groups) = (None, vec![vec![1, 5]]);
+        let found = |more: &str| {
+            let read = Request::of_toml(&format!("{PLAIN}[expect]\n{more}\n"), None);
+            read.err().unwrap_or_default().into_iter().map(|bad| bad.found).collect::<Vec<_>>()
+        };
+        assert_eq!(found("humans = 3\ngroups = [[1, 2]]"), Vec::<String>::new());
+        assert_eq!(found("humans = 3\ngroups = [[1, 2], [2, 3]]"), ["[2, 3] names human_2 again"]);
+        let twice = ["[0, 4] names human_0", "[0, 4] names human_4", "[1] has 1 members"];
+        assert_eq!(found("humans = 3\ngroups = [[0, 4], [1]]"), twice);
+        let request = Request::of_toml(&format!("{PLAIN}[expect]\ngroups = [[1, 5]]\n"), None).unwrap();
         assert_eq!(request.expect.headcount(), Some(5));
     }
 
     #[test]
-    fn seeds_are_read_as_one_range_or_list() {
-        let mut request = request("two people");
-        for (text, count) in [("3", 1), ("1..20", 20), ("1,4,9", 3)] {
-            request.run.seeds = text.into();
-            assert_eq!(request.seeds().unwrap().len(), count);
-        }
-        let list = serde_json::from_str::<RunRequest>(r#"{"seeds": [1, 2, 3]}"#).unwrap_err().to_string();
-        assert!(list.contains(r#"expected seeds as a text in quotation marks: "1..3" or "1,2,3""#), "{list}");
-        assert_eq!(serde_json::from_str::<RunRequest>(r#"{"seeds": "1,2"}"#).unwrap().seeds, "1,2");
-        request.run.seeds = "9..1".into();
-        assert!(request.seeds().is_err());
+    fn everything_that_is_wrong_is_told_at_once_with_line_and_column() {
+        let text = "color = 1\n[robot]\nmodel = \"hal\"\nplanners = [\"none\", \"telepathy\", \"a/b\"]\n\
+                    gestures = [{ when = \"whenever\", say = \"WAIT\" }, { say = \"SING\" }]\n\
+                    [run]\nseeds = \"9..1\"\nduration = \"long\"\nauthor = \"nobody\"\nvariants = 0\n\
+                    [expect]\nplace = \"moon\"\nhumans = 99\n";
+        let told = told(text);
+        let at = |place: &str, words: &str| {
+            let line = told
+                .iter()
+                .find(|line| line.contains(&format!("my.toml:{place} ")))
+                .unwrap_or_else(|| panic!("{place}: {told:#?}"));
+            assert!(line.contains(words), "{place} `{words}`: {line}");
+        };
+        at("4:1", "`color`: is not a key of a request (keys: location, social_context, task");
+        at("6:9", "`robot.model`: `hal` is not a robot model; allowed: linorobot2");
+        at(
+            "7:21",
+            "J-PLANNER my.toml:7:21 `robot.planners`: there is no planner `telepathy` (planners: reference, none)",
+        );
+        at("7:34", "`a/b` is not a planner name");
+        at("8:22", "`robot.gestures.when`: `whenever` is not a moment");
+        at("8:50", "`robot.gestures.when`: is missing");
+        at("8:58", "`robot.gestures.say`");
+        at("10:9", "`run.seeds`: `9..1` is not a list or range of seeds");
+        at("11:12", "`run.duration`: `long` is not a duration");
+        at("12:10", "`run.author`: `nobody` is not a name of an author");
+        at("13:12", "`run.variants`: 0 is out of range (1 to 100000)");
+        at("15:9", "`expect.place`: `moon` is not a place class");
+        at("16:10", "`expect.humans`: 99 humans");
+        assert_eq!(told.len(), 13, "{told:#?}");
+    }
+
+    #[test]
+    fn a_text_that_is_no_toml_and_a_request_without_its_keys_are_told_with_their_places() {
+        let broken = Request::of_toml("location = \"office\"\ntask = = 3\n", None).unwrap_err();
+        assert!(broken.iter().any(|bad| bad.told("my.toml").starts_with("J-REQUEST my.toml:2:")), "{broken:?}");
+        let empty: Vec<String> = Request::of_toml("", None).unwrap_err().into_iter().map(|bad| bad.key).collect();
+        assert_eq!(empty, ["location", "social_context", "task"]);
+        let seeds = told("[run]\nseeds = [1, 2, 3]\n");
+        assert!(seeds[0].contains("a text in quotation marks: \"1\", \"1..20\" or \"1,4,9\""), "{seeds:?}");
+    }
+
+    #[test]
+    fn json_goes_through_the_same_door() {
+        let json =
+            serde_json::json!({ "location": "office", "social_context": "", "task": " ", "run": { "seeds": "x" } });
+        let why = serde_json::from_value::<Request>(json).unwrap_err().to_string();
+        assert!(why.contains("`task`: is empty") && why.contains("`run.seeds`: `x` is not"), "{why}");
+    }
+
+    #[test]
+    fn a_request_is_written_as_it_is_read_and_requests_of_before_stay_readable() {
+        // As bundles of before hold it, with every key.
+        let old = format!(
+            "{PLAIN}[robot]\nmodel = \"jackal\"\nplanners = [\"reference\"]\nwaypoints = \"via\"\n\
+             [[robot.gestures]]\nwhen = \"blocked 3 s\"\nsay = \"EXCUSE_ME\"\n\
+             [run]\nseeds = \"1..3\"\nduration = \"60s\"\nauthor = \"auto\"\nvariants = 1\n\
+             [expect]\nplace = \"corridor\"\n"
+        );
+        let request = Request::of_toml(&old, None).unwrap();
+        assert_eq!(request.robot.model.name, "jackal");
+        assert_eq!(request.robot.gestures[0].when, Moment::Blocked(3.0));
+        assert_eq!((request.run.seeds(), request.run.duration.fixed_s()), (&[1, 2, 3][..], Some(60.0)));
+        assert_eq!(request.expect.place, Some(PlaceClass::Corridor));
+        assert_eq!(Request::of_toml(&toml::to_string(&request).unwrap(), None).unwrap(), request);
+        let json = serde_json::to_value(&request).unwrap();
+        assert_eq!(json["run"]["seeds"], "1..3");
+        assert_eq!(serde_json::from_value::<Request>(json).unwrap(), request);
+    }
+
+    #[test]
+    fn seeds_that_are_written_are_told_apart_from_those_that_are_not() {
+        let read = |more: &str| Request::of_toml(&format!("{PLAIN}{more}"), None).unwrap().run;
+        assert_eq!((read("").seeds, read("").seeds().to_vec()), (None, vec![1]));
+        assert_eq!(read("[run]\nseeds = \"1\"\n").seeds, Some(Seeds::one(1)));
     }
 }

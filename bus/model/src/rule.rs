@@ -191,7 +191,11 @@ pub struct Rule {
     /// What is done.
     pub act: Action,
     /// Gesture made as the rule starts; taken back when it ends.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "crate::gesture::or_none::deserialize"
+    )]
     pub gesture: Option<Gesture>,
     /// Seconds for which it is done, counted while it is done; without: as long as the triggers hold.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -84,7 +84,7 @@ fn off(human: HumanId, node: &NodeId, which: &str, apart_m: f64) -> String {
 mod tests {
     use super::*;
     use crate::recording::AgentInfo;
-    use crate::{AgentState, FORMAT, Gesture, RecordingHeader, RunId, SimTime};
+    use crate::{AgentState, FORMAT, RecordingHeader, RunId, SimTime};
 
     const H1: HumanId = HumanId::new(1);
 
@@ -94,7 +94,7 @@ mod tests {
         let state = |tick: u64, agent: AgentId, (x, y): (f64, f64)| AgentState {
             tick,
             agent: agent.number(),
-            flags: AgentState::flags(agent, Gesture::None, 0),
+            flags: AgentState::flags(agent, None, 0),
             x,
             y,
             yaw: 0.0,

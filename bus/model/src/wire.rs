@@ -1,4 +1,4 @@
-//! What workers, clients and the orchestrator say to each other (`spec/orchestration` §1.3).
+//! What workers, clients and the orchestrator say to each other: workers ask for work and report, clients submit and look.
 //!
 //! Bodies only; the envelope and its encoding live in `link`. Unknown fields are ignored and new
 //! fields have defaults, so that neighbors one version apart understand each other.
@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::{FailureClass, Fault};
 use crate::hash::Digest;
-use crate::ids::ScenarioId;
+use crate::ids::{PlannerName, ScenarioId};
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
+use crate::role::Role;
 
 /// A worker introduces itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -271,12 +272,12 @@ pub struct ScenarioSpec {
     /// Base seed.
     pub seed: u64,
     /// Planners, `reference` first.
-    pub planners: Vec<String>,
+    pub planners: Vec<PlannerName>,
     /// Simulation seeds.
     pub run_seeds: Vec<u64>,
     /// Pinned artifacts by role (`proposal`, `paths`, `behaviors`); their stages are not asked.
     #[serde(default)]
-    pub pinned: BTreeMap<String, Digest>,
+    pub pinned: BTreeMap<Role, Digest>,
     /// Further settings handed to the jobs (`author`, `pace`, `live`, `profile`).
     #[serde(default)]
     pub settings: BTreeMap<String, String>,

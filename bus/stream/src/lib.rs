@@ -10,8 +10,15 @@
 //! The same 64-byte records travel everywhere. A sink never holds the simulation up: what a viewer misses
 //! is known exactly and can be fetched. The recording is made by the simulation, never from a stream.
 //!
+//! | feature | what it adds |
+//! |---|---|
+//! | `mcap` | recordings as files, and the live stream, which reads older ticks from them |
+//! | `shm` | frames in shared memory; without it [`ShmHost`] says so in the log and has none |
+//! | `zenoh` | the bus between processes, for the example `subscriber` |
+//!
 //! *Never here:* the wall clock, a decision about a run, MessagePack of a frame.
 
+#[cfg(feature = "mcap")]
 mod bounds;
 mod error;
 pub use error::StreamError;
@@ -22,15 +29,29 @@ pub use sink::{Fanout, FrameSink, NoSink, Recorder};
 mod order;
 pub use order::{Order, Seen, TickRange};
 
-mod shm;
-pub use shm::{ShmConfig, ShmHost, ShmSink, ShmState, ShmWatch};
+mod corner;
+pub use corner::ShmConfig;
+#[cfg(not(feature = "shm"))]
+pub use corner::ShmHost;
 
+#[cfg(feature = "shm")]
+mod shm;
+#[cfg(feature = "shm")]
+pub use shm::{ShmHost, ShmSink, ShmState, ShmWatch};
+
+#[cfg(feature = "mcap")]
 mod live;
+#[cfg(feature = "mcap")]
 mod part;
+#[cfg(feature = "mcap")]
 mod shelf;
+#[cfg(feature = "mcap")]
 mod watch;
+#[cfg(feature = "mcap")]
 pub use live::{Linger, LiveSink};
+#[cfg(feature = "mcap")]
 pub use watch::{Sight, Watch};
 
 pub mod csv;
+#[cfg(feature = "mcap")]
 pub mod mcap;

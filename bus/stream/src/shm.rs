@@ -1,7 +1,7 @@
 //! Frames through shared memory, for readers on the same host. A run never depends on it.
 
 use std::io::Write as _;
-use std::path::{Path as FsPath, PathBuf};
+use std::path::Path as FsPath;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use iceoryx2::port::publisher::Publisher;
@@ -14,6 +14,7 @@ use iceoryx2::service::port_factory::PortFactory as _;
 use socrates_model::RunId;
 use socrates_model::recording::{AGENT_STATE_BYTES, AgentState, Event, RecordingHeader};
 
+use crate::corner::ShmConfig;
 use crate::error::StreamError;
 use crate::order::{Order, Seen, TickRange};
 use crate::sink::FrameSink;
@@ -89,24 +90,7 @@ impl From<&ShmState> for AgentState {
     }
 }
 
-/// Where shared memory is arranged: a corner of one user, which nobody else can enter. Writers and readers must agree.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ShmConfig {
-    /// Folder of the small files by which both sides find each other. Made where needed; it has to belong to `user` alone.
-    pub root: PathBuf,
-    /// Begin of every segment's name.
-    pub prefix: String,
-    /// Number of the user whose corner it is.
-    pub user: u32,
-}
-
 impl ShmConfig {
-    /// The corner of a user in a folder for temporary files: `FOLDER/socrates-shm-USER`.
-    #[must_use]
-    pub fn of_user(folder: &FsPath, user: u32) -> Self {
-        Self { root: folder.join(format!("socrates-shm-{user}")), prefix: format!("socrates_{user}_"), user }
-    }
-
     /// Closes the user's segments to others: the library opens one to everybody, a counter of its nodes. What cannot be
     /// closed is not the user's.
     fn close_segments(&self) {
@@ -156,6 +140,18 @@ impl ShmHost {
     #[must_use]
     pub fn new(config: ShmConfig) -> Self {
         Self { config, node: Arc::default() }
+    }
+
+    /// A sink for the ticks of a run; none where shared memory cannot be had, which is logged.
+    #[must_use]
+    pub fn sink(&self, run: &RunId) -> Option<Box<dyn FrameSink>> {
+        match ShmSink::open(run, self) {
+            Ok(sink) => Some(Box::new(sink)),
+            Err(why) => {
+                tracing::warn!(%why, "no shared memory for this run");
+                None
+            }
+        }
     }
 
     /// Joins, unless that was done.
@@ -234,18 +230,6 @@ impl ShmSink {
     /// [`StreamError::Shm`]: the caller goes on without.
     pub fn open(run: &RunId, host: &ShmHost) -> Result<Self, StreamError> {
         Ok(Self { corner: Corner::open(run, host)?, port: None })
-    }
-
-    /// As [`ShmSink::open`], with one log line in place of an error.
-    #[must_use]
-    pub fn open_or_log(run: &RunId, host: &ShmHost) -> Option<Self> {
-        match Self::open(run, host) {
-            Ok(sink) => Some(sink),
-            Err(why) => {
-                tracing::warn!(%why, "no shared memory for this run");
-                None
-            }
-        }
     }
 
     fn create(&self, agents: usize) -> Result<Publisher<Ipc, [ShmState], ()>, StreamError> {
@@ -371,6 +355,10 @@ impl ShmWatch {
 
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
+    use socrates_tests::skip::elsewhere;
+
     use super::*;
     use crate::csv;
 
@@ -407,7 +395,6 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
     fn a_reader_gets_every_tick_in_order_and_knows_what_was_overwritten() {
         let dir = tempfile::tempdir().unwrap();
         let mut text = String::from("t,id,x,y\n");
@@ -417,13 +404,7 @@ mod tests {
         let recording = csv::read_tracks(&text).unwrap();
         let run = RunId::new("shm-test").unwrap();
         let (writing, reading) = (ShmHost::new(config(dir.path())), ShmHost::new(config(dir.path())));
-        let mut sink = match ShmSink::open(&run, &writing) {
-            Ok(sink) => sink,
-            Err(why) => {
-                eprintln!("skipped: this machine has no shared memory: {why}");
-                return;
-            }
-        };
+        let Some(mut sink) = elsewhere(ShmSink::open(&run, &writing).map_err(|why| why.to_string())) else { return };
         assert!(ShmWatch::open(&run, &reading).is_err(), "nobody has announced the run");
         sink.announce(&recording.header);
         assert!(sink.port.is_some(), "the service was not created");
@@ -458,8 +439,8 @@ mod tests {
         assert_eq!(got.last(), Some(&199));
         assert!(lost > 0);
     }
+
     #[test]
-    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
     fn three_thousand_agents_are_read_whole_and_in_bounded_room() {
         for agents in [1, 10, 1_000, 3_000, 10_000] {
             let room = samples(buffer(agents)) * agents * AGENT_STATE_BYTES;
@@ -474,16 +455,10 @@ mod tests {
         };
         let run = RunId::new("shm-crowd").unwrap();
         let (writing, reading) = (ShmHost::new(config(dir.path())), ShmHost::new(config(dir.path())));
-        let mut sink = match ShmSink::open(&run, &writing) {
-            Ok(sink) => sink,
-            Err(why) => {
-                eprintln!("skipped: this machine has no shared memory: {why}");
-                return;
-            }
-        };
+        let Some(mut sink) = elsewhere(ShmSink::open(&run, &writing).map_err(|why| why.to_string())) else { return };
         sink.announce(&recording.header);
-        if sink.port.is_none() {
-            eprintln!("skipped: this machine has less shared memory than {ROOM} bytes");
+        let enough = sink.port.is_some();
+        if elsewhere(enough.then_some(()).ok_or_else(|| format!("less shared memory than {ROOM} bytes"))).is_none() {
             return;
         }
         let mut watch = ShmWatch::open(&run, &reading).unwrap();
@@ -495,15 +470,11 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::print_stderr, reason = "a skipped test says why")]
     fn a_process_joins_once_for_all_its_runs() {
         let dir = tempfile::tempdir().unwrap();
         let host = ShmHost::new(config(dir.path()));
         let open = |name: &str| ShmSink::open(&RunId::new(name).unwrap(), &host);
-        let Ok(first) = open("shm-first") else {
-            eprintln!("skipped: this machine has no shared memory");
-            return;
-        };
+        let Some(first) = elsewhere(open("shm-first").map_err(|why| why.to_string())) else { return };
         let node = || host.with(|node| Ok(format!("{:?}", node.id()))).unwrap();
         let joined = node();
         drop(first);

@@ -1,6 +1,6 @@
 //! Robot, people, their trails, gestures and doors at one moment, seen from above.
 
-use socrates_model::{AgentState, EventKind, Gesture, Location, Recording};
+use socrates_model::{AgentState, EventKind, Location, Recording};
 
 use crate::label::{Area, text_width};
 use crate::map_layer::Frame;
@@ -174,7 +174,7 @@ fn draw_trail(
 
 /// The body, with a ring around whoever says something.
 fn draw_agent(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64) {
-    if state.gesture() != Gesture::None {
+    if state.gesture().is_some() {
         svg.circle(at, r * RING, "fill=\"none\" stroke=\"#e69f00\" stroke-width=\"3\"");
     }
     draw_body(svg, at, state.yaw, state.agent == 0, r, palette::agent(state.agent));
@@ -186,7 +186,7 @@ fn draw_words(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64, look: &
     let name =
         if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };
     let gesture = state.gesture();
-    let said = if gesture == Gesture::None { String::new() } else { gesture.name().replace('_', " ") };
+    let said = gesture.map(|gesture| gesture.name().replace('_', " ")).unwrap_or_default();
     // Whoever is out of the picture has no words in it.
     let Area { x: left, y: top, w: wide, h: high } = look.bounds;
     let seen = at.0 + r > left && at.0 - r < left + wide && at.1 + r > top && at.1 - r < top + high;
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn what_somebody_says_is_seen_without_labels_too() {
         let mut speaker = state(1, 3.0, 1.0, 0.0, 0.0);
-        speaker.flags = AgentState::flags(speaker.agent_id(), Gesture::ExcuseMe, 0);
+        speaker.flags = AgentState::flags(speaker.agent_id(), Some(socrates_model::Gesture::ExcuseMe), 0);
         let run = recording(&[&[robot(1.0, 1.0, 1.0, 0.0), speaker]]);
         assert!(drawn(&run, false).contains("EXCUSE ME") && !drawn(&run, false).contains(">h1<"));
         assert!(drawn(&run, true).contains(">h1<"));

@@ -206,12 +206,10 @@ impl Film<'_> {
         let step = panel.recording.header.step_s;
         let mut now_s = 0.0;
         for tick in 0..panel.recording.ticks() {
-            let said =
-                panel.recording.tick(tick).get(place).map(socrates_model::AgentState::gesture).unwrap_or_default();
+            let said = panel.recording.tick(tick).get(place).and_then(socrates_model::AgentState::gesture);
             match stretches.last_mut() {
-                Some((gesture, _, to)) if *gesture == said && (now_s - *to) < step * 1.5 => *to = now_s,
-                _ if said != Gesture::None => stretches.push((said, now_s, now_s + step)),
-                _ => {}
+                Some((gesture, _, to)) if Some(*gesture) == said && (now_s - *to) < step * 1.5 => *to = now_s,
+                _ => stretches.extend(said.map(|gesture| (gesture, now_s, now_s + step))),
             }
             now_s += step;
         }

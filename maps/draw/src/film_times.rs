@@ -1,6 +1,6 @@
 //! When a film begins and ends, and how fast it goes.
 
-use socrates_model::{EventKind, Gesture, Recording};
+use socrates_model::{EventKind, Recording};
 
 use crate::film::{FilmError, FilmOptions};
 use crate::page_data::reacts;
@@ -127,7 +127,7 @@ fn window(shown: &[&Recording]) -> (f64, f64) {
 fn meeting(run: &Recording) -> Option<(f64, f64)> {
     let told = run.events.iter().filter(|event| match &event.kind {
         EventKind::Encounter { .. } | EventKind::Contact { .. } => true,
-        EventKind::Gesture { gesture, .. } => *gesture != Gesture::None,
+        EventKind::Gesture { gesture, .. } => gesture.is_some(),
         EventKind::Leaf { leaf, .. } => event.time.secs() >= FIRST_SECS && reacts(leaf),
         EventKind::Sees { .. }
         | EventKind::WallContact { .. }

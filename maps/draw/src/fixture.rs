@@ -3,8 +3,7 @@
 use serde_json::json;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{
-    AgentId, AgentState, Gesture, Location, Paths, Proposal, Reading, Recording, RecordingHeader, Report, Request,
-    RunId,
+    AgentId, AgentState, Location, Paths, Proposal, Reading, Recording, RecordingHeader, Report, Request, RunId,
 };
 
 /// Text that would become markup, script or a place of a template where it is not made safe.
@@ -12,7 +11,7 @@ pub(crate) const EVIL: &str = "</script><script>alert(1)</script>{{data}}<!--\"'
 
 /// A state of an agent.
 pub(crate) fn state(agent: u32, x: f64, y: f64, vx: f64, vy: f64) -> AgentState {
-    let flags = AgentState::flags(AgentId::from_number(agent), Gesture::None, 0);
+    let flags = AgentState::flags(AgentId::from_number(agent), None, 0);
     AgentState { tick: 0, agent, flags, x, y, yaw: vy.atan2(vx), vx, vy, omega: 0.0 }
 }
 
@@ -58,7 +57,7 @@ pub(crate) fn away(mut run: Recording, number: u32, ticks: std::ops::Range<u64>)
     run.header.leaves = vec!["none".to_owned(), "track".to_owned(), "absent".to_owned()];
     for state in run.frames.iter_mut().filter(|state| state.agent == number) {
         let leaf = if ticks.contains(&state.tick) { 2 } else { 1 };
-        state.flags = AgentState::flags(AgentId::from_number(number), Gesture::None, leaf);
+        state.flags = AgentState::flags(AgentId::from_number(number), None, leaf);
     }
     run
 }

@@ -1,4 +1,8 @@
-//! Animated GIF, written by ourselves: one palette for all pictures, only what changed from one to the next.
+//! Animated GIF: one palette for all pictures, and of each picture only what changed since the one before.
+
+use std::borrow::Cow;
+
+use ::gif::{DisposalMethod, Encoder, Frame, Repeat};
 
 /// Width and height up to which a GIF is written, px.
 const MOST: u32 = 4096;
@@ -27,6 +31,18 @@ pub enum GifError {
         /// Bytes of width, height and three colors.
         wanted: usize,
     },
+    /// The encoder gave up.
+    #[error("the GIF cannot be encoded: {why}")]
+    Encode {
+        /// What it says.
+        why: String,
+    },
+}
+
+impl From<::gif::EncodingError> for GifError {
+    fn from(why: ::gif::EncodingError) -> Self {
+        Self::Encode { why: why.to_string() }
+    }
 }
 
 /// The colors of a GIF, found by looking at some of its pictures: the most common ones.
@@ -113,15 +129,20 @@ impl Palette {
 }
 
 /// A GIF being written, one picture after another.
-#[derive(Debug)]
 pub struct Gif {
     width: u16,
     height: u16,
     palette: Palette,
     before: Vec<u8>,
-    bytes: Vec<u8>,
+    encoder: Encoder<Vec<u8>>,
     waiting: Option<Vec<u8>>,
     hundredths: u32,
+}
+
+impl std::fmt::Debug for Gif {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Gif").field("width", &self.width).field("height", &self.height).finish_non_exhaustive()
+    }
 }
 
 impl Gif {
@@ -132,23 +153,17 @@ impl Gif {
     pub fn new(width: u32, height: u32, palette: Palette) -> Result<Self, GifError> {
         let side = |side: u32| u16::try_from(side).ok().filter(|side| *side > 0 && u32::from(*side) <= MOST);
         let (Some(w), Some(h)) = (side(width), side(height)) else { return Err(GifError::Size { width, height }) };
-        let mut bytes = b"GIF89a".to_vec();
-        bytes.extend(w.to_le_bytes());
-        bytes.extend(h.to_le_bytes());
-        // A table of 256 colors for all pictures, 8 bits a color.
-        bytes.extend([0xf7, 0, 0]);
-        for place in 0..256 {
-            bytes.extend(palette.colors.get(place).copied().unwrap_or([0; 3]));
-        }
-        // Repeat for ever.
-        bytes.extend(b"\x21\xff\x0bNETSCAPE2.0\x03\x01\x00\x00\x00");
-        Ok(Self { width: w, height: h, palette, before: Vec::new(), bytes, waiting: None, hundredths: 0 })
+        // A table of 256 colors for all pictures; the last one leaves a pixel as it was.
+        let colors: Vec<u8> = (0..256).flat_map(|place| palette.colors.get(place).copied().unwrap_or([0; 3])).collect();
+        let mut encoder = Encoder::new(Vec::new(), w, h, &colors)?;
+        encoder.set_repeat(Repeat::Infinite)?;
+        Ok(Self { width: w, height: h, palette, before: Vec::new(), encoder, waiting: None, hundredths: 0 })
     }
 
     /// Adds a picture (red, green, blue, row by row) that is shown for so many hundredths of a second.
     ///
     /// # Errors
-    /// [`GifError::Picture`] when it has another size.
+    /// [`GifError::Picture`] when it has another size, [`GifError::Encode`] when a picture before cannot be written.
     pub fn add(&mut self, rgb: &[u8], hundredths: u32) -> Result<(), GifError> {
         let wanted = usize::from(self.width) * usize::from(self.height) * 3;
         if rgb.len() != wanted {
@@ -163,22 +178,23 @@ impl Gif {
             self.hundredths += hundredths;
             return Ok(());
         }
-        self.flush();
+        self.flush()?;
         self.waiting = Some(now);
         self.hundredths = hundredths;
         Ok(())
     }
 
     /// The finished file.
-    #[must_use]
-    pub fn finish(mut self) -> Vec<u8> {
-        self.flush();
-        self.bytes.push(0x3b);
-        self.bytes
+    ///
+    /// # Errors
+    /// [`GifError::Encode`] when the last picture cannot be written.
+    pub fn finish(mut self) -> Result<Vec<u8>, GifError> {
+        self.flush()?;
+        self.encoder.into_inner().map_err(|why| GifError::Encode { why: why.to_string() })
     }
 
-    fn flush(&mut self) {
-        let Some(now) = self.waiting.take() else { return };
+    fn flush(&mut self) -> Result<(), GifError> {
+        let Some(now) = self.waiting.take() else { return Ok(()) };
         let width = usize::from(self.width);
         let (left, top, right, bottom) = self.changed(&now);
         let mut pixels = Vec::with_capacity((right - left) * (bottom - top));
@@ -191,15 +207,20 @@ impl Gif {
                 None => pixels.extend(line),
             }
         }
-        let delay = u16::try_from(self.hundredths).unwrap_or(u16::MAX).to_le_bytes();
-        // Leave what stands, index 255 is transparent.
-        self.bytes.extend([0x21, 0xf9, 4, 0b0000_0101, delay[0], delay[1], KEEP, 0, 0x2c]);
-        for part in [left, top, right - left, bottom - top] {
-            self.bytes.extend(u16::try_from(part).unwrap_or(0).to_le_bytes());
-        }
-        self.bytes.push(0);
-        compress(&pixels, &mut self.bytes);
+        let side = |pixels: usize| u16::try_from(pixels).unwrap_or(u16::MAX);
+        self.encoder.write_frame(&Frame {
+            delay: u16::try_from(self.hundredths).unwrap_or(u16::MAX),
+            dispose: DisposalMethod::Keep,
+            transparent: Some(KEEP),
+            left: side(left),
+            top: side(top),
+            width: side(right - left),
+            height: side(bottom - top),
+            buffer: Cow::Owned(pixels),
+            ..Frame::default()
+        })?;
         self.before = now;
+        Ok(())
     }
 
     /// The box of what differs from the picture before: left, top, right, bottom. At least one pixel.
@@ -220,158 +241,36 @@ impl Gif {
     }
 }
 
-/// LZW with codes of 9 to 12 bits, in blocks of at most 255 bytes, as GIF wants it.
-fn compress(pixels: &[u8], out: &mut Vec<u8>) {
-    const CLEAR: u16 = 256;
-    const END: u16 = 257;
-    out.push(8);
-    let mut bits = Bits::default();
-    let mut width = 9;
-    let mut next = END + 1;
-    // Code of a known run and one more pixel, by run * 256 + pixel; 0: not known.
-    let mut longer = vec![0_u16; 4096 * 256];
-    let mut touched: Vec<usize> = Vec::new();
-    bits.push(CLEAR, width);
-    let mut run: Option<u16> = None;
-    for pixel in pixels {
-        let Some(code) = run else {
-            run = Some(u16::from(*pixel));
-            continue;
-        };
-        let slot = usize::from(code) * 256 + usize::from(*pixel);
-        let known = longer.get(slot).copied().unwrap_or(0);
-        if known != 0 {
-            run = Some(known);
-            continue;
-        }
-        bits.push(code, width);
-        if next < 4096 {
-            if let Some(place) = longer.get_mut(slot) {
-                *place = next;
-                touched.push(slot);
-            }
-            if next == 1 << width && width < 12 {
-                width += 1;
-            }
-            next += 1;
-        } else {
-            bits.push(CLEAR, width);
-            for slot in touched.drain(..) {
-                if let Some(place) = longer.get_mut(slot) {
-                    *place = 0;
-                }
-            }
-            (width, next) = (9, END + 1);
-        }
-        run = Some(u16::from(*pixel));
-    }
-    if let Some(code) = run {
-        bits.push(code, width);
-        // The reader has learned one more run by now.
-        if next == 1 << width && width < 12 {
-            width += 1;
-        }
-    }
-    bits.push(END, width);
-    for block in bits.finish().chunks(255) {
-        out.push(u8::try_from(block.len()).unwrap_or(0));
-        out.extend(block);
-    }
-    out.push(0);
-}
-
-/// Codes packed from the lowest bit up.
-#[derive(Debug, Default)]
-struct Bits {
-    bytes: Vec<u8>,
-    held: u32,
-    count: u32,
-}
-
-impl Bits {
-    fn push(&mut self, code: u16, width: u32) {
-        self.held |= u32::from(code) << self.count;
-        self.count += width;
-        while self.count >= 8 {
-            self.bytes.push((self.held & 0xff) as u8);
-            self.held >>= 8;
-            self.count -= 8;
-        }
-    }
-
-    fn finish(mut self) -> Vec<u8> {
-        if self.count > 0 {
-            self.bytes.push((self.held & 0xff) as u8);
-        }
-        self.bytes
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A reader of the pixel stream, after the specification of GIF89a.
-    fn expand(stream: &[u8]) -> Vec<u8> {
-        assert_eq!(stream[0], 8);
-        let (mut packed, mut at) = (Vec::new(), 1);
-        while stream[at] != 0 {
-            let n = usize::from(stream[at]);
-            packed.extend_from_slice(&stream[at + 1..at + 1 + n]);
-            at += n + 1;
+    #[test]
+    fn every_picture_is_read_back_with_its_place_and_its_time() {
+        let blue = [0, 114, 178];
+        let picture =
+            |at: usize| -> Vec<u8> { (0..12).flat_map(|pixel| if pixel == at { blue } else { [255; 3] }).collect() };
+        let mut histogram = Histogram::default();
+        histogram.add(&picture(0));
+        let mut gif = Gif::new(4, 3, histogram.palette()).unwrap();
+        for (at, hundredths) in [(0, 10), (0, 10), (6, 5)] {
+            gif.add(&picture(at), hundredths).unwrap();
         }
-        let (mut bit, mut width) = (0_usize, 9);
-        let mut read = |width: usize| {
-            let code =
-                (0..width).map(|i| usize::from(packed[(bit + i) / 8] >> ((bit + i) % 8) & 1) << i).sum::<usize>();
-            bit += width;
-            code
-        };
-        let fresh =
-            || -> Vec<Vec<u8>> { (0..258_u16).map(|i| u8::try_from(i).map_or(Vec::new(), |i| vec![i])).collect() };
-        let (mut table, mut out, mut last) = (fresh(), Vec::new(), None::<usize>);
-        loop {
-            let code = read(width);
-            match code {
-                256 => (table, width, last) = (fresh(), 9, None),
-                257 => return out,
-                _ => {
-                    if let Some(last) = last
-                        && table.len() < 4096
-                    {
-                        let mut entry = table[last].clone();
-                        let first = if code < table.len() { table[code][0] } else { table[last][0] };
-                        entry.push(first);
-                        table.push(entry);
-                    }
-                    out.extend_from_slice(&table[code]);
-                    last = Some(code);
-                    if table.len() == 1 << width && width < 12 {
-                        width += 1;
-                    }
-                }
+        let bytes = gif.finish().unwrap();
+        let mut options = ::gif::DecodeOptions::new();
+        options.set_color_output(::gif::ColorOutput::RGBA);
+        let mut reader = options.read_info(bytes.as_slice()).unwrap();
+        let (mut screen, mut times) = (vec![0_u8; 4 * 3 * 3], Vec::new());
+        while let Some(frame) = reader.read_next_frame().unwrap() {
+            times.push((frame.delay, frame.width, frame.height));
+            for (place, pixel) in frame.buffer.chunks_exact(4).enumerate().filter(|(_, pixel)| pixel[3] > 0) {
+                let (x, y) = (place % usize::from(frame.width), place / usize::from(frame.width));
+                let at = 3 * ((y + usize::from(frame.top)) * 4 + x + usize::from(frame.left));
+                screen[at..at + 3].copy_from_slice(&pixel[..3]);
             }
         }
-    }
-
-    #[test]
-    fn what_is_packed_comes_out_again() {
-        let noise = |n: usize, kinds: u32| -> Vec<u8> {
-            let mut state = 12_345_u32;
-            (0..n)
-                .map(|_| {
-                    state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                    u8::try_from((state >> 16) % kinds).unwrap()
-                })
-                .collect()
-        };
-        let cases =
-            [vec![], vec![7], vec![9; 70_000], noise(300, 256), noise(90_000, 256), noise(90_000, 3), noise(3837, 256)];
-        for pixels in cases.into_iter().chain((250..270).map(|n| noise(n, 256))) {
-            let mut stream = Vec::new();
-            compress(&pixels, &mut stream);
-            assert_eq!(expand(&stream), pixels, "{} pixels", pixels.len());
-        }
+        // The second picture lasts as long as both that look so; only the box of what changed is in the third.
+        assert_eq!((times, screen), (vec![(20, 4, 3), (5, 3, 2)], picture(6)));
     }
 
     #[test]
@@ -394,7 +293,7 @@ mod tests {
             for _ in 0..times {
                 gif.add(&white, 10).unwrap();
             }
-            gif.finish()
+            gif.finish().unwrap()
         };
         assert_eq!(gif(1).len(), gif(50).len());
         let mut small = Gif::new(4, 3, histogram.palette()).unwrap();

@@ -88,7 +88,7 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
     let secs = event.time.secs();
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
     match &event.kind {
-        EventKind::Gesture { agent, gesture } if gesture.code() > 0 => {
+        EventKind::Gesture { agent, gesture: Some(gesture) } => {
             mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
         }
         EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),

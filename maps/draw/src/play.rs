@@ -118,8 +118,12 @@ pub(crate) fn run(location: &Location, way: &[Point], recording: &Recording, hz:
                 last[3] = -1;
                 if there.is(state) {
                     let (x, y) = frame.px(location, &state.point());
-                    last =
-                        [whole(x * 10.0), whole(y * 10.0), whole(state.yaw * 100.0), i64::from(state.gesture().code())];
+                    last = [
+                        whole(x * 10.0),
+                        whole(y * 10.0),
+                        whole(state.yaw * 100.0),
+                        i64::from(socrates_model::Gesture::code_of(state.gesture())),
+                    ];
                 }
                 track.extend(last);
             }

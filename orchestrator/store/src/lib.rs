@@ -27,8 +27,10 @@ pub use memory::MemoryStore;
 pub use reader::{Reader, Standing};
 pub use sqlite::{Durability, SqliteStore};
 
-/// Layout number of the tables. A store with a larger one is refused.
-pub const SCHEMA_VERSION: u32 = 1;
+/// Layout number of the tables. A store with a larger one is refused; a smaller one is read and written on as this one.
+///
+/// Since 2, the run of a job stands in its key alone. A program of before would take every run for the reference's.
+pub const SCHEMA_VERSION: u32 = 2;
 
 /// Entries of the outbox that are kept over a restart.
 pub const OUTBOX: u64 = 10_000;

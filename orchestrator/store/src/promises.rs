@@ -50,7 +50,7 @@ fn scenario(id: &str) -> ScenarioSpec {
         location: Digest::of(b"map"),
         reading: Digest::of(b"reading"),
         seed: 1,
-        planners: vec!["mppi".to_owned()],
+        planners: vec!["mppi".parse().unwrap()],
         run_seeds: vec![1, 2],
         pinned: BTreeMap::new(),
         settings: BTreeMap::from([("author".to_owned(), "offline".to_owned())]),
@@ -89,7 +89,7 @@ fn work(state: &mut State) -> Vec<Row> {
     let granted =
         if let Some(Answer::Acquired(Acquired::Grants(grants))) = answer { grants.first().cloned() } else { None };
     let Some(grant) = granted else { return all };
-    let role = socrates_orchestrator::pipeline::main_role(grant.spec.key.stage).unwrap();
+    let role = socrates_model::Role::made_by(grant.spec.key.stage).unwrap();
     let text = format!("{role} of {}", grant.spec.key);
     let report = Report {
         instance: "w".to_owned(),
@@ -98,7 +98,7 @@ fn work(state: &mut State) -> Vec<Row> {
         fence: grant.fence,
         outcome: Outcome::Ok,
         artifacts: vec![Artifact {
-            role: role.to_owned(),
+            role,
             digest: Digest::of(text.as_bytes()),
             len: text.len() as u64,
             media: "text/plain".to_owned(),
@@ -231,6 +231,28 @@ fn a_newer_layout_is_refused() {
     drop(raw);
     let Err(StoreError::Newer { found, .. }) = SqliteStore::open(&path) else { panic!() };
     assert!(found > SCHEMA_VERSION);
+}
+
+#[test]
+fn a_store_of_layout_1_is_read_and_kept_from_programs_that_would_misread_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("jobs.sqlite");
+    let mut store = SqliteStore::open(&path).unwrap();
+    let mut state = State::new(Policy::default());
+    store.save(&submit(&mut state, "a")).unwrap();
+    let before = store.load().unwrap();
+    drop(store);
+    let raw = rusqlite::Connection::open(&path).unwrap();
+    raw.execute("update meta set value = '1' where name = 'schema_version'", []).unwrap();
+    // Layout 1 had the run of a job twice more in its body.
+    let told = "update job set body = json_set(body, '$.spec.planner', 'x', '$.spec.run_seed', 9)";
+    assert!(raw.execute(told, []).unwrap() > 0);
+    drop(raw);
+    assert_eq!(SqliteStore::open(&path).unwrap().load().unwrap().jobs, before.jobs);
+    let raw = rusqlite::Connection::open(&path).unwrap();
+    let layout: String =
+        raw.query_row("select value from meta where name = 'schema_version'", [], |row| row.get(0)).unwrap();
+    assert_eq!(layout, SCHEMA_VERSION.to_string());
 }
 
 #[test]

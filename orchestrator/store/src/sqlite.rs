@@ -228,7 +228,7 @@ fn write(to: &Connection, row: &Row, failed: &Failed<'_>) -> Result<(), StoreErr
                     key.to_string(),
                     key.scenario.as_str(),
                     key.stage.name(),
-                    key.item,
+                    key.item.to_string(),
                     key.revision,
                     job.state.name(),
                     job.idem_key.map(|idem_key| idem_key.to_string()),

@@ -25,7 +25,6 @@ pub mod limits;
 pub mod models;
 pub mod probe;
 
-pub mod base64;
 mod waits;
 mod wire;
 

@@ -2,6 +2,8 @@
 //!
 //! Dates are taken relative to the `date` of the same answer: the server's clock against the server's clock.
 
+use jiff::fmt::rfc2822;
+use jiff::{SignedDuration, Timestamp};
 use reqwest::header::HeaderMap;
 use serde_json::Value;
 
@@ -53,59 +55,21 @@ fn whole(ms: f64) -> Option<u64> {
 
 /// A duration such as `6m0s`, `1.5s` or `120ms` in ms.
 fn duration_ms(text: &str) -> Option<f64> {
-    let mut total = 0.0;
-    let mut rest = text;
-    while !rest.is_empty() {
-        let digits = rest.find(|c: char| !(c.is_ascii_digit() || c == '.'))?;
-        let (number, tail) = rest.split_at_checked(digits)?;
-        let unit_len = tail.find(|c: char| c.is_ascii_digit()).unwrap_or(tail.len());
-        let (unit, next) = tail.split_at_checked(unit_len)?;
-        let factor = match unit {
-            "h" => 3.6e6,
-            "m" => 6e4,
-            "s" => 1e3,
-            "ms" => 1.0,
-            "us" | "µs" => 1e-3,
-            _ => return None,
-        };
-        total += number.parse::<f64>().ok()? * factor;
-        rest = next;
-    }
-    (!text.is_empty()).then_some(total)
+    Some(text.parse::<SignedDuration>().ok()?.as_secs_f64() * 1e3)
 }
 
 /// `Sun, 22 Nov 2026 02:00:30 GMT` (RFC 9110) in seconds since 1970.
 fn http_date_s(text: &str) -> Option<f64> {
-    const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
-    let mut parts = text.split_ascii_whitespace().skip(1);
-    let day = parts.next()?.parse().ok()?;
-    let month = parts.next()?;
-    let month = MONTHS.iter().position(|name| *name == month)?;
-    let year = parts.next()?.parse().ok()?;
-    Some(days(year, i32::try_from(month).ok()? + 1, day)? * 86_400.0 + clock_s(parts.next()?)?)
+    Some(seconds(rfc2822::DateTimeParser::new().parse_timestamp(text).ok()?))
 }
 
-/// `2026-11-22T02:00:30Z` in seconds since 1970; only in UTC.
+/// `2026-11-22T02:00:30Z` in seconds since 1970.
 fn rfc3339_s(text: &str) -> Option<f64> {
-    let (date, time) = text.strip_suffix('Z')?.split_once('T')?;
-    let mut parts = date.split('-').map(|part| part.parse::<i32>().ok());
-    let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
-    Some(days(year, month, day)? * 86_400.0 + clock_s(time)?)
+    Some(seconds(text.parse::<Timestamp>().ok()?))
 }
 
-fn clock_s(text: &str) -> Option<f64> {
-    let mut parts = text.split(':').map(|part| part.parse::<f64>().ok());
-    Some(parts.next()?? * 3600.0 + parts.next()?? * 60.0 + parts.next()??)
-}
-
-/// Days from 1970-01-01 in the Gregorian calendar, counted in years that begin in March.
-fn days(year: i32, month: i32, day: i32) -> Option<f64> {
-    if !(1970..=9999).contains(&year) || !(1..=12).contains(&month) || !(1..=31).contains(&day) {
-        return None;
-    }
-    let year = if month <= 2 { year - 1 } else { year };
-    let day_of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    Some(f64::from(year * 365 + year / 4 - year / 100 + year / 400 + day_of_year - 719_468))
+fn seconds(at: Timestamp) -> f64 {
+    at.as_duration().as_secs_f64()
 }
 
 #[cfg(test)]
@@ -135,8 +99,9 @@ mod tests {
         let pairs = [("date", "Sat, 28 Feb 2026 23:59:50 GMT"), ("retry-after", "Sun, 01 Mar 2026 00:00:20 GMT")];
         assert_eq!(wait(&pairs), Some(30_000));
         assert_eq!(wait(&pairs[1..]), None);
-        assert_eq!(days(1970, 1, 1), Some(0.0));
-        assert_eq!(days(2000, 3, 1), Some(11_017.0));
+        assert_eq!(http_date_s("Wed, 01 Mar 2000 00:00:00 GMT"), Some(11_017.0 * 86_400.0));
+        assert_eq!(rfc3339_s("2000-03-01T00:00:00Z"), Some(11_017.0 * 86_400.0));
+        assert_eq!((duration_ms("6m0s"), duration_ms("120ms"), duration_ms("soon")), (Some(3.6e5), Some(120.0), None));
     }
 
     #[test]

@@ -168,7 +168,9 @@ mod tests {
         let rough =
             "The elevator is full with five people, so the robot does not get in. It waits for the other elevator.";
         let reading = crate::read(&request("Take the elevator", Some(rough)), &map("hospital"));
-        let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.contains("full with five people");
+        let said = |fault: &Fault| {
+            fault.code == FaultCode::PRead && fault.message.to_string().contains("full with five people")
+        };
         assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
     }
 

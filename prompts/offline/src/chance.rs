@@ -232,7 +232,7 @@ mod tests {
             ),
         ] {
             let reading = crate::read(&request("Drive on", Some(rough)), &map(on));
-            let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.contains(words);
+            let said = |fault: &Fault| fault.code == FaultCode::PRead && fault.message.to_string().contains(words);
             assert!(reading.problems.iter().any(said), "{:#?}", reading.problems);
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! What one clause says is held against what others said; both are quoted, and the request waits for a person.
 
-use socrates_model::{Action, Fault, FaultCode, PlaceClass, Relation, Trigger};
+use socrates_model::{Action, Fault, FaultCode, PlaceClass, Relation, Trigger, Where};
 
 use crate::clause::{self, Found};
 use crate::cut::{Joint, Stretch, sentences};
@@ -31,7 +31,7 @@ impl Held {
     }
 }
 
-fn contradiction(at: impl std::fmt::Display, first: &str, second: &str, why: &str) -> Fault {
+fn contradiction(at: impl Into<Where>, first: &str, second: &str, why: &str) -> Fault {
     Fault::new(
         FaultCode::PContra,
         at,
@@ -190,7 +190,7 @@ pub(crate) fn place(
         });
         let known = story.held.places.iter().find(|(other, old, _)| *other == who && apart(*old, *class) && !moves);
         if let Some((_, _, first)) = known {
-            let fault = contradiction(format!("human_{}", who + 1), first, quote, "nobody is in both places at once");
+            let fault = contradiction(crate::order::agent(who), first, quote, "nobody is in both places at once");
             story.problems.push(fault);
             return;
         }
@@ -284,7 +284,7 @@ pub(crate) fn finish(story: &mut Story, rough: &str) {
             // `stops and runs away when …` is one after the other; a moment that is told twice is the same moment.
             if times_said(when, rough) > 1 {
                 let why = format!("both should be done {}", when.phrase());
-                story.problems.push(contradiction(format!("human_{}", who + 1), &first.quote, &second.quote, &why));
+                story.problems.push(contradiction(crate::order::agent(who), &first.quote, &second.quote, &why));
             }
         }
     }
@@ -297,7 +297,7 @@ mod tests {
 
     fn faults(rough: &str, code: FaultCode) -> Vec<String> {
         let reading = crate::read(&request("Deliver a parcel", Some(rough)), &map("hospital"));
-        reading.problems.into_iter().filter(|fault| fault.code == code).map(|fault| fault.message).collect()
+        reading.problems.into_iter().filter(|fault| fault.code == code).map(|fault| fault.message.to_string()).collect()
     }
 
     #[test]

@@ -544,7 +544,7 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
     // Whoever lets the robot go first stands still for it; whoever stops it walks on.
     let (act, lasts) = match gesture {
         Gesture::Proceed => (Action::StandStill, 6.0),
-        Gesture::None | Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, 4.0),
+        Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, 4.0),
         // Whoever acknowledges the robot looks at it.
         Gesture::Acknowledged => (Action::LookAtRobot, 4.0),
     };

@@ -2,6 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
+use socrates_model::seeds;
 
 /// A stream of draws that depends on its seed and name alone.
 pub(crate) struct Draw(ChaCha8Rng);
@@ -9,18 +10,12 @@ pub(crate) struct Draw(ChaCha8Rng);
 impl Draw {
     /// The stream of this seed for this purpose.
     pub(crate) fn new(seed: u64, purpose: &str) -> Self {
-        // FNV-1a: the purposes are few and ours, so any even spread will do.
-        let name = purpose
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
-        Self(ChaCha8Rng::seed_from_u64(seed ^ name))
+        Self(ChaCha8Rng::seed_from_u64(seeds::stream_seed(seed, purpose)))
     }
 
     /// A number below `n`; 0 where `n` is 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
-        let wide = u64::try_from(n).unwrap_or(u64::MAX);
-        let drawn = self.0.next_u64();
-        if wide == 0 { 0 } else { usize::try_from(drawn % wide).unwrap_or(0) }
+        seeds::below(self.0.next_u64(), n)
     }
 
     /// One of the items.

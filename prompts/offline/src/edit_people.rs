@@ -5,8 +5,8 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use socrates_model::rule::RobotDo;
 use socrates_model::{
-    Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Predicate, Proposal,
-    Relation, Rule, Trigger,
+    Action, AgentId, ClauseRole, FactKind, GroupId, GroupProposal, HumanId, HumanProposal, Payload, Predicate,
+    Proposal, Relation, Rule, Trigger,
 };
 
 use crate::cast::{Cast, Person, ReadRule};
@@ -92,7 +92,7 @@ pub(crate) fn story(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     }
     let before = Story { cast, ..Story::default() };
     let mut read = read_on(before, vec![clauses], &quoted(wish));
-    read.problems.retain(|fault| !fault.message.contains("says when"));
+    read.problems.retain(|fault| fault.payload != Some(Payload::TriggerAlone));
     if read.cast.people.len() > old && !adds {
         return desk.refuse(&wish.quote, "does not say which of those who are there is meant");
     }

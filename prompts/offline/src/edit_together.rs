@@ -227,7 +227,7 @@ fn made(gesture: Gesture, meters: Option<f64>) -> Rule {
     let (act, lasts) = match gesture {
         Gesture::Proceed => (Action::StandStill, STANDS_S),
         Gesture::Acknowledged => (Action::LookAtRobot, SHOWN_S),
-        Gesture::None | Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, SHOWN_S),
+        Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, SHOWN_S),
     };
     let when = vec![Trigger::RobotVisible(meters.unwrap_or(SEEN_M))];
     Rule { when, act, gesture: Some(gesture), for_s: Some(lasts), latched: true }

@@ -175,7 +175,7 @@ const fn asked_for(gesture: Gesture) -> Option<Act> {
         Gesture::Proceed => Some(Act::GoOn),
         Gesture::ExcuseMe => Some(Act::GiveWay),
         Gesture::FollowMe => Some(Act::Follow),
-        Gesture::None | Gesture::Acknowledged => None,
+        Gesture::Acknowledged => None,
     }
 }
 

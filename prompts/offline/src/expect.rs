@@ -1,6 +1,6 @@
 //! `[expect]` wins over the text: how many people there are, where they meet the robot, who is a group.
 
-use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Reading, Request, Rule};
+use socrates_model::{Fault, FaultCode, GroupId, Reading, Request, Rule};
 
 use crate::cast::{Cast, Person};
 use crate::story::Story;
@@ -37,12 +37,10 @@ pub(crate) fn settle(request: &Request, story: &mut Story, reading: &mut Reading
             story.cast.count_quote = Some(format!("expect.humans = {count}"));
         }
     }
-    if let Some(Ok(class)) = request.expect.place.as_ref().map(|text| text.parse::<PlaceClass>()) {
+    if let Some(class) = request.expect.place {
         story.place = Some((class, format!("expect.place = \"{class}\"")));
         // A place that no map has is no place of the scenario then.
-        for fault in
-            story.problems.extract_if(.., |fault| fault.code == FaultCode::PPlace && fault.at == "rough_scenario")
-        {
+        for fault in story.problems.extract_if(.., |fault| fault.code == FaultCode::PPlace) {
             reading.notes.push(format!("{}; `expect.place` says where it happens", fault.message));
         }
     }

@@ -12,7 +12,8 @@ use crate::story::Story;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
 pub(crate) const CIRCLE_M: f64 = 2.8;
-/// The farthest from which the first sight of the robot startles somebody, m (`spec/case_studies` E.S5).
+/// The farthest from which the first sight of the robot startles somebody, m: in the elevator case of SocRATES
+/// (arXiv 2412.19595) the door opens with the robot in front of it; 0.8 to 5 m is our reading of that.
 const FIRST_SIGHT_M: f64 = 5.0;
 
 impl Story {
@@ -253,7 +254,7 @@ impl Story {
                     if opposed && same && !second.then {
                         self.problems.push(Fault::new(
                             FaultCode::PContra,
-                            format!("human_{}", who + 1),
+                            crate::order::agent(who),
                             format!("`{}` and `{}` cannot both hold for the same human at the same time; say when each, or correct one", first.quote, second.quote),
                         ));
                     }
@@ -270,7 +271,7 @@ impl Story {
             if members.len() > 8 {
                 self.problems.push(Fault::new(
                     FaultCode::PLimit,
-                    id,
+                    *id,
                     format!("`{quote}` makes a group of {}; a group has 2 to 8 members", members.len()),
                 ));
             }

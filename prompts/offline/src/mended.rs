@@ -18,10 +18,8 @@ const STILL_S: f64 = 8.0;
 /// The rules of a human, changed by what was wrong with its last tree. Faults that speak of others change nothing.
 pub(crate) fn rules(human: &HumanProposal, proposal: &Proposal, feedback: &[Fault]) -> Vec<Rule> {
     let told = |codes: &[FaultCode]| {
-        let name = human.id.to_string();
-        // `human_1` is not `human_12`.
-        let own = |at: &str| at.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
-        feedback.iter().any(|fault| codes.contains(&fault.code) && own(&fault.at))
+        let own = |fault: &Fault| fault.at.names(AgentId::Human(human.id));
+        feedback.iter().any(|fault| codes.contains(&fault.code) && own(fault))
     };
     let mut rules = human.rules.clone();
     if told(&[FaultCode::DNoTrig, FaultCode::DNoGest]) {

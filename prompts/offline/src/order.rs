@@ -87,7 +87,7 @@ fn each(story: &mut Story, act: Act, people: &[usize], quote: &str) {
     if walks && !people.iter().any(|who| story.cast.people.get(*who).is_some_and(|person| person.group.is_some())) {
         for next in people.windows(2) {
             if let [first, then] = next {
-                pair(story, id(*first), id(*then), quote);
+                pair(story, agent(*first), agent(*then), quote);
             }
         }
     } else if people.len() > 1 && !matches!(act, Act::ComeOut | Act::Enter) {
@@ -121,7 +121,7 @@ pub(crate) fn note(
     if prior.iter().all(|one| !people.contains(one)) {
         for first in &prior {
             for who in people {
-                pair(story, id(*first), id(*who), quote);
+                pair(story, agent(*first), agent(*who), quote);
             }
         }
     }
@@ -148,13 +148,13 @@ pub(crate) fn passed(story: &mut Story, thread: &mut Thread, when: &Trigger, quo
 
 fn later(story: &mut Story, people: &[usize], quote: &str) {
     for who in people {
-        pair(story, AgentId::Robot, id(*who), quote);
+        pair(story, AgentId::Robot, agent(*who), quote);
     }
 }
 
 fn earlier(story: &mut Story, people: &[usize], quote: &str) {
     for who in people {
-        pair(story, id(*who), AgentId::Robot, quote);
+        pair(story, agent(*who), AgentId::Robot, quote);
     }
 }
 
@@ -165,7 +165,8 @@ fn pair(story: &mut Story, first: AgentId, then: AgentId, quote: &str) {
     }
 }
 
-fn id(who: usize) -> AgentId {
+/// The human at this place of the cast, from 0.
+pub(crate) fn agent(who: usize) -> AgentId {
     AgentId::Human(HumanId::new(u32::try_from(who + 1).unwrap_or(u32::MAX)))
 }
 

@@ -142,5 +142,9 @@ fn amounts_beyond_what_is_played_are_told() {
     let reading = told("A worker blocks the robot. After the robot has asked three times he lets it pass.");
     assert!(reading.ignored.contains(&"three times".to_owned()), "{:?}", reading.ignored);
     let reading = told("A person stays far away from the robot and never meets it.");
-    assert!(reading.problems.iter().any(|fault| fault.message.contains("never meets")), "{:?}", reading.problems);
+    assert!(
+        reading.problems.iter().any(|fault| fault.message.to_string().contains("never meets")),
+        "{:?}",
+        reading.problems
+    );
 }

@@ -2,6 +2,7 @@
 
 use socrates_model::job::Stage;
 use socrates_model::reading::ReadHuman;
+use socrates_model::request::RobotGesture;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
     Action, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass, Predicate,
@@ -248,9 +249,7 @@ fn robot(
             }
         }
     }
-    for asked in &request.robot.gestures {
-        script.extend(when(&asked.when).map(|when| RobotRule { when, act: RobotDo::Say(asked.say) }));
-    }
+    script.extend(request.robot.gestures.iter().map(RobotGesture::line));
     let stops = humans.iter().flat_map(|human| &human.rules).any(|rule| rule.gesture == Some(Gesture::Wait));
     if stops && !script.iter().any(|line| line.when == RobotWhen::HumanSays(Gesture::Wait)) {
         script.push(RobotRule { when: RobotWhen::HumanSays(Gesture::Wait), act: RobotDo::Hold(4.0) });
@@ -306,24 +305,6 @@ fn heard_at(gesture: Gesture, humans: &[HumanProposal]) -> RobotWhen {
             && human.rules.iter().any(|rule| rule.when.contains(&Trigger::RobotSays(gesture)))
     });
     RobotWhen::HumanNear(if circled { CIRCLE_M } else { 4.0 })
-}
-
-/// `start`, `blocked N s`, `human within N m`, `after N s`, as requests write it.
-fn when(text: &str) -> Option<RobotWhen> {
-    let words: Vec<&str> = text.split_whitespace().collect();
-    let number = || {
-        words
-            .iter()
-            .find_map(|word| word.trim_end_matches(['s', 'm']).parse::<f64>().ok())
-            .filter(|n| n.is_finite() && *n >= 0.0)
-    };
-    match words.first().copied()? {
-        "start" => Some(RobotWhen::Start),
-        "blocked" => Some(RobotWhen::Blocked(number().unwrap_or(3.0))),
-        "human" => Some(RobotWhen::HumanNear(number().unwrap_or(3.0))),
-        "after" => number().map(RobotWhen::AfterSecs),
-        _ => None,
-    }
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ pub(crate) fn relate(cast: &mut Cast, who: usize, new: Relation, quote: &str) {
 pub(crate) fn contradiction(who: usize, first: &str, second: &str) -> Fault {
     Fault::new(
         FaultCode::PContra,
-        format!("human_{}", who + 1),
+        crate::order::agent(who),
         format!("`{first}` and `{second}` cannot both hold for the same human; correct one of the two"),
     )
 }

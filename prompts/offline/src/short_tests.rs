@@ -12,7 +12,7 @@ fn told(rough: &str) -> Reading {
 /// What the reading says is not played.
 fn unplayed(reading: &Reading) -> String {
     let wish = reading.problems.iter().filter(|fault| fault.code == FaultCode::PRead);
-    wish.map(|fault| fault.message.as_str()).collect::<Vec<_>>().join("\n")
+    wish.map(|fault| fault.message.to_string()).collect::<Vec<_>>().join("\n")
 }
 
 fn rule(reading: &Reading, act: &Action) -> Rule {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use socrates_maps::Ground;
 use socrates_model::rule::{RobotDo, RobotWhen};
 use socrates_model::{
-    Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
+    AgentId, Encounter, FORMAT, FaultCode, HumanId, HumanProposal, NodeId, Paths, PlaceClass, Proposal, Relation,
 };
 use socrates_prompts::Question;
 
@@ -59,7 +59,7 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
         )
         .with_rooms(rooms);
     let told = |code: FaultCode| {
-        let robot = |fault: &&socrates_model::Fault| fault.code == code && !fault.at.contains("human");
+        let robot = |fault: &&socrates_model::Fault| fault.code == code && fault.at.human().is_none();
         u32::try_from(question.feedback.iter().filter(robot).count()).unwrap_or(0)
     };
     let via = task.via.map(|(class, _)| class);
@@ -111,7 +111,7 @@ pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Option<Paths> {
     let mut paths = written(&net, chosen, proposal);
     for human in &proposal.humans {
         let short = |fault: &&socrates_model::Fault| {
-            fault.code == FaultCode::GShort && fault.at.split_whitespace().any(|word| word == human.id.to_string())
+            fault.code == FaultCode::GShort && fault.at.names(AgentId::Human(human.id))
         };
         for _ in question.feedback.iter().filter(short).take(4) {
             edit_paths::lengthen(&net, &mut paths, human.id);

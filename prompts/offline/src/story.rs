@@ -1,6 +1,6 @@
 //! The rough scenario, clause by clause: subjects, triggers and deeds are bound to people.
 
-use socrates_model::{Fault, FaultCode, Gesture, PlaceClass, Trigger};
+use socrates_model::{Fault, FaultCode, Gesture, Payload, PlaceClass, Trigger};
 
 use crate::again;
 use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
@@ -95,7 +95,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
                 FaultCode::PRead,
                 "rough_scenario",
                 format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
-            ).about([quote.as_str()]));
+            ).about([quote.as_str()]).with(Payload::TriggerAlone));
         }
         for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
             let often = again::how_often(word, text);

@@ -31,7 +31,10 @@ fn to_return_to_the_only_place_of_a_task_is_no_way_back() {
     }
     for text in ["Bring pills to ward 1 and return to the nurse station", "Return"] {
         let reading = task(text);
-        assert!(reading.problems.iter().any(|fault| fault.message.contains("way back")), "{text}: {reading:#?}");
+        assert!(
+            reading.problems.iter().any(|fault| fault.message.to_string().contains("way back")),
+            "{text}: {reading:#?}"
+        );
     }
 }
 
@@ -87,7 +90,7 @@ fn what_is_expected_wins_over_the_text() {
     assert!(grouped.problems.is_empty() && grouped.humans.len() == 3, "{grouped:#?}");
     let nobody = expecting("Nobody is there.", Expect { humans: Some(2), ..Expect::default() });
     assert!(nobody.problems.is_empty(), "{nobody:#?}");
-    let place = Expect { place: Some("corridor".into()), ..Expect::default() };
+    let place = Expect { place: Some(PlaceClass::Corridor), ..Expect::default() };
     let beach = expecting("A nurse stands on the beach.", place);
     assert!(beach.problems.is_empty() && beach.place == Some(PlaceClass::Corridor), "{beach:#?}");
 }
@@ -125,7 +128,7 @@ fn an_author_that_cannot_says_why() {
     let faults = parse_paths(&Offline::answer(&question), &question).unwrap_err();
     assert_eq!((faults.len(), faults[0].code), (1, FaultCode::ECannot), "{faults:#?}");
     assert!(
-        faults[0].message.contains("from `c1` to `c3`, is 4.0 m; at least 6 m are needed"),
+        faults[0].message.to_string().contains("from `c1` to `c3`, is 4.0 m; at least 6 m are needed"),
         "{}",
         faults[0].message
     );

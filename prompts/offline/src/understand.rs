@@ -102,6 +102,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         reading.facts.push(Fact { id: id_of_fact, quote: format!("expect.pattern = \"{id}\""), kind });
     }
     leftovers(request, location, &mut story, &task, &mut reading);
+    crate::spans::mark(request, &mut reading.problems);
     Understood { reading, extras, by_card }
 }
 
@@ -164,7 +165,7 @@ fn language(request: &Request, reading: &mut Reading) {
 
 /// Places by name that this map does not have: a fault, and the next best place.
 fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading: &mut Reading) {
-    let mut absent = |slot: &mut Option<(PlaceClass, String)>, at: &str| {
+    let mut absent = |slot: &mut Option<(PlaceClass, String)>, at: &'static str| {
         let Some((class, quote)) = slot.clone().filter(|(class, _)| !place::has(location, *class)) else { return };
         *slot = None;
         let message = format!(
@@ -204,7 +205,7 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
             person.relation = None;
             let fault = Fault::new(
                 FaultCode::PPlace,
-                format!("human_{}", who + 1),
+                crate::order::agent(who),
                 format!("`{quote}` needs a room or an elevator with a place inside, which this map does not have"),
             );
             if !reading.problems.contains(&fault) {

@@ -11,14 +11,13 @@ use std::collections::BTreeMap;
 
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_model::{FaultCode, hash::derive_seed};
+use socrates_model::{FaultCode, seeds::derive_seed};
 use socrates_prompts::Question;
 
 use crate::attempt::{Exchange, Written, attempt};
 use crate::author::{Author, Says};
 use crate::fault_model::{FaultKind, FaultRates, concerns};
 use crate::faulty::FaultyAuthor;
-use crate::job::Papers;
 
 /// An answer into which nothing was put.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,23 +63,23 @@ pub struct Confusion {
     pub clean: BTreeMap<Stage, Alarms>,
 }
 
-/// The answers of an author to the three questions of one request, papers of the proposal stage at hand. Where the proposal
+/// The answers of an author to the three questions of one request, of which `first` asks for the proposal. Where the proposal
 /// is refused there are no further questions.
-pub async fn answers(author: &dyn Author, papers: &Papers) -> Vec<Clean> {
+pub async fn answers(author: &dyn Author, first: &Question) -> Vec<Clean> {
     let mut found = Vec::new();
-    let mut papers = papers.clone();
+    let mut proposal = None;
     for stage in [Stage::Proposal, Stage::Paths, Stage::Behaviors] {
-        let seed = derive_seed(papers.seed, &[stage.name()]);
-        let question = Papers { stage, seed, ..papers.clone() }.question();
+        let seed = derive_seed(first.seed, &[stage.name()]);
+        let question = Question { stage, seed, proposal: proposal.clone(), ..first.clone() };
         let Ok(answer) = author.ask(&question).await else { break };
         if stage == Stage::Proposal {
             match attempt(&Says(answer.text.clone()), &question).await.map(|made| made.written) {
-                Ok(Written::Proposal(proposal)) => papers.proposal = Some(proposal),
+                Ok(Written::Proposal(written)) => proposal = Some(written),
                 Ok(Written::Paths(_) | Written::Behaviors(_)) | Err(_) => {}
             }
         }
         found.push(Clean { question, answer: answer.text });
-        if papers.proposal.is_none() {
+        if proposal.is_none() {
             break;
         }
     }
@@ -147,7 +146,7 @@ fn codes(exchange: &Exchange, repairs: bool) -> Vec<FaultCode> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{good_paths, good_proposal, papers, question};
+    use crate::testing::{good_paths, good_proposal, question};
 
     #[tokio::test]
     async fn a_right_answer_is_turned_wrong_kind_by_kind_and_a_wrong_one_is_an_alarm() {
@@ -165,10 +164,10 @@ mod tests {
 
     #[tokio::test]
     async fn an_authors_answers_follow_from_its_proposal() {
-        let found = answers(&Says(good_proposal()), &papers(Stage::Proposal)).await;
+        let found = answers(&Says(good_proposal()), &question(Stage::Proposal)).await;
         let stages: Vec<Stage> = found.iter().map(|clean| clean.question.stage).collect();
         assert_eq!(stages, [Stage::Proposal, Stage::Paths, Stage::Behaviors]);
         assert!(found[1].question.proposal.is_some());
-        assert_eq!(answers(&Says("no".into()), &papers(Stage::Proposal)).await.len(), 1);
+        assert_eq!(answers(&Says("no".into()), &question(Stage::Proposal)).await.len(), 1);
     }
 }

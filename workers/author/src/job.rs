@@ -1,75 +1,36 @@
-//! A job's papers, and what becomes of them: everything the three authoring stages share.
+//! A job's question, and what becomes of it: everything the three authoring stages share.
 
 use std::collections::BTreeMap;
 
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
-use socrates_model::{FailureClass, Fault, HumanId, Location, Proposal, Reading, Request};
+use socrates_model::{FailureClass, Fault};
 use socrates_prompts::Question;
 
 use crate::attempt::{Exchange, Made, Refused, Written, attempt};
 use crate::settings::{Keys, author_of_job};
 
-/// Everything a job hands to its author.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Papers {
-    /// Stage: proposal, paths or behaviors.
-    pub stage: Stage,
-    /// What the user gave.
-    pub request: Request,
-    /// What was read of it.
-    pub reading: Reading,
-    /// The place.
-    pub location: Location,
-    /// The proposal, for paths and behaviors.
-    pub proposal: Option<Proposal>,
-    /// Only these humans; empty for all.
-    pub only: Vec<HumanId>,
-    /// Why earlier answers were refused.
-    pub feedback: Vec<Fault>,
-    /// The newest refused answer.
-    pub refused: Option<String>,
-    /// Seed of the job; the attempt never enters.
-    pub seed: u64,
-    /// Settings of the job: `author`, `fault.…`.
+/// How a question is put: what of a job is no part of its question.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Asking {
+    /// Settings of the job: `author`, `prompt.…`, `fault.…`.
     pub settings: BTreeMap<String, String>,
     /// Number of the attempt, from 1; only injected faults look at it.
     pub attempt: u32,
 }
 
-impl Papers {
-    /// The papers of the first question of a scenario: a proposal is asked for at the first attempt, with no settings.
-    #[must_use]
-    pub const fn first(request: Request, reading: Reading, location: Location, seed: u64) -> Self {
-        Self {
-            stage: Stage::Proposal,
-            request,
-            reading,
-            location,
-            proposal: None,
-            only: Vec::new(),
-            feedback: Vec::new(),
-            refused: None,
-            seed,
-            settings: BTreeMap::new(),
-            attempt: 1,
-        }
+impl Default for Asking {
+    /// The first attempt, with no settings.
+    fn default() -> Self {
+        Self { settings: BTreeMap::new(), attempt: 1 }
     }
+}
 
-    /// The question to the author.
+impl Asking {
+    /// The first attempt with the offline author.
     #[must_use]
-    pub fn question(self) -> Question {
-        Question {
-            stage: self.stage,
-            request: self.request,
-            reading: self.reading,
-            location: self.location,
-            proposal: self.proposal,
-            only: self.only,
-            feedback: self.feedback,
-            refused: self.refused,
-            seed: self.seed,
-        }
+    pub fn offline() -> Self {
+        Self { settings: BTreeMap::from([("author".to_owned(), "offline".to_owned())]), attempt: 1 }
     }
 }
 
@@ -99,14 +60,14 @@ pub struct JobRefusal {
     pub exchange: Option<Box<Exchange>>,
 }
 
-/// The desk of an authoring worker: its keys, and one way to do a job.
+/// What an authoring worker knows beside its jobs: the keys of its authors.
 #[derive(Debug, Clone, Default)]
-pub struct Desk {
+pub struct AuthorContext {
     keys: Keys,
 }
 
-impl Desk {
-    /// A desk with these keys.
+impl AuthorContext {
+    /// A context with these keys.
     #[must_use]
     pub const fn new(keys: Keys) -> Self {
         Self { keys }
@@ -116,18 +77,18 @@ impl Desk {
     ///
     /// # Errors
     /// [`JobRefusal`] with every reason at once.
-    pub async fn answer(&self, papers: Papers) -> Result<JobAnswer, JobRefusal> {
+    pub async fn answer(&self, question: &Question, asking: &Asking) -> Result<JobAnswer, JobRefusal> {
         // What only a person can settle is not put to an author.
-        let unsettled: Vec<Fault> = hard(&papers.reading.problems)
+        let unsettled: Vec<Fault> = hard(&question.reading.problems)
             .into_iter()
             .filter(|fault| fault.code.class() == FailureClass::Permanent)
             .collect();
-        if papers.stage == Stage::Proposal && !unsettled.is_empty() {
+        if question.stage == Stage::Proposal && !unsettled.is_empty() {
             return Err(unasked(unsettled));
         }
-        let author = author_of_job(&papers.settings, &self.keys, papers.attempt)
+        let author = author_of_job(&asking.settings, &self.keys, asking.attempt)
             .map_err(|error| unasked(vec![error.fault()]))?;
-        match attempt(author.as_ref(), &papers.question()).await {
+        match attempt(author.as_ref(), question).await {
             Ok(Made { written, exchange }) => Ok(JobAnswer { remark: written.remark(), written, exchange }),
             Err(Refused { class, faults, text, retry_after_ms, exchange }) => {
                 Err(JobRefusal { class, faults, text, retry_after_ms, exchange: Some(exchange) })
@@ -143,22 +104,21 @@ fn unasked(faults: Vec<Fault>) -> JobRefusal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::papers;
+    use crate::testing::question;
     use socrates_model::FaultCode;
 
     #[tokio::test]
     async fn what_only_a_person_can_settle_is_not_asked() {
-        let mut papers = papers(Stage::Proposal);
-        papers.reading.problems = vec![Fault::new(FaultCode::PContra, "rough_scenario", "both follow and run away")];
-        let refusal = Desk::default().answer(papers).await.unwrap_err();
+        let mut question = question(Stage::Proposal);
+        question.reading.problems = vec![Fault::new(FaultCode::PContra, "rough_scenario", "both follow and run away")];
+        let refusal = AuthorContext::default().answer(&question, &Asking::default()).await.unwrap_err();
         assert_eq!((refusal.class, refusal.exchange), (FailureClass::Permanent, None));
     }
 
     #[tokio::test]
     async fn an_unknown_author_is_a_permanent_fault() {
-        let mut papers = papers(Stage::Paths);
-        papers.settings.insert("author".into(), "oracle".into());
-        let refusal = Desk::default().answer(papers).await.unwrap_err();
+        let asking = Asking { settings: BTreeMap::from([("author".into(), "oracle".into())]), attempt: 1 };
+        let refusal = AuthorContext::default().answer(&question(Stage::Paths), &asking).await.unwrap_err();
         assert_eq!((refusal.class, refusal.faults[0].code), (FailureClass::Permanent, FaultCode::JRequest));
     }
 }

@@ -34,7 +34,8 @@ pub use attempt::{Exchange, Made, Refused, Written, attempt};
 pub use author::{Answer, AskError, Author, How, Says};
 pub use fault_model::{FaultKind, FaultRates};
 pub use faulty::FaultyAuthor;
-pub use job::{Desk, JobAnswer, JobRefusal, Papers};
+pub use job::{Asking, AuthorContext, JobAnswer, JobRefusal};
 pub use socrates_llm::{Limits, Rate};
+pub use socrates_prompts::Question;
 
 pub use settings::{Keys, Server, author_for, check, probe};

@@ -8,7 +8,9 @@ use async_trait::async_trait;
 use socrates_llm::models::Has;
 use socrates_llm::probe::Probe;
 use socrates_llm::{ApiKey, ChatClient, ClientConfig, Dialect, Learned, Rung};
-use socrates_model::FaultCode;
+use socrates_model::ids::BadId;
+use socrates_model::request::ServerKind;
+use socrates_model::{AuthorSpec, FaultCode};
 use socrates_prompts::{Question, Style, Telling};
 
 use crate::author::{Answer, AskError, Author};
@@ -58,41 +60,43 @@ impl Keys {
 pub const DEFAULT_MODEL: &str = "gpt-4o";
 /// Models that a message names at most.
 const NAMED: usize = 12;
-/// Settings that are taken, for messages.
-pub const ALLOWED: &str = "auto, offline, openai:<model>, anthropic:<model>, gemini:<model>, vllm:<model>, ollama:<model>, \
-                           llamacpp:<model>, lmstudio:<model>, cassette:<folder>, record:<folder>=<author>, \
-                           replay:<folder>=<author>";
-
 /// The author of a setting, asked in a style. `auto` is the offline author unless there is a key.
 ///
 /// # Errors
 /// [`AskError`]: `J-REQUEST` for a setting that means nobody, `T-AUTH` for a server of others without a key.
 pub fn author_for(setting: &str, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
-    let setting = setting.trim();
-    let Some((kind, rest)) = setting.split_once(':').filter(|(_, rest)| !rest.is_empty()) else {
-        return match setting {
-            "offline" => Ok(Box::new(Offline)),
-            "auto" | "" if keys.of(Dialect::OpenAi).is_none() => Ok(Box::new(Offline)),
-            "auto" | "" => server(Dialect::OpenAi, keys.auto_model.as_deref().unwrap_or(DEFAULT_MODEL), keys, style),
-            _ => Err(unknown(setting)),
-        };
-    };
-    let inner = || rest.split_once('=').filter(|(folder, _)| !folder.is_empty()).ok_or_else(|| unknown(setting));
+    author_of(&read(setting)?, keys, style)
+}
+
+fn author_of(author: &AuthorSpec, keys: &Keys, style: Style) -> Result<Box<dyn Author>, AskError> {
+    match author {
+        AuthorSpec::Offline => Ok(Box::new(Offline)),
+        AuthorSpec::Auto if keys.of(Dialect::OpenAi).is_none() => Ok(Box::new(Offline)),
+        AuthorSpec::Auto => server(Dialect::OpenAi, keys.auto_model.as_deref().unwrap_or(DEFAULT_MODEL), keys, style),
+        AuthorSpec::Server(kind, model) => server(dialect(*kind), model, keys, style),
+        AuthorSpec::Cassette(folder) => Ok(Box::new(Replay::new(folder, style))),
+        AuthorSpec::Record(folder, inner) => Ok(Box::new(Recorder::new(author_of(inner, keys, style)?, folder, style))),
+        AuthorSpec::Replay(folder, inner) => {
+            Ok(Box::new(Replay::new(folder, style).or_else(author_of(inner, keys, style)?)))
+        }
+    }
+}
+
+/// The author that a setting names.
+fn read(setting: &str) -> Result<AuthorSpec, AskError> {
+    setting.parse().map_err(|bad: BadId| AskError::new(FaultCode::JRequest, bad.to_string()))
+}
+
+/// How a kind of server is spoken to.
+const fn dialect(kind: ServerKind) -> Dialect {
     match kind {
-        "cassette" => Ok(Box::new(Replay::new(rest, style))),
-        "record" => {
-            let (folder, inner) = inner()?;
-            Ok(Box::new(Recorder::new(author_for(inner, keys, style)?, folder, style)))
-        }
-        "replay" => {
-            let (folder, inner) = inner()?;
-            let author = author_for(inner, keys, style)?;
-            Ok(Box::new(Replay::new(folder, style).or_else(author)))
-        }
-        _ => match kind.parse::<Dialect>() {
-            Ok(dialect) => server(dialect, rest, keys, style),
-            Err(_no_dialect) => Err(unknown(setting)),
-        },
+        ServerKind::OpenAi => Dialect::OpenAi,
+        ServerKind::Anthropic => Dialect::Anthropic,
+        ServerKind::Gemini => Dialect::Gemini,
+        ServerKind::Vllm => Dialect::Vllm,
+        ServerKind::Ollama => Dialect::Ollama,
+        ServerKind::LlamaCpp => Dialect::LlamaCpp,
+        ServerKind::LmStudio => Dialect::LmStudio,
     }
 }
 
@@ -145,8 +149,12 @@ impl Author for Told {
 /// # Errors
 /// [`AskError`]: `J-REQUEST` for a setting that means no server, else why there was no answer.
 pub async fn probe(setting: &str, keys: &Keys) -> Result<Probe, AskError> {
-    let (kind, model) = setting.trim().split_once(':').ok_or_else(|| unknown(setting))?;
-    let dialect = kind.parse::<Dialect>().map_err(|_no_dialect| unknown(setting))?;
+    let author = read(setting)?;
+    let AuthorSpec::Server(kind, model) = &author else {
+        let message = format!("`{author}` is no server; allowed: openai:<model>, ollama:<model> and the like");
+        return Err(AskError::new(FaultCode::JRequest, message));
+    };
+    let dialect = dialect(*kind);
     let client = ChatClient::new(config(dialect, model, keys)?).map_err(|error| ask_error(&error))?;
     client.probe().await.map_err(|error| ask_error(&error))
 }
@@ -157,19 +165,20 @@ pub async fn probe(setting: &str, keys: &Keys) -> Result<Probe, AskError> {
 /// # Errors
 /// [`AskError`], as [`author_for`] and as asking would end.
 pub async fn check(setting: &str, keys: &Keys) -> Result<(), AskError> {
-    drop(author_for(setting, keys, Style::default())?);
-    let mut asked = setting.trim();
+    let author = read(setting)?;
+    drop(author_of(&author, keys, Style::default())?);
+    let mut asked = &author;
     loop {
-        let (kind, rest) = asked.split_once(':').unwrap_or((asked, ""));
-        match (kind, kind.parse::<Dialect>()) {
-            ("cassette", _) if !Path::new(rest).is_dir() => {
-                let message = format!("`{asked}`: there is no folder `{rest}`; `record:{rest}=<author>` records one");
+        match asked {
+            AuthorSpec::Cassette(folder) if !Path::new(folder).is_dir() => {
+                let message =
+                    format!("`{asked}`: there is no folder `{folder}`; `record:{folder}=<author>` records one");
                 return Err(AskError::new(FaultCode::JRequest, message));
             }
             // A recorder asks somebody; a replay asks only what was not recorded.
-            ("record", _) => asked = rest.split_once('=').map_or("", |(_, inner)| inner.trim()),
-            (_, Ok(dialect)) => return has_model(dialect, rest, keys).await,
-            (_, Err(_no_dialect)) => return Ok(()),
+            AuthorSpec::Record(_, inner) => asked = inner,
+            AuthorSpec::Server(kind, model) => return has_model(dialect(*kind), model, keys).await,
+            AuthorSpec::Auto | AuthorSpec::Offline | AuthorSpec::Cassette(_) | AuthorSpec::Replay(..) => return Ok(()),
         }
     }
 }
@@ -212,10 +221,6 @@ fn config(dialect: Dialect, model: &str, keys: &Keys) -> Result<ClientConfig, As
         config.timeout = timeout;
     }
     Ok(config)
-}
-
-fn unknown(setting: &str) -> AskError {
-    AskError::new(FaultCode::JRequest, format!("`{setting}` is no author; allowed: {ALLOWED}"))
 }
 
 #[cfg(test)]
@@ -293,5 +298,13 @@ mod tests {
         for wrong in [("fault.gdisc", "3"), ("fault.typo", "0.1"), ("prompt.paths", "edges")] {
             assert!(author_of_job(&settings(&[wrong]), &Keys::default(), 1).is_err(), "{wrong:?}");
         }
+    }
+
+    #[test]
+    fn every_kind_of_server_is_spoken_to_by_its_own_name() {
+        for kind in ServerKind::ALL {
+            assert_eq!(dialect(kind).name(), kind.name());
+        }
+        assert_eq!(ServerKind::ALL.len(), Dialect::ALL.len());
     }
 }

@@ -9,7 +9,6 @@ use socrates_model::{
 use socrates_prompts::Question;
 
 use crate::author::{Answer, AskError, Author};
-use crate::job::Papers;
 
 /// Says the same to every question.
 #[derive(Debug, Clone)]
@@ -132,20 +131,16 @@ fn reading() -> Reading {
     }
 }
 
-pub(crate) fn papers(stage: Stage) -> Papers {
+pub(crate) fn question(stage: Stage) -> Question {
     let request = serde_json::from_value(
         serde_json::json!({"location": "plus", "social_context": "A hall", "task": "Deliver mail"}),
     )
     .unwrap();
-    Papers {
+    Question {
         stage,
         proposal: (stage != Stage::Proposal).then(proposal),
-        ..Papers::first(request, reading(), plus_map(), 11)
+        ..Question::first(request, reading(), plus_map(), 11)
     }
-}
-
-pub(crate) fn question(stage: Stage) -> Question {
-    papers(stage).question()
 }
 
 /// A right answer to the proposal question.

@@ -9,8 +9,8 @@
 
 use serde_json::{Value, json};
 use socrates_model::fault::hard;
-use socrates_model::hash::derive_seed;
 use socrates_model::job::Stage;
+use socrates_model::seeds::derive_seed;
 use socrates_model::{Fault, Proposal};
 use socrates_prompts::{Question, json as text_json, parse_proposal};
 
@@ -163,7 +163,7 @@ mod tests {
     #[tokio::test]
     async fn a_list_without_proposals_and_a_single_proposal_are_read_as_such() {
         let refused = attempt(&Says(of(&[])), &question(Stage::Proposal)).await.unwrap_err();
-        assert!(refused.faults[0].message.contains("empty"), "{refused}");
+        assert!(refused.faults[0].message.to_string().contains("empty"), "{refused}");
         let made = attempt(&Says(good_proposal()), &question(Stage::Proposal)).await.unwrap();
         assert!(made.exchange.chosen.is_none() && made.exchange.variants.is_empty());
     }

@@ -61,11 +61,11 @@ impl World for Room {
     fn robot_moving(&self) -> bool {
         true
     }
-    fn robot_gesture(&self) -> Gesture {
-        Gesture::None
+    fn robot_gesture(&self) -> Option<Gesture> {
+        None
     }
-    fn human_gesture(&self, _id: HumanId) -> Gesture {
-        Gesture::None
+    fn human_gesture(&self, _id: HumanId) -> Option<Gesture> {
+        None
     }
     fn goal_reached(&self) -> bool {
         self.at_goal
@@ -85,7 +85,7 @@ impl World for Room {
     fn act(&mut self, _action: &Action, leaf: u16) {
         self.acts += u64::from(leaf);
     }
-    fn gesture(&mut self, _gesture: Gesture) {}
+    fn gesture(&mut self, _gesture: Option<Gesture>) {}
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -222,9 +222,9 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// Gesture of a port.
-    pub(crate) fn gesture(&self, port: usize) -> Option<Gesture> {
-        u8::try_from(self.whole(port)?).ok().and_then(Gesture::from_code)
+    /// What a port says: a gesture, or none for the code 0; `None` where there is no code of the table.
+    pub(crate) fn said(&self, port: usize) -> Option<Option<Gesture>> {
+        u8::try_from(self.whole(port)?).ok().and_then(|code| Gesture::from_code(code).ok())
     }
 }
 

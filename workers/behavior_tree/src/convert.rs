@@ -54,7 +54,7 @@ struct Notes {
 
 impl Notes {
     fn add(&mut self, it: &Element, changes_meaning: bool, message: impl Into<String>) {
-        self.found.push((it.site.clone(), Note { at: it.at(), message: message.into(), changes_meaning }));
+        self.found.push((it.site.clone(), Note { at: it.at().to_string(), message: message.into(), changes_meaning }));
     }
 
     fn below(&mut self, root: &Element) {

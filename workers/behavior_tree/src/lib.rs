@@ -4,7 +4,7 @@
 //! ```text
 //! XML ──► document ──► Tree (flat, shared) ──tick──► World: one motion, gestures,
 //!          faults       ▲     │     │                  or every leaf in its own meaning
-//! rules ──► compile ────┘     │     ├──► check, analyze: every case of the conditions, ticked
+//! rules ──► TreeSpec ───┘     │     ├──► check, analyze: every case of the conditions, ticked
 //!                             │     └──► trace: scripted leaves in, statuses and events out
 //!                             └──► draw: text, SVG · convert: the other version, another library
 //! ```
@@ -24,6 +24,7 @@ pub mod parse;
 mod rules;
 mod script;
 pub mod sheet;
+pub mod spec;
 pub mod status;
 mod tick;
 pub mod trace;
@@ -41,6 +42,7 @@ pub use leaf::{LeafCall, LeafValue};
 pub use nodes::{CATALOG, DIALECTS, RARE};
 pub use parse::{Includes, Meaning, Options, REGULAR_NAV, REGULAR_NAV_PATH};
 pub use sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet};
+pub use spec::{NodeSpec, TreeSpec, WALK};
 pub use status::Status;
 pub use trace::{Trace, trace};
 pub use tree::{Format, Tree, TreeState};

@@ -1,6 +1,6 @@
 //! Checks of rules by themselves, before there is a tree.
 
-use socrates_model::{Action, Fault, FaultCode, HumanId, Rule, Trigger};
+use socrates_model::{Action, Fault, FaultCode, HumanId, Rule, Trigger, Where};
 
 /// Smallest and largest distance a rule may name, m.
 const METERS: std::ops::RangeInclusive<f64> = 0.3..=15.0;
@@ -11,7 +11,7 @@ const MAX_SECS: f64 = 3600.0;
 pub(crate) fn check(human: HumanId, rules: &[Rule]) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (place, rule) in rules.iter().enumerate() {
-        let at = format!("{human} rule {}", place + 1);
+        let at = Where::rule(human, place + 1);
         for trigger in &rule.when {
             values(human, trigger, &at, &mut faults);
         }
@@ -42,7 +42,7 @@ pub(crate) fn check(human: HumanId, rules: &[Rule]) -> Vec<Fault> {
     faults
 }
 
-fn values(human: HumanId, trigger: &Trigger, at: &str, faults: &mut Vec<Fault>) {
+fn values(human: HumanId, trigger: &Trigger, at: &Where, faults: &mut Vec<Fault>) {
     match trigger {
         Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) => {
             if !METERS.contains(m) {

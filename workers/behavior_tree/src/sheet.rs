@@ -129,11 +129,7 @@ impl PortKind {
             Self::Step => "{dt}, or seconds above 0".to_owned(),
             Self::Meters => "a distance from 0.3 to 15 m".to_owned(),
             Self::Seconds => "seconds above 0 and at most 3600".to_owned(),
-            Self::Gesture => {
-                let codes: Vec<String> =
-                    Gesture::ALL.iter().map(|gesture| format!("{} {}", gesture.code(), gesture.name())).collect();
-                format!("a gesture code: {}", codes.join(", "))
-            }
+            Self::Gesture => format!("a gesture code: {}", Gesture::table()),
             Self::Human => "the number of another human, 1 for human_1".to_owned(),
             Self::Flag => "true or false".to_owned(),
             Self::Count(least) => format!("a whole number of at least {least}"),

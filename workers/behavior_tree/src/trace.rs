@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
-use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, SimTime};
+use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, SimTime, Where};
 
 use crate::parse::{Includes, Options};
 use crate::sheet::Kind;
@@ -74,7 +74,7 @@ fn read(script: &str, tree: &Tree) -> Result<Vec<BTreeMap<String, Status>>, Vec<
     let script: Value = serde_json::from_str(script.trim_start_matches('\u{feff}'))
         .map_err(|why| syntax(format!("not JSON: {why}; expected {{\"ticks\":[{{\"leaf\":\"SUCCESS\"}}]}}")))?;
     let mut faults = Vec::new();
-    let mut fault = |at: String, message: String| faults.push(Fault::new(FaultCode::ESchema, at, message));
+    let mut fault = |at: String, message: String| faults.push(Fault::new(FaultCode::ESchema, Where::key(at), message));
     if let Some(top) = script.as_object() {
         for key in top.keys().filter(|key| *key != "ticks") {
             fault("script".to_owned(), format!("unknown field `{key}`; allowed: ticks"));
@@ -184,11 +184,11 @@ impl World for Scripted {
     fn robot_moving(&self) -> bool {
         false
     }
-    fn robot_gesture(&self) -> Gesture {
-        Gesture::None
+    fn robot_gesture(&self) -> Option<Gesture> {
+        None
     }
-    fn human_gesture(&self, _id: HumanId) -> Gesture {
-        Gesture::None
+    fn human_gesture(&self, _id: HumanId) -> Option<Gesture> {
+        None
     }
     fn goal_reached(&self) -> bool {
         false
@@ -204,7 +204,7 @@ impl World for Scripted {
         0.01
     }
     fn act(&mut self, _action: &Action, _leaf: u16) {}
-    fn gesture(&mut self, _gesture: Gesture) {}
+    fn gesture(&mut self, _gesture: Option<Gesture>) {}
     fn foreign(&mut self, leaf: u16) -> Status {
         let name = self.leaves.get(usize::from(leaf).wrapping_sub(1));
         let outcome = name.and_then(|name| self.outcomes.get(name)).copied().unwrap_or(Status::Success);

@@ -292,26 +292,24 @@ impl Tree {
         found
     }
 
-    /// Gestures the tree makes, [`Gesture::None`] left out.
+    /// Gestures the tree makes.
     #[must_use]
     pub fn gestures_made(&self) -> Vec<Gesture> {
         let mut found: Vec<Gesture> = self
             .nodes
             .iter()
             .filter(|node| matches!(node.sheet.role, Role::Says))
-            .filter_map(|node| self.ports(node).gesture(1))
-            .filter(|gesture| *gesture != Gesture::None)
+            .filter_map(|node| self.ports(node).said(1).flatten())
             .collect();
         found.sort_unstable();
         found.dedup();
         found
     }
 
-    /// Gestures the tree waits for and who would have to make them, [`Gesture::None`] left out.
+    /// Gestures the tree waits for and who would have to make them.
     #[must_use]
     pub fn gestures_awaited(&self) -> Vec<(AgentId, Gesture)> {
         let mut found: Vec<(AgentId, Gesture)> = self.conditions().iter().filter_map(Trigger::awaits).collect();
-        found.retain(|(_, gesture)| *gesture != Gesture::None);
         found.sort_unstable();
         found.dedup();
         found
@@ -357,14 +355,11 @@ impl Tree {
     }
 }
 
-/// Puts the name of the document before places that have no name of an included file.
-fn in_file(file: &str, mut faults: Vec<Fault>) -> Vec<Fault> {
-    if !file.is_empty() {
-        for fault in &mut faults {
-            if fault.at.starts_with(|first: char| first.is_ascii_digit()) {
-                fault.at = format!("{file} {}", fault.at);
-            }
-        }
-    }
-    faults
+/// Puts the name of the document before places in it; those in an included file name that one.
+fn in_file(file: &str, faults: Vec<Fault>) -> Vec<Fault> {
+    let named = |fault: Fault| match fault.at.line {
+        Some(_) if !file.is_empty() => Fault { at: fault.at.within(file), ..fault },
+        Some(_) | None => fault,
+    };
+    faults.into_iter().map(named).collect()
 }

@@ -93,7 +93,7 @@ pub(crate) fn wrong(kind: PortKind, value: &str) -> Option<(FaultCode, &'static 
             }
         }
         (PortKind::Gesture, Some(_)) => {
-            whole(value, |code| u8::try_from(code).is_ok_and(|code| Gesture::from_code(code).is_some()))
+            whole(value, |code| u8::try_from(code).is_ok_and(|code| Gesture::from_code(code).is_ok()))
         }
         (PortKind::Human, Some(_)) => whole(value, |number| number >= 1),
         (PortKind::Count(least), Some(_)) => whole(value, |number| number >= least),

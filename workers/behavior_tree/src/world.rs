@@ -21,14 +21,14 @@ pub trait World {
         self.robot_distance_m().is_some() && !self.robot_moving()
     }
     /// The gesture the robot makes.
-    fn robot_gesture(&self) -> Gesture;
+    fn robot_gesture(&self) -> Option<Gesture>;
     /// Whether the robot has passed this human ([`Trigger::RobotPassed`](socrates_model::Trigger::RobotPassed)); a world
     /// without such a memory says no.
     fn robot_passed(&self) -> bool {
         false
     }
     /// The gesture another human makes.
-    fn human_gesture(&self, id: HumanId) -> Gesture;
+    fn human_gesture(&self, id: HumanId) -> Option<Gesture>;
     /// Whether this human is at the present goal of its path.
     fn goal_reached(&self) -> bool;
     /// Whether this human is at the last goal of its path. A world that takes the next goal by itself
@@ -47,8 +47,8 @@ pub trait World {
     /// Does something for the length of this tick. `leaf` counts the leaves of
     /// [`Tree::leaf_names`](crate::Tree::leaf_names) from 1.
     fn act(&mut self, action: &Action, leaf: u16);
-    /// Makes a gesture that lasts until the next one; [`Gesture::None`] takes it back.
-    fn gesture(&mut self, gesture: Gesture);
+    /// Makes a gesture that lasts until the next one; none takes an earlier one back.
+    fn gesture(&mut self, gesture: Option<Gesture>);
 
     /// Ticks a leaf of the catalog in this world's own meaning; `None` leaves it to the native one. In trees read
     /// with [`Meaning::World`](crate::Meaning::World) it is asked for every condition and action, timers included,

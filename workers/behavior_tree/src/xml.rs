@@ -6,7 +6,7 @@ use std::fmt;
 use quick_xml::XmlVersion;
 use quick_xml::events::{BytesStart, Event};
 use quick_xml::reader::Reader;
-use socrates_model::{Fault, FaultCode};
+use socrates_model::{Fault, FaultCode, Where};
 
 /// Largest document, bytes.
 pub(crate) const MAX_BYTES: usize = 1 << 20;
@@ -24,12 +24,16 @@ pub(crate) struct Site {
     pub(crate) column: usize,
 }
 
+impl From<&Site> for Where {
+    fn from(site: &Site) -> Self {
+        let at = if site.file.is_empty() { Self::default() } else { Self::file(&site.file) };
+        at.line(site.line).column(site.column)
+    }
+}
+
 impl fmt::Display for Site {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if !self.file.is_empty() {
-            write!(f, "{} ", self.file)?;
-        }
-        write!(f, "{}:{}", self.line, self.column)
+        Where::from(self).fmt(f)
     }
 }
 
@@ -62,10 +66,11 @@ impl Element {
     }
 
     /// Place and tag, as faults give it.
-    pub(crate) fn at(&self) -> String {
+    pub(crate) fn at(&self) -> Where {
+        let (at, tag) = (Where::from(&self.site), short_text(&self.tag));
         match self.attr("name") {
-            Some(name) => format!("{} {} `{}`", self.site, short_text(&self.tag), short_text(name)),
-            None => format!("{} {}", self.site, short_text(&self.tag)),
+            Some(name) => at.at_key(format_args!("{tag} `{}`", short_text(name))),
+            None => at.at_key(tag),
         }
     }
 }
@@ -244,34 +249,34 @@ mod tests {
     fn a_broken_document_is_refused_with_its_place() {
         let fault = read("", "<root>\n  <a>\n</root>").unwrap_err();
         assert_eq!(fault.code, FaultCode::BXml);
-        assert!(fault.at.starts_with("3:"), "{fault}");
+        assert!(fault.at.to_string().starts_with("3:"), "{fault}");
     }
 
     #[test]
     fn places_count_letters_and_a_byte_order_mark_is_none() {
         let fault = read("", "\u{feff}<root>\n<a b='äöü'/><c\n").unwrap_err();
-        assert!(fault.at.starts_with("2:13") || fault.at.starts_with("3:1"), "{fault}");
+        assert!(fault.at.to_string().starts_with("2:13") || fault.at.to_string().starts_with("3:1"), "{fault}");
         assert_eq!(read("", "\u{feff}<root>\n<!-- äöü --><a/></root>").unwrap().children[0].site.column, 13);
     }
 
     #[test]
     fn other_encodings_are_refused_with_their_place() {
         assert_eq!(decode(b"<a/>").unwrap(), "<a/>");
-        assert!(decode(b"<a>\n\xe4").unwrap_err().at.starts_with("2:1"));
-        assert!(decode(&[0xff, 0xfe, b'<', 0]).unwrap_err().message.contains("UTF-16"));
+        assert!(decode(b"<a>\n\xe4").unwrap_err().at.to_string().starts_with("2:1"));
+        assert!(decode(&[0xff, 0xfe, b'<', 0]).unwrap_err().message.to_string().contains("UTF-16"));
         let latin = "<?xml version='1.0' encoding='ISO-8859-1'?><a/>";
-        assert!(read("", latin).unwrap_err().message.contains("ISO-8859-1"));
+        assert!(read("", latin).unwrap_err().message.to_string().contains("ISO-8859-1"));
     }
 
     #[test]
     fn an_attribute_that_stands_twice_is_named() {
-        assert!(read("", "<a b='1' c='2' b='3'/>").unwrap_err().message.contains("attribute `b` twice"));
+        assert!(read("", "<a b='1' c='2' b='3'/>").unwrap_err().message.to_string().contains("attribute `b` twice"));
     }
 
     #[test]
     fn definitions_and_entities_of_the_document_are_refused() {
         let bomb = "<!DOCTYPE r [<!ENTITY a \"b\">]><root x=\"&a;\"/>";
-        assert!(read("", bomb).unwrap_err().message.contains("type definition"));
+        assert!(read("", bomb).unwrap_err().message.to_string().contains("type definition"));
         assert!(read("", "<root x=\"&a;\"/>").is_err());
         assert!(read("", "<root>&a;</root>").is_err());
         assert_eq!(read("", "<root x=\"&lt;1\"/>").unwrap().attr("x"), Some("<1"));
@@ -280,9 +285,9 @@ mod tests {
     #[test]
     fn too_deep_and_too_large_documents_are_refused() {
         let deep = "<a>".repeat(MAX_DEPTH + 2);
-        assert!(read("", &deep).unwrap_err().message.contains("deeper"));
+        assert!(read("", &deep).unwrap_err().message.to_string().contains("deeper"));
         let large = " ".repeat(MAX_BYTES + 1);
-        assert!(read("", &large).unwrap_err().message.contains("bytes"));
+        assert!(read("", &large).unwrap_err().message.to_string().contains("bytes"));
     }
 
     #[test]

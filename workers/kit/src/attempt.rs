@@ -7,7 +7,7 @@ use std::time::Duration;
 use socrates_link::LinkError;
 use socrates_model::job::{Artifact, INLINE_BYTES};
 use socrates_model::wire::{Grant, Outcome, Report};
-use socrates_model::{Digest, FailureClass, Fault, FaultCode};
+use socrates_model::{Digest, FailureClass, Fault, FaultCode, Role, Where};
 use tokio::task::{JoinError, JoinSet};
 use tokio::time::Instant;
 
@@ -121,16 +121,16 @@ fn broke(grant: &Grant, why: JoinError) -> Failure {
     Failure::new(FailureClass::Poison, vec![Fault::new(FaultCode::JPanic, &grant.spec.key, message)])
 }
 
-type Inputs = (BTreeMap<String, Vec<u8>>, Option<String>);
+type Inputs = (BTreeMap<Role, Vec<u8>>, Option<String>);
 
 async fn inputs(worker: &Worker, grant: &Grant) -> Result<Inputs, Failure> {
     let mut fetched = BTreeMap::new();
     for (role, digest) in &grant.spec.inputs {
-        fetched.insert(role.clone(), input(worker, grant, role, *digest).await?);
+        fetched.insert(*role, input(worker, grant, *role, *digest).await?);
     }
     let refused = match grant.spec.refused {
         Some(digest) => {
-            let bytes = input(worker, grant, "refused", digest).await?;
+            let bytes = input(worker, grant, Role::Refused, digest).await?;
             Some(String::from_utf8_lossy(&bytes).into_owned())
         }
         None => None,
@@ -138,7 +138,7 @@ async fn inputs(worker: &Worker, grant: &Grant) -> Result<Inputs, Failure> {
     Ok((fetched, refused))
 }
 
-async fn input(worker: &Worker, grant: &Grant, role: &str, digest: Digest) -> Result<Vec<u8>, Failure> {
+async fn input(worker: &Worker, grant: &Grant, role: Role, digest: Digest) -> Result<Vec<u8>, Failure> {
     if let Some(text) = grant.inline.get(&digest)
         && Digest::of(text.as_bytes()) == digest
     {
@@ -200,7 +200,7 @@ async fn report(
     };
     let mut budget = INLINE_BUDGET;
     for output in outputs {
-        let role = output.role.clone();
+        let role = output.role;
         match stored(worker, output, &mut budget).await {
             Ok(artifact) => report.artifacts.push(artifact),
             Err(BlobError::File { path, why }) if !worker.config.waits_for_disk => {
@@ -208,7 +208,7 @@ async fn report(
             }
             Err(why) => {
                 let message = format!("output `{role}` could not be stored: {}", chain(&why));
-                let fault = Fault::new(FaultCode::JBlob, &role, message);
+                let fault = Fault::new(FaultCode::JBlob, Where::key(&role), message);
                 report.outcome =
                     Outcome::Failed { class: FailureClass::Transient, faults: vec![fault], retry_after_ms: None };
                 (report.repair, report.verdict) = (None, None);
@@ -264,8 +264,7 @@ fn shorten(report: &mut Report) {
     let cut = |faults: &mut Vec<Fault>| {
         faults.truncate(FAULTS_KEPT);
         for fault in faults {
-            fault.message = fault.message.chars().take(FAULT_CHARS).collect();
-            fault.at = fault.at.chars().take(FAULT_CHARS / 2).collect();
+            *fault = fault.clone().shortened(FAULT_CHARS, FAULT_CHARS / 2);
         }
     };
     if let Outcome::Failed { faults, .. } = &mut report.outcome {

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use socrates_link::{Bus, MemoryBus};
 use socrates_model::job::JobSpec;
 use socrates_model::wire::Grant;
-use socrates_model::{FailureClass, Fault, FaultCode};
+use socrates_model::{FailureClass, Fault, FaultCode, Role, Where};
 
 use crate::cancel::Cancel;
 use crate::stage::Failure;
@@ -16,7 +16,7 @@ use crate::stage::Failure;
 /// A job with its inputs fetched.
 pub struct Job {
     pub(crate) grant: Grant,
-    pub(crate) inputs: BTreeMap<String, Vec<u8>>,
+    pub(crate) inputs: BTreeMap<Role, Vec<u8>>,
     pub(crate) refused: Option<String>,
     pub(crate) cancel: Cancel,
     pub(crate) progress: Arc<AtomicU8>,
@@ -26,7 +26,7 @@ pub struct Job {
 impl Job {
     /// A job outside of any worker: for tests and for stages run in one process.
     #[must_use]
-    pub fn detached(spec: JobSpec, inputs: BTreeMap<String, Vec<u8>>) -> Self {
+    pub fn detached(spec: JobSpec, inputs: BTreeMap<Role, Vec<u8>>) -> Self {
         let idem_key = spec.idem_key("detached");
         let inline = BTreeMap::new();
         let grant = Grant { spec, attempt: 1, fence: 1, lease_ms: 15_000, deadline_ms: 600_000, idem_key, inline };
@@ -67,17 +67,17 @@ impl Job {
 
     /// Whether the job has this input.
     #[must_use]
-    pub fn has(&self, role: &str) -> bool {
-        self.inputs.contains_key(role)
+    pub fn has(&self, role: Role) -> bool {
+        self.inputs.contains_key(&role)
     }
 
     /// The bytes of an input.
     ///
     /// # Errors
     /// A poison [`Failure`] (`J-SPEC`) when the job has no such input.
-    pub fn bytes(&self, role: &str) -> Result<&[u8], Failure> {
-        self.inputs.get(role).map(Vec::as_slice).ok_or_else(|| {
-            let there: Vec<&str> = self.inputs.keys().map(String::as_str).collect();
+    pub fn bytes(&self, role: Role) -> Result<&[u8], Failure> {
+        self.inputs.get(&role).map(Vec::as_slice).ok_or_else(|| {
+            let there: Vec<&str> = self.inputs.keys().map(|role| role.name()).collect();
             self.poison(role, &format!("input `{role}` is missing; the job has {there:?}"))
         })
     }
@@ -86,7 +86,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Job::bytes`], also when it is not UTF-8.
-    pub fn text(&self, role: &str) -> Result<&str, Failure> {
+    pub fn text(&self, role: Role) -> Result<&str, Failure> {
         std::str::from_utf8(self.bytes(role)?)
             .map_err(|why| self.poison(role, &format!("input `{role}` is not text: {why}")))
     }
@@ -95,7 +95,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Job::bytes`], also when it is not JSON of this type.
-    pub fn json<T: DeserializeOwned>(&self, role: &str) -> Result<T, Failure> {
+    pub fn json<T: DeserializeOwned>(&self, role: Role) -> Result<T, Failure> {
         serde_json::from_slice(self.bytes(role)?)
             .map_err(|why| self.poison(role, &format!("input `{role}` cannot be read: {why}")))
     }
@@ -104,7 +104,7 @@ impl Job {
     ///
     /// # Errors
     /// As [`Job::json`], but not for a missing input.
-    pub fn json_if_there<T: DeserializeOwned>(&self, role: &str) -> Result<Option<T>, Failure> {
+    pub fn json_if_there<T: DeserializeOwned>(&self, role: Role) -> Result<Option<T>, Failure> {
         if self.has(role) { self.json(role).map(Some) } else { Ok(None) }
     }
 
@@ -131,8 +131,8 @@ impl Job {
         Arc::clone(&self.live)
     }
 
-    fn poison(&self, role: &str, message: &str) -> Failure {
-        let at = format!("{} {role}", self.grant.spec.key);
+    fn poison(&self, role: Role, message: &str) -> Failure {
+        let at = Where::key(format_args!("{} {role}", self.grant.spec.key));
         Failure::new(FailureClass::Poison, vec![Fault::new(FaultCode::JSpec, at, message)])
     }
 }

@@ -9,6 +9,7 @@ use serde::de::DeserializeOwned;
 use socrates_link::{Bus, LinkError, call_envelope, keys};
 use socrates_model::Digest;
 use socrates_model::job::Stage;
+use socrates_model::seeds::derive_seed;
 use socrates_model::wire::{Hello, Recorded, Release, Report};
 use tokio::sync::watch;
 
@@ -58,9 +59,8 @@ impl Backoff {
     pub(crate) fn next(&mut self) -> Duration {
         self.tries = self.tries.saturating_add(1);
         let full = Self::FIRST_MS.saturating_mul(1 << self.tries.min(10)).min(Self::LAST_MS);
-        // A step of a 64-bit linear congruential generator (Knuth, MMIX); its upper bits are good enough to spread.
-        self.seed = self.seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        Duration::from_millis(full / 2 + (self.seed >> 33) % (full / 2 + 1))
+        let drawn = derive_seed(self.seed, &["pause", &self.tries.to_string()]);
+        Duration::from_millis(full / 2 + drawn % (full / 2 + 1))
     }
 
     pub(crate) fn reset(&mut self) {

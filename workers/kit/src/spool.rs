@@ -109,8 +109,12 @@ mod tests {
     use socrates_model::wire::Outcome;
 
     fn report(attempt: u32) -> Report {
-        let key =
-            JobKey { scenario: ScenarioId::new("s").unwrap(), stage: Stage::Paths, item: String::new(), revision: 0 };
+        let key = JobKey {
+            scenario: ScenarioId::new("s").unwrap(),
+            stage: Stage::Paths,
+            item: socrates_model::job::Item::Whole,
+            revision: 0,
+        };
         Report {
             instance: "i".into(),
             key,

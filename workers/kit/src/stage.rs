@@ -3,7 +3,7 @@
 use serde::Serialize;
 use socrates_model::report::{Repair, Verdict};
 use socrates_model::wire::Rates;
-use socrates_model::{FailureClass, Fault, FaultCode};
+use socrates_model::{FailureClass, Fault, FaultCode, Role, Where};
 
 use crate::job::Job;
 
@@ -41,8 +41,8 @@ pub mod media {
 /// One output of a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Output {
-    /// Role: `proposal`, `paths`, `recording` …
-    pub role: String,
+    /// What it is.
+    pub role: Role,
     /// Media type, see [`media`].
     pub media: String,
     /// The content.
@@ -52,13 +52,13 @@ pub struct Output {
 impl Output {
     /// An output of plain bytes.
     #[must_use]
-    pub fn bytes(role: &str, media: &str, bytes: Vec<u8>) -> Self {
-        Self { role: role.to_owned(), media: media.to_owned(), bytes }
+    pub fn bytes(role: Role, media: &str, bytes: Vec<u8>) -> Self {
+        Self { role, media: media.to_owned(), bytes }
     }
 
     /// An output of text.
     #[must_use]
-    pub fn text(role: &str, media: &str, text: impl Into<String>) -> Self {
+    pub fn text(role: Role, media: &str, text: impl Into<String>) -> Self {
         Self::bytes(role, media, text.into().into_bytes())
     }
 
@@ -66,12 +66,15 @@ impl Output {
     ///
     /// # Errors
     /// A poison [`Failure`] when the value cannot be written (a map with keys that are no text).
-    pub fn json<T: Serialize>(role: &str, value: &T) -> Result<Self, Failure> {
+    pub fn json<T: Serialize>(role: Role, value: &T) -> Result<Self, Failure> {
         match serde_json::to_vec(value) {
             Ok(bytes) => Ok(Self::bytes(role, media::JSON, bytes)),
             Err(why) => {
-                let fault =
-                    Fault::new(FaultCode::JSpec, role, format!("output `{role}` cannot be written as JSON: {why}"));
+                let fault = Fault::new(
+                    FaultCode::JSpec,
+                    Where::key(role),
+                    format!("output `{role}` cannot be written as JSON: {why}"),
+                );
                 Err(Failure::new(FailureClass::Poison, vec![fault]))
             }
         }

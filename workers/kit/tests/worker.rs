@@ -12,11 +12,11 @@ use socrates_kit::{
     serve_blobs,
 };
 use socrates_link::{Bus, MemoryBus, Qos, keys};
-use socrates_model::job::{JobKey, JobSpec};
+use socrates_model::job::{Item, JobKey, JobSpec};
 use socrates_model::wire::{
     Acquire, Acquired, Beat, BeatReply, BeatVerdict, Grant, Hello, Outcome, Recorded, Release, Report, Welcome,
 };
-use socrates_model::{Digest, FailureClass, FaultCode, ScenarioId};
+use socrates_model::{Digest, FailureClass, FaultCode, Role, ScenarioId};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
@@ -39,12 +39,12 @@ impl Stage for Backwards {
             Some("wait") => job.cancel().stopped().await,
             Some("hang") => std::future::pending::<()>().await,
             Some("big") => {
-                return Ok(Done::with(vec![Output::bytes("out", media::MCAP, vec![7; 200_000])]));
+                return Ok(Done::with(vec![Output::bytes(Role::Paths, media::MCAP, vec![7; 200_000])]));
             }
             Some(_) | None => {}
         }
-        let text: String = job.text("in")?.chars().rev().collect();
-        Ok(Done::with(vec![Output::text("out", media::TEXT, text)]).remark("turned"))
+        let text: String = job.text(Role::Proposal)?.chars().rev().collect();
+        Ok(Done::with(vec![Output::text(Role::Paths, media::TEXT, text)]).remark("turned"))
     }
 }
 
@@ -169,16 +169,14 @@ fn grant(number: u32, text: &str, act: &str) -> Grant {
     let key = JobKey {
         scenario: ScenarioId::new(format!("s{number}")).unwrap(),
         stage: socrates_model::job::Stage::Paths,
-        item: String::new(),
+        item: Item::Whole,
         revision: 0,
     };
     let digest = Digest::of(text.as_bytes());
     let spec = JobSpec {
         key,
-        inputs: BTreeMap::from([("in".to_owned(), digest)]),
+        inputs: BTreeMap::from([(Role::Proposal, digest)]),
         seed: 1,
-        planner: String::new(),
-        run_seed: 0,
         feedback: vec![],
         refused: None,
         settings: BTreeMap::from([("do".to_owned(), act.to_owned())]),

@@ -13,7 +13,7 @@ use std::hint::black_box;
 use machine::cpu_s;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{
-    AgentId, AgentState, Encounter, Gesture, HumanId, Location, NodeId, Paths, Point, Recording, RecordingHeader, RunId,
+    AgentId, AgentState, Encounter, HumanId, Location, NodeId, Paths, Point, Recording, RecordingHeader, RunId,
 };
 use socrates_scoring::{Evidence, score};
 
@@ -64,7 +64,7 @@ fn scene(location: &Location, humans: u32) -> (Recording, Paths) {
             frames.push(AgentState {
                 tick,
                 agent: agent.number(),
-                flags: AgentState::flags(*agent, Gesture::None, 0),
+                flags: AgentState::flags(*agent, None, 0),
                 x: at.x - aside * yaw.sin(),
                 y: at.y + aside * yaw.cos(),
                 yaw,

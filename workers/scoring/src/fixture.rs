@@ -96,8 +96,7 @@ impl Walk {
         }
         let moving = vx != 0.0 || vy != 0.0;
         let yaw = if moving { course } else { self.yaw.unwrap_or(course) };
-        let gesture =
-            self.gestures.iter().find(|(from, to, _)| t >= *from && t < *to).map_or(Gesture::None, |found| found.2);
+        let gesture = self.gestures.iter().find(|(from, to, _)| t >= *from && t < *to).map(|found| found.2);
         let leaf = self.leaves.iter().rev().find(|(from, _)| t >= *from).map_or(0, |found| found.1);
         AgentState {
             tick,
@@ -171,7 +170,7 @@ pub(crate) fn gone(run: &mut Recording, id: AgentId, times: std::ops::Range<f64>
     let leaf = run.header.absent().unwrap();
     for state in run.frames.iter_mut().filter(|state| state.agent == id.number()) {
         if times.contains(&(state.tick as f64 * run.header.step_s)) {
-            state.flags = AgentState::flags(id, Gesture::None, leaf);
+            state.flags = AgentState::flags(id, None, leaf);
             (state.vx, state.vy) = (0.0, 0.0);
         }
     }

@@ -6,7 +6,7 @@
 //!                      └─► narrative (what happened, with times)           ─┘
 //! ```
 //!
-//! The core is one pure function, [`score`]; the stage around it decodes inputs and hands back the
+//! The core is one pure function, [`score()`]; the stage around it (feature `mcap`) decodes inputs and hands back the
 //! report. What is missing (a map, a proposal, velocities) makes single figures not applicable with
 //! a note; it never becomes 0.
 //!
@@ -31,6 +31,7 @@ mod narrative;
 mod pool;
 mod repair;
 mod score;
+#[cfg(feature = "mcap")]
 mod stage;
 
 #[cfg(test)]
@@ -53,5 +54,6 @@ pub use evidence::{Evidence, REFERENCE};
 pub use pool::{Cell, Pool, PoolFault, PooledRun, Ranking, pool};
 pub use score::score;
 pub use series::{Series, Span};
+#[cfg(feature = "mcap")]
 pub use stage::ScoringStage;
 pub use tracks::{MOVING_MPS, Sample, Track, TrackFault, Tracks};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, Gesture, HumanId};
+use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, HumanId};
 
 use crate::fidelity::{Judged, Signals, does};
 use crate::metrics::Scene;
@@ -42,10 +42,12 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
     let has_gestures =
         signals.evidence.recording.events.iter().any(|event| matches!(event.kind, EventKind::Gesture { .. }));
     for track in signals.tracks.all().filter(|_| !has_gestures) {
-        let mut before = Gesture::None;
+        let mut before = None;
         for sample in &track.samples {
-            if sample.gesture != before && sample.gesture != Gesture::None {
-                add(sample.t, format!("{} says {}", track.agent, sample.gesture));
+            if sample.gesture != before
+                && let Some(gesture) = sample.gesture
+            {
+                add(sample.t, format!("{} says {gesture}", track.agent));
             }
             before = sample.gesture;
         }
@@ -78,8 +80,8 @@ fn goes_at(signals: &Signals<'_>, human: HumanId, from_s: f64, to_s: f64) -> Opt
 /// An event in words; steps along paths are not told.
 fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
     Some(match &event.kind {
-        EventKind::Gesture { gesture: Gesture::None, .. } | EventKind::Node { .. } => return None,
-        EventKind::Gesture { agent, gesture } => format!("{agent} says {gesture}"),
+        EventKind::Gesture { gesture: None, .. } | EventKind::Node { .. } => return None,
+        EventKind::Gesture { agent, gesture: Some(gesture) } => format!("{agent} says {gesture}"),
         EventKind::Leaf { human, leaf } => match phrase(leaf) {
             Some(words) => format!("{human} {words}"),
             None if does(leaf, &Action::FollowHuman(*human)) => format!("{human} follows {}", leader(signals, *human)),

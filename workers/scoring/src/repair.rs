@@ -2,7 +2,7 @@
 
 use socrates_model::job::Stage;
 use socrates_model::report::{Repair, Standing};
-use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict};
+use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict, Where};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::{Finding, Judged};
@@ -22,13 +22,13 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
         Verdict::Invalid => {
             for flaw in &judged.flaws {
                 let code = if flaw.stuck { FaultCode::DStuck } else { FaultCode::DPen };
-                let at = flaw.agents.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                let at = Where::agents(flaw.agents.iter().copied());
                 faults.push((Stage::Paths, Fault::new(code, at, format!("at {:.1} s: {}", flaw.t, flaw.text))));
             }
             if faults.is_empty() {
                 evidence.proposal?;
                 for missing in &judged.uncovered {
-                    faults.push((Stage::Proposal, Fault::new(FaultCode::PVerify, "expected_events", missing)));
+                    faults.push((Stage::Proposal, Fault::new(FaultCode::PVerify, "expected_events", missing.as_str())));
                 }
             }
         }
@@ -50,7 +50,7 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
 pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<Repair> {
     let TrackFault::NotFinite { agent, .. } = fault else { return None };
     (evidence.paths.is_some() && evidence.recording.header.planner == REFERENCE)
-        .then(|| Repair { stage: Stage::Paths, faults: vec![Fault::new(FaultCode::DPen, agent, fault.to_string())] })
+        .then(|| Repair { stage: Stage::Paths, faults: vec![Fault::new(FaultCode::DPen, *agent, fault.to_string())] })
 }
 
 /// Code, stage and message of a clause that was missed.
@@ -113,7 +113,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::RobotLeavesGroup { .. }
         | Predicate::RobotObeys { .. } => (FaultCode::DSetup, Stage::Paths),
     };
-    let at = clause.predicate.human().map_or_else(|| clause.id.clone(), |human| human.to_string());
+    let at = clause.predicate.human().map_or_else(|| Where::key(&clause.id), Where::agent);
     let when = finding.first_s().map_or_else(String::new, |t| format!(" at {t:.1} s"));
     let state = if finding.standing == Standing::NotTriggered { "never came true" } else { "was seen to be otherwise" };
     let message = format!(

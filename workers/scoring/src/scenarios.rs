@@ -144,7 +144,7 @@ fn a_run_in_which_they_never_meet_is_never_realised() {
     let repair = report.repair.unwrap();
     assert_eq!(repair.stage, Stage::Paths);
     assert_eq!(repair.faults[0].code, FaultCode::DNoMeet);
-    assert!(repair.faults[0].message.contains("nearest to `m`"), "{}", repair.faults[0].message);
+    assert!(repair.faults[0].message.to_string().contains("nearest to `m`"), "{}", repair.faults[0].message);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use socrates_model::{FORMAT, Predicate, Report, Verdict};
 
 use crate::evidence::Evidence;
-use crate::fidelity::{Signals, encounter_gaps, judge, rule, ruling_of_played};
+use crate::fidelity::{Signals, by_name, encounter_gaps, judge, rule, ruling_of_played};
 use crate::metrics::{self, Scene};
 use crate::tracks::{TrackFault, Tracks};
 use crate::{narrative, repair};
@@ -59,7 +59,7 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
     report.verdict = ruling.verdict;
     report.verdict_text = ruling.text;
     report.score = ruling.score;
-    report.encounter_gaps_s = gaps;
+    report.encounter_gaps_s = by_name(&gaps);
     report.simulated_s = (tracks.end_s() * 1e3).round() / 1e3;
     report
 }

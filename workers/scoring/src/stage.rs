@@ -1,9 +1,9 @@
 //! The stage: decodes what the job brings, scores, hands back the report.
 
 use socrates_kit::{Done, Failure, Job, Output, Stage, media};
-use socrates_model::{Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request};
+use socrates_model::{Fault, FaultCode, Location, Paths, Proposal, Reading, Recording, Report, Request, Role, Where};
 
-use crate::evidence::{Evidence, REFERENCE};
+use crate::evidence::Evidence;
 use crate::metrics;
 use crate::score::score;
 
@@ -32,16 +32,17 @@ struct Inputs {
 
 impl Inputs {
     fn of(job: &Job) -> Result<Self, Failure> {
-        let wants_reference = job.has("reference") && job.spec().planner != REFERENCE;
+        let wants_reference =
+            job.has(Role::Reference) && !job.spec().run().is_some_and(|run| run.planner.is_reference());
         Ok(Self {
-            recording: decode(job, "recording")?,
-            location: job.json_if_there("location")?,
-            request: job.json_if_there("request")?,
-            reading: job.json_if_there("reading")?,
-            proposal: job.json_if_there("proposal")?,
-            paths: job.json_if_there("paths")?,
-            reference: if wants_reference { Some(decode(job, "reference")?) } else { None },
-            twin: if job.has("twin") { Some(decode(job, "twin")?) } else { None },
+            recording: decode(job, Role::Recording)?,
+            location: job.json_if_there(Role::Location)?,
+            request: job.json_if_there(Role::Request)?,
+            reading: job.json_if_there(Role::Reading)?,
+            proposal: job.json_if_there(Role::Proposal)?,
+            paths: job.json_if_there(Role::Paths)?,
+            reference: if wants_reference { Some(decode(job, Role::Reference)?) } else { None },
+            twin: if job.has(Role::Twin) { Some(decode(job, Role::Twin)?) } else { None },
         })
     }
 
@@ -59,10 +60,10 @@ impl Inputs {
     }
 }
 
-fn decode(job: &Job, role: &str) -> Result<Recording, Failure> {
+fn decode(job: &Job, role: Role) -> Result<Recording, Failure> {
     socrates_stream::mcap::read(job.bytes(role)?).map_err(|why| {
         let message = format!("input `{role}` cannot be read as a recording: {why}");
-        Failure::from(Fault::new(FaultCode::JSpec, format!("{} {role}", job.spec().key), message))
+        Failure::from(Fault::new(FaultCode::JSpec, Where::key(format_args!("{} {role}", job.spec().key)), message))
     })
 }
 
@@ -75,13 +76,13 @@ impl Stage for ScoringStage {
         // Tens of milliseconds of computation do not belong on a thread that answers messages.
         let report = tokio::task::spawn_blocking(move || inputs.score()).await.map_err(|why| {
             let message = format!("scoring run `{run}` broke: {why}");
-            Failure::from(Fault::new(FaultCode::JPanic, job.spec().key.to_string(), message))
+            Failure::from(Fault::new(FaultCode::JPanic, &job.spec().key, message))
         })?;
         tracing::info!(run = %report.run, verdict = report.verdict.name(), score = report.score, "scored");
         Ok(Done {
             artifacts: vec![
-                Output::json("report", &report)?,
-                Output::text("metrics", media::CSV, metrics::csv(&report)),
+                Output::json(Role::Report, &report)?,
+                Output::text(Role::Metrics, media::CSV, metrics::csv(&report)),
             ],
             remark: shortened(&report.verdict_text),
             repair: report.repair,
@@ -111,19 +112,17 @@ mod tests {
     use super::*;
     use crate::fixture::{Walk, recording};
 
-    fn job(inputs: BTreeMap<String, Vec<u8>>) -> Job {
+    fn job(inputs: BTreeMap<Role, Vec<u8>>) -> Job {
         let key = JobKey {
             scenario: ScenarioId::new("test").unwrap(),
             stage: socrates_model::job::Stage::Scoring,
-            item: "mppi-1".into(),
+            item: "mppi-1".parse().unwrap(),
             revision: 0,
         };
         let spec = JobSpec {
             key,
             inputs: BTreeMap::new(),
             seed: 1,
-            planner: "mppi".into(),
-            run_seed: 1,
             feedback: vec![],
             refused: None,
             settings: BTreeMap::new(),
@@ -135,7 +134,7 @@ mod tests {
     async fn a_recording_alone_gives_a_report_and_a_table() {
         let run = recording(&[Walk::robot(0., 0., 0.5, 0.), Walk::human(1, 9., 1., -1., 0.)], 8.0, 0.01);
         let bytes = socrates_stream::mcap::write(&run, None).unwrap();
-        let done = ScoringStage.run(&job([("recording".to_owned(), bytes)].into())).await.unwrap();
+        let done = ScoringStage.run(&job([(Role::Recording, bytes)].into())).await.unwrap();
         let report: Report = serde_json::from_slice(&done.artifacts[0].bytes).unwrap();
         assert_eq!(report.recording, run.hash());
         assert_eq!(done.verdict, Some(Verdict::Invalid));
@@ -148,9 +147,8 @@ mod tests {
         let walks = || Walk::human(1, 9., 1., -1., 0.);
         let run = recording(&[Walk::robot(0., 0., 0.5, 0.), walks()], 8.0, 0.01);
         let bytes = |run: &socrates_model::Recording| socrates_stream::mcap::write(run, None).unwrap();
-        let inputs = [("recording", bytes(&run)), ("twin", bytes(&recording(&[walks()], 8.0, 0.01)))];
-        let inputs = inputs.map(|(role, bytes)| (role.to_owned(), bytes)).into();
-        let done = ScoringStage.run(&job(inputs)).await.unwrap();
+        let inputs = [(Role::Recording, bytes(&run)), (Role::Twin, bytes(&recording(&[walks()], 8.0, 0.01)))];
+        let done = ScoringStage.run(&job(inputs.into())).await.unwrap();
         let report: Report = serde_json::from_slice(&done.artifacts[0].bytes).unwrap();
         let of = |id: &str| report.metrics.iter().find(|metric| metric.id == id).unwrap().value;
         assert_eq!((of("people_deviation"), of("flow_delay_mean")), (Some(0.0), Some(0.0)));
@@ -160,9 +158,9 @@ mod tests {
 
     #[tokio::test]
     async fn bytes_that_are_no_recording_are_poison_with_a_reason() {
-        let failure = ScoringStage.run(&job([("recording".to_owned(), vec![1, 2, 3])].into())).await.unwrap_err();
+        let failure = ScoringStage.run(&job([(Role::Recording, vec![1, 2, 3])].into())).await.unwrap_err();
         assert_eq!(failure.class, FailureClass::Poison);
-        assert!(failure.faults[0].message.contains("recording"));
+        assert!(failure.faults[0].message.to_string().contains("recording"));
         let missing = ScoringStage.run(&job(BTreeMap::new())).await.unwrap_err();
         assert_eq!(missing.class, FailureClass::Poison);
     }

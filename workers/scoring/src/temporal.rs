@@ -1,4 +1,5 @@
-//! Past and future over sampled signals, with quantitative semantics (`spec/evaluation` §5.3).
+//! Past and future over sampled signals, with quantitative semantics (Donzé and Maler, Robust
+//! Satisfaction of Temporal Logic over Real-Valued Signals, FORMATS 2010).
 //!
 //! A [`Signal`] says at each sample how far a condition holds: positive it does, negative it does not. The connectives
 //! take smallest and largest values, windows are closed intervals of seconds, and each operator is one pass over the

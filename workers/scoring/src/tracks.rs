@@ -78,7 +78,7 @@ pub struct Sample {
     /// Heading, rad.
     pub yaw: f64,
     /// Gesture being made.
-    pub gesture: Gesture,
+    pub gesture: Option<Gesture>,
     /// Index of the running leaf in the header's list, 0 for none.
     pub leaf: u16,
     /// Whether the agent is there: somebody recorded comes and goes, and its state before and after means nothing.
@@ -113,7 +113,7 @@ impl Sample {
     }
 }
 
-/// Faster than this is moving, slower is stopped, m/s (`spec/case_studies`).
+/// Faster than this is moving, slower is stopped, m/s.
 pub const MOVING_MPS: f64 = 0.1;
 
 /// One agent through the run.

@@ -6,12 +6,13 @@
 //! ```
 //!
 //! Modules in reading order: the pure run ([`simulate()`]), what is said about it ([`summary`]), how
-//! fast it plays for viewers ([`pace`]), and the worker's stage ([`stage`]).
+//! fast it plays for viewers ([`pace`]), and the worker's stage (`stage`, feature `mcap`).
 //!
 //! *Never here:* another stage, the orchestrator, the store, a metric, a verdict.
 
 pub mod pace;
 pub mod simulate;
+#[cfg(feature = "mcap")]
 pub mod stage;
 pub mod summary;
 
@@ -21,5 +22,6 @@ mod runs;
 
 pub use simulate::{setup, simulate, simulate_into};
 pub use socrates_engine::Onlooker;
+#[cfg(feature = "mcap")]
 pub use stage::Simulation;
 pub use summary::Summary;

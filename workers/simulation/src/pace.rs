@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(Pace::read(None).unwrap(), Pace::Max);
         assert_eq!(Pace::read(Some("2")).unwrap(), Pace::Times(2.0));
         for bad in ["fast", "0", "-1", "nan", "1000"] {
-            assert!(Pace::read(Some(bad)).unwrap_err().message.contains(bad));
+            assert!(Pace::read(Some(bad)).unwrap_err().message.to_string().contains(bad));
         }
     }
 

@@ -1,17 +1,14 @@
 //! One run, pure: the same setup gives the same recording.
 
 use socrates_engine::{Engine, Keeper, Onlooker, Setup};
-use socrates_model::request::{RobotGesture, Waypoints};
-use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
+use socrates_model::request::Waypoints;
 use socrates_model::{
-    Behaviors, Fault, FaultCode, Location, NodeId, Paths, Point, Proposal, Recording, Request, RobotModel, RunId,
+    Behaviors, Fault, FaultCode, Location, NodeId, Paths, Point, Proposal, Recording, Request, RunId,
 };
 use socrates_planners::{Mission, make};
 
 /// The setup of a run from its artifacts. Without a request the robot is the default one and the run ends by itself.
-///
-/// # Errors
-/// `J-REQUEST` for a robot model that is not known, a duration or a robot gesture that cannot be read.
+#[must_use]
 pub fn setup(
     location: Location,
     mut proposal: Proposal,
@@ -20,61 +17,17 @@ pub fn setup(
     request: Option<&Request>,
     run: RunId,
     seed: u64,
-) -> Result<Setup, Vec<Fault>> {
-    let mut faults = Vec::new();
-    let mut robot = RobotModel::default();
-    let mut duration_s = None;
-    let mut waypoints = Waypoints::default();
-    if let Some(request) = request {
-        waypoints = request.robot.waypoints;
-        match RobotModel::named(&request.robot.model) {
-            Some(known) => robot = known,
-            None => {
-                let names: Vec<&str> = RobotModel::ALL.iter().map(|model| model.name).collect();
-                let message =
-                    format!("there is no robot model `{}`; allowed: {}", request.robot.model, names.join(", "));
-                faults.push(Fault::new(FaultCode::JRequest, "robot.model", message));
-            }
-        }
-        match request.duration_s() {
-            Ok(secs) => duration_s = secs,
-            Err(why) => faults.push(Fault::new(FaultCode::JRequest, "run.duration", why)),
-        }
-        for gesture in &request.robot.gestures {
-            match gesture_rule(gesture) {
-                Ok(rule) if !proposal.robot.script.contains(&rule) => proposal.robot.script.push(rule),
-                Ok(_) => {}
-                Err(fault) => faults.push(fault),
-            }
+) -> Setup {
+    let robot = request.map(|request| request.robot.model).unwrap_or_default();
+    let waypoints = request.map(|request| request.robot.waypoints).unwrap_or_default();
+    let duration_s = request.and_then(|request| request.run.duration.fixed_s());
+    for gesture in request.iter().flat_map(|request| &request.robot.gestures) {
+        let line = gesture.line();
+        if !proposal.robot.script.contains(&line) {
+            proposal.robot.script.push(line);
         }
     }
-    if !faults.is_empty() {
-        return Err(faults);
-    }
-    Ok(Setup { location, proposal, paths, behaviors, planner: String::new(), seed, run, duration_s, robot, waypoints })
-}
-
-/// `{ when = "blocked 3 s", say = "EXCUSE_ME" }` as a line of the script.
-fn gesture_rule(gesture: &RobotGesture) -> Result<RobotRule, Fault> {
-    let words: Vec<&str> = gesture.when.split_whitespace().collect();
-    let number = |text: &str| {
-        text.trim_end_matches(['s', 'm']).parse::<f64>().ok().filter(|value| (0.0..=600.0).contains(value))
-    };
-    let when = match words.as_slice() {
-        ["start"] => Some(RobotWhen::Start),
-        ["blocked", secs, ..] => number(secs).map(RobotWhen::Blocked),
-        ["human", "within", reach, ..] => number(reach).map(RobotWhen::HumanNear),
-        ["after", secs, ..] => number(secs).map(RobotWhen::AfterSecs),
-        _ => None,
-    };
-    let unread = || {
-        let message = format!(
-            "`{}` is no moment; allowed: `start`, `blocked 3 s`, `human within 2 m`, `after 10 s`",
-            gesture.when
-        );
-        Fault::new(FaultCode::JRequest, "robot.gestures", message)
-    };
-    Ok(RobotRule { when: when.ok_or_else(unread)?, act: RobotDo::Say(gesture.say) })
+    Setup { location, proposal, paths, behaviors, planner: String::new(), seed, run, duration_s, robot, waypoints }
 }
 
 /// Runs a setup with a planner.
@@ -146,19 +99,4 @@ fn waypoints(setup: &Setup) -> Vec<Point> {
         .collect();
     points.dedup();
     points
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use socrates_model::Gesture;
-
-    #[test]
-    fn moments_of_robot_gestures_are_read_and_others_named() {
-        let read = |when: &str| gesture_rule(&RobotGesture { when: when.to_owned(), say: Gesture::ExcuseMe });
-        assert_eq!(read("blocked 3 s").unwrap().when, RobotWhen::Blocked(3.0));
-        assert_eq!(read("human within 2m").unwrap().when, RobotWhen::HumanNear(2.0));
-        assert_eq!(read("start").unwrap().when, RobotWhen::Start);
-        assert!(read("whenever").unwrap_err().message.contains("`whenever`"));
-    }
 }

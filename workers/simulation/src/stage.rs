@@ -5,9 +5,12 @@ use std::time::{Duration, Instant};
 
 use socrates_engine::Onlooker;
 use socrates_kit::{Cancel, Done, Failure, Job, Output, Stage, media};
-use socrates_model::{AgentState, Event, Fault, FaultCode, Location, Reading, RecordingHeader, Request, RunId, fault};
+use socrates_model::{
+    AgentState, Event, FailureClass, Fault, FaultCode, Location, PlannerName, Reading, RecordingHeader, Request, Role,
+    RunId, Where, fault,
+};
 use socrates_stream::mcap::{Tape, Writer};
-use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, ShmSink, StreamError};
+use socrates_stream::{Fanout, FrameSink as _, Linger, LiveSink, ShmHost, StreamError};
 use tokio::runtime::Handle;
 
 use crate::pace::Pace;
@@ -39,26 +42,27 @@ impl Simulation {
 /// Everything of a job, decoded.
 struct Inputs {
     setup: socrates_engine::Setup,
-    planner: String,
+    planner: PlannerName,
     location: Location,
 }
 
 fn inputs(job: &Job) -> Result<Inputs, Failure> {
-    let location: Location = job.json("location")?;
-    let (proposal, paths, behaviors) = (job.json("proposal")?, job.json("paths")?, job.json("behaviors")?);
-    let request: Option<Request> = job.json_if_there("request")?;
-    let reading: Option<Reading> = job.json_if_there("reading")?;
+    let location: Location = job.json(Role::Location)?;
+    let (proposal, paths, behaviors) = (job.json(Role::Proposal)?, job.json(Role::Paths)?, job.json(Role::Behaviors)?);
+    let request: Option<Request> = job.json_if_there(Role::Request)?;
+    let reading: Option<Reading> = job.json_if_there(Role::Reading)?;
     let hard = fault::hard(&socrates_checks::check_all(&location, reading.as_ref(), &proposal, &paths, &behaviors));
     if !hard.is_empty() {
         return Err(Failure::from_faults(hard));
     }
     let spec = job.spec();
-    let planner = if spec.planner.is_empty() { "reference".to_owned() } else { spec.planner.clone() };
-    let run = RunId::new(spec.run_name()).map_err(|why| {
-        Failure::from(Fault::new(FaultCode::JSpec, &spec.key, format!("the run has no good name: {why}")))
+    let run = spec.run().ok_or_else(|| {
+        let message = "the job names no run: neither a planner nor a seed";
+        Failure::new(FailureClass::Poison, vec![Fault::new(FaultCode::JSpec, &spec.key, message)])
     })?;
-    let setup = setup(location.clone(), proposal, paths, behaviors, request.as_ref(), run, spec.run_seed)?;
-    Ok(Inputs { setup, planner, location })
+    let id = run.id(&spec.key.scenario);
+    let setup = setup(location.clone(), proposal, paths, behaviors, request.as_ref(), id, run.seed);
+    Ok(Inputs { setup, planner: run.planner.clone(), location })
 }
 
 /// Writes the run down while it goes, chunk by chunk.
@@ -91,7 +95,11 @@ impl Scribe {
     /// Ends the recording and makes the outputs of the job.
     fn outputs(self, run: &RunId) -> Result<Done, Failure> {
         let told = |why: &dyn std::fmt::Display| {
-            Failure::from(Fault::new(FaultCode::JBlob, run, format!("the recording cannot be written: {why}")))
+            Failure::from(Fault::new(
+                FaultCode::JBlob,
+                Where::key(run),
+                format!("the recording cannot be written: {why}"),
+            ))
         };
         let (writer, mut summary) = match (self.begun, self.broken) {
             (Some(begun), None) => begun,
@@ -100,8 +108,8 @@ impl Scribe {
         };
         let (tape, whole) = writer.finish().map_err(|why| told(&why))?;
         summary.ends(whole.ticks, whole.hash);
-        let recording = Output::bytes("recording", media::MCAP, tape.bytes());
-        Ok(Done::with(vec![recording, Output::json("simulation", &summary)?]).remark(summary.remark()))
+        let recording = Output::bytes(Role::Recording, media::MCAP, tape.bytes());
+        Ok(Done::with(vec![recording, Output::json(Role::Simulation, &summary)?]).remark(summary.remark()))
     }
 }
 
@@ -148,8 +156,8 @@ async fn viewers(job: &Job, run: &RunId, location: Location, stage: &Simulation)
         _ => (true, true),
     };
     let mut sinks = Fanout::new(Vec::new());
-    if shm && let Some(sink) = ShmSink::open_or_log(run, &stage.shm) {
-        sinks.add(Box::new(sink));
+    if shm && let Some(sink) = stage.shm.sink(run) {
+        sinks.add(sink);
     }
     if bus {
         match LiveSink::open(Arc::clone(&job.live_bus()), run, tape.clone(), &stage.linger).await {
@@ -173,7 +181,7 @@ impl Stage for Simulation {
         let mut viewers = viewers(job, &run, location, self).await?;
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            simulate_into(setup, &planner, &mut viewers)?;
+            simulate_into(setup, planner.as_str(), &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
             let done = scribe.outputs(&named)?;
             // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.
@@ -182,7 +190,11 @@ impl Stage for Simulation {
         });
         match work.await {
             Ok(done) => done,
-            Err(why) => Err(Failure::from(Fault::new(FaultCode::JPanic, &run, format!("the simulation broke: {why}")))),
+            Err(why) => Err(Failure::from(Fault::new(
+                FaultCode::JPanic,
+                Where::key(&run),
+                format!("the simulation broke: {why}"),
+            ))),
         }
     }
 }

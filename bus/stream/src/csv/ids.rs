@@ -4,17 +4,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::AgentId;
 
-use super::{bad, cells, quoted};
+use super::{Table, bad};
 use crate::error::StreamError;
 
 /// So many ids are named in a message.
 const NAMED: usize = 8;
 
-/// A table whose ids are ours.
+/// How the ids of a table became ours.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Named {
-    /// The table, with the same lines.
-    pub text: String,
     /// What the file calls those who got another name.
     pub names: BTreeMap<AgentId, String>,
     /// Everybody, by the id of the file.
@@ -36,29 +34,18 @@ impl Named {
 ///
 /// # Errors
 /// [`StreamError::Csv`] where the robot that is named is not in the table.
-pub fn named(text: &str, robot: Option<&str>) -> Result<Named, StreamError> {
-    let unchanged = || Named { text: text.to_owned(), ..Named::default() };
-    let Some((head_at, head)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
-        return Ok(unchanged());
-    };
-    let at = cells(head.trim_start_matches('\u{feff}'), ',').iter().position(|name| name.to_lowercase() == "id");
-    let Some(at) = at else { return Ok(unchanged()) };
-    let mut rows: Vec<Vec<String>> = text.lines().map(|line| cells(line, ',')).collect();
-    let body = rows.iter().skip(head_at + 1);
-    let ids: BTreeSet<String> = body.filter_map(|row| row.get(at)).filter(|id| !id.is_empty()).cloned().collect();
-    let agents = agents(&ids, robot).map_err(|why| bad(head_at + 1, &why))?;
-    for id in rows.iter_mut().skip(head_at + 1).filter_map(|row| row.get_mut(at)) {
-        if let Some(agent) = agents.get(id.as_str()) {
+pub fn named(table: &mut Table, robot: Option<&str>) -> Result<Named, StreamError> {
+    let Some(at) = table.column("id") else { return Ok(Named::default()) };
+    let ids = table.rows.iter().filter_map(|row| row.cells.get(at)).filter(|id| !id.is_empty());
+    let agents = agents(&ids.cloned().collect(), robot).map_err(|why| bad(table.head.line, &why))?;
+    for id in table.rows.iter_mut().filter_map(|row| row.cells.get_mut(at)) {
+        if let Some(agent) = agents.get(id.as_str()).filter(|agent| readable(id) != Some(**agent)) {
             *id = agent.to_string();
         }
     }
     let renamed = agents.iter().filter(|(id, agent)| ours(id) != Some(**agent));
     let names: BTreeMap<AgentId, String> = renamed.map(|(id, agent)| (*agent, id.clone())).collect();
-    if agents.iter().all(|(id, agent)| readable(id) == Some(*agent)) {
-        return Ok(Named { agents, ..unchanged() });
-    }
-    let lines = rows.iter().map(|row| row.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(","));
-    Ok(Named { text: lines.collect::<Vec<_>>().join("\n"), names, agents })
+    Ok(Named { names, agents })
 }
 
 /// The agent of an id that is ours: `robot`, `human_3`, `3`, and `3.0` as spreadsheets write it.
@@ -119,16 +106,18 @@ fn ending(id: &str) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::csv::read_tracks;
+    use crate::csv::read_table;
 
-    fn table(ids: &[&str]) -> String {
+    fn table(ids: &[&str]) -> Table {
         let lines = ids.iter().flat_map(|id| [format!("0,{id},1,2"), format!("1,{id},2,2")]);
-        std::iter::once("t,id,x,y".to_owned()).chain(lines).collect::<Vec<_>>().join("\n")
+        let text = std::iter::once("t,id,x,y".to_owned()).chain(lines).collect::<Vec<_>>();
+        Table::read(&text.join("\n")).unwrap()
     }
 
     fn who(ids: &[&str], robot: Option<&str>) -> Vec<String> {
-        let found = named(&table(ids), robot).unwrap();
-        assert!(read_tracks(&found.text).is_ok(), "{}", found.text);
+        let mut table = table(ids);
+        let found = named(&mut table, robot).unwrap();
+        assert!(read_table(&table).is_ok(), "{table:?}");
         ids.iter().map(|id| found.agent(id).unwrap().to_string()).collect()
     }
 
@@ -144,21 +133,23 @@ mod tests {
 
     #[test]
     fn ids_that_are_ours_stay_as_they_are() {
-        let text = table(&["robot", "human_1", "3"]);
-        let found = named(&text, None).unwrap();
-        assert_eq!((found.text, found.names.len()), (text, 0));
+        let before = table(&["robot", "human_1", "3"]);
+        let mut after = before.clone();
+        let found = named(&mut after, None).unwrap();
+        assert_eq!((after, found.names.len()), (before, 0));
     }
 
     #[test]
     fn a_robot_that_is_not_there_is_told_with_those_who_are() {
-        let why = named(&table(&["ped1", "odom"]), Some("base_link")).unwrap_err().to_string();
+        let why = named(&mut table(&["ped1", "odom"]), Some("base_link")).unwrap_err().to_string();
         assert!(why.contains("no `base_link`") && why.contains("`odom`, `ped1`"), "{why}");
     }
 
     #[test]
     fn a_name_with_a_comma_stays_one_cell() {
-        let found = named("t,id,x,y\n0,\"Ann, 7\",1,2\n1,\"Ann, 7\",2,2\n", None).unwrap();
+        let mut table = Table::read("t,id,x,y\n0,\"Ann, 7\",1,2\n1,\"Ann, 7\",2,2\n").unwrap();
+        let found = named(&mut table, None).unwrap();
         assert_eq!(found.names[&AgentId::from_number(7)], "Ann, 7");
-        assert!(read_tracks(&found.text).is_ok());
+        assert!(read_table(&table).is_ok());
     }
 }

@@ -2,9 +2,11 @@
 
 mod ids;
 mod plain;
+mod table;
 
 pub use ids::{Named, named};
-pub use plain::{Plain, RunChoice, plain};
+pub use plain::{RunChoice, plain};
+pub use table::{Row, Table};
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -123,7 +125,7 @@ impl AgentTable {
                 state.y,
                 state.yaw,
                 state.speed(),
-                state.gesture(),
+                Gesture::name_of(state.gesture()),
             );
         }
     }
@@ -135,26 +137,6 @@ pub fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
 
-/// Cells of a line, without the blanks round them; in quotes a separator is text and two quotes are one.
-#[must_use]
-pub fn cells(line: &str, separator: char) -> Vec<String> {
-    let mut cells = vec![String::new()];
-    let mut within_quotes = false;
-    let mut letters = line.chars().peekable();
-    while let Some(letter) = letters.next() {
-        match letter {
-            '"' if within_quotes && letters.peek() == Some(&'"') => {
-                cells.last_mut().into_iter().for_each(|cell| cell.push('"'));
-                letters.next();
-            }
-            '"' => within_quotes = !within_quotes,
-            _ if letter == separator && !within_quotes => cells.push(String::new()),
-            _ => cells.last_mut().into_iter().for_each(|cell| cell.push(letter)),
-        }
-    }
-    cells.into_iter().map(|cell| cell.trim().to_owned()).collect()
-}
-
 /// One line of a track file.
 #[derive(Debug, Clone, Copy)]
 struct Fix {
@@ -162,7 +144,7 @@ struct Fix {
     x: f64,
     y: f64,
     yaw: Option<f64>,
-    gesture: Gesture,
+    gesture: Option<Gesture>,
     /// Whether the agent is there.
     there: bool,
 }
@@ -176,17 +158,21 @@ struct Fix {
 /// # Errors
 /// [`StreamError::Csv`] with the line.
 pub fn read_tracks(text: &str) -> Result<Recording, StreamError> {
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let Some((at, head)) = lines.next() else {
-        return Err(bad(1, "the file is empty; a head line `t,id,x,y` is needed"));
-    };
-    let columns = Columns::read(at + 1, head)?;
+    read_table(&Table::read(text)?)
+}
+
+/// As [`read_tracks`], from a table that was read before.
+///
+/// # Errors
+/// As [`read_tracks`].
+pub fn read_table(table: &Table) -> Result<Recording, StreamError> {
+    let columns = Columns::read(table)?;
     let mut tracks: BTreeMap<AgentId, Vec<Fix>> = BTreeMap::new();
-    for (at, line) in lines {
-        let (agent, fix) = columns.fix(at + 1, line)?;
+    for row in &table.rows {
+        let (agent, fix) = columns.fix(row)?;
         tracks.entry(agent).or_default().push(fix);
     }
-    let last = text.lines().count();
+    let last = table.last_line();
     if tracks.is_empty() {
         return Err(bad(last, "the file has no line after its head"));
     }
@@ -261,14 +247,12 @@ struct Columns {
 }
 
 impl Columns {
-    fn read(line: usize, head: &str) -> Result<Self, StreamError> {
-        let names: Vec<String> =
-            cells(head.trim_start_matches('\u{feff}'), ',').iter().map(|name| name.to_lowercase()).collect();
-        let find = |name: &str| names.iter().position(|found| found == name);
+    fn read(table: &Table) -> Result<Self, StreamError> {
+        let find = |name: &str| table.column(name);
         let need = |name: &str| {
             find(name).ok_or_else(|| {
                 bad(
-                    line,
+                    table.head.line,
                     &format!("the head has no column `{name}`; needed are t, id, x, y, allowed are yaw, gesture, leaf"),
                 )
             })
@@ -284,12 +268,11 @@ impl Columns {
         })
     }
 
-    fn fix(&self, line: usize, text: &str) -> Result<(AgentId, Fix), StreamError> {
-        let cells = cells(text, ',');
+    fn fix(&self, row: &Row) -> Result<(AgentId, Fix), StreamError> {
+        let Row { line, cells } = row;
+        let line = *line;
         let cell = |at: usize, name: &str| {
-            cells
-                .get(at)
-                .map(String::as_str)
+            row.cell(at)
                 .ok_or_else(|| bad(line, &format!("column `{name}` is missing; the line has {} cells", cells.len())))
         };
         let number = |at: usize, name: &str| {
@@ -312,8 +295,8 @@ impl Columns {
             None => None,
         };
         let gesture = match self.gesture.and_then(|at| cells.get(at)).filter(|gesture| !gesture.is_empty()) {
-            Some(gesture) => gesture.parse::<Gesture>().map_err(|why| bad(line, &why.to_string()))?,
-            None => Gesture::None,
+            Some(gesture) => Gesture::read(gesture).map_err(|why| bad(line, &why.to_string()))?,
+            None => None,
         };
         let there = self.leaf.and_then(|at| cells.get(at)).is_none_or(|leaf| leaf != ABSENT_LEAF);
         let (t, x, y) = (number(self.t, "t")?, number(self.x, "x")?, number(self.y, "y")?);
@@ -359,7 +342,7 @@ fn resampled(agent: AgentId, track: &[Fix], begin: f64, ticks: usize, stride: us
         let before = states.last().map_or(heading, |last| last.yaw);
         #[expect(clippy::cast_precision_loss, reason = "one or ten")]
         let omega = socrates_model::geometry::wrap_angle(heading - before) / (STEP_SECS * stride as f64);
-        let gesture = if there { from.gesture } else { Gesture::None };
+        let gesture = if there { from.gesture } else { None };
         let flags = AgentState::flags(agent, gesture, leaf);
         states.push(AgentState { tick: tick as u64, agent: agent.number(), flags, x, y, yaw: heading, vx, vy, omega });
     }
@@ -416,8 +399,12 @@ mod tests {
     fn gestures_are_read_and_last_until_another_line_says_otherwise() {
         let text = "t,id,x,y,gesture\n0,1,5,5,NONE\n1,1,5,4,wait\n2,1,5,3,\n";
         let recording = read_tracks(text).unwrap();
-        let waits: Vec<u64> =
-            recording.frames.iter().filter(|state| state.gesture() == Gesture::Wait).map(|state| state.tick).collect();
+        let waits: Vec<u64> = recording
+            .frames
+            .iter()
+            .filter(|state| state.gesture() == Some(Gesture::Wait))
+            .map(|state| state.tick)
+            .collect();
         assert_eq!(waits, (100..200).collect::<Vec<u64>>());
     }
 
@@ -438,7 +425,7 @@ mod tests {
         let mut first = read_tracks(text).unwrap();
         let away = |tick: u64| (60..80).contains(&tick);
         for state in first.frames.iter_mut().filter(|state| state.agent == 2 && away(state.tick)) {
-            state.flags = AgentState::flags(state.agent_id(), Gesture::None, ABSENT);
+            state.flags = AgentState::flags(state.agent_id(), None, ABSENT);
         }
         let again = read_tracks(&write_agents_at(&[&first], Rate::Every)).unwrap();
         let leaves = |recording: &Recording| recording.frames.iter().map(AgentState::leaf).collect::<Vec<_>>();

@@ -4,10 +4,10 @@
 //! |---|---|
 //! | `;` or tabs between the cells, with them decimal commas | commas, decimal points |
 //! | times since 1970, in s, ms, µs or ns | seconds from the first line on |
-//! | a line with an empty or NaN number, or one that is cut | a gap: an empty line, so that the others keep their number |
+//! | a line with an empty or NaN number, or one that is cut | a gap: the line is left out |
 //! | columns `planner` and `seed` with several runs | the lines of one of them |
 
-use super::{bad, cells, quoted};
+use super::{Row, Table, bad};
 use crate::error::StreamError;
 
 /// Times from here on are counted from 1970 and not from the beginning of a run: 1973 in s.
@@ -20,15 +20,6 @@ const GAPS: f64 = 0.5;
 /// So many gaps are told line by line.
 const TOLD: usize = 3;
 
-/// A table as [`super::read_tracks`] reads it, with what had to be made of the one that was given.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plain {
-    /// The table, with the same lines.
-    pub text: String,
-    /// What was made of what, in sentences.
-    pub notes: Vec<String>,
-}
-
 /// Which run of a table of several is meant; what is not said is as in the table's first line.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RunChoice {
@@ -38,72 +29,49 @@ pub struct RunChoice {
     pub seed: Option<u64>,
 }
 
-/// Makes a table plain. What cannot be read at all is left as it is, for [`super::read_tracks`] to name.
+/// Makes a table plain; gives what was made of what, in sentences. What cannot be read at all is left as it is, for
+/// [`super::read_table`] to name.
 ///
 /// # Errors
 /// [`StreamError::Csv`] where most lines have no numbers, or the run that is meant is not in the table.
-pub fn plain(text: &str, choice: &RunChoice) -> Result<Plain, StreamError> {
-    let text = text.trim_start_matches('\u{feff}');
+pub fn plain(table: &mut Table, choice: &RunChoice) -> Result<Vec<String>, StreamError> {
     let mut notes = Vec::new();
-    let Some((head_at, head)) = text.lines().enumerate().find(|(_, line)| !line.trim().is_empty()) else {
-        return Ok(Plain { text: text.to_owned(), notes });
-    };
-    let separator = separator(head);
-    if separator != ',' {
-        let name = if separator == ';' { "`;`" } else { "tabs" };
+    let numbers: Vec<usize> = ["t", "x", "y", "yaw"].into_iter().filter_map(|name| table.column(name)).collect();
+    if table.separator != ',' {
+        let name = if table.separator == ';' { "`;`" } else { "tabs" };
         notes.push(format!("the columns are separated by {name}: read so, with decimal commas where there are any"));
-    }
-    let mut rows: Vec<Vec<String>> = text.lines().map(|line| cells(line, separator)).collect();
-    let column = |name: &str| rows.get(head_at)?.iter().position(|cell| cell.to_lowercase() == name);
-    let numbers = [column("t"), column("x"), column("y"), column("yaw")];
-    let numbers: Vec<usize> = numbers.into_iter().flatten().collect();
-    let time = column("t");
-    if separator != ',' {
-        for row in rows.iter_mut().skip(head_at + 1) {
-            for cell in numbers.iter().filter_map(|at| row.get(*at).map(|_| *at)).collect::<Vec<_>>() {
-                row.get_mut(cell).into_iter().for_each(|cell| *cell = cell.replace(',', "."));
+        for row in &mut table.rows {
+            for at in &numbers {
+                row.cells.get_mut(*at).into_iter().for_each(|cell| *cell = cell.replace(',', "."));
             }
         }
     }
-    notes.extend(one_run(&mut rows, head_at, choice)?);
-    let gaps = gaps(&mut rows, head_at, &numbers)?;
-    notes.extend(gaps);
-    if let Some(time) = time {
-        notes.extend(since_begin(&mut rows, head_at, time));
+    notes.extend(one_run(table, choice)?);
+    notes.extend(gaps(table, &numbers)?);
+    if let Some(time) = table.column("t") {
+        notes.extend(since_begin(&mut table.rows, time));
     }
-    if notes.is_empty() {
-        return Ok(Plain { text: text.to_owned(), notes });
-    }
-    let lines = rows.iter().map(|row| row.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(","));
-    Ok(Plain { text: lines.collect::<Vec<_>>().join("\n"), notes })
+    Ok(notes)
 }
 
-/// What is between the cells: a comma wherever the head has one.
-fn separator(head: &str) -> char {
-    [',', ';', '\t'].into_iter().find(|separator| head.contains(*separator)).unwrap_or(',')
-}
-
-/// Empties the lines in which a number is missing.
-fn gaps(rows: &mut [Vec<String>], head_at: usize, numbers: &[usize]) -> Result<Vec<String>, StreamError> {
-    let last = rows.len();
-    let said = |row: &[String]| row.iter().any(|cell| !cell.is_empty());
-    let lines = rows.iter().skip(head_at + 1).filter(|row| said(row)).count();
+/// Leaves out the lines in which a number is missing.
+fn gaps(table: &mut Table, numbers: &[usize]) -> Result<Vec<String>, StreamError> {
+    let (lines, last) = (table.rows.len(), table.last_line());
     let mut found: Vec<(usize, String)> = Vec::new();
-    for (index, row) in rows.iter_mut().enumerate().skip(head_at + 1).filter(|(_, row)| said(row)) {
-        let why = numbers.iter().find_map(|at| match row.get(*at).map(|cell| (cell, cell.parse::<f64>())) {
-            None if index + 1 == last => Some("is cut off".to_owned()),
+    table.rows.retain(|row| {
+        let ends = row.line == last;
+        let why = numbers.iter().find_map(|at| match row.cell(*at).map(|cell| (cell, cell.parse::<f64>())) {
+            None if ends => Some("is cut off".to_owned()),
             None => Some("has too few cells".to_owned()),
-            Some((cell, _)) if cell.is_empty() => Some("has an empty number".to_owned()),
+            Some(("", _)) => Some("has an empty number".to_owned()),
             Some((cell, Ok(value))) if !value.is_finite() => Some(format!("has `{cell}` for a number")),
-            Some((cell, Err(_))) if index + 1 == last => Some(format!("is cut off at `{cell}`")),
+            Some((cell, Err(_))) if ends => Some(format!("is cut off at `{cell}`")),
             // Words where numbers are due are an error of another kind, which the reader names.
             Some((_, Ok(_) | Err(_))) => None,
         });
-        if let Some(why) = why {
-            row.clear();
-            found.push((index + 1, why));
-        }
-    }
+        found.extend(why.map(|why| (row.line, why)));
+        found.last().is_none_or(|(line, _)| *line != row.line)
+    });
     #[expect(clippy::cast_precision_loss, reason = "lines of a file")]
     if let Some((line, why)) = found.first()
         && found.len() as f64 > GAPS * lines as f64
@@ -118,25 +86,25 @@ fn gaps(rows: &mut [Vec<String>], head_at: usize, numbers: &[usize]) -> Result<V
     Ok(notes)
 }
 
-/// Empties the lines of all runs but one, where columns tell several apart.
-fn one_run(rows: &mut [Vec<String>], head_at: usize, choice: &RunChoice) -> Result<Option<String>, StreamError> {
+/// Leaves out the lines of all runs but one, where columns tell several apart.
+fn one_run(table: &mut Table, choice: &RunChoice) -> Result<Option<String>, StreamError> {
+    let head = table.head.line;
     let asked = [("planner", choice.planner.clone()), ("seed", choice.seed.map(|seed| seed.to_string()))];
     let said = asked.iter().all(|(_, wanted)| wanted.is_some());
     let mut columns: Vec<(usize, &str, Option<String>)> = Vec::new();
     for (name, wanted) in asked {
-        let column = rows.get(head_at).and_then(|head| head.iter().position(|cell| cell.to_lowercase() == name));
-        match (column, wanted) {
+        match (table.column(name), wanted) {
             (Some(at), wanted) => columns.push((at, name, wanted)),
             (None, Some(wanted)) => {
                 let why = format!("the {name} `{wanted}` is meant, and the head has no column `{name}`");
-                return Err(bad(head_at + 1, &why));
+                return Err(bad(head, &why));
             }
             (None, None) => {}
         }
     }
     // A line that is cut belongs to no run; it is told as a gap.
-    let run = |row: &Vec<String>| -> Option<Vec<String>> {
-        columns.iter().map(|(at, ..)| row.get(*at).filter(|cell| !cell.is_empty()).cloned()).collect()
+    let run = |row: &Row| -> Option<Vec<String>> {
+        columns.iter().map(|(at, ..)| row.cells.get(*at).filter(|cell| !cell.is_empty()).cloned()).collect()
     };
     let named = |run: &[String]| -> String {
         let cells = run.iter().zip(&columns).map(|(cell, (_, name, _))| match *name {
@@ -147,7 +115,7 @@ fn one_run(rows: &mut [Vec<String>], head_at: usize, choice: &RunChoice) -> Resu
     };
     // In order of appearance.
     let mut runs: Vec<Vec<String>> = Vec::new();
-    for row in rows.iter().skip(head_at + 1) {
+    for row in &table.rows {
         if let Some(found) = run(row)
             && !runs.contains(&found)
         {
@@ -165,28 +133,24 @@ fn one_run(rows: &mut [Vec<String>], head_at: usize, choice: &RunChoice) -> Resu
         let more = if runs.len() > TOLD { format!(" and {} more", runs.len() - TOLD) } else { String::new() };
         let wanted = columns.iter().filter_map(|(_, name, wanted)| Some(format!("{name} {}", wanted.as_ref()?)));
         let wanted = wanted.collect::<Vec<_>>().join(" and ");
-        return Err(bad(head_at + 1, &format!("there is no run of {wanted}; the table has {}{more}", have.join(", "))));
+        return Err(bad(head, &format!("there is no run of {wanted}; the table has {}{more}", have.join(", "))));
     };
     if runs.len() < 2 {
         return Ok(None);
     }
-    for row in rows.iter_mut().skip(head_at + 1) {
-        if run(row).is_some_and(|found| found != *chosen) {
-            row.clear();
-        }
-    }
+    table.rows.retain(|row| run(row).is_none_or(|found| found == *chosen));
     let others = if said { "" } else { "; --planner and --seed choose another" };
     Ok(Some(format!("the table holds {} runs: that of {} is read{others}", runs.len(), named(chosen))))
 }
 
 /// Times since 1970 become seconds from the first on.
-fn since_begin(rows: &mut [Vec<String>], head_at: usize, time: usize) -> Option<String> {
-    let value = |row: &Vec<String>| row.get(time)?.parse::<f64>().ok();
-    let first = rows.iter().skip(head_at + 1).filter_map(value).reduce(f64::min)?;
+fn since_begin(rows: &mut [Row], time: usize) -> Option<String> {
+    let value = |row: &Row| row.cell(time)?.parse::<f64>().ok();
+    let first = rows.iter().filter_map(value).reduce(f64::min)?;
     let (_, per_second, name) = UNITS.into_iter().find(|(from, ..)| first >= *from)?;
-    for row in rows.iter_mut().skip(head_at + 1) {
+    for row in rows {
         if let Some(t) = value(row)
-            && let Some(cell) = row.get_mut(time)
+            && let Some(cell) = row.cells.get_mut(time)
         {
             *cell = format!("{:.6}", (t - first) / per_second);
         }
@@ -197,14 +161,20 @@ fn since_begin(rows: &mut [Vec<String>], head_at: usize, time: usize) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::csv::read_tracks;
+    use crate::csv::{read_table, read_tracks};
 
     const TABLE: &str = "t,id,x,y\n0.0,robot,0.0,0.5\n0.1,robot,0.1,0.5\n0.2,robot,0.2,0.5\n0.3,robot,0.3,0.5\n";
 
+    fn made(text: &str, choice: &RunChoice) -> Result<(Table, Vec<String>), StreamError> {
+        let mut table = Table::read(text)?;
+        let notes = plain(&mut table, choice)?;
+        Ok((table, notes))
+    }
+
     fn same_as_the_table(text: &str, note: &str) {
-        let made = plain(text, &RunChoice::default()).unwrap();
-        assert!(made.notes.iter().any(|found| found.contains(note)), "{:?}", made.notes);
-        let (found, wanted) = (read_tracks(&made.text).unwrap(), read_tracks(TABLE).unwrap());
+        let (table, notes) = made(text, &RunChoice::default()).unwrap();
+        assert!(notes.iter().any(|found| found.contains(note)), "{notes:?}");
+        let (found, wanted) = (read_table(&table).unwrap(), read_tracks(TABLE).unwrap());
         assert_eq!(found.ticks(), wanted.ticks());
         for (a, b) in found.frames.iter().zip(&wanted.frames) {
             assert!((a.x - b.x).abs() < 1e-5 && (a.y - b.y).abs() < 1e-9, "{text}");
@@ -213,8 +183,7 @@ mod tests {
 
     #[test]
     fn a_plain_table_stays_as_it_is() {
-        assert_eq!(plain(TABLE, &RunChoice::default()).unwrap(), Plain { text: TABLE.to_owned(), notes: vec![] });
-        assert!(plain("", &RunChoice::default()).unwrap().notes.is_empty());
+        assert_eq!(made(TABLE, &RunChoice::default()).unwrap(), (Table::read(TABLE).unwrap(), vec![]));
     }
 
     #[test]
@@ -240,10 +209,11 @@ mod tests {
         same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,nan,0.5"), "line 3 has `nan` for a number");
         same_as_the_table(&TABLE.replace("0.1,robot,0.1,0.5", "0.1,robot,,0.5"), "line 3 has an empty number");
         same_as_the_table(&format!("{TABLE}0.4,rob"), "line 6 is cut off: taken as a gap");
-        let most = plain("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n", &RunChoice::default()).unwrap_err().to_string();
+        let most = made("t,id,x,y\n0,1,nan,0\n1,1,nan,0\n2,1,0,0\n", &RunChoice::default()).unwrap_err().to_string();
         assert!(most.contains("line 2") && most.contains("2 of 3 lines"), "{most}");
         // A word is not a gap.
-        assert!(read_tracks(&plain("t,id,x,y\n0,1,one,2\n1,1,1,2\n", &RunChoice::default()).unwrap().text).is_err());
+        let (table, _) = made("t,id,x,y\n0,1,one,2\n1,1,1,2\n", &RunChoice::default()).unwrap();
+        assert!(read_table(&table).is_err());
     }
 
     #[test]
@@ -251,8 +221,8 @@ mod tests {
         let text = "planner,seed,t,id,x,y\nreference,1,0,robot,0,0\nreference,1,1,robot,1,0\nreference,2,0,robot,5,0\n\
                     reference,2,1,robot,6,0\nmine,1,0,robot,8,0\nmine,1,1,robot,9,0\n";
         let first_x = |choice: &RunChoice| {
-            let made = plain(text, choice).unwrap();
-            (read_tracks(&made.text).unwrap().tick(0)[0].x, made.notes.join(" "))
+            let (table, notes) = made(text, choice).unwrap();
+            (read_table(&table).unwrap().tick(0)[0].x, notes.join(" "))
         };
         let (x, note) = first_x(&RunChoice::default());
         assert!(
@@ -263,14 +233,14 @@ mod tests {
         assert!((first_x(&of(None, Some(2))).0 - 5.0).abs() < 1e-9);
         let (x, note) = first_x(&of(Some("mine"), Some(1)));
         assert!((x - 8.0).abs() < 1e-9 && !note.contains("--seed"), "{note}");
-        let why = plain(text, &of(Some("mine"), Some(7))).unwrap_err().to_string();
+        let why = made(text, &of(Some("mine"), Some(7))).unwrap_err().to_string();
         assert!(
             why.contains(
                 "no run of planner mine and seed 7; the table has reference seed 1, reference seed 2, mine seed 1"
             ),
             "{why}"
         );
-        let why = plain(TABLE, &of(None, Some(1))).unwrap_err().to_string();
+        let why = made(TABLE, &of(None, Some(1))).unwrap_err().to_string();
         assert!(why.contains("no column `seed`"), "{why}");
     }
 }

@@ -91,13 +91,13 @@ struct Figure {
     agent: AgentId,
     name: String,
     radius_m: f64,
-    /// The gesture it is drawn with; `None` while it is not drawn.
-    drawn: Option<Gesture>,
+    /// The gesture it is drawn with, or with none; outer `None` while it is not drawn.
+    drawn: Option<Option<Gesture>>,
 }
 
 impl Figure {
     /// Body, heading and name, fixed to the agent's own frame.
-    fn draw(&self, out: &mut Proto, time: SimTime, gesture: Gesture) {
+    fn draw(&self, out: &mut Proto, time: SimTime, gesture: Option<Gesture>) {
         let height = if self.agent == AgentId::Robot { ROBOT_M } else { PERSON_M };
         entity(out, time, &self.name, &self.name, |out| {
             out.message(7, |out| {
@@ -120,10 +120,9 @@ impl Figure {
                 out.number(2, 1);
                 out.double(3, 0.25);
                 color(out, 5, DARK);
-                if gesture == Gesture::None {
-                    out.text(6, &self.name);
-                } else {
-                    out.text(6, &format!("{}: {gesture}", self.name));
+                match gesture {
+                    Some(gesture) => out.text(6, &format!("{}: {gesture}", self.name)),
+                    None => out.text(6, &self.name),
                 }
             });
         });

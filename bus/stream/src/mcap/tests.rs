@@ -20,8 +20,8 @@ fn recording() -> Recording {
         kind: EventKind::Gesture { agent: AgentId::Robot, gesture },
     };
     recording.events = vec![
-        gesture(3, Gesture::Wait),
-        gesture(3, Gesture::None),
+        gesture(3, Some(Gesture::Wait)),
+        gesture(3, None),
         Event { time: SimTime::at_tick(400), kind: EventKind::End { reason: "done".into() } },
     ];
     recording
@@ -163,7 +163,7 @@ fn viewers_find_bodies_once_and_places_ten_times_a_second() {
     // The person waves from tick 150 on, and is gone from tick 250 on.
     recording.header.leaves = vec![String::new(), "walk".into(), socrates_model::recording::ABSENT_LEAF.into()];
     for state in recording.frames.iter_mut().filter(|state| state.agent == 1) {
-        let gesture = if state.tick >= 150 { Gesture::Wait } else { Gesture::None };
+        let gesture = if state.tick >= 150 { Some(Gesture::Wait) } else { None };
         state.flags = AgentState::flags(AgentId::from_number(1), gesture, if state.tick >= 250 { 2 } else { 1 });
     }
     let bytes = write(&recording, None).unwrap();

@@ -1,10 +1,10 @@
 //! Anthropic Messages.
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::{Call, Usage, refused, unreadable};
-use crate::base64;
 use crate::chat::{ChatAnswer, Speaker};
 use crate::dialect::Rung;
 use crate::error::ChatError;
@@ -27,7 +27,7 @@ pub(super) fn body(call: &Call<'_>) -> Value {
             block.insert("cache_control".to_owned(), json!({"type": "ephemeral"}));
         }
         let picture = turn.png.as_ref().map(|png| {
-            let source = json!({"type": "base64", "media_type": "image/png", "data": base64::encode(png)});
+            let source = json!({"type": "base64", "media_type": "image/png", "data": BASE64_STANDARD.encode(png)});
             json!({"type": "image", "source": source})
         });
         let content: Vec<Value> = picture.into_iter().chain([text]).collect();

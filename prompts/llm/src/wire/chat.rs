@@ -1,10 +1,10 @@
 //! Chat Completions, with what vLLM, Ollama, llama.cpp and LM Studio do differently.
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::{Call, Usage, refused, unreadable};
-use crate::base64;
 use crate::chat::{ChatAnswer, Detail, Speaker};
 use crate::dialect::{Dialect, Rung};
 use crate::error::ChatError;
@@ -64,7 +64,7 @@ fn message(call: &Call<'_>, index: usize) -> Option<Value> {
     Some(match &turn.png {
         None => json!({"role": role, "content": text}),
         Some(png) => {
-            let url = format!("data:image/png;base64,{}", base64::encode(png));
+            let url = format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png));
             let detail = if call.request.detail == Detail::Low { "low" } else { "high" };
             json!({"role": role, "content": [
                 {"type": "text", "text": text},

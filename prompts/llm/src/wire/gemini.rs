@@ -1,10 +1,10 @@
 //! Gemini generateContent.
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::{Call, Usage, refused, unreadable};
-use crate::base64;
 use crate::chat::{ChatAnswer, Detail, Speaker};
 use crate::dialect::Rung;
 use crate::error::ChatError;
@@ -17,8 +17,10 @@ pub(super) fn body(call: &Call<'_>) -> Value {
     let mut contents = Vec::new();
     for (index, turn) in request.turns.iter().enumerate() {
         let text = json!({"text": call.text(index)});
-        let picture =
-            turn.png.as_ref().map(|png| json!({"inlineData": {"mimeType": "image/png", "data": base64::encode(png)}}));
+        let picture = turn
+            .png
+            .as_ref()
+            .map(|png| json!({"inlineData": {"mimeType": "image/png", "data": BASE64_STANDARD.encode(png)}}));
         let parts: Vec<Value> = [text].into_iter().chain(picture).collect();
         match turn.speaker {
             Speaker::System => system.extend(parts),

@@ -67,7 +67,7 @@ fn rules(kind: FaultKind, rules: &mut Vec<Value>, question: &Question) -> Option
             let script =
                 question.proposal.as_ref().map(|proposal| proposal.robot.script.as_slice()).unwrap_or_default();
             let made = |gesture: &Gesture| script.iter().any(|line| line.act == RobotDo::Say(*gesture));
-            let unheard = Gesture::ALL.into_iter().find(|gesture| *gesture != Gesture::None && !made(gesture))?;
+            let unheard = Gesture::ALL.into_iter().find(|gesture| !made(gesture))?;
             rules.insert(0, extra(json!([{"robot_says": unheard}]), "follow_robot"));
         }
         FaultKind::Brange => rules.insert(0, extra(json!([{"robot_near": 99.0}]), "look_at_robot")),

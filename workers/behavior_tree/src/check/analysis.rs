@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Serialize;
-use socrates_model::{Action, Fault, FaultCode, Gesture};
+use socrates_model::{Action, Fault, FaultCode, Gesture, Where};
 
 use crate::check::atoms::MAX_EXACT;
 use crate::check::cases::{Case, Cases};
@@ -128,13 +128,13 @@ pub fn analyze(tree: &Tree) -> Analysis {
     }
 }
 
-fn at(node: &Node) -> String {
-    format!("{} {} `{}`", node.site, node.document_tag(), node.name)
+fn at(node: &Node) -> Where {
+    Where::from(&node.site).at_key(format_args!("{} `{}`", node.document_tag(), node.name))
 }
 
 /// Place of a leaf.
-fn leaf_at(tree: &Tree, leaf: u16) -> String {
-    tree.nodes.iter().find(|node| node.leaf == leaf).map_or_else(String::new, at)
+fn leaf_at(tree: &Tree, leaf: u16) -> Where {
+    tree.nodes.iter().find(|node| node.leaf == leaf).map_or_else(Where::default, at)
 }
 
 fn simplicity(case: &Case) -> usize {
@@ -181,7 +181,7 @@ fn frozen(cases: &Cases<'_>) -> Vec<Fault> {
     for case in still {
         simplest(found.entry(case.visited()).or_insert(case), case);
     }
-    let root = cases.tree.nodes.first().map_or_else(String::new, at);
+    let root = cases.tree.nodes.first().map_or_else(Where::default, at);
     let message = |case: &Case| {
         format!(
             "no motion runs, now or later, {}: it freezes; end with the block of regular navigation, or say StandStill \
@@ -204,9 +204,8 @@ fn stuck(cases: &Cases<'_>) -> Vec<Fault> {
     }
     let mut raised: BTreeMap<(Gesture, Vec<bool>), &Case> = BTreeMap::new();
     for case in &cases.all {
-        for gesture in case.gestures.iter().filter_map(|made| made.last()).filter(|gesture| **gesture != Gesture::None)
-        {
-            simplest(raised.entry((*gesture, cases.memory_at_end(case))).or_insert(case), case);
+        for gesture in case.gestures.iter().filter_map(|made| made.last().copied().flatten()) {
+            simplest(raised.entry((gesture, cases.memory_at_end(case))).or_insert(case), case);
         }
     }
     let mut found: BTreeMap<Gesture, (&Case, &Case)> = BTreeMap::new();
@@ -218,7 +217,7 @@ fn stuck(cases: &Cases<'_>) -> Vec<Fault> {
             *known = (case, later);
         }
     }
-    let root = cases.tree.nodes.first().map_or_else(String::new, at);
+    let root = cases.tree.nodes.first().map_or_else(Where::default, at);
     let told = found.iter().map(|(gesture, (raised, kept))| {
         let message = format!(
             "{gesture} is raised {} and stays {}; put MakeGesture message='0' into every branch that does not make it",

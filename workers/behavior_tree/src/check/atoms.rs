@@ -1,6 +1,7 @@
 //! What can be so or not, and which of these truths the world allows together.
 
 use socrates_model::Trigger;
+use socrates_model::seeds::SplitMix64;
 
 use crate::check::below;
 use crate::sheet::{Kind, Role};
@@ -117,9 +118,10 @@ pub(super) fn truths(tree: &Tree, atoms: &[Atom]) -> Vec<Vec<bool>> {
     }
     let mut sample = aimed(tree, atoms);
     sample.push(vec![false; n]);
-    let mut seed = 0x5eed_u64;
+    // A fixed sequence, so that the same tree gets the same cases.
+    let mut random = SplitMix64::new(0x5eed);
     for _ in 0..SAMPLE {
-        let truth = (0..n).map(|_| next(&mut seed).is_multiple_of(3)).collect();
+        let truth = (0..n).map(|_| random.next_u64().is_multiple_of(3)).collect();
         sample.push(truth);
     }
     let mut closed: Vec<Vec<bool>> =
@@ -131,15 +133,6 @@ pub(super) fn truths(tree: &Tree, atoms: &[Atom]) -> Vec<Vec<bool>> {
 
 fn unpack(bits: u64, n: usize) -> Vec<bool> {
     (0..n).map(|place| bits >> place & 1 == 1).collect()
-}
-
-/// SplitMix64: a fixed sequence, so that the same tree gets the same cases.
-fn next(seed: &mut u64) -> u64 {
-    *seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    let mut z = *seed;
-    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ (z >> 31)
 }
 
 /// Adds what the truths force.

@@ -12,7 +12,7 @@ pub(super) struct CaseWorld<'a> {
     pub(super) atoms: &'a [Atom],
     pub(super) truth: &'a [bool],
     pub(super) acts: Vec<(Action, u16)>,
-    pub(super) gestures: Vec<Gesture>,
+    pub(super) gestures: Vec<Option<Gesture>>,
     pub(super) goal_taken: bool,
 }
 
@@ -21,14 +21,9 @@ impl CaseWorld<'_> {
         self.atoms.iter().zip(self.truth).any(|(atom, holds)| *holds && *atom == Atom::World(asked.clone()))
     }
 
-    /// The gesture that holds, or one that nobody asks about.
-    fn gesture_of(&self, trigger: impl Fn(Gesture) -> Trigger) -> Gesture {
-        let asked = |gesture: &Gesture| self.atoms.contains(&Atom::World(trigger(*gesture)));
-        Gesture::ALL
-            .into_iter()
-            .find(|gesture| self.holds(&trigger(*gesture)))
-            .or_else(|| Gesture::ALL.into_iter().find(|gesture| !asked(gesture)))
-            .unwrap_or_default()
+    /// The gesture that holds, or none.
+    fn gesture_of(&self, trigger: impl Fn(Gesture) -> Trigger) -> Option<Gesture> {
+        Gesture::ALL.into_iter().find(|gesture| self.holds(&trigger(*gesture)))
     }
 
     /// What a leaf answers that nothing is known about.
@@ -62,10 +57,10 @@ impl World for CaseWorld<'_> {
     fn robot_passed(&self) -> bool {
         self.holds(&Trigger::RobotPassed)
     }
-    fn robot_gesture(&self) -> Gesture {
+    fn robot_gesture(&self) -> Option<Gesture> {
         self.gesture_of(Trigger::RobotSays)
     }
-    fn human_gesture(&self, id: HumanId) -> Gesture {
+    fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
         self.gesture_of(|gesture| Trigger::HumanSays(id, gesture))
     }
     fn goal_reached(&self) -> bool {
@@ -93,7 +88,7 @@ impl World for CaseWorld<'_> {
     fn act(&mut self, action: &Action, leaf: u16) {
         self.acts.push((action.clone(), leaf));
     }
-    fn gesture(&mut self, gesture: Gesture) {
+    fn gesture(&mut self, gesture: Option<Gesture>) {
         self.gestures.push(gesture);
     }
     fn leaf(&mut self, call: &mut LeafCall<'_>) -> Option<Status> {

@@ -4,7 +4,7 @@
 //! about the world; so the truth of each condition, the phase of each timer and the memory of each
 //! latch decide the whole tick. Cases that the world rules out (near at 2 m but not at 5 m) are left out.
 
-use socrates_model::{Action, Fault, FaultCode, Gesture};
+use socrates_model::{Action, Fault, FaultCode, Gesture, Where};
 
 use crate::check::atoms::{Atom, atoms, truths};
 use crate::check::case_world::CaseWorld;
@@ -30,7 +30,7 @@ pub(super) struct Case {
     /// Motions and their leaves, tick by tick.
     pub(super) acts: Vec<Vec<(Action, u16)>>,
     /// Gestures, tick by tick.
-    pub(super) gestures: Vec<Vec<Gesture>>,
+    pub(super) gestures: Vec<Vec<Option<Gesture>>>,
     /// Whether a tick took the next goal, tick by tick.
     pub(super) goals: Vec<bool>,
     /// Nodes that were come to.
@@ -193,7 +193,7 @@ impl<'a> Cases<'a> {
     /// `B-DEAD`, `B-MOVE2`, `B-STILL`, `B-LATCH`, `B-NAV`.
     pub(super) fn check(&self, ctx: &CheckContext<'_>) -> Vec<Fault> {
         let mut faults = Vec::new();
-        let at = ctx.human.to_string();
+        let at = Where::agent(ctx.human);
         self.dead(ctx.rules.iter().any(is_endless), &|node| place(ctx, node), &mut faults);
         let foreign = has_foreign(self.tree);
         let acts = |case: &Case, tick: usize| case.acts.get(tick).cloned().unwrap_or_default();
@@ -225,11 +225,11 @@ impl<'a> Cases<'a> {
     }
 
     /// A gesture that is made in some case, not made in another, and taken back in none.
-    fn latched(&self, at: &str, faults: &mut Vec<Fault>) {
+    fn latched(&self, at: &Where, faults: &mut Vec<Fault>) {
         let calls = || self.all.iter().flat_map(|case| case.gestures.iter());
-        let made: Option<Gesture> = calls().flatten().copied().find(|gesture| *gesture != Gesture::None);
-        let taken_back = calls().any(|tick| tick.last() == Some(&Gesture::None));
-        let absent = calls().any(|tick| tick.iter().all(|gesture| *gesture == Gesture::None));
+        let made: Option<Gesture> = calls().flatten().copied().flatten().next();
+        let taken_back = calls().any(|tick| tick.last() == Some(&None));
+        let absent = calls().any(|tick| tick.iter().all(Option::is_none));
         if let (Some(gesture), false, true) = (made, taken_back, absent) {
             let message = format!(
                 "{gesture} is never taken back; put MakeGesture message='0' into every branch that does not make it"
@@ -239,7 +239,7 @@ impl<'a> Cases<'a> {
     }
 
     /// The topmost nodes that no case ever comes to.
-    pub(super) fn dead(&self, endless: bool, place: &dyn Fn(&Node) -> String, faults: &mut Vec<Fault>) {
+    pub(super) fn dead(&self, endless: bool, place: &dyn Fn(&Node) -> Where, faults: &mut Vec<Fault>) {
         let nodes = &self.tree.nodes;
         let seen = |node: usize| self.visited.get(node).copied().unwrap_or(true);
         for (index, node) in nodes.iter().enumerate() {

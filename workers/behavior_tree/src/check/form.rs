@@ -114,7 +114,7 @@ fn block(it: &Element, ctx: &CheckContext<'_>, faults: &mut Vec<Fault>) {
                 <SetBlackboard output_key='agentid' value='{id}'/> \
                 <SetBlackboard output_key='timestep' value='{dt}'/> \
                 <SubTree ID='RegularNavTree' id='agentid' dt='timestep'/>";
-            faults.push(Fault::new(FaultCode::BNav, format!("{} {}", ctx.human, it.at()), message));
+            faults.push(Fault::new(FaultCode::BNav, it.at().of(ctx.human), message));
         }
     }
     for child in &it.children {

@@ -2,8 +2,9 @@
 
 use socrates_model::{Action, AgentId, Fault, FaultCode, Gesture, HumanId};
 
+use crate::blackboard::Ports;
 use crate::check::{CheckContext, place};
-use crate::sheet::Role;
+use crate::sheet::{NodeSheet, PortKind, Role};
 use crate::tree::{Node, Tree};
 
 /// `B-HEAR` for gestures that nobody makes, `B-RANGE` for humans that are not there, `B-PORT` for
@@ -14,6 +15,10 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
         let ports = tree.ports(node);
         match node.sheet.role {
             Role::Asks(means) => {
+                if let Some(silence) = awaits_silence(node.sheet, &ports) {
+                    faults.push(Fault::new(FaultCode::BHear, place(ctx, node), silence));
+                    continue;
+                }
                 let Some((who, gesture)) = means(&ports).and_then(|trigger| trigger.awaits()) else { continue };
                 let made = match who {
                     AgentId::Robot => Some(ctx.robot_says),
@@ -37,6 +42,13 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
     faults
 }
 
+/// What is wrong with a condition on a gesture whose code is 0: no gesture is no message.
+fn awaits_silence(sheet: &NodeSheet, ports: &Ports<'_>) -> Option<String> {
+    let port = sheet.ports.iter().position(|port| port.kind == PortKind::Gesture)?;
+    let name = sheet.ports.get(port).map(|port| port.name)?;
+    (ports.said(port)? == None).then(|| format!("waits for no gesture: {name}=`0`; allowed: {}", Gesture::messages()))
+}
+
 fn hear(
     who: AgentId,
     gesture: Gesture,
@@ -45,12 +57,10 @@ fn hear(
     ctx: &CheckContext<'_>,
     faults: &mut Vec<Fault>,
 ) {
-    // NONE is heard from everybody who says nothing.
-    if gesture == Gesture::None || made.contains(&gesture) {
+    if made.contains(&gesture) {
         return;
     }
-    let made: Vec<&str> =
-        made.iter().filter(|gesture| **gesture != Gesture::None).map(|gesture| gesture.name()).collect();
+    let made: Vec<&str> = made.iter().map(|gesture| gesture.name()).collect();
     let made = if made.is_empty() { "no gesture".to_owned() } else { made.join(", ") };
     let message = format!("waits for {gesture} of {who}, which never makes it; {who} makes: {made}");
     faults.push(Fault::new(FaultCode::BHear, place(ctx, node), message));

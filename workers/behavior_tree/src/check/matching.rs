@@ -1,6 +1,6 @@
 //! Whether a tree does what the proposal asks, no less and no more.
 
-use socrates_model::{Action, Fault, FaultCode, Gesture, Rule, Trigger};
+use socrates_model::{Action, Fault, FaultCode, Rule, Trigger, Where};
 
 use crate::check::CheckContext;
 use crate::check::atoms::Atom;
@@ -15,12 +15,12 @@ const SAME: f64 = 1e-6;
 pub(super) fn check(cases: &Cases<'_>, ctx: &CheckContext<'_>) -> Vec<Fault> {
     let mut faults = Vec::new();
     for (place, rule) in ctx.rules.iter().enumerate() {
-        let at = format!("{} rule {}", ctx.human, place + 1);
+        let at = Where::rule(ctx.human, place + 1);
         if let Some((code, message)) = mismatch(cases, ctx.rules, rule) {
             faults.push(Fault::new(code, at, message));
         }
     }
-    let at = ctx.human.to_string();
+    let at = Where::agent(ctx.human);
     for action in cases.tree.actions() {
         if action != Action::Navigate && !ctx.rules.iter().any(|rule| rule.act == action) {
             let message = format!("the tree {}, which the proposal does not ask; leave it out", action.phrase());
@@ -58,8 +58,9 @@ fn mismatch(cases: &Cases<'_>, rules: &[Rule], rule: &Rule) -> Option<(FaultCode
     if cases.simplest(|case, tick| does(case, tick) && all_hold(rule, case)).is_none() {
         return differs(format!("{}, {act}: the tree does not do that then", when(rule)));
     }
-    if let Some(gesture) = rule.gesture.filter(|gesture| *gesture != Gesture::None) {
-        let says = |case: &Case, tick: usize| case.gestures.get(tick).and_then(|made| made.last()) == Some(&gesture);
+    if let Some(gesture) = rule.gesture {
+        let says =
+            |case: &Case, tick: usize| case.gestures.get(tick).and_then(|made| made.last()) == Some(&Some(gesture));
         if cases.simplest(|case, tick| does(case, tick) && all_hold(rule, case) && says(case, tick)).is_none() {
             return differs(format!("{}, {act} and say {gesture}: the tree does not say it then", when(rule)));
         }

@@ -12,7 +12,7 @@ pub use analysis::{Analysis, CheckReport, Cover, analyze, check_report};
 
 use std::collections::BTreeMap;
 
-use socrates_model::{Fault, FaultCode, Gesture, HumanId, Rule};
+use socrates_model::{Fault, FaultCode, Gesture, HumanId, Rule, Where};
 
 use crate::rules;
 use crate::tree::{Node, Tree};
@@ -51,8 +51,8 @@ pub fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
 }
 
 /// Human, place and tag, as faults give it.
-fn place(ctx: &CheckContext<'_>, node: &Node) -> String {
-    format!("{} {} {}", ctx.human, node.site, node.sheet.tag)
+fn place(ctx: &CheckContext<'_>, node: &Node) -> Where {
+    Where::from(&node.site).of(ctx.human).at_key(node.sheet.tag)
 }
 
 /// Places of a node and everything below it, in pre-order.

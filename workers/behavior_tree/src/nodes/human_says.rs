@@ -27,12 +27,12 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 fn means(ports: &Ports<'_>) -> Option<Trigger> {
-    Some(Trigger::HumanSays(human(ports, 1)?, ports.gesture(2)?))
+    Some(Trigger::HumanSays(human(ports, 1)?, ports.said(2).flatten()?))
 }
 
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    let asked = human(&t.ports(node), 1).zip(t.ports(node).gesture(2));
-    Status::of(asked.is_some_and(|(id, gesture)| t.world.human_gesture(id) == gesture))
+    let asked = human(&t.ports(node), 1).zip(t.ports(node).said(2));
+    Status::of(asked.is_some_and(|(id, said)| t.world.human_gesture(id) == said))
 }
 
 /// The human of a port.

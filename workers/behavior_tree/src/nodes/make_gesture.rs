@@ -20,7 +20,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    let Some(gesture) = t.ports(node).gesture(1) else { return Status::Failure };
-    t.world.gesture(gesture);
+    let Some(said) = t.ports(node).said(1) else { return Status::Failure };
+    t.world.gesture(said);
     Status::Success
 }

@@ -23,9 +23,9 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 fn means(ports: &Ports<'_>) -> Option<Trigger> {
-    ports.gesture(1).map(Trigger::RobotSays)
+    ports.said(1).flatten().map(Trigger::RobotSays)
 }
 
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    Status::of(t.ports(node).gesture(1).is_some_and(|gesture| t.world.robot_gesture() == gesture))
+    Status::of(t.ports(node).said(1).is_some_and(|said| t.world.robot_gesture() == said))
 }

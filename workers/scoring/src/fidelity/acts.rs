@@ -38,7 +38,7 @@ fn block_mark(moment: &Moment) -> Mark {
     Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()))
 }
 
-/// How far somebody looks at the robot at each moment: stopped and turned to it (`spec/case_studies`), having seen it since
+/// How far somebody looks at the robot at each moment: stopped and turned to it, having seen it since
 /// it began. Whose eyes follow a robot that a door frame hides for a moment looks all the same. A moment at which it
 /// `may` not be a look never is one.
 fn look_marks(moments: &[Moment], may: impl Fn(f64) -> bool) -> Vec<Mark> {
@@ -222,10 +222,10 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
         .recording
         .events
         .iter()
-        .filter(|event| event.kind == (EventKind::Gesture { agent, gesture }))
+        .filter(|event| event.kind == (EventKind::Gesture { agent, gesture: Some(gesture) }))
         .map(|event| event.time.secs())
         .collect();
-    times.extend(track.samples.iter().find(|sample| sample.gesture == gesture).map(|sample| sample.t));
+    times.extend(track.samples.iter().find(|sample| sample.gesture == Some(gesture)).map(|sample| sample.t));
     times.sort_by(f64::total_cmp);
     if let AgentId::Human(id) = agent
         && let Some(early) = before_reason(signals, id, gesture, &mut times)

@@ -18,7 +18,8 @@ use crate::temporal::{Signal, Within};
 
 /// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
 const START_M: f64 = 3.0;
-/// Largest difference of arrival times at an encounter where no clause says another, s (`spec/case_studies` I.S5).
+/// Largest difference of arrival times at an encounter where no clause says another, s: people who come from a room
+/// and the robot count as having met at a junction when all arrive within this.
 const GAP_SECS: f64 = 4.0;
 /// Largest distance from the middle of a group that stands and of one that walks, m, where no clause says another.
 const STAND_M: f64 = 1.8;

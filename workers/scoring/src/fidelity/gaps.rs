@@ -14,15 +14,17 @@ fn to_millis(gap_s: f64) -> f64 {
     (gap_s * 1e3).round() / 1e3
 }
 
-/// Achieved gap of each encounter, s, by human, those after the first with their number in words: as the engine tells it,
-/// else from the tracks. Positive: the human came later.
-pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
+/// Achieved gap of each encounter, s, by human and number of the meeting, from 1.
+pub type Gaps = BTreeMap<(HumanId, u32), f64>;
+
+/// Achieved gap of each encounter: as the engine tells it, else from the tracks. Positive: the human came later.
+pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> Gaps {
     let mut gaps = BTreeMap::new();
     for event in &signals.evidence.recording.events {
         if let EventKind::Encounter { human, gap_s, nth, .. } = &event.kind
             && gap_s.is_finite()
         {
-            gaps.entry(name(*human, *nth)).or_insert_with(|| to_millis(*gap_s));
+            gaps.entry((*human, *nth)).or_insert_with(|| to_millis(*gap_s));
         }
     }
     let Some(paths) = signals.evidence.paths else { return gaps };
@@ -42,13 +44,18 @@ pub(crate) fn encounter_gaps(signals: &Signals<'_>) -> BTreeMap<String, f64> {
             samples.iter().find(there).map(|sample| sample.t)
         };
         if let (Some(first), Some(second)) = (arrival(&robot.samples), arrival(&human.samples)) {
-            gaps.entry(name(encounter.human, nth)).or_insert_with(|| to_millis(second - first));
+            gaps.entry((encounter.human, nth)).or_insert_with(|| to_millis(second - first));
         }
     }
     gaps
 }
 
-/// Who, and which of its meetings if not the first.
+/// The gaps as reports have them: by human, those after the first meeting with its number in words.
+pub(crate) fn by_name(gaps: &Gaps) -> BTreeMap<String, f64> {
+    gaps.iter().map(|((human, nth), gap_s)| (name(*human, *nth), *gap_s)).collect()
+}
+
+/// Who, and which of their meetings if not the first.
 fn name(human: HumanId, nth: u32) -> String {
     if nth > 1 { format!("{human} {} meeting", ordinal(nth)) } else { human.to_string() }
 }

@@ -37,7 +37,8 @@ pub use robot::{GOAL_M, goal as robot_goal};
 pub use signals::{Moment, Signals};
 pub use verdict::{Ruling, rule};
 
-pub(crate) use gaps::encounter_gaps;
+pub use gaps::Gaps;
+pub(crate) use gaps::{by_name, encounter_gaps};
 pub(crate) use leaves::does;
 pub(crate) use since::since;
 pub(crate) use verdict::ruling_of_played;

@@ -57,13 +57,13 @@ fn trigger_mark(
             Trigger::RobotStopped => MOVING_MPS - moment.robot.speed(),
             Trigger::RobotPassed => (Trigger::PASSED_WITHIN_M + slack_m - nearest_m)
                 .min(moment.distance_m + slack_m - nearest_m - Trigger::PASSED_BY_M),
-            Trigger::RobotSays(gesture) => flag(moment.robot.gesture == *gesture),
+            Trigger::RobotSays(gesture) => flag(moment.robot.gesture == Some(*gesture)),
             Trigger::HumanSays(other, gesture) => flag(
                 signals
                     .tracks
                     .human(*other)
                     .and_then(|track| track.at(moment.t))
-                    .is_some_and(|s| s.gesture == *gesture),
+                    .is_some_and(|s| s.gesture == Some(*gesture)),
             ),
             Trigger::GoalReached => signals
                 .evidence

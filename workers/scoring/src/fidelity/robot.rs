@@ -63,7 +63,7 @@ pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
 /// When and by whom a gesture is made.
 fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
     let by_event = signals.evidence.recording.events.iter().filter_map(|event| match &event.kind {
-        EventKind::Gesture { agent: AgentId::Human(id), gesture: made } if *made == gesture => {
+        EventKind::Gesture { agent: AgentId::Human(id), gesture: Some(made) } if *made == gesture => {
             Some((event.time.secs(), AgentId::Human(*id)))
         }
         EventKind::Gesture { .. }
@@ -82,7 +82,7 @@ fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
         .tracks
         .humans
         .iter()
-        .filter_map(|track| Some((track.samples.iter().find(|s| s.gesture == gesture)?.t, track.agent)));
+        .filter_map(|track| Some((track.samples.iter().find(|s| s.gesture == Some(gesture))?.t, track.agent)));
     by_event.chain(by_state).collect()
 }
 

@@ -13,7 +13,7 @@ use crate::fidelity::leaves::{LeafSpan, leaf_spans};
 use crate::fidelity::times::{Meeting, meetings_of};
 use crate::tracks::{MOVING_MPS, Sample, Track, Tracks};
 
-/// Time between two moments, s (`spec/evaluation` §5.3: 10 to 20 Hz).
+/// Time between two moments, s: a person at 2 m/s moves 0.1 m between them.
 pub(super) const MOMENT_SECS: f64 = 0.05;
 
 /// How a human and the robot stand to each other at one time.

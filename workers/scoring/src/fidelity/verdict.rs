@@ -1,12 +1,11 @@
 //! From clauses to one verdict, one score and one sentence.
 
-use std::collections::BTreeMap;
-
 use socrates_model::report::Standing;
 use socrates_model::{Predicate, Verdict};
 
 use crate::evidence::{Evidence, REFERENCE};
 use crate::fidelity::clauses::Judged;
+use crate::fidelity::gaps::Gaps;
 
 /// Share of a late clause in the score.
 const LATE_SHARE: f64 = 0.8;
@@ -29,12 +28,7 @@ pub struct Ruling {
 /// realised by leaving a wish out. Verdicts that tell of what was played (`contradicted`, `not_triggered`,
 /// `robot_prevented`) take precedence.
 #[must_use]
-pub fn rule(
-    evidence: &Evidence<'_>,
-    judged: &Judged,
-    gaps: &BTreeMap<String, f64>,
-    reference: Option<Verdict>,
-) -> Ruling {
+pub fn rule(evidence: &Evidence<'_>, judged: &Judged, gaps: &Gaps, reference: Option<Verdict>) -> Ruling {
     let ruling = ruling_of_played(evidence, judged, gaps, reference);
     let wishes = unplayed_wishes(evidence);
     if !matches!(ruling.verdict, Verdict::Realised | Verdict::RealisedLate) || wishes.is_empty() {
@@ -50,7 +44,7 @@ pub fn rule(
 pub(crate) fn ruling_of_played(
     evidence: &Evidence<'_>,
     judged: &Judged,
-    gaps: &BTreeMap<String, f64>,
+    gaps: &Gaps,
     reference: Option<Verdict>,
 ) -> Ruling {
     let total = judged.deciding().count();
@@ -96,11 +90,7 @@ pub(crate) fn ruling_of_played(
     let prevented = lost && by_reference && evidence.recording.header.planner != REFERENCE;
     let mut text = tally;
     // Whoever stands there all the time is met at no time of its own.
-    let stands = |name: &str| {
-        let who = name.split(' ').next().and_then(|who| who.parse().ok());
-        who.is_some_and(|who| evidence.stands(who))
-    };
-    let timed = gaps.iter().filter(|(name, _)| !stands(name)).map(|(_, gap)| gap.abs());
+    let timed = gaps.iter().filter(|((human, _), _)| !evidence.stands(*human)).map(|(_, gap)| gap.abs());
     if let Some(gap) = timed.max_by(f64::total_cmp) {
         text.push_str(&format!(" · encounter gap {gap:.1} s"));
     }
@@ -122,10 +112,10 @@ const MOST_QUOTES: usize = 3;
 fn unplayed_wishes(evidence: &Evidence<'_>) -> Vec<String> {
     let mut wishes: Vec<String> = Vec::new();
     for problem in evidence.reading.map_or(&[][..], |reading| &reading.problems) {
-        let at = std::slice::from_ref(&problem.at);
-        for wish in if problem.quotes.is_empty() { at } else { &problem.quotes } {
-            if !wishes.contains(wish) {
-                wishes.push(wish.clone());
+        let key = problem.quotes.is_empty().then(|| problem.at.to_string());
+        for wish in problem.quotes.iter().cloned().chain(key) {
+            if !wishes.contains(&wish) {
+                wishes.push(wish);
             }
         }
     }
@@ -172,7 +162,7 @@ fn times(judged: &Judged) -> (Option<f64>, Option<f64>) {
     (all.iter().copied().min_by(f64::total_cmp), all.iter().copied().max_by(f64::total_cmp))
 }
 
-/// Score F (`spec/evaluation` §5.4): the product over must-clauses, times the mean of the others.
+/// Score F: the product over must-clauses, times the mean of the others.
 ///
 /// A must-clause that holds counts 1, a late one [`LATE_SHARE`], a missed one `2 / (1 + e^(-margin / scale))` with its
 /// negative margin: below 1 and smaller the clearer it was missed. Others count `1 / (1 + e^(-margin / scale))`, taken

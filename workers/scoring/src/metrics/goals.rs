@@ -9,7 +9,8 @@ use socrates_model::{Cell, Grid, NodeId, Point};
 use crate::metrics::{Direction, Family, Measure, Measured, Need, Scene, Sheet, count, or_why};
 use crate::tracks::Sample;
 
-/// Weight of a detour in the belief, 1/m (`spec/evaluation` §2.5: default 1).
+/// Weight of a detour in the belief, 1/m: the belief of a watcher falls with `exp(-beta * detour)` (Dragan, Lee and Srinivasa,
+/// Legibility and Predictability of Robot Motion, HRI 2013); they leave beta open, and 1 is what is reported here.
 pub(super) const BETA_PER_M: f64 = 1.0;
 /// Belief from which a watcher is taken to be sure.
 const SURE: f64 = 0.5;

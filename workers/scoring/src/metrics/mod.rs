@@ -53,7 +53,7 @@ pub use scene::Scene;
 pub use table::csv;
 pub use thresholds::signature;
 
-/// What a metric needs (`spec/evaluation` §2).
+/// What a metric needs; where it is missing, the metric is not applicable, never 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Need {
     /// Trajectories alone.
@@ -169,7 +169,7 @@ pub type Measured = Result<f64, String>;
 /// How a family is computed.
 #[derive(Debug, Clone, Copy)]
 pub enum Measure {
-    /// While the run goes on, sample by sample, for so many humans (`spec/evaluation` §2.8).
+    /// While the run goes on, sample by sample, for a number of humans; it gives what the whole run gives.
     Online(Begin),
     /// From the whole run.
     Whole {
@@ -253,7 +253,8 @@ const ON_GRID: u32 = 2;
 const REVISED: &[(&str, u32)] =
     &[("ttc_p5", 3), ("drac_max", 3), ("post_encroachment_time", 3), ("path_irregularity", 3), ("freezing_events", 3)];
 
-/// How distances are meant throughout, for tables that are read by others (`spec/evaluation` §2.7).
+/// How distances are meant throughout, for tables that are read by others: between surfaces, not centers. Tools differ, so every
+/// table says it.
 pub const DISTANCE_CONVENTION: &str = "surface_clearance";
 
 /// How values of several runs become one.

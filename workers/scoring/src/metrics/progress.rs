@@ -4,7 +4,7 @@ use crate::metrics::online::{End, Now, Running, Setting};
 use crate::metrics::{Begin, Direction, Family, Measure, Measured, Need, Sheet, count};
 use crate::tracks::{Sample, between};
 
-/// Length of a window, s, and the least progress in it, m (`spec/evaluation` §2.1).
+/// Length of a window, s, and the least progress in it, m: a robot that gains less is counted as stuck.
 const WINDOW_SECS: f64 = 5.0;
 const LEAST_M: f64 = 0.1;
 

@@ -39,7 +39,7 @@ fn measure(scene: &Scene<'_>) -> Vec<Measured> {
         for human in &scene.tracks.humans {
             let mut saying = false;
             for sample in &human.samples {
-                let says = sample.gesture == gesture;
+                let says = sample.gesture == Some(gesture);
                 if says && !saying {
                     let done = robot.samples.iter().find(|r| r.t >= sample.t && (r.speed() > MOVING_MPS) == goes);
                     let Some(done) = done else { return Err(format!("the robot never answers {gesture}")) };

@@ -100,9 +100,7 @@ impl<'a> Scene<'a> {
                 Need::Groups => !self.groups().is_empty(),
                 Need::Twin => self.signals.evidence.twin.is_some(),
                 Need::PlannerTimes | Need::Commands | Need::Solo | Need::OtherRobots => false,
-                Need::Events => {
-                    self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.code() != 0))
-                }
+                Need::Events => self.signals.full.all().any(|track| track.samples.iter().any(|s| s.gesture.is_some())),
             };
             (!there).then(|| (need.missing(), need.lacking().to_owned()))
         })

@@ -110,7 +110,7 @@ fn stands(run: &Recording, signals: &Signals<'_>, id: HumanId, act: &Action, fro
 /// The gesture as long as it was made, but over before its reason comes.
 fn says_early(run: &Recording, agent: AgentId, gesture: Gesture, reason_s: f64) -> Option<Recording> {
     let all = states(run, agent);
-    let long = all.iter().filter(|state| state.gesture() == gesture).count();
+    let long = all.iter().filter(|state| state.gesture() == Some(gesture)).count();
     let start = ticks_of(run, reason_s - CLEAR_SECS).checked_sub(long)?;
     (long > 0).then(|| gestures_from(run, agent, gesture, start))
 }

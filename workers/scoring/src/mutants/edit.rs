@@ -200,9 +200,9 @@ pub(super) fn reacts_first(run: &Recording, agent: AgentId, stood: &Stood) -> Re
 
 /// The agent makes a gesture from a sample on for as long as it made it, and never elsewhere.
 pub(super) fn gestures_from(run: &Recording, agent: AgentId, gesture: Gesture, from: usize) -> Recording {
-    let mut found = regestured(run, agent, gesture, Gesture::None);
+    let mut found = regestured(run, agent, gesture, None);
     let old = states(run, agent);
-    let long = old.iter().filter(|state| state.gesture() == gesture).count();
+    let long = old.iter().filter(|state| state.gesture() == Some(gesture)).count();
     let begins = old.get(from).map_or(0.0, |state| time_of(run, state));
     let column = found.frames.iter_mut().filter(|state| state.agent == agent.number());
     for state in column.skip(from).take(long) {
@@ -210,21 +210,22 @@ pub(super) fn gestures_from(run: &Recording, agent: AgentId, gesture: Gesture, f
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a run, not negative")]
     let time = SimTime::from_nanos(libm::round(begins.max(0.0) * 1e9) as u64);
-    found.events.push(Event { time, kind: EventKind::Gesture { agent, gesture } });
+    found.events.push(Event { time, kind: EventKind::Gesture { agent, gesture: Some(gesture) } });
     found.events.sort_by_key(|event| event.time);
     found
 }
 
 /// The agent makes another gesture wherever it made one.
-pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Gesture) -> Recording {
+pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Option<Gesture>) -> Recording {
     let mut found = run.clone();
-    for state in found.frames.iter_mut().filter(|state| state.agent == agent.number() && state.gesture() == from) {
-        state.flags = state.flags & NO_GESTURE | (u32::from(to.code()) << 8);
+    for state in found.frames.iter_mut().filter(|state| state.agent == agent.number() && state.gesture() == Some(from))
+    {
+        state.flags = state.flags & NO_GESTURE | (u32::from(Gesture::code_of(to)) << 8);
     }
     for event in &mut found.events {
         if let EventKind::Gesture { agent: who, gesture } = &mut event.kind
             && *who == agent
-            && *gesture == from
+            && *gesture == Some(from)
         {
             *gesture = to;
         }

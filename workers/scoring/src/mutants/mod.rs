@@ -1,7 +1,7 @@
 //! Calibration of the judge: recordings that are wrong in a known way, and such that are as good as before.
 //!
-//! [`spoiled`] changes a realised recording so that it no longer shows what was asked (`spec/evaluation` §5.4 and
-//! the lists N of the case studies); each must lose the verdict. [`harmless`] changes it so that a person would see
+//! [`spoiled`] changes a realised recording so that it no longer shows what was asked: a person is gone, comes
+//! late, walks backwards, says another gesture, a group breaks up; each must lose the verdict. [`harmless`] changes it so that a person would see
 //! the same scenario; each must keep it. `socrates dev mutations` prints the share of both over real runs.
 
 mod early;

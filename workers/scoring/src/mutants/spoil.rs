@@ -42,8 +42,12 @@ pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
         }
         for gesture in asked_gestures(evidence, id) {
             let other = if gesture == Gesture::Wait { Gesture::Proceed } else { Gesture::Wait };
-            add("another gesture", format!("{id}: {other} for {gesture}"), regestured(run, agent, gesture, other));
-            add("no gesture", format!("{id}: {gesture}"), regestured(run, agent, gesture, Gesture::None));
+            add(
+                "another gesture",
+                format!("{id}: {other} for {gesture}"),
+                regestured(run, agent, gesture, Some(other)),
+            );
+            add("no gesture", format!("{id}: {gesture}"), regestured(run, agent, gesture, None));
         }
     }
     for group in &proposal.groups {

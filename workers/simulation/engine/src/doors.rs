@@ -34,8 +34,7 @@ pub(crate) const ENCOUNTER: &str = "encounter";
 #[must_use]
 pub fn event_names(location: &Location) -> BTreeSet<String> {
     let mut names: BTreeSet<String> = [ENCOUNTER, "robot arrived"].into_iter().map(str::to_owned).collect();
-    let gestures = Gesture::ALL.iter().filter(|gesture| **gesture != Gesture::None);
-    names.extend(gestures.map(ToString::to_string));
+    names.extend(Gesture::ALL.iter().map(ToString::to_string));
     names.extend(LEAVES.iter().filter(|leaf| !leaf.is_empty()).map(|leaf| (*leaf).to_owned()));
     names.extend(location.graph.nodes().iter().map(|node| format!("node {}", node.id)));
     for door in &location.doors {
@@ -63,7 +62,7 @@ impl Raised {
     /// What a recorded event raises; `place` tells where an agent is.
     pub(crate) fn by(event: &Event, place: &dyn Fn(socrates_model::AgentId) -> Option<Point>) -> Option<Self> {
         let (name, at) = match &event.kind {
-            EventKind::Gesture { agent, gesture } => (gesture.to_string(), place(*agent)),
+            EventKind::Gesture { agent, gesture } => (Gesture::name_of(*gesture).to_owned(), place(*agent)),
             EventKind::Leaf { human, leaf } => (leaf.clone(), place(socrates_model::AgentId::Human(*human))),
             EventKind::Node { node, .. } => (format!("node {node}"), None),
             EventKind::Door { door, open: true } => (format!("door {door} opens"), None),
@@ -272,7 +271,7 @@ mod tests {
         let names = event_names(&place);
         let robot = socrates_model::AgentId::Robot;
         let kinds = [
-            EventKind::Gesture { agent: robot, gesture: Gesture::Proceed },
+            EventKind::Gesture { agent: robot, gesture: Some(Gesture::Proceed) },
             EventKind::Leaf { human: socrates_model::HumanId::new(1), leaf: "RegularNav".into() },
             EventKind::Node { agent: robot, node: crate::fixture::id("car") },
             EventKind::Door { door: "d".into(), open: true },

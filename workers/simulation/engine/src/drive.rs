@@ -30,7 +30,7 @@ impl Engine {
             .collect();
         let bearing =
             |to: &Point| socrates_model::geometry::wrap_angle(libm::atan2(to.y - at.y, to.x - at.x) - robot.pose.yaw);
-        let noticed: Vec<(HumanId, f64, f64, Gesture)> = seen
+        let noticed: Vec<(HumanId, f64, f64, Option<Gesture>)> = seen
             .iter()
             .map(|person| (person.id, (person.at - at).norm(), bearing(&person.at), person.gesture))
             .collect();
@@ -77,13 +77,13 @@ impl Engine {
             gesture = robot.command.gesture.or(gesture);
         }
         if let Some(gesture) = gesture {
-            if gesture != robot.gesture {
-                recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture });
+            if Some(gesture) != robot.gesture {
+                recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: Some(gesture) });
             }
             robot.say(gesture, now_s);
-        } else if robot.gesture != Gesture::None && now_s >= robot.gesture_until_s {
-            robot.gesture = Gesture::None;
-            recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: Gesture::None });
+        } else if robot.gesture.is_some() && now_s >= robot.gesture_until_s {
+            robot.gesture = None;
+            recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: None });
         }
     }
 }

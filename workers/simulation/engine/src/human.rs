@@ -83,7 +83,7 @@ pub(crate) struct Human {
     pub(crate) radius_m: f64,
     pub(crate) speed_mps: f64,
     pub(crate) action: Action,
-    pub(crate) gesture: Gesture,
+    pub(crate) gesture: Option<Gesture>,
     pub(crate) errand: Errand,
     /// Where it was at tick 0.
     pub(crate) home: Point,

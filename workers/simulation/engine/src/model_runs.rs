@@ -94,5 +94,8 @@ fn models_for_the_wrong_people_are_refused_all_at_once() {
     let faults = Engine::new(hall()).unwrap().with_models(&models).unwrap_err();
     let codes: Vec<FaultCode> = faults.iter().map(|fault| fault.code).collect();
     assert_eq!(codes, [FaultCode::BAgents, FaultCode::BRange, FaultCode::BAgents]);
-    assert!(faults[1].message.contains("horizon_s") && faults[2].message.contains("human_3"), "{faults:?}");
+    assert!(
+        faults[1].message.to_string().contains("horizon_s") && faults[2].message.to_string().contains("human_3"),
+        "{faults:?}"
+    );
 }

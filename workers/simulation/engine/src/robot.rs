@@ -24,7 +24,7 @@ pub(crate) struct Robot {
     pub(crate) has_moved: bool,
     pub(crate) command: Command,
     pub(crate) calls: u64,
-    pub(crate) gesture: Gesture,
+    pub(crate) gesture: Option<Gesture>,
     pub(crate) gesture_until_s: f64,
     /// Intended way.
     pub(crate) route: Polyline,
@@ -113,7 +113,7 @@ impl Robot {
 
     /// Begins a gesture.
     pub(crate) fn say(&mut self, gesture: Gesture, now_s: f64) {
-        self.gesture = gesture;
+        self.gesture = Some(gesture);
         self.gesture_until_s = now_s + GESTURE_S;
     }
 }

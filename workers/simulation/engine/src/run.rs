@@ -206,7 +206,8 @@ impl Engine {
             has_moved: robot.has_moved,
             gesture: robot.gesture,
         });
-        let gestures: Vec<(HumanId, Gesture)> = self.humans.iter().map(|human| (human.id, human.gesture)).collect();
+        let gestures: Vec<(HumanId, Option<Gesture>)> =
+            self.humans.iter().map(|human| (human.id, human.gesture)).collect();
         for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
             if let Some(robot) = robot.filter(|_| human.present()) {
                 human.nearest_robot_m = human.nearest_robot_m.min((robot.at - human.at).norm());

@@ -9,7 +9,7 @@ pub(crate) struct Cue<'a> {
     pub(crate) now_s: f64,
     pub(crate) dt: f64,
     /// Distance and bearing (from the robot's heading, rad) of humans in line of sight.
-    pub(crate) humans: &'a [(HumanId, f64, f64, Gesture)],
+    pub(crate) humans: &'a [(HumanId, f64, f64, Option<Gesture>)],
     /// Encounters whose node the robot is at.
     pub(crate) at_encounter: &'a [HumanId],
 }
@@ -53,7 +53,7 @@ impl Script {
                 }
                 RobotWhen::HumanNear(reach) => cue.humans.iter().any(|(_, distance, _, _)| distance <= reach),
                 RobotWhen::HumanSays(wanted) => {
-                    cue.humans.iter().any(|(_, distance, _, said)| said == wanted && *distance < 10.0)
+                    cue.humans.iter().any(|(_, distance, _, said)| *said == Some(*wanted) && *distance < 10.0)
                 }
                 RobotWhen::AtEncounter(human) => cue.at_encounter.contains(human),
                 RobotWhen::AfterSecs(secs) => cue.now_s >= *secs,
@@ -75,7 +75,7 @@ mod tests {
     fn a_blocked_robot_speaks_after_its_time_and_again_when_blocked_anew() {
         let rule = RobotRule { when: RobotWhen::Blocked(1.0), act: RobotDo::Say(Gesture::ExcuseMe) };
         let mut script = Script::new(&[rule]);
-        let near = [(HumanId::new(1), 0.9, 0.1, Gesture::None)];
+        let near = [(HumanId::new(1), 0.9, 0.1, None)];
         let mut said = 0;
         for step in 0..600 {
             let humans: &[_] = if (200..300).contains(&step) { &[] } else { &near };

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use socrates_bt::Tree;
 use socrates_model::request::Waypoints;
-use socrates_model::{AgentId, Behaviors, Fault, FaultCode, HumanId, Location, Paths, Proposal, RobotModel, RunId};
+use socrates_model::{
+    AgentId, Behaviors, Fault, FaultCode, HumanId, Location, Paths, Proposal, RobotModel, RunId, Where,
+};
 
 /// Input of one run.
 #[derive(Debug, Clone)]
@@ -55,9 +57,7 @@ pub(crate) fn trees(setup: &Setup) -> Result<BTreeMap<HumanId, Tree>, Vec<Fault>
             Ok(tree) => {
                 trees.insert(human.id, tree);
             }
-            Err(why) => {
-                faults.extend(why.into_iter().map(|fault| Fault { at: format!("{} {}", human.id, fault.at), ..fault }))
-            }
+            Err(why) => faults.extend(why.into_iter().map(|fault| fault.of(human.id))),
         }
     }
     if socrates_model::fault::hard(&faults).is_empty() { Ok(trees) } else { Err(faults) }
@@ -75,10 +75,10 @@ fn path_faults(setup: &Setup) -> Vec<Fault> {
         if nodes.is_empty() {
             faults.push(Fault::new(FaultCode::GEmpty, agent, format!("the path of {agent} has no node")));
         }
-        for (step, node) in nodes.iter().enumerate() {
+        for (node, step) in nodes.iter().zip(1..) {
             if setup.location.graph.node(node).is_none() {
-                let message = format!("{agent}, step {step}: the scene graph has no node `{node}`");
-                faults.push(Fault::new(FaultCode::GUnknown, agent, message));
+                let message = format!("the scene graph has no node `{node}`");
+                faults.push(Fault::new(FaultCode::GUnknown, Where::agent(agent).step(step), message));
             }
         }
     }

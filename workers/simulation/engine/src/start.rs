@@ -6,12 +6,12 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use socrates_bt::{Tree, TreeState};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
-use socrates_model::hash::derive_seed;
 use socrates_model::recording::AgentInfo;
+use socrates_model::seeds::{self, derive_seed};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, Clause, Command, Gesture, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
-    Predicate, RecordingHeader, Relation, Trigger, Vector,
+    Action, AgentId, Clause, Command, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, Predicate,
+    RecordingHeader, Relation, Trigger, Vector,
 };
 
 use crate::block::blockers;
@@ -82,7 +82,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         has_moved: false,
         command: Command::default(),
         calls: 0,
-        gesture: Gesture::None,
+        gesture: None,
         gesture_until_s: 0.0,
         route,
         nodes,
@@ -269,7 +269,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         radius_m: PERSON_RADIUS_M,
         speed_mps: SPEED.0,
         action: Action::Navigate,
-        gesture: Gesture::None,
+        gesture: None,
         errand: Errand::default(),
         anchor: None,
         aside_m: 0.0,
@@ -345,26 +345,17 @@ pub(crate) fn doors_on(setup: &Setup, route: &Polyline) -> Vec<DoorOnWay> {
 /// A desired speed from N(1.2, 0.2), clipped; the same seed and human give the same.
 fn drawn_speed(seed: u64, human: HumanId) -> f64 {
     let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["speed", &human.to_string()]));
-    // Box and Muller's transform of two uniform draws in (0, 1].
-    let (a, b) = (even(&mut random) + EVEN_STEP, even(&mut random) + EVEN_STEP);
-    let normal = libm::sqrt(-2.0 * libm::log(a)) * libm::cos(std::f64::consts::TAU * b);
+    let mut drawn = || seeds::unit_above_zero(random.next_u64());
+    let (radius, turn) = (drawn(), drawn());
+    let normal = seeds::standard_normal(radius, turn);
     (SPEED.0 + SPEED.1 * normal).clamp(SPEED.2, SPEED.3)
 }
 
 /// Where somebody stands or walks beside where it would by plan, m; the same seed and human give the same.
 fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
     let mut random = ChaCha8Rng::seed_from_u64(derive_seed(seed, &["sway", &human.to_string()]));
-    let mut sway = || SWAY_M * (2.0 * even(&mut random) - 1.0);
+    let mut sway = || SWAY_M * (2.0 * seeds::unit(random.next_u64()) - 1.0);
     (sway(), sway())
-}
-
-/// Between two numbers that [`even`] may give.
-const EVEN_STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
-
-/// From 0 to below 1.
-#[expect(clippy::cast_precision_loss, reason = "53 bits fit a double")]
-fn even(random: &mut ChaCha8Rng) -> f64 {
-    (random.next_u64() >> 11) as f64 * EVEN_STEP
 }
 
 /// The header of the run.

@@ -319,7 +319,7 @@ fn a_path_with_an_unknown_node_is_refused_with_its_name() {
     made.paths.robot.push(id("nowhere"));
     made.behaviors.humans.clear();
     let faults = Engine::new(made).unwrap_err();
-    assert!(faults.iter().any(|fault| fault.message.contains("`nowhere`")));
+    assert!(faults.iter().any(|fault| fault.message.to_string().contains("`nowhere`")));
     assert!(faults.iter().any(|fault| fault.code == socrates_model::FaultCode::BAgents));
 }
 

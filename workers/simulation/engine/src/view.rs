@@ -25,7 +25,7 @@ pub(crate) struct RobotSeen {
     pub(crate) speed_mps: f64,
     /// Whether it has moved in this run.
     pub(crate) has_moved: bool,
-    pub(crate) gesture: Gesture,
+    pub(crate) gesture: Option<Gesture>,
 }
 
 /// One human's view of the start of a tick.
@@ -34,12 +34,13 @@ pub(crate) struct View<'a> {
     pub(crate) now: SimTime,
     pub(crate) robot: Option<RobotSeen>,
     /// Gestures of all humans, in the order of ids.
-    pub(crate) gestures: &'a [(HumanId, Gesture)],
+    pub(crate) gestures: &'a [(HumanId, Option<Gesture>)],
     human: &'a Human,
     sight: Cell<Option<bool>>,
     /// What the tree asked for.
     pub(crate) act: Option<Action>,
-    pub(crate) say: Option<Gesture>,
+    /// What it says from now on; the inner none takes an earlier gesture back.
+    pub(crate) say: Option<Option<Gesture>>,
 }
 
 impl<'a> View<'a> {
@@ -48,7 +49,7 @@ impl<'a> View<'a> {
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
-        gestures: &'a [(HumanId, Gesture)],
+        gestures: &'a [(HumanId, Option<Gesture>)],
     ) -> Self {
         Self { floor, now, robot, gestures, human, sight: Cell::new(human.notice.robot_seen), act: None, say: None }
     }
@@ -120,13 +121,13 @@ impl World for View<'_> {
         self.robot.is_some_and(|robot| robot.has_moved && robot.speed_mps <= MOVING_MPS)
     }
 
-    fn robot_gesture(&self) -> Gesture {
-        self.robot.map_or(Gesture::None, |robot| robot.gesture)
+    fn robot_gesture(&self) -> Option<Gesture> {
+        self.robot.and_then(|robot| robot.gesture)
     }
 
-    fn human_gesture(&self, id: HumanId) -> Gesture {
+    fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
         let place = self.gestures.binary_search_by_key(&id, |(human, _)| *human);
-        place.ok().and_then(|place| self.gestures.get(place)).map(|(_, gesture)| *gesture).unwrap_or_default()
+        place.ok().and_then(|place| self.gestures.get(place)).and_then(|(_, gesture)| *gesture)
     }
 
     fn goal_reached(&self) -> bool {
@@ -157,7 +158,7 @@ impl World for View<'_> {
         }
     }
 
-    fn gesture(&mut self, gesture: Gesture) {
+    fn gesture(&mut self, gesture: Option<Gesture>) {
         self.say = Some(gesture);
     }
 }

@@ -1,10 +1,8 @@
 //! From the behavior section of an agent to the numbers it reacts with; drawn ones by seed.
 
-use std::f64::consts::TAU;
-
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
-use socrates_model::hash::derive_seed;
+use socrates_model::seeds::{self, derive_seed};
 
 use crate::agents::{AgentEntry, Configuration, Dialect, Reaction};
 
@@ -172,27 +170,19 @@ impl Draw {
 
     /// From 0 up to 1.
     fn unit(&mut self) -> f64 {
-        unit(&mut self.0)
+        seeds::unit(self.0.next_u64())
     }
 
     fn uniform(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * self.unit()
     }
 
-    /// Standard normal, after Box and Muller (1958).
     fn standard(&mut self) -> f64 {
         let (radius, turn) = (1.0 - self.unit(), self.unit());
-        libm::sqrt(-2.0 * libm::log(radius)) * libm::cos(TAU * turn)
+        seeds::standard_normal(radius, turn)
     }
 
     fn normal(&mut self, mean: f64, deviation: f64) -> f64 {
         mean + deviation * self.standard()
     }
-}
-
-/// A number from 0 up to 1 with 53 random bits.
-pub(crate) fn unit(random: &mut ChaCha8Rng) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "53 bits fit a double exactly")]
-    let whole = (random.next_u64() >> 11) as f64;
-    whole * (1.0 / 9_007_199_254_740_992.0)
 }

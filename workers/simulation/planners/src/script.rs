@@ -59,7 +59,7 @@ impl Script {
                 }
                 RobotWhen::HumanNear(reach) => near(*reach),
                 RobotWhen::HumanSays(gesture) => {
-                    seen.people.iter().any(|person| person.gesture == *gesture && (person.at - at).norm() < 10.0)
+                    seen.people.iter().any(|person| person.gesture == Some(*gesture) && (person.at - at).norm() < 10.0)
                 }
                 RobotWhen::AtEncounter(human) => {
                     self.encounters.get(human).is_some_and(|spot| (spot - at).norm() < AT_ENCOUNTER_M)

@@ -54,7 +54,7 @@ pub(crate) fn parse(text: &str, file: &str) -> Result<Node, Vec<Problem>> {
     }
     screen(text, file)?;
     let left = Cell::new(MAX_NODES);
-    Seed { left: &left }.deserialize(serde_norway::Deserializer::from_str(text)).map_err(|why| {
+    Seed { left: &left }.deserialize(yaml_serde::Deserializer::from_str(text)).map_err(|why| {
         let mut problem = Problem::error(file, "", format!("this is no YAML: {why}"))
             .with_hint("an agents file starts with `hunav_loader:` and `  ros__parameters:`");
         problem.line = why.location().map(|at| at.line());

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng as _;
 use socrates_crowd::{CenterOrder, Params, Person};
-use socrates_model::hash::derive_seed;
+use socrates_model::seeds::derive_seed;
 use socrates_model::{AgentId, HumanId, Point, Polyline, Vector};
 
 use crate::agents::{AgentEntry, GoalEntry, Reaction};

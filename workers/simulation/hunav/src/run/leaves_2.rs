@@ -1,11 +1,12 @@
 //! The nodes that HuNavSim 2.0 adds. Their times are simulated ones; upstream's are the wall clock's.
 
+use rand_core::Rng as _;
 use socrates_bt::{LeafCall, Library, Status};
+use socrates_model::seeds;
 
 use super::mind::{Mind, faces, int, place, real};
 use super::scene::{Deed, Target};
 use crate::agents::GoalEntry;
-use crate::configure::unit;
 
 /// Bearing error within which the robot faces somebody, rad.
 const FACING_RAD: f64 = 0.3;
@@ -43,7 +44,7 @@ fn condition(mind: &mut Mind<'_>, call: &LeafCall<'_>) -> Option<Status> {
         }
         "RandomChanceCondition" => {
             let chance = real(call, "probability").unwrap_or(0.3);
-            mind.scene.agents.get_mut(mind.me).is_some_and(|agent| unit(&mut agent.random) < chance)
+            mind.scene.agents.get_mut(mind.me).is_some_and(|agent| seeds::unit(agent.random.next_u64()) < chance)
         }
         "IsRobotFacingAgent" => faces(mind.scene, Target::Robot, me, FACING_RAD),
         "IsAgentVisible" => {
@@ -199,6 +200,15 @@ fn lasting(mind: &mut Mind<'_>, call: &mut LeafCall<'_>) -> Option<Status> {
             mind.act(tag, Deed::Look(found));
             Status::Running
         }
+        _ => return noticing(mind, call),
+    })
+}
+
+/// Nodes that wait until somebody speaks or looks.
+fn noticing(mind: &mut Mind<'_>, call: &mut LeafCall<'_>) -> Option<Status> {
+    let tag = call.tag();
+    let me = Target::Agent(mind.me);
+    Some(match tag {
         "IsSpeaking" | "IsAnyoneSpeaking" => {
             let within = real(call, "distance_threshold").unwrap_or(5.0);
             let only = if tag == "IsSpeaking" { agent(mind, call, "target_id") } else { None };

@@ -83,7 +83,7 @@ impl Mind<'_> {
             "IsRobotNearby" => self.scene.distance_m(me, Target::Robot).is_some_and(|m| m <= within(call)),
             "IsRobotBlocking" => self.robot_blocking(within(call)),
             "RobotMoved" => self.scene.robot_moved(),
-            "RobotSays" => int(call, "message") == Some(i64::from(self.robot_gesture().code())),
+            "RobotSays" => int(call, "message") == Some(i64::from(Gesture::code_of(self.robot_gesture()))),
             "HumanSays" => {
                 let index = int(call, "target_id")
                     .and_then(|target| usize::try_from(target - self.scene.rules.first_human).ok());
@@ -160,13 +160,13 @@ impl World for Mind<'_> {
         self.scene.robot_moved()
     }
 
-    fn robot_gesture(&self) -> Gesture {
-        self.scene.robot.as_ref().map_or(Gesture::None, |robot| robot.gesture)
+    fn robot_gesture(&self) -> Option<Gesture> {
+        self.scene.robot.as_ref().and_then(|robot| robot.gesture)
     }
 
-    fn human_gesture(&self, id: HumanId) -> Gesture {
+    fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
         let shown = self.scene.agents.iter().find(|agent| agent.human == id).map_or(0, |agent| agent.shown);
-        u8::try_from(shown).ok().and_then(Gesture::from_code).unwrap_or_default()
+        u8::try_from(shown).ok().and_then(|code| Gesture::from_code(code).ok()).flatten()
     }
 
     fn goal_reached(&self) -> bool {
@@ -202,8 +202,8 @@ impl World for Mind<'_> {
         }
     }
 
-    fn gesture(&mut self, gesture: Gesture) {
-        self.gesture = Some(i64::from(gesture.code()));
+    fn gesture(&mut self, gesture: Option<Gesture>) {
+        self.gesture = Some(i64::from(Gesture::code_of(gesture)));
     }
 }
 

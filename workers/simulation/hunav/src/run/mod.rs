@@ -347,10 +347,10 @@ fn show(scene: &mut Scene, me: usize, recorder: &mut Recorder) {
 }
 
 /// The gesture of a code; people of the fork have a table of their own, in which 3 is EXCUSE ME.
-fn meaning(code: i64, own_codes: bool) -> Gesture {
+fn meaning(code: i64, own_codes: bool) -> Option<Gesture> {
     match (code, own_codes) {
-        (3, true) => Gesture::ExcuseMe,
-        _ => u8::try_from(code).ok().and_then(Gesture::from_code).unwrap_or_default(),
+        (3, true) => Some(Gesture::ExcuseMe),
+        _ => u8::try_from(code).ok().and_then(|code| Gesture::from_code(code).ok()).flatten(),
     }
 }
 

@@ -48,7 +48,7 @@ pub(crate) struct Robot {
     pub(crate) pose: Pose,
     pub(crate) velocity: Vector,
     pub(crate) omega: f64,
-    pub(crate) gesture: Gesture,
+    pub(crate) gesture: Option<Gesture>,
     pub(crate) arrived: bool,
     speed_mps: f64,
     next: usize,
@@ -61,7 +61,7 @@ impl Robot {
             pose: Pose { yaw: wrap_angle(spec.start.yaw), ..spec.start },
             velocity: Vector::zeros(),
             omega: 0.0,
-            gesture: Gesture::None,
+            gesture: None,
             arrived: false,
             speed_mps: 0.0,
             next: 0,
@@ -89,7 +89,7 @@ impl Robot {
             .iter()
             .take_while(|(from_s, _)| *from_s <= now_s + 1e-9)
             .last()
-            .map_or(Gesture::None, |(_, gesture)| *gesture);
+            .map(|(_, gesture)| *gesture);
         let Some(goal) = self.goal() else {
             self.halt();
             return false;
@@ -147,7 +147,7 @@ mod tests {
         let arrivals = (0..2000).filter(|tick| robot.step(f64::from(*tick) * 0.01, 0.01, &[])).count();
         assert_eq!(arrivals, 1);
         assert!((robot.at() - Point::new(2.0, 2.0)).norm() < 0.25);
-        assert_eq!(robot.gesture, Gesture::Wait);
+        assert_eq!(robot.gesture, Some(Gesture::Wait));
     }
 
     #[test]

@@ -1,0 +1,93 @@
+//! How a process joins the bus between processes. A program that was built without that bus says so here.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::bus::Bus;
+use crate::error::LinkError;
+
+/// The part a participant plays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Passes messages on between all that connect to it.
+    Router,
+    /// Talks to those it is connected to.
+    Peer,
+    /// Has one connection, to a router.
+    Client,
+}
+
+/// How to join.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ZenohConfig {
+    /// Part played.
+    pub mode: Mode,
+    /// Endpoints to listen on, such as `tcp/127.0.0.1:7447` or `unixsock-stream//run/socrates.sock`; none by default.
+    pub listen: Vec<String>,
+    /// Endpoints to connect to. There is no discovery: what is not listed is not found.
+    pub connect: Vec<String>,
+    /// Deployment that this participant belongs to.
+    pub namespace: String,
+    /// Name written into envelopes.
+    pub name: String,
+    /// How long opening keeps trying to connect. Default 10 s. Once open, a lost connection is sought for ever.
+    pub patience: Duration,
+}
+
+impl ZenohConfig {
+    /// The settings of a participant that neither listens nor connects yet.
+    #[must_use]
+    pub fn new(mode: Mode, namespace: &str, name: &str) -> Self {
+        Self {
+            mode,
+            listen: Vec::new(),
+            connect: Vec::new(),
+            namespace: namespace.to_owned(),
+            name: name.to_owned(),
+            patience: Duration::from_secs(10),
+        }
+    }
+
+    /// Listens on this endpoint too.
+    #[must_use]
+    pub fn listen(mut self, endpoint: &str) -> Self {
+        self.listen.push(endpoint.to_owned());
+        self
+    }
+
+    /// Connects to this endpoint too.
+    #[must_use]
+    pub fn connect(mut self, endpoint: &str) -> Self {
+        self.connect.push(endpoint.to_owned());
+        self
+    }
+}
+
+/// Joins the bus between processes.
+///
+/// # Errors
+/// [`LinkError::Absent`] in a program without the feature `zenoh`; else what kept the participant from joining.
+#[cfg(feature = "zenoh")]
+pub async fn join(config: ZenohConfig) -> Result<Arc<dyn Bus>, LinkError> {
+    Ok(Arc::new(crate::zenoh_bus::ZenohBus::open(config).await?))
+}
+
+/// Joins the bus between processes, which this program was built without.
+///
+/// # Errors
+/// Always [`LinkError::Absent`].
+#[cfg(not(feature = "zenoh"))]
+pub async fn join(_config: ZenohConfig) -> Result<Arc<dyn Bus>, LinkError> {
+    Err(LinkError::Absent { feature: "zenoh" })
+}
+
+#[cfg(all(test, not(feature = "zenoh")))]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_program_without_the_bus_names_the_feature_that_it_lacks() {
+        let told = join(ZenohConfig::new(Mode::Client, "t", "c")).await.err().unwrap();
+        assert!(told.to_string().contains("`zenoh`"), "{told}");
+    }
+}

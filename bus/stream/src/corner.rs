@@ -1,0 +1,48 @@
+//! Where shared memory is arranged, also for a program that was built without it.
+
+use std::path::{Path as FsPath, PathBuf};
+
+/// Where shared memory is arranged: a corner of one user, which nobody else can enter. Writers and readers must agree.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShmConfig {
+    /// Folder of the small files by which both sides find each other. Made where needed; it has to belong to `user` alone.
+    pub root: PathBuf,
+    /// Begin of every segment's name.
+    pub prefix: String,
+    /// Number of the user whose corner it is.
+    pub user: u32,
+}
+
+impl ShmConfig {
+    /// The corner of a user in a folder for temporary files: `FOLDER/socrates-shm-USER`.
+    #[must_use]
+    pub fn of_user(folder: &FsPath, user: u32) -> Self {
+        Self { root: folder.join(format!("socrates-shm-{user}")), prefix: format!("socrates_{user}_"), user }
+    }
+}
+
+/// Shared memory in a program that was built without the feature `shm`: no run has any, which is logged.
+#[cfg(not(feature = "shm"))]
+#[derive(Debug, Clone)]
+pub struct ShmHost;
+
+#[cfg(not(feature = "shm"))]
+impl ShmHost {
+    /// The shared memory that would be arranged so.
+    #[must_use]
+    pub fn new(_config: ShmConfig) -> Self {
+        Self
+    }
+
+    /// None, with a line in the log that names the missing feature.
+    #[must_use]
+    pub fn sink(&self, run: &socrates_model::RunId) -> Option<Box<dyn crate::FrameSink>> {
+        let why = crate::StreamError::Shm {
+            run: run.to_string(),
+            what: "joining",
+            why: "this program was built without the feature `shm`".to_owned(),
+        };
+        tracing::warn!(%why, "no shared memory for this run");
+        None
+    }
+}

@@ -1,0 +1,249 @@
+//! What the configuration and the environment say of authors: keys, addresses, the style of questions.
+//!
+//! A key comes from an environment variable or a file that the configuration names; it is held in memory and goes into the
+//! header of a request, nowhere else.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::time::Duration;
+
+use socrates_author::{Keys, Server};
+use socrates_llm::probe::Kept;
+use socrates_llm::{ApiKey, Dialect, Rung};
+use socrates_orchestrator::policy::AFTER_CALL_MS;
+use socrates_prompts::Style;
+
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::output::Printer;
+
+/// Largest key file that is read, bytes.
+const MAX_KEY_BYTES: u64 = 16 * 1024;
+
+/// Keys and addresses of this process.
+pub(crate) fn keys(config: &Config) -> Result<Keys, Complaint> {
+    let mut servers = BTreeMap::new();
+    for dialect in Dialect::ALL {
+        let part = part(dialect);
+        let url = Some(config.text(&format!("{part}url"))).filter(|url| !url.is_empty());
+        servers.insert(dialect, Server { key: key(config, &part)?, url });
+    }
+    let form = config.text("author.form");
+    let rung = if form == "auto" { None } else { Some(word::<Rung>("author.form", &form, "auto, ")?) };
+    Ok(Keys {
+        servers,
+        auto_model: Some(config.text("author.model")).filter(|model| !model.is_empty()),
+        rung,
+        timeout: Some(Duration::from_secs(seconds(config, "author.timeout_s")?)),
+        max_tokens: u32::try_from(config.number("author.max_tokens")).ok().filter(|most| *most > 0),
+        plain_http: config.truth("author.plain_http"),
+        ..Keys::default()
+    })
+}
+
+/// Longest time that can be set for anything, s: a day.
+const LONGEST_S: u64 = 86_400;
+
+/// A time of the configuration in seconds. One that cannot be kept is refused, not replaced by another.
+fn seconds(config: &Config, key: &str) -> Result<u64, Complaint> {
+    let found = config.number(key);
+    if (1..=LONGEST_S).contains(&found) {
+        return Ok(found);
+    }
+    let what = format!("`{key}` is {found}; it takes whole seconds, 1 to {LONGEST_S}");
+    Err(Complaint::input(what, "`socrates config` prints the manual"))
+}
+
+/// Longest attempts of authoring, simulation and scoring, ms.
+pub(crate) fn deadlines_ms(config: &Config) -> Result<(u64, u64, u64), Complaint> {
+    let ms = |key: &str| seconds(config, key).map(|seconds| seconds * 1_000);
+    let author = ms("author.timeout_s")? + AFTER_CALL_MS;
+    Ok((author, ms("orchestrator.simulation_s")?, ms("orchestrator.scoring_s")?))
+}
+
+/// What follows from the times of the configuration, in sentences.
+pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
+    let (author, simulation, scoring) = deadlines_ms(config)?;
+    let again = config.number("orchestrator.asks_again").min(10);
+    Ok(vec![
+        format!(
+            "# A question waits {} s for its answer (author.timeout_s); with reading and checking, its attempt ends after {} s.",
+            config.number("author.timeout_s"),
+            author / 1_000
+        ),
+        format!(
+            "# Without an answer in time it is put {} at most (orchestrator.asks_again); each counts in `socrates cost`.",
+            crate::prepare::plural(usize::try_from(again + 1).unwrap_or(1), "time")
+        ),
+        format!(
+            "# A simulation ends after {} s, scoring after {} s (orchestrator.simulation_s, scoring_s). A worker that is silent for \
+             {} s loses its job (orchestrator.lease_ms); a person who looks never does.",
+            simulation / 1_000,
+            scoring / 1_000,
+            config.number("orchestrator.lease_ms") / 1_000
+        ),
+    ])
+}
+
+/// Whether a key for Chat Completions is there, which `auto` looks for.
+pub(crate) fn key_found(config: &Config) -> Result<bool, Complaint> {
+    Ok(key(config, &part(Dialect::OpenAi))?.is_some())
+}
+
+/// The style of questions, as settings of jobs; empty for the default.
+pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complaint> {
+    let words = ["mode", "paths", "behaviors", "image", "feedback"]
+        .into_iter()
+        .map(|name| (name, config.text(&format!("author.{name}"))))
+        .chain([("variants", config.number("author.variants").to_string())]);
+    let mut asked = BTreeMap::new();
+    for (name, word) in words {
+        let setting = BTreeMap::from([(format!("prompt.{name}"), word)]);
+        Style::from_settings(&setting).map_err(|fault| {
+            let what = format!("`author.{name}`: {}", fault.message);
+            Complaint::input(what, "`socrates config author` prints the manual")
+        })?;
+        asked.extend(setting);
+    }
+    let broken = |fault: socrates_model::Fault| Complaint::input(fault.to_string(), String::new());
+    Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
+}
+
+/// Looks whether these authors can be asked, before anything is made.
+pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &str>) -> Result<(), Complaint> {
+    let authors: BTreeSet<&str> = authors.into_iter().collect();
+    let keys = keys(config)?;
+    for author in authors {
+        if let Err(why) = socrates_author::check(author, &keys).await {
+            let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
+            let what = format!("the author `{author}` cannot be asked; nothing was made");
+            let hint = "`socrates config author` shows model, address and key; `--author offline` needs none";
+            return Err(Complaint::faults(what, &[why.fault()], hint).with_code(code));
+        }
+    }
+    Ok(())
+}
+
+/// `dev probe`: what a server enforces.
+pub async fn probe(talk: &Printer, config: &Config, author: &str) -> Result<(), Complaint> {
+    let found = socrates_author::probe(author, &keys(config)?).await.map_err(|why| {
+        Complaint::input(why.to_string(), "`socrates config author` shows address and key").with_code(Code::Author)
+    })?;
+    let rung = found.rung.map_or("none", Rung::name);
+    let (kept, told) = match found.kept {
+        Kept::Enforced => ("enforced", "it cannot answer in another form"),
+        Kept::Hinted => ("hinted", "it answers in JSON with what it likes; every answer is checked in any case"),
+        Kept::Ignored => ("ignored", "it answers with any text; expect answers that have to be asked for again"),
+    };
+    talk.line(&format!("model      {}", found.model));
+    for step in &found.steps {
+        talk.line(&format!("           {step}"));
+    }
+    talk.line(&format!("form       {rung}: {kept}, {told}"));
+    talk.result(&serde_json::json!({"model": found.model, "form": rung, "kept": kept, "steps": found.steps}));
+    Ok(())
+}
+
+/// Where the settings of a kind of server stand.
+fn part(dialect: Dialect) -> String {
+    if dialect == Dialect::OpenAi { "author.".to_owned() } else { format!("author.{dialect}.") }
+}
+
+/// The key of a kind of server: of its variable, else of its file.
+fn key(config: &Config, part: &str) -> Result<Option<ApiKey>, Complaint> {
+    let variable = config.text(&format!("{part}key_variable"));
+    let found = Some(variable).filter(|name| !name.is_empty()).and_then(|name| config.variable(&name));
+    if let Some(key) = found.filter(|key| !key.trim().is_empty()) {
+        return Ok(Some(ApiKey::new(key)));
+    }
+    let file = config.text(&format!("{part}key_file"));
+    if file.is_empty() {
+        return Ok(None);
+    }
+    let path = Path::new(&file);
+    let unusable = |why: String| {
+        Complaint::input(
+            format!("the key file `{file}` cannot be used: {why}"),
+            format!("`{part}key_file` names a file that holds the key alone"),
+        )
+    };
+    let size = std::fs::metadata(path).map_err(|why| unusable(why.to_string()))?.len();
+    if size > MAX_KEY_BYTES {
+        return Err(unusable(format!("it has {size} bytes")));
+    }
+    let text = std::fs::read_to_string(path).map_err(|why| unusable(why.to_string()))?;
+    Ok(Some(ApiKey::new(&text)).filter(|key| !key.is_empty()))
+}
+
+fn word<T: std::str::FromStr<Err: std::fmt::Display>>(key: &str, text: &str, more: &str) -> Result<T, Complaint> {
+    text.parse::<T>().map_err(|why| {
+        Complaint::input(format!("`{key}`: {why}"), format!("it also takes {}", more.trim_end_matches(", ")))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config(flags: &[&str]) -> Config {
+        let flags: Vec<String> = flags.iter().map(|flag| (*flag).to_owned()).collect();
+        Config::load(None, std::iter::empty(), &flags).unwrap()
+    }
+
+    #[test]
+    fn a_key_comes_from_its_file_and_prints_nowhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("key");
+        std::fs::write(&file, "sk-of-the-file\n").unwrap();
+        let config = config(&["author.key_variable=", &format!("author.key_file={}", file.display())]);
+        assert!(key_found(&config).unwrap());
+        let keys = keys(&config).unwrap();
+        assert!(!format!("{keys:?} {:?}", config.lines(None)).contains("sk-of-the-file"));
+        assert!(keys.servers[&Dialect::OpenAi].key.is_some() && keys.servers[&Dialect::Ollama].key.is_none());
+    }
+
+    #[test]
+    fn the_time_that_is_configured_is_the_time_that_an_author_has() {
+        let slow = config(&["author.timeout_s=600"]);
+        assert_eq!(keys(&slow).unwrap().timeout, Some(Duration::from_secs(600)));
+        let (author, ..) = deadlines_ms(&slow).unwrap();
+        assert!(author > 600_000, "the attempt of {author} ms does not end before its call");
+        let told = consequences(&slow).unwrap().join("\n");
+        assert!(told.contains("600 s") && told.contains("630 s") && told.contains("4 times"), "{told}");
+        for wrong in ["author.timeout_s=0", "author.timeout_s=100000", "orchestrator.simulation_s=0"] {
+            let key = wrong.split('=').next().unwrap();
+            assert!(deadlines_ms(&config(&[wrong])).unwrap_err().what.contains(key), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn every_key_that_a_page_of_a_fault_names_exists() {
+        let config = config(&[]);
+        let known: Vec<String> = config.lines(None).into_iter().map(|(key, ..)| key).collect();
+        let sections: Vec<&str> = known.iter().filter_map(|key| key.split('.').next()).collect();
+        let mut named = 0;
+        for code in socrates_model::FaultCode::ALL {
+            for word in code.page().split('`').skip(1).step_by(2) {
+                let is_key = word.split_once('.').is_some_and(|(section, rest)| {
+                    sections.contains(&section) && rest.chars().all(|c| c.is_ascii_lowercase() || "_.".contains(c))
+                });
+                if is_key {
+                    named += 1;
+                    assert!(known.iter().any(|key| key == word), "{}: there is no `{word}`", code.code());
+                }
+            }
+        }
+        assert!(named >= 4, "{named}");
+    }
+
+    #[test]
+    fn settings_that_cannot_be_used_are_named() {
+        let told = |flags: &[&str]| keys(&config(flags)).unwrap_err().to_string();
+        assert!(told(&["author.key_variable=", "author.key_file=/no/such/key"]).contains("/no/such/key"));
+        assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
+        let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
+        assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");
+        assert!(style(&config(&[])).unwrap().is_empty());
+        assert_eq!(style(&config(&["author.image=off"])).unwrap()["prompt.image"], "off");
+    }
+}

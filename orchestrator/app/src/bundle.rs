@@ -1,0 +1,476 @@
+//! The bundle: one folder that holds a scenario whole, and reads as a page.
+//!
+//! ```text
+//! request, artifacts, runs ─► files of `layout` ─► beside the folder ─► one rename ─► a bundle ─► read
+//! ```
+
+mod beside;
+mod read;
+
+pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports, reports_in};
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use socrates_draw::StageRow;
+use socrates_model::job::{Artifact, Item, Stage};
+use socrates_model::wire::{JobStatus, ScenarioStatus};
+use socrates_model::{
+    Behaviors, Digest, Location, Paths, PlannerName, Proposal, Reading, Recording, Report, Request, Role, Run, Verdict,
+};
+
+use self::beside::Beside;
+use crate::exit::Complaint;
+use crate::history::PastJob;
+use crate::layout::{self, Sheet};
+use crate::prepare::Prepared;
+
+/// One run in the manifest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RunEntry {
+    /// Planner.
+    pub(crate) planner: PlannerName,
+    /// Simulation seed.
+    pub(crate) seed: u64,
+    /// Verdict.
+    pub(crate) verdict: Verdict,
+    /// Hash over decoded frames and events.
+    pub(crate) recording_hash: Digest,
+    /// Digest of the report file.
+    pub(crate) report: Digest,
+}
+
+impl RunEntry {
+    /// The run.
+    pub(crate) fn run(&self) -> Run {
+        Run { planner: self.planner.clone(), seed: self.seed }
+    }
+}
+
+/// What a bundle is made of; the last file written.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Manifest {
+    /// Format number.
+    pub(crate) format: u32,
+    /// Scenario id.
+    pub(crate) scenario: String,
+    /// Name of the request it was made from; empty in bundles from before it was kept.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(crate) request: String,
+    /// Base seed.
+    pub(crate) seed: u64,
+    /// Digest of the request and everything it names: the same wish has the same one.
+    pub(crate) wish: Digest,
+    /// Verdict of the reference run of the first seed.
+    pub(crate) verdict: Verdict,
+    /// Runs, the reference first.
+    pub(crate) runs: Vec<RunEntry>,
+    /// Digest of every file of the bundle but this one and the provenance.
+    pub(crate) files: BTreeMap<String, Digest>,
+}
+
+/// A finished bundle.
+#[derive(Debug, Clone)]
+pub(crate) struct Bundle {
+    /// Folder.
+    pub(crate) dir: PathBuf,
+    /// Manifest.
+    pub(crate) manifest: Manifest,
+    /// The request.
+    pub(crate) request: Request,
+    /// The location.
+    pub(crate) location: Location,
+    /// The reading.
+    pub(crate) reading: Reading,
+    /// The proposal.
+    pub(crate) proposal: Proposal,
+    /// The paths.
+    pub(crate) paths: Paths,
+    /// The trees.
+    pub(crate) behaviors: Behaviors,
+    /// Runs, the reference first.
+    pub(crate) runs: Vec<(Recording, Report)>,
+}
+
+impl Bundle {
+    /// The recording of a run and its report, if the bundle has it.
+    pub(crate) fn run(&self, run: &Run) -> Option<(&Recording, &Report)> {
+        let mut runs = self.manifest.runs.iter().zip(&self.runs);
+        runs.find(|(entry, _)| entry.run() == *run).map(|(_, (recording, report))| (recording, report))
+    }
+
+    /// The recording of a run, if the bundle has it.
+    pub(crate) fn recording(&self, run: &Run) -> Option<&Recording> {
+        self.run(run).map(|(recording, _)| recording)
+    }
+}
+
+/// The digest of a wish: request, location, reading, pins, seed, author.
+pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
+    let mut text = json!({
+        "request": prepared.request, "location": prepared.location, "pins": prepared.pins, "seed": seed,
+        "author": prepared.author, "injected": prepared.injected, "version": env!("CARGO_PKG_VERSION"),
+    });
+    if let Some(members) = text.as_object_mut().filter(|_| !prepared.style.is_empty()) {
+        members.insert("style".to_owned(), json!(prepared.style));
+    }
+    if let Some(members) = text.as_object_mut().filter(|_| prepared.looked_at) {
+        members.insert("looked_at".to_owned(), json!(true));
+    }
+    Digest::of(text.to_string().as_bytes())
+}
+
+/// Where artifacts are read from.
+pub(crate) type Fetch<'a> = dyn Fn(&Digest) -> Result<Vec<u8>, Complaint> + 'a;
+
+/// A finished scenario: what its bundle is written from.
+pub(crate) struct Past<'a> {
+    /// How it stands.
+    pub(crate) status: &'a ScenarioStatus,
+    /// Every revision and attempt.
+    pub(crate) jobs: &'a [PastJob],
+    /// Where artifacts are read from.
+    pub(crate) fetch: &'a Fetch<'a>,
+    /// Work folder on the same file system: files are written there, then moved to where they belong.
+    pub(crate) work: &'a Path,
+    /// Whether it is the only one: then its picture is painted by a thread of its own. Of many, each has a thread anyway.
+    pub(crate) alone: bool,
+}
+
+/// Writes the bundle of a finished scenario. The folder is there whole or, whatever happens on the way, not finished.
+pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let beside = Beside::new(past.work, past.status.id.as_str())?;
+    let bundle = written(&beside.0, dir, prepared, seed, past)?;
+    beside.appear(dir)?;
+    Ok(bundle)
+}
+
+/// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
+fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let Past { status, jobs: past, fetch, alone, .. } = *past;
+    let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
+    let text = |role: Role, stage: Stage| -> Result<String, Complaint> {
+        // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
+        if let Some(digest) = judged.and_then(|job| job.inputs.get(&role)) {
+            return utf8(role, fetch(digest)?);
+        }
+        if let Some(pinned) = prepared.pins.get(&role) {
+            return Ok(pinned.clone());
+        }
+        let artifact = newest(status, stage, &Item::Whole).and_then(|job| made(job, role));
+        string(artifact.ok_or_else(|| missing(role))?, fetch)
+    };
+    let reading: Reading = match judged.and_then(|job| job.inputs.get(&Role::Reading)) {
+        Some(digest) => parse(Role::Reading, &utf8(Role::Reading, fetch(digest)?)?)?,
+        None => prepared.reading.clone(),
+    };
+    let (proposal_text, paths_text, behaviors_text) = (
+        text(Role::Proposal, Stage::Proposal)?,
+        text(Role::Paths, Stage::Paths)?,
+        text(Role::Behaviors, Stage::Behaviors)?,
+    );
+    let proposal: Proposal = parse(Role::Proposal, &proposal_text)?;
+    let paths: Paths = parse(Role::Paths, &paths_text)?;
+    let behaviors: Behaviors = parse(Role::Behaviors, &behaviors_text)?;
+    let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
+    let (runs, entries) = put_runs(&mut out, status, fetch)?;
+    let Some((recording, report)) = runs.first() else { return Err(missing(Role::Report)) };
+    let verdict = report.verdict;
+    let title = format!("{} · {}", proposal.title, prepared.location.name);
+    let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
+    out.put(&layout::DRAWING, &"", svg.as_bytes())?;
+    let paint = move || socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()));
+    // Painting takes as long as everything else of a bundle, so it goes on beside it where a core is free.
+    let (painting, painted) = if alone { (Some(std::thread::spawn(paint)), None) } else { (None, Some(paint())) };
+    out.put(&layout::STORY, &"", story(&title, &proposal, report).as_bytes())?;
+    out.put(&layout::METRICS, &"", metrics(runs.iter().map(|(_, report)| report)).as_bytes())?;
+    let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
+    out.put(&layout::AGENTS, &"", socrates_stream::csv::write_agents(&recordings).as_bytes())?;
+    let request_text = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
+    out.put(&layout::REQUEST, &"", request_text.as_bytes())?;
+    for (name, bytes) in &prepared.location_files {
+        out.put(&layout::LOCATION_FILES, name, bytes)?;
+    }
+    out.put(&layout::LOCATION, &"", pretty(&prepared.location)?.as_bytes())?;
+    out.put(&layout::READING, &"", pretty(&reading)?.as_bytes())?;
+    out.put(&layout::PROPOSAL, &"", pretty(&proposal)?.as_bytes())?;
+    out.put(&layout::PATHS, &"", pretty(&paths)?.as_bytes())?;
+    out.put(&layout::BEHAVIORS, &"", pretty(&behaviors)?.as_bytes())?;
+    for (id, human) in &behaviors.humans {
+        out.put(&layout::TREES, id, human.tree.as_bytes())?;
+    }
+    let broke = || Err(ours("the thread that painted `run.png` broke"));
+    let painted = painted.or_else(|| painting?.join().ok()).unwrap_or_else(broke)?;
+    out.put(&layout::PICTURE, &"", &painted)?;
+    let stages = stage_rows(past);
+    let provenance = provenance(prepared, seed, status, past, fetch);
+    out.put(&layout::PROVENANCE, &"", pretty(&provenance)?.as_bytes())?;
+    let manifest = Manifest {
+        format: socrates_model::FORMAT,
+        scenario: status.id.to_string(),
+        request: prepared.name.clone(),
+        seed,
+        wish: wish(prepared, seed),
+        verdict,
+        runs: entries,
+        files: out.files.clone(),
+    };
+    let bundle = Bundle {
+        dir: dir.to_path_buf(),
+        manifest,
+        request: prepared.request.clone(),
+        location: prepared.location.clone(),
+        reading,
+        proposal,
+        paths,
+        behaviors,
+        runs,
+    };
+    // The page shows working times, so it stands outside the bundle's digest, like the provenance.
+    out.put(&layout::PAGE, &"", crate::report::page(&bundle, &stages, &prepared.author).as_bytes())?;
+    out.put(&layout::MANIFEST, &"", pretty(&bundle.manifest)?.as_bytes())?;
+    Ok(bundle)
+}
+
+/// A run with what was found of it.
+type Judged = (Recording, Report);
+
+/// Writes every recording and report, and hands them back with their entries in the manifest.
+fn put_runs(
+    out: &mut Writer,
+    status: &ScenarioStatus,
+    fetch: &Fetch<'_>,
+) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
+    let mut runs: Vec<(Recording, Report)> = Vec::new();
+    let mut entries = Vec::new();
+    for job in scoring_jobs(status) {
+        let simulation = newest(status, Stage::Simulation, &job.key.item);
+        let (Some(run), Some(judged), Some(simulation)) = (job.key.item.run(), made(job, Role::Report), simulation)
+        else {
+            continue;
+        };
+        let report: Report = parse(Role::Report, &string(judged, fetch)?)?;
+        let recorded = made(simulation, Role::Recording).ok_or_else(|| missing(Role::Recording))?;
+        let bytes = fetch(&recorded.digest)?;
+        let recording =
+            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
+        out.put(&layout::RECORDINGS, run, &bytes)?;
+        let report_digest = out.put(&layout::REPORTS, run, pretty(&report)?.as_bytes())?;
+        entries.push(RunEntry {
+            planner: run.planner.clone(),
+            seed: run.seed,
+            verdict: report.verdict,
+            recording_hash: recording.hash(),
+            report: report_digest,
+        });
+        runs.push((recording, report));
+    }
+    Ok((runs, entries))
+}
+
+struct Writer {
+    dir: PathBuf,
+    files: BTreeMap<String, Digest>,
+}
+
+impl Writer {
+    /// Writes the file of this name, or the only one of its kind.
+    fn put(&mut self, sheet: &Sheet, name: &dyn std::fmt::Display, bytes: &[u8]) -> Result<Digest, Complaint> {
+        let file = sheet.of(name);
+        let path = self.dir.join(&file);
+        let cannot = |why: std::io::Error| {
+            Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+        };
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(cannot)?;
+        }
+        std::fs::write(&path, bytes).map_err(cannot)?;
+        let digest = Digest::of(bytes);
+        if sheet.counted {
+            self.files.insert(file, digest);
+        }
+        Ok(digest)
+    }
+}
+
+fn ours(what: &str) -> Complaint {
+    Complaint::input(what, "this is our fault; `details/provenance.json` holds what is needed to find it")
+        .with_code(crate::exit::Code::Ours)
+}
+
+fn missing(role: Role) -> Complaint {
+    ours(&format!("the scenario ended without a {role}"))
+}
+
+fn parse<T: serde::de::DeserializeOwned>(role: Role, text: &str) -> Result<T, Complaint> {
+    serde_json::from_str(text).map_err(|why| ours(&format!("the {role} cannot be decoded: {why}")))
+}
+
+fn pretty<T: Serialize>(value: &T) -> Result<String, Complaint> {
+    serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|why| ours(&why.to_string()))
+}
+
+fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
+    if let Some(text) = &artifact.inline {
+        return Ok(text.clone());
+    }
+    utf8(artifact.role, fetch(&artifact.digest)?)
+}
+
+fn utf8(role: Role, bytes: Vec<u8>) -> Result<String, Complaint> {
+    String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
+}
+
+/// The output of a job in this role.
+fn made(job: &JobStatus, role: Role) -> Option<&Artifact> {
+    job.artifacts.iter().find(|artifact| artifact.role == role)
+}
+
+/// The newest job of a stage and item that has a result.
+fn newest<'a>(status: &'a ScenarioStatus, stage: Stage, item: &Item) -> Option<&'a JobStatus> {
+    status
+        .jobs
+        .iter()
+        .filter(|job| job.key.stage == stage && job.key.item == *item && job.state == "succeeded")
+        .max_by_key(|job| job.key.revision)
+}
+
+/// Newest scoring jobs, the reference first, then by planner and seed.
+fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
+    let items: BTreeSet<&Item> =
+        status.jobs.iter().filter(|job| job.key.stage == Stage::Scoring).map(|job| &job.key.item).collect();
+    items.into_iter().filter_map(|item| newest(status, Stage::Scoring, item)).collect()
+}
+
+/// The request as the bundle keeps it: its location lies beside it, so it can be moved.
+fn portable(prepared: &Prepared) -> Request {
+    // What a person looked at was perhaps changed by hand: the same again is what they left, not what an author writes.
+    let keep = |slot: &mut Option<String>, role: Role| {
+        if slot.is_some() || prepared.looked_at {
+            *slot = Some(format!("details/{role}.json"));
+        }
+    };
+    let mut request = prepared.request.clone();
+    if socrates_maps::shipped::files(&request.location).is_none() {
+        request.location = "details/location".to_owned();
+    }
+    keep(&mut request.proposal, Role::Proposal);
+    keep(&mut request.paths, Role::Paths);
+    keep(&mut request.behaviors, Role::Behaviors);
+    request
+}
+
+fn story(title: &str, proposal: &Proposal, report: &Report) -> String {
+    let mut text = format!("{title}\nauthor {}\n\n{}\n\n", proposal.author, proposal.description);
+    for line in &report.story {
+        text.push_str(line);
+        text.push('\n');
+    }
+    text.push_str(&format!("\n{}: {}\nrobot: {}\n", report.verdict, report.verdict_text, report.robot_text));
+    text
+}
+
+/// Columns of `metrics.csv`: one row per run and metric.
+pub(crate) const METRIC_COLUMNS: [&str; 9] =
+    ["planner", "seed", "metric", "value", "unit", "direction", "note", "version", "thresholds"];
+
+/// Every metric of these runs as a table.
+pub(crate) fn metrics<'a>(reports: impl IntoIterator<Item = &'a Report>) -> String {
+    let mut text = METRIC_COLUMNS.join(",") + "\n";
+    for report in reports {
+        for metric in &report.metrics {
+            let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
+            let note = metric.note.replace('"', "'");
+            text.push_str(&format!(
+                "{},{},{},{value},{},{},\"{note}\",{},{}\n",
+                report.planner,
+                report.seed,
+                metric.id,
+                metric.unit,
+                metric.direction,
+                metric.version,
+                report.thresholds
+            ));
+        }
+    }
+    text
+}
+
+/// Stage lines of what was tried, in pipeline order.
+pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
+    let row = |job: &PastJob| {
+        let item = if job.key.item == Item::Whole { String::new() } else { format!(" {}", job.key.item) };
+        let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
+        let faults: Vec<String> =
+            job.attempts.iter().flat_map(|attempt| &attempt.faults).map(ToString::to_string).collect();
+        let remark = [job.remark.clone(), faults.join("; ")];
+        StageRow {
+            stage: format!("{}{item}{revision}", job.key.stage),
+            state: job.state.clone(),
+            attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
+            wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
+            remark: remark.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · "),
+        }
+    };
+    past.iter().map(row).collect()
+}
+
+/// An exchange without what was asked and answered.
+fn without_words(mut exchange: serde_json::Value) -> serde_json::Value {
+    if let Some(members) = exchange.as_object_mut() {
+        for words in ["messages", "answer"] {
+            members.remove(words);
+        }
+    }
+    exchange
+}
+
+/// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.
+fn provenance(
+    prepared: &Prepared,
+    seed: u64,
+    status: &ScenarioStatus,
+    past: &[PastJob],
+    fetch: &Fetch<'_>,
+) -> serde_json::Value {
+    // What passed between the stage and its author, as text or as the object it is.
+    let exchanges = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
+        artifacts
+            .iter()
+            .filter(|artifact| {
+                artifact.role == Role::Exchange || artifact.role == Role::Refused && prepared.keep_answers
+            })
+            .filter_map(|artifact| string(artifact, fetch).ok())
+            .map(|text| serde_json::from_str(&text).unwrap_or(serde_json::Value::String(text)))
+            .map(|exchange| if prepared.keep_answers { exchange } else { without_words(exchange) })
+            .collect()
+    };
+    // What a person typed who looked at it.
+    let said = |artifacts: &[Artifact]| -> Option<serde_json::Value> {
+        let typed = artifacts.iter().find(|artifact| artifact.role == Role::Said)?;
+        serde_json::from_str(&string(typed, fetch).ok()?).ok()
+    };
+    let names = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
+        artifacts.iter().map(|a| json!({"role": a.role, "digest": a.digest, "bytes": a.len})).collect()
+    };
+    let jobs: Vec<serde_json::Value> = past
+        .iter()
+        .map(|job| {
+            let attempts: Vec<serde_json::Value> = job
+                .attempts
+                .iter()
+                .map(|attempt| {
+                    json!({ "attempt": attempt.number, "end": attempt.end, "class": attempt.class, "faults": attempt.faults,
+                            "wall_ms": attempt.wall_ms, "span_ms": attempt.span_ms, "tokens": attempt.tokens, "remark": attempt.remark,
+                            "artifacts": names(&attempt.artifacts), "exchanges": exchanges(&attempt.artifacts) })
+                })
+                .collect();
+            json!({ "job": job.key, "state": job.state, "seed": job.seed, "inputs": job.inputs, "sent_back": job.sent_back,
+                    "attempts": attempts, "artifacts": names(&job.artifacts), "exchanges": exchanges(&job.artifacts),
+                    "said": said(&job.artifacts) })
+        })
+        .collect();
+    json!({ "version": env!("CARGO_PKG_VERSION"), "program": prepared.build, "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
+}

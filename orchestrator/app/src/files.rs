@@ -1,0 +1,70 @@
+//! Reading and writing the files that are named on the command line.
+
+use std::path::Path;
+
+use crate::exit::Complaint;
+use crate::output::Printer;
+
+/// Bytes of a file of at most `max` bytes.
+pub(crate) fn bytes(path: &Path, max: u64, hint: &str) -> Result<Vec<u8>, Complaint> {
+    let cannot = |why: std::io::Error| Complaint::input(format!("cannot read `{}`: {why}", path.display()), hint);
+    let length = std::fs::metadata(path).map_err(cannot)?.len();
+    if length > max {
+        let what = format!("`{}` has {length} bytes", path.display());
+        return Err(Complaint::input(what, format!("at most {max} bytes are read")));
+    }
+    std::fs::read(path).map_err(cannot)
+}
+
+/// Text of a file of at most `max` bytes.
+pub(crate) fn text(path: &Path, max: u64, hint: &str) -> Result<String, Complaint> {
+    String::from_utf8(bytes(path, max, hint)?).map_err(|why| {
+        let at = why.utf8_error().valid_up_to();
+        Complaint::input(format!("`{}` is not UTF-8 text (byte {at})", path.display()), "save it as UTF-8")
+    })
+}
+
+/// Writes a file, and the folders above it.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Complaint> {
+    let cannot = |why: std::io::Error| {
+        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another place")
+    };
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(cannot)?;
+    }
+    std::fs::write(path, bytes).map_err(cannot)
+}
+
+/// Writes a text to a file, or says it where none is named.
+pub(crate) fn write_or_say(talk: &Printer, text: &str, out: Option<&Path>) -> Result<(), Complaint> {
+    match out {
+        Some(out) => {
+            write(out, text.as_bytes())?;
+            talk.line(&format!("wrote      {}", out.display()));
+        }
+        None => talk.line(text),
+    }
+    Ok(())
+}
+
+/// A path, or another word, as a shell takes it: in quotes where it holds a blank or anything else that a shell would read.
+pub(crate) fn shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    // Only a byte that no path holds cannot be quoted.
+    shlex::try_quote(&text).map_or_else(|_why| text.clone(), |quoted| quoted.into_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_with_a_blank_stays_one_word_of_a_shell() {
+        for (path, word) in
+            [("runs/my-1", "runs/my-1"), ("mein Büro/out put", "'mein Büro/out put'"), ("it's", "\"it's\"")]
+        {
+            assert_eq!(shell(Path::new(path)), word);
+            assert_eq!(shlex::split(&shell(Path::new(path))), Some(vec![path.to_owned()]));
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! Folders that belong to this user alone: the work folder of a making, and the one of its socket.
+
+use std::fs::{File, Permissions};
+use std::io::Write as _;
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::exit::{Code, Complaint};
+
+/// What a folder for its owner alone may be used for: everything by its owner, nothing by others.
+const OWNER: u32 = 0o700;
+/// The same of a file.
+const OWNER_FILE: u32 = 0o600;
+/// File in the work folder that the maker holds a lock on; it holds its process id.
+const HOLD_FILE: &str = "making.lock";
+/// Begin of the name of every socket's folder.
+const SOCKETS: &str = "socrates-";
+/// Longest path of a socket that every system takes, bytes; the bus puts `.lock` behind it for a moment.
+const LONGEST_SOCKET: usize = 98;
+
+/// A work folder that this process alone makes something in, as long as this lives.
+#[derive(Debug)]
+pub(crate) struct Hold {
+    path: PathBuf,
+    file: File,
+}
+
+impl Hold {
+    /// Takes a work folder, made where needed, and closes it to other users.
+    pub(crate) fn take(work: &Path) -> Result<Self, Complaint> {
+        let made = work.parent().unwrap_or(work).display();
+        let cannot = |why: std::io::Error| {
+            Complaint::input(format!("cannot write into `{made}`: {why}"), "--out chooses another folder")
+        };
+        std::fs::create_dir_all(work).map_err(cannot)?;
+        std::fs::set_permissions(work, Permissions::from_mode(OWNER)).map_err(cannot)?;
+        let path = work.join(HOLD_FILE);
+        let mut file = File::options().create(true).truncate(false).write(true).open(&path).map_err(cannot)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(std::fs::TryLockError::WouldBlock) => {
+                let holder = std::fs::read_to_string(&path).unwrap_or_default();
+                return Err(Complaint::input(
+                    format!("`{made}` is being made by process {}", holder.trim()),
+                    "wait for it or end it, or choose another folder with --out",
+                ));
+            }
+            Err(std::fs::TryLockError::Error(why)) => return Err(cannot(why)),
+        }
+        file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id())).map_err(cannot)?;
+        Ok(Self { path, file })
+    }
+
+    /// Says so when the folder was taken away under its maker.
+    pub(crate) fn check(&self) -> Result<(), Complaint> {
+        let same = |there: std::fs::Metadata| {
+            self.file.metadata().is_ok_and(|held| (held.dev(), held.ino()) == (there.dev(), there.ino()))
+        };
+        if std::fs::metadata(&self.path).is_ok_and(same) {
+            return Ok(());
+        }
+        let folder = self.path.parent().unwrap_or(&self.path).display().to_string();
+        Err(Complaint::input(
+            format!("the folder `{folder}` was removed while it was worked in, so the run ends"),
+            "the same command begins anew",
+        )
+        .with_code(Code::Ours))
+    }
+}
+
+/// A folder for the socket of a run: nobody else can enter it, and its path is short enough for a socket.
+pub(crate) fn socket_folder(work: &Path, temp: &Path) -> Result<TempDir, Complaint> {
+    let places = [temp.to_path_buf(), PathBuf::from("/tmp"), work.to_path_buf()];
+    let mut last = String::new();
+    for place in places {
+        let made =
+            tempfile::Builder::new().prefix(SOCKETS).permissions(Permissions::from_mode(OWNER)).tempdir_in(&place);
+        match made {
+            Ok(folder) if socket(folder.path()).as_os_str().len() <= LONGEST_SOCKET => return Ok(folder),
+            Ok(folder) => last = format!("`{}` is too long for a socket", folder.path().display()),
+            Err(why) => last = format!("`{}`: {why}", place.display()),
+        }
+    }
+    Err(Complaint::input(
+        format!("there is no folder for the socket of the run: {last}"),
+        "TMPDIR names a folder that can be written and has a short path",
+    ))
+}
+
+/// The socket in its folder.
+pub(crate) fn socket(folder: &Path) -> PathBuf {
+    folder.join("bus")
+}
+
+/// Removes the folder of a socket whose maker was killed.
+pub(crate) fn remove_socket_folder(socket: &Path) {
+    let folder = socket.parent().filter(|folder| {
+        let name = folder.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(SOCKETS) && folder.is_dir()
+    });
+    if let Some(folder) = folder {
+        // Whoever cannot remove it leaves an empty folder behind, no more.
+        drop(std::fs::remove_dir_all(folder));
+    }
+}
+
+/// Writes a file that nobody else can read.
+pub(crate) fn write_private(path: &Path, text: &str) -> std::io::Result<()> {
+    let mut file = File::options().create(true).write(true).truncate(true).mode(OWNER_FILE).open(path)?;
+    // A file that was there keeps its mode otherwise.
+    file.set_permissions(Permissions::from_mode(OWNER_FILE))?;
+    file.write_all(text.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_has_one_maker_and_the_second_hears_who_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let work = folder.path().join("two").join(".socrates");
+        let hold = Hold::take(&work).unwrap();
+        let why = Hold::take(&work).unwrap_err();
+        assert_eq!(why.code, Code::Input);
+        assert!(why.what.ends_with(&format!("two` is being made by process {}", std::process::id())), "{why}");
+        assert_eq!(std::fs::metadata(&work).unwrap().mode() & 0o777, OWNER);
+        hold.check().unwrap();
+        std::fs::remove_dir_all(&work).unwrap();
+        assert_eq!(hold.check().unwrap_err().code, Code::Ours);
+        // A folder of the same name is another one.
+        std::fs::create_dir_all(&work).unwrap();
+        std::fs::write(work.join(HOLD_FILE), "").unwrap();
+        hold.check().unwrap_err();
+        drop(hold);
+        Hold::take(&work).unwrap();
+    }
+
+    #[test]
+    fn the_folder_of_a_socket_is_short_and_closed_even_where_the_work_folder_is_deep() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("a".repeat(120));
+        std::fs::create_dir_all(&deep).unwrap();
+        let made = socket_folder(&deep, &std::env::temp_dir()).unwrap();
+        assert!(socket(made.path()).as_os_str().len() <= LONGEST_SOCKET);
+        assert_eq!(std::fs::metadata(made.path()).unwrap().mode() & 0o777, OWNER);
+        let kept = made.keep();
+        remove_socket_folder(&socket(&kept));
+        assert!(!kept.exists());
+        remove_socket_folder(&folder.path().join("x"));
+        assert!(folder.path().exists(), "only folders of sockets are removed");
+    }
+}

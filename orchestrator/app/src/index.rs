@@ -1,0 +1,121 @@
+//! `index.csv`: every run of a folder of bundles, one row each, with the columns of every table of runs.
+
+use std::path::Path;
+
+use socrates_model::Report;
+use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
+use socrates_stream::csv::quoted;
+
+use crate::exit::Complaint;
+use crate::files;
+
+/// Name of the table.
+pub(crate) const FILE: &str = "index.csv";
+/// What a table of runs says of each, before the [`KEY_FIGURES`].
+pub(crate) const COLUMNS: [&str; 8] = ["request", "location", "planner", "seed", "verdict", "reason", "kind", "path"];
+/// Place of the kind among them.
+const KIND: usize = 6;
+/// Verdict of a scenario of which there is no run.
+pub(crate) const FAILED: &str = "failed";
+
+/// What the runs of one scenario have in common.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scenario<'a> {
+    /// Name of its request.
+    pub(crate) request: &'a str,
+    /// Name of its location.
+    pub(crate) location: &'a str,
+    /// Its folder, from where the table lies.
+    pub(crate) path: &'a str,
+}
+
+/// Rows of the runs of one scenario; whether it repeats another is said when they are added.
+#[derive(Debug, Clone)]
+pub(crate) struct Rows(Vec<Vec<String>>);
+
+impl Rows {
+    /// A row per run.
+    pub(crate) fn of(scenario: Scenario<'_>, reports: &[Report]) -> Self {
+        let rows = reports.iter().map(|report| {
+            let mut row =
+                row(scenario, [&report.planner, &report.seed.to_string(), report.verdict.name(), &report.verdict_text]);
+            row.extend(KEY_FIGURES.iter().map(|id| {
+                let value = key_figures(report).find(|metric| metric.id == *id).and_then(|metric| metric.value);
+                value.map_or_else(String::new, |value| value.to_string())
+            }));
+            row
+        });
+        Self(rows.collect())
+    }
+}
+
+/// The table while it is being filled.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Index {
+    rows: Vec<Vec<String>>,
+}
+
+impl Index {
+    /// Adds the runs of a scenario.
+    pub(crate) fn add(&mut self, rows: Rows, repeats: bool) {
+        self.rows.extend(rows.0.into_iter().map(|mut row| {
+            if let Some(cell) = row.get_mut(KIND) {
+                *cell = kind(repeats);
+            }
+            row
+        }));
+    }
+
+    /// Adds a scenario without a run, and why there is none.
+    pub(crate) fn add_failed(&mut self, scenario: Scenario<'_>, why: &str, repeats: bool) {
+        let mut row = row(scenario, ["", "", FAILED, why]);
+        row.extend(KEY_FIGURES.iter().map(|_| String::new()));
+        self.add(Rows(vec![row]), repeats);
+    }
+
+    /// The table. A figure without a value is an empty cell.
+    pub(crate) fn csv(&self) -> String {
+        let head: Vec<&str> = COLUMNS.into_iter().chain(KEY_FIGURES).collect();
+        let mut text = head.join(",") + "\n";
+        for row in &self.rows {
+            text.push_str(&row.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(","));
+            text.push('\n');
+        }
+        text
+    }
+
+    /// Writes the table into a folder.
+    pub(crate) fn write(&self, root: &Path) -> Result<(), Complaint> {
+        files::write(&root.join(FILE), self.csv().as_bytes())
+    }
+}
+
+/// Whether a scenario repeats an earlier one of the folder (P-DUP), in a word.
+fn kind(repeats: bool) -> String {
+    if repeats { "repeat" } else { "distinct" }.to_owned()
+}
+
+/// The first cells of a row, in the order of [`COLUMNS`]; its kind is said later.
+fn row(scenario: Scenario<'_>, [planner, seed, verdict, reason]: [&str; 4]) -> Vec<String> {
+    // A reason of several lines would break tables that are read line by line.
+    let reason = reason.split_whitespace().collect::<Vec<_>>().join(" ");
+    [scenario.request, scenario.location, planner, seed, verdict, &reason, "", scenario.path].map(str::to_owned).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scenario_without_a_run_has_a_row_of_as_many_cells_as_the_head() {
+        let mut index = Index::default();
+        let scenario = Scenario { request: "hall", location: "office, west", path: "hall-1" };
+        index.add_failed(scenario, "no author\n  T-NET \"gone\"", false);
+        let text = index.csv();
+        let table = socrates_stream::csv::Table::read(&text).unwrap();
+        assert_eq!(table.rows.len(), 1, "{text}");
+        assert_eq!((table.head.cells.len(), table.rows[0].cells.len()), (20, 20));
+        let wanted = ["hall", "office, west", "", "", "failed", "no author T-NET \"gone\"", "distinct", "hall-1"];
+        assert_eq!(table.rows[0].cells[..8], wanted);
+    }
+}

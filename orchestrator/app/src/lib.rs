@@ -1,0 +1,72 @@
+//! What the verbs of the program do: requests become bundles, bundles are looked at, compared and scored again.
+//!
+//! ```text
+//! config ─► prepare ─► session (supervise: orchestrator + workers) ─► bundler ─► bundle ─► page
+//!                                                                        bundle ─► video, figure, labels, cost …
+//! ```
+//!
+//! Every verb is a function that takes plain values and a [`output::Printer`] to say something with. `orchestrator/cli` turns
+//! arguments into those values, and what is said into lines.
+//!
+//! *Never here:* a rule of authoring, simulation, scoring or retry; an argument of the command line, a variable of the
+//! environment, a line printed, an exit of the process.
+
+pub mod agents;
+pub mod agreement;
+mod ask;
+pub mod authors;
+mod batch;
+mod batch_stats;
+pub mod bench;
+pub mod bt;
+mod bundle;
+mod bundler;
+#[cfg(test)]
+mod case_studies;
+pub mod cite;
+pub mod cluster;
+pub mod config;
+pub mod cost;
+pub mod dev;
+pub mod evaluate;
+pub mod exit;
+pub mod explain;
+pub mod export_chat;
+pub mod figure;
+mod files;
+mod folder;
+pub mod fuzz;
+pub mod golden;
+mod history;
+mod in_process;
+mod index;
+pub mod labels;
+pub mod layout;
+mod library_index;
+mod many;
+pub mod map;
+pub mod mutations;
+pub mod new_request;
+mod next;
+#[cfg(test)]
+mod online;
+mod orchestrate;
+pub mod output;
+mod place;
+mod prepare;
+pub mod process;
+mod progress;
+pub mod replay;
+pub mod report;
+pub mod run;
+pub mod run_options;
+pub mod scenarios;
+mod scribe;
+mod session;
+mod stages;
+pub mod standing;
+mod supervise;
+pub mod tokens;
+pub mod traces;
+pub mod video;
+pub mod watch;

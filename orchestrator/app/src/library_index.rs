@@ -1,0 +1,251 @@
+//! The list of a library: one file at the root of a folder of bundles.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use socrates_checks::{Likeness, Signature, check_repeats};
+use socrates_model::{Digest, Reading, ScenarioId};
+
+use crate::exit::{Code, Complaint};
+use crate::output::Printer;
+use crate::run::Refused;
+use crate::run_options::RunOptions;
+
+/// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
+/// for ten thousand million comparisons.
+const COMPARED: usize = 500;
+/// File that lists a library.
+const FILE: &str = "library.json";
+
+/// One scenario of a library.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Row {
+    /// Which.
+    pub(crate) scenario: ScenarioId,
+    /// Name of its request.
+    #[serde(default)]
+    pub(crate) request: String,
+    /// Its folder.
+    pub(crate) bundle: String,
+    /// Verdict, or `failed` where no bundle could be made.
+    pub(crate) verdict: String,
+    /// Why there is no bundle; empty where there is one.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(crate) reason: String,
+    /// The earlier scenario that it repeats (P-DUP).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) repeats: Option<ScenarioId>,
+}
+
+/// A finished library.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Library {
+    /// What it was made from.
+    pub(crate) wish: Digest,
+    /// Scenarios asked for.
+    pub(crate) count: u64,
+    /// Readings of its requests.
+    pub(crate) readings: Vec<Reading>,
+    /// Scenarios, in order of submission.
+    pub(crate) scenarios: Vec<Row>,
+}
+
+/// The library of a folder, if it is one.
+pub(crate) fn read(root: &Path) -> Option<Library> {
+    serde_json::from_str(&std::fs::read_to_string(root.join(FILE)).ok()?).ok()
+}
+
+/// Writes the list.
+pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
+    let path = root.join(FILE);
+    let text = serde_json::to_string_pretty(library)
+        .map_err(|why| Complaint::input(why.to_string(), "").with_code(Code::Ours))?;
+    std::fs::write(&path, text).map_err(|why| {
+        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "--out chooses another folder")
+    })
+}
+
+/// Finds scenarios that repeat earlier ones.
+#[derive(Debug, Default)]
+pub(crate) struct Repeats {
+    made: BTreeMap<Signature, VecDeque<(ScenarioId, Likeness)>>,
+    /// The first that failed, by request and reason.
+    failed: BTreeMap<(String, String), ScenarioId>,
+}
+
+impl Repeats {
+    /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
+    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: Likeness) -> Option<ScenarioId> {
+        let alike = self.made.entry(proposal.signature.clone()).or_default();
+        let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
+        if let Some((other, _)) = earlier {
+            return Some(other.clone());
+        }
+        self.remember(id, proposal);
+        None
+    }
+
+    /// The same for a scenario of a list, which says already what it repeats: nothing is compared, unless what it repeats is no
+    /// longer `there`.
+    pub(crate) fn of_listed(
+        &mut self,
+        id: &ScenarioId,
+        proposal: Likeness,
+        listed: Option<&ScenarioId>,
+        there: impl Fn(&ScenarioId) -> bool,
+    ) -> Option<ScenarioId> {
+        match listed {
+            Some(earlier) if there(earlier) => Some(earlier.clone()),
+            Some(_) => self.of(id, proposal),
+            None => {
+                self.remember(id, proposal);
+                None
+            }
+        }
+    }
+
+    /// Remembers a scenario that repeats none.
+    fn remember(&mut self, id: &ScenarioId, proposal: Likeness) {
+        let alike = self.made.entry(proposal.signature.clone()).or_default();
+        if alike.len() == COMPARED {
+            alike.pop_front();
+        }
+        alike.push_back((id.clone(), proposal));
+    }
+
+    /// The earlier scenario of the same request that failed for the same reason; it is remembered itself where there is none.
+    pub(crate) fn of_failed(&mut self, id: &ScenarioId, request: &str, reason: &str) -> Option<ScenarioId> {
+        let alike = (request.to_owned(), reason.to_owned());
+        let earlier = self.failed.get(&alike).cloned();
+        if earlier.is_none() {
+            self.failed.insert(alike, id.clone());
+        }
+        earlier
+    }
+}
+
+/// Scenarios by verdict, the most frequent first: `12 realised · 3 contradicted`.
+fn counted<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
+    let mut verdicts = BTreeMap::<&str, u64>::new();
+    rows.for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
+    let mut verdicts: Vec<(&str, u64)> = verdicts.into_iter().collect();
+    verdicts.sort_by_key(|(verdict, count)| (std::cmp::Reverse(*count), *verdict));
+    let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
+    words.join(" · ")
+}
+
+impl Library {
+    /// Scenarios that repeat no earlier one.
+    pub(crate) fn distinct(&self) -> impl Iterator<Item = &Row> {
+        self.scenarios.iter().filter(|row| row.repeats.is_none())
+    }
+
+    /// What is in it, in lines: how many were made, and how many different ones those are.
+    fn told(&self) -> Vec<String> {
+        let mut lines =
+            vec![format!("made       {} of {} · {}", self.scenarios.len(), self.count, counted(self.scenarios.iter()))];
+        let repeats = self.scenarios.iter().filter(|row| row.repeats.is_some()).count();
+        if repeats > 0 {
+            lines.push(format!("distinct   {} · {}", self.distinct().count(), counted(self.distinct())));
+            lines.push(format!(
+                "repeats    {repeats} repeat an earlier proposal (P-DUP): a share of the distinct ones is what counts"
+            ));
+        }
+        lines
+    }
+}
+
+/// Prints what a library holds.
+pub(crate) fn finish(
+    talk: &Printer,
+    options: &RunOptions,
+    root: &Path,
+    refused: &[Refused],
+) -> Result<Code, Complaint> {
+    let library = read(root)
+        .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
+    let mut verdicts = BTreeMap::<&str, u64>::new();
+    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
+    for line in library.told() {
+        talk.line(&line);
+    }
+    talk.line(&format!("table      {}", root.join(crate::index::FILE).display()));
+    talk.line(&format!("look       {}", root.join("report.html").display()));
+    talk.line(&format!("next       {}", crate::next::after_batch(root, &library)));
+    let whole = verdicts.get("realised").copied().unwrap_or(0) == library.count;
+    talk.result(&json!({
+        "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
+        "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+        "distinct": library.distinct().count(), "index": root.join(crate::index::FILE).display().to_string(),
+        "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
+    }));
+    Ok(if options.require == "any" || whole { Code::Ok } else { Code::NotRealised })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scenario_that_fails_as_an_earlier_one_did_repeats_it() {
+        let id = |name: &str| ScenarioId::new(name).unwrap();
+        let mut repeats = Repeats::default();
+        assert_eq!(repeats.of_failed(&id("a"), "hall", "no way"), None);
+        assert_eq!(repeats.of_failed(&id("b"), "hall", "no way"), Some(id("a")));
+        assert_eq!(repeats.of_failed(&id("c"), "hall", "too narrow"), None);
+        assert_eq!(repeats.of_failed(&id("d"), "ward", "no way"), None);
+    }
+
+    #[test]
+    fn what_a_list_says_is_not_compared_again() {
+        let id = |name: &str| ScenarioId::new(name).unwrap();
+        let of = |words: &str| {
+            let json = json!({
+                "format": 1, "title": "t", "description": words, "pattern": "p", "place": "corridor", "humans": [],
+                "robot": { "task": "t", "expected_behavior": "e" }, "expected_events": [], "author": "a",
+            });
+            Likeness::of(&serde_json::from_value(json).unwrap())
+        };
+        let mut repeats = Repeats::default();
+        let one = of("a nurse crosses the corridor from the left and stops");
+        assert_eq!(repeats.of_listed(&id("a"), one.clone(), None, |_| true), None);
+        // The same words, and yet the list says that it repeats none; other words, and it says that it does.
+        assert_eq!(repeats.of_listed(&id("b"), one.clone(), None, |_| true), None);
+        let other = of("two visitors leave the elevator side by side");
+        assert_eq!(repeats.of_listed(&id("c"), other.clone(), Some(&id("a")), |_| true), Some(id("a")));
+        // What it repeats is gone: it is compared, and is the first of its kind.
+        assert_eq!(repeats.of_listed(&id("d"), other.clone(), Some(&id("gone")), |_| false), None);
+        assert_eq!((repeats.of(&id("e"), other), repeats.of(&id("f"), one)), (Some(id("d")), Some(id("a"))));
+    }
+
+    #[test]
+    fn distinct_scenarios_are_counted_beside_all() {
+        let row = |name: &str, verdict: &str, repeats: Option<&str>| Row {
+            scenario: ScenarioId::new(name).unwrap(),
+            request: "hall".to_owned(),
+            bundle: name.to_owned(),
+            verdict: verdict.to_owned(),
+            reason: String::new(),
+            repeats: repeats.map(|other| ScenarioId::new(other).unwrap()),
+        };
+        let mut library = Library {
+            wish: Digest::of(b"wish"),
+            count: 4,
+            readings: Vec::new(),
+            scenarios: vec![
+                row("a", "realised", None),
+                row("b", "realised", Some("a")),
+                row("c", "realised", Some("a")),
+                row("d", "contradicted", None),
+            ],
+        };
+        let told = library.told();
+        assert_eq!(told[0], "made       4 of 4 · 3 realised · 1 contradicted");
+        assert_eq!(told[1], "distinct   2 · 1 contradicted · 1 realised");
+        assert!(told[2].starts_with("repeats    2 repeat"), "{told:?}");
+        library.scenarios.iter_mut().for_each(|row| row.repeats = None);
+        assert_eq!(library.told().len(), 1, "nothing is said of repeats where there are none");
+    }
+}

@@ -1,0 +1,141 @@
+//! Several scenarios in one folder: made in one go, each written when it is done, and listed and counted together.
+
+use std::borrow::Borrow;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use socrates_model::ScenarioId;
+
+use crate::batch::Card;
+use crate::bundler::{Bundled, Bundler};
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::output::Printer;
+use crate::place::{self, Place};
+use crate::prepare::{Prepared, scenario_id};
+use crate::run::{Refused, print_reading};
+use crate::run_options::RunOptions;
+use crate::session::{Making, Wanted};
+use crate::{bundle, library_index};
+
+/// Makes every scenario of these requests in one folder, whose list and page are written at the end.
+pub(crate) async fn batch(
+    talk: &Printer,
+    config: &Config,
+    options: &RunOptions,
+    mut prepared: Vec<Prepared>,
+    refused: &[Refused],
+) -> Result<Code, Complaint> {
+    let names = distinct(prepared.iter().map(|one| one.name.as_str()));
+    prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
+    let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
+    let wishes: Vec<String> =
+        prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
+    let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
+    let root = match place::place(&base, wish) {
+        Place::Finished(root) => {
+            talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
+            return library_index::finish(talk, options, &root, refused);
+        }
+        Place::New(root) => place::told(talk, &base, root),
+    };
+    crate::authors::check(config, prepared.iter().map(|one| one.author.as_str())).await?;
+    let work = place::claim(&root, wish)?;
+    for one in &prepared {
+        talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
+        print_reading(talk, one);
+    }
+    let prepared: Vec<Arc<Prepared>> = prepared.into_iter().map(Arc::new).collect();
+    let wanted = wanted(&prepared, options.seed)?;
+    let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
+    // Until the last bundle is written, nobody else makes them.
+    let _hold = Making { talk, config, options, work: &work, wanted: &wanted }.bundled(&mut bundler).await?;
+    let (rows, cards) = rows(talk, &root, &wanted, bundler.finish(talk).await?);
+    let readings = prepared.iter().map(|one| one.reading.clone()).collect();
+    library_index::write(&root, &library_index::Library { wish, count, readings, scenarios: rows })?;
+    if let Err(why) = crate::batch::write(talk, &root, cards)?.figures {
+        talk.warn(&why.what);
+    }
+    // The work folder is only needed to resume.
+    drop(std::fs::remove_dir_all(&work));
+    library_index::finish(talk, options, &root, refused)
+}
+
+/// The names, of which those that an earlier one has already get a number.
+fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut taken: BTreeSet<String> = BTreeSet::new();
+    let mut found = Vec::new();
+    for name in names {
+        let mut free = name.to_owned();
+        for number in 2.. {
+            if taken.insert(free.clone()) {
+                break;
+            }
+            free = format!("{name}-{number}");
+        }
+        found.push(free);
+    }
+    found
+}
+
+/// Every scenario of these requests, with its id and seed.
+pub(crate) fn wanted<P: Borrow<Prepared>>(prepared: &[P], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
+    let mut wanted = Vec::new();
+    for one in prepared {
+        let one: &Prepared = one.borrow();
+        for index in 0..one.request.run.variants {
+            let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
+            wanted.push(Wanted { id, seed: seed + u64::from(index), prepared: one });
+        }
+    }
+    Ok(wanted)
+}
+
+/// The list of all scenarios, in order of submission, and the cards of those that have a bundle.
+fn rows(
+    talk: &Printer,
+    root: &Path,
+    wanted: &[Wanted<'_>],
+    mut bundled: BTreeMap<ScenarioId, Bundled>,
+) -> (Vec<library_index::Row>, BTreeMap<String, Card>) {
+    let (mut rows, mut cards) = (Vec::new(), BTreeMap::new());
+    let mut repeats = library_index::Repeats::default();
+    for want in wanted {
+        let Some(bundled) = bundled.remove(&want.id) else { continue };
+        let dir = root.join(want.id.as_str());
+        let (verdict, repeats, reason) = match bundled {
+            Ok(card) => {
+                let earlier = repeats.of(&want.id, card.likeness.clone());
+                let verdict = card.verdict.to_string();
+                cards.insert(want.id.to_string(), card);
+                (verdict, earlier, String::new())
+            }
+            Err(why) => {
+                let reason = why.short();
+                let earlier = repeats.of_failed(&want.id, &want.prepared.name, &reason);
+                match &earlier {
+                    Some(first) => talk.warn(&format!("{}: failed as `{first}` did", want.id)),
+                    None => talk.warn(&format!("{}: {why}", want.id)),
+                }
+                (crate::index::FAILED.to_owned(), earlier, reason)
+            }
+        };
+        let request = want.prepared.name.clone();
+        let bundle = dir.display().to_string();
+        rows.push(library_index::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
+    }
+    (rows, cards)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_of_one_name_become_scenarios_of_different_names() {
+        let names = ["x", "x-2", "x", "y", "x"];
+        assert_eq!(distinct(names.into_iter()), ["x", "x-2", "x-3", "y", "x-4"]);
+    }
+}

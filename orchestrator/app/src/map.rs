@@ -1,0 +1,104 @@
+//! `map`: list, check, draw, generate.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde_json::json;
+
+use crate::exit::Complaint;
+use crate::files;
+use crate::output::Printer;
+use crate::prepare::{load_location, plural};
+
+/// Largest floor plan that is read, bytes.
+const MAX_PLAN_BYTES: u64 = 4 * 1024 * 1024;
+
+/// Lists the shipped locations and their requests.
+pub fn list(talk: &Printer) -> Result<(), Complaint> {
+    let mut all = Vec::new();
+    for name in socrates_maps::shipped::names() {
+        let (location, _) = load_location(name, Path::new("."))?;
+        talk.line(&format!("{name:<11} {}", location.description));
+        let requests: Vec<String> =
+            socrates_maps::shipped::requests(name).into_iter().map(|(stem, _)| stem.to_owned()).collect();
+        talk.line(&format!("{:<11} requests: {}", "", requests.join(", ")));
+        all.push(json!({ "name": name, "description": location.description, "requests": requests }));
+    }
+    talk.result(&json!({ "locations": all }));
+    Ok(())
+}
+
+/// Says everything that is wrong with a location.
+pub fn check(talk: &Printer, name: &str) -> Result<(), Complaint> {
+    let (location, _) = load_location(name, Path::new("."))?;
+    let faults = socrates_maps::check(&location);
+    let (hard, soft): (Vec<_>, Vec<_>) = faults.into_iter().partition(|fault| !fault.is_soft());
+    for warning in &location.warnings {
+        talk.line(&format!("warning    {warning}"));
+    }
+    for fault in &soft {
+        talk.line(&format!("warning    {fault}"));
+    }
+    if !hard.is_empty() {
+        return Err(Complaint::faults(
+            format!("the location `{name}` has {}", plural(hard.len(), "fault")),
+            &hard,
+            "`socrates explain CODE` says what to do",
+        ));
+    }
+    let grid = &location.grid;
+    talk.line(&format!(
+        "good       {name}: {} × {} cells of {} m, {}, {}, {}",
+        grid.width,
+        grid.height,
+        grid.resolution_m,
+        plural(location.graph.nodes().len(), "node"),
+        plural(location.graph.edges().len(), "edge"),
+        plural(location.doors.len(), "door")
+    ));
+    talk.result(&json!({ "location": name, "nodes": location.graph.nodes().len(), "edges": location.graph.edges().len(), "warnings": location.warnings }));
+    Ok(())
+}
+
+/// Draws a location with its node ids.
+pub fn draw(talk: &Printer, name: &str, out: &Path) -> Result<(), Complaint> {
+    let (location, _) = load_location(name, Path::new("."))?;
+    let svg = socrates_draw::annotated_map(&location);
+    let bytes = if out.extension().is_some_and(|ext| ext == "svg") {
+        svg.into_bytes()
+    } else {
+        socrates_draw::png_from_svg(&svg, 1.0)
+            .map_err(|why| Complaint::input(why.to_string(), "choose an .svg file instead"))?
+    };
+    std::fs::write(out, bytes)
+        .map_err(|why| Complaint::input(format!("cannot write `{}`: {why}", out.display()), "check the folder"))?;
+    talk.line(&format!("look       {}", out.display()));
+    talk.result(&json!({ "picture": out.display().to_string() }));
+    Ok(())
+}
+
+/// The files of a location that a floor plan describes.
+pub(crate) fn generated(plan: &Path) -> Result<BTreeMap<String, Vec<u8>>, Complaint> {
+    let hint = "see maps/README.md for the form of a floor plan";
+    let text = files::text(plan, MAX_PLAN_BYTES, hint)?;
+    socrates_maps::generate(&text).map_err(|faults| {
+        Complaint::faults(format!("the floor plan `{}` is not usable", plan.display()), &faults, hint)
+    })
+}
+
+/// Makes a location folder from a floor plan.
+pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint> {
+    let files = generated(plan)?;
+    let cannot = |path: &Path, why: std::io::Error| {
+        Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
+    };
+    std::fs::create_dir_all(out).map_err(|why| cannot(out, why))?;
+    for (name, bytes) in &files {
+        let path = out.join(name);
+        std::fs::write(&path, bytes).map_err(|why| cannot(&path, why))?;
+    }
+    talk.line(&format!("wrote      {} ({})", out.display(), files.keys().cloned().collect::<Vec<_>>().join(", ")));
+    talk.line(&format!("next       socrates map draw {}", out.display()));
+    talk.result(&json!({ "location": out.display().to_string(), "files": files.keys().collect::<Vec<_>>() }));
+    Ok(())
+}

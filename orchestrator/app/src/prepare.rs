@@ -1,0 +1,355 @@
+//! From request files to prepared scenarios: everything that can be wrong is said here, before anything runs.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use socrates_model::{AuthorSpec, Fault, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
+
+use crate::config::Config;
+use crate::exit::Complaint;
+use crate::files;
+use crate::run_options::RunOptions;
+
+/// A request file larger than this is not read.
+const MAX_REQUEST_BYTES: u64 = 256 * 1024;
+/// A pinned artifact larger than this is not read.
+const MAX_PIN_BYTES: u64 = 16 * 1024 * 1024;
+
+/// A request with everything it names, read and checked.
+#[derive(Debug, Clone)]
+pub(crate) struct Prepared {
+    /// Name of the scenario: the file's stem, or the name of the bundle whose request it is.
+    pub(crate) name: String,
+    /// The file it was read from, if it was one.
+    pub(crate) file: Option<PathBuf>,
+    /// The request, options applied.
+    pub(crate) request: Request,
+    /// The location.
+    pub(crate) location: Location,
+    /// Its files, for the bundle.
+    pub(crate) location_files: BTreeMap<String, Vec<u8>>,
+    /// The reading.
+    pub(crate) reading: Reading,
+    /// Pinned artifacts as JSON by role.
+    pub(crate) pins: BTreeMap<Role, String>,
+    /// Faults to be put into the author's answers, as settings of its jobs; empty for none.
+    pub(crate) injected: BTreeMap<String, String>,
+    /// Style of the questions, as settings of the author's jobs; empty for the default.
+    pub(crate) style: BTreeMap<String, String>,
+    /// Whether a person looks at it while it is made.
+    pub(crate) looked_at: bool,
+    /// What the program was built from.
+    pub(crate) build: String,
+    /// Whether the provenance keeps questions and answers.
+    pub(crate) keep_answers: bool,
+    /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
+    pub(crate) author: String,
+    /// Why this author, for the first line of a run.
+    pub(crate) author_note: String,
+}
+
+/// Every request file named on the command line, folders opened.
+pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint> {
+    let mut files = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let mut inside: Vec<PathBuf> = std::fs::read_dir(path)
+                .map_err(|why| {
+                    Complaint::input(
+                        format!("cannot list `{}`: {why}", path.display()),
+                        "name request files or a folder of them",
+                    )
+                })?
+                .filter_map(Result::ok)
+                .map(|entry| entry.path())
+                .filter(|file| file.extension().is_some_and(|ext| ext == "toml"))
+                .collect();
+            inside.sort();
+            if inside.is_empty() {
+                return Err(Complaint::input(
+                    format!("`{}` holds no request (*.toml)", path.display()),
+                    "`socrates new my.toml` writes one",
+                ));
+            }
+            files.extend(inside);
+        } else {
+            files.push(path.clone());
+        }
+    }
+    Ok(files)
+}
+
+/// Reads and checks one request file.
+pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
+    let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let of_bundle = file.ends_with("request.toml") && crate::bundle::manifest(folder).is_some();
+    let named = if of_bundle { folder.canonicalize().unwrap_or_default() } else { file.with_extension("") };
+    let name = named.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let shown = file.display().to_string();
+    let prepared = prepare_text(&name, &text, &shown, folder, options, config).map_err(|why| {
+        // Of hundreds of files, the name of the one is what helps.
+        let what = if why.what.contains(&shown) { why.what } else { format!("`{shown}`: {}", why.what) };
+        Complaint { what, ..why }
+    })?;
+    Ok(Prepared { file: Some(file.to_path_buf()), ..prepared })
+}
+
+/// Checks the text of a request. `shown` names it in messages, `folder` is where its paths start.
+pub(crate) fn prepare_text(
+    name: &str,
+    text: &str,
+    shown: &str,
+    folder: &Path,
+    options: Option<&RunOptions>,
+    config: &Config,
+) -> Result<Prepared, Complaint> {
+    let planners = socrates_planners::names();
+    let mut request = Request::of_toml(text, Some(&planners)).map_err(|problems| {
+        let mut complaint = Complaint::input(
+            format!("the request `{shown}` has {}", plural(problems.len(), "problem")),
+            "`socrates new my.toml` writes a request with every key explained; `socrates explain J-REQUEST`",
+        );
+        complaint.causes = problems.iter().map(|bad| bad.told(shown)).collect();
+        complaint
+    })?;
+    if let Some(options) = options {
+        apply(&mut request, options)?;
+    }
+    // The reference robot always runs, whoever asks.
+    if !request.robot.planners.contains(&PlannerName::reference()) {
+        request.robot.planners.insert(0, PlannerName::reference());
+    }
+    let of_request = |why: Complaint| Complaint { what: format!("the request `{shown}`: {}", why.what), ..why };
+    let (mut location, location_files) = load_location(&request.location, folder).map_err(of_request)?;
+    if let Some(description) = &request.location_description {
+        location.description.clone_from(description);
+    }
+    let reading = socrates_offline::read(&request, &location);
+    check_reading(&reading, &request, &location, shown)?;
+    let mut pins = BTreeMap::new();
+    for (role, pinned) in
+        [(Role::Proposal, &request.proposal), (Role::Paths, &request.paths), (Role::Behaviors, &request.behaviors)]
+    {
+        if let Some(pinned) = pinned {
+            pins.insert(role, read_pin(role, &folder.join(pinned))?);
+        }
+    }
+    let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
+    crate::cost::check_limit(config, &author)?;
+    let long = socrates_prompts::too_long(&request);
+    // Rules read the whole request; whoever is asked in messages would not see its end.
+    if author != "offline" && !long.is_empty() {
+        let mut complaint = Complaint::input(
+            format!("the request `{shown}` is too long for a language model"),
+            "shorten these texts, or take `--author offline`, which reads them whole",
+        );
+        complaint.causes = long.iter().map(|why| format!("J-REQUEST {why}")).collect();
+        return Err(complaint);
+    }
+    let injected = injected(options.map_or("", |options| options.inject.as_str()))?;
+    if !injected.is_empty() {
+        author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
+    }
+    let mut style = crate::authors::style(config)?;
+    if author == "offline" {
+        // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
+        // that were put in matters.
+        style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
+    }
+    Ok(Prepared {
+        name: slug(name),
+        file: None,
+        request,
+        location,
+        location_files,
+        reading,
+        pins,
+        injected,
+        style,
+        looked_at: options.is_some_and(|options| options.ask),
+        build: config.program().build.clone(),
+        keep_answers: config.truth("author.keep_answers"),
+        author,
+        author_note,
+    })
+}
+
+/// Refuses a request whose reading says that it cannot be made, with what would settle it.
+fn check_reading(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Complaint> {
+    let stops: Vec<Fault> = socrates_model::fault::hard(&reading.problems);
+    if !stops.is_empty() {
+        return Err(Complaint::faults(
+            format!("the request `{shown}` asks for something that cannot be made"),
+            &stops,
+            match socrates_offline::settled_by(request, location).as_slice() {
+                [] => format!("correct the text; `socrates read {}` shows the reading", files::shell(Path::new(shown))),
+                keys => format!(
+                    "correct the text, or set {} under [expect]; `socrates read {}` shows the reading",
+                    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(" and "),
+                    files::shell(Path::new(shown))
+                ),
+            },
+        ));
+    }
+    Ok(())
+}
+
+/// The settings of `--inject`.
+fn injected(text: &str) -> Result<BTreeMap<String, String>, Complaint> {
+    let mut settings = BTreeMap::new();
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let (kind, rate) = part.split_once('=').ok_or_else(|| {
+            Complaint::input(format!("`--inject {part}` has no rate"), "write --inject gdisc=0.3, for example")
+        })?;
+        settings.insert(format!("fault.{}", kind.trim()), rate.trim().to_owned());
+    }
+    socrates_author::FaultRates::from_settings(&settings).map_err(|why| {
+        Complaint::input(format!("--inject: {}", why.message), "write --inject gdisc=0.3, for example")
+    })?;
+    Ok(settings)
+}
+
+/// Flags win over the request, and what it writes over what is not written.
+fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
+    if let Some(seeds) = &options.seeds {
+        request.run.seeds = Some(seeds.clone());
+    }
+    // A plain `--seed 7` moves authoring and simulation together where nobody names the seeds of the simulation.
+    request.run.seeds.get_or_insert_with(|| Seeds::one(options.seed));
+    if !options.planner.is_empty() {
+        let known = socrates_planners::names();
+        if let Some(planner) = options.planner.iter().find(|planner| !known.contains(&planner.as_str())) {
+            return Err(Complaint::input(
+                format!("J-PLANNER `--planner`: there is no planner `{planner}`"),
+                format!("planners: {}", known.join(", ")),
+            ));
+        }
+        request.robot.planners.clone_from(&options.planner);
+    }
+    if let Some(variants) = options.variants {
+        request.run.variants = variants;
+    }
+    if let Some(author) = &options.author {
+        request.run.author.clone_from(author);
+    }
+    Ok(())
+}
+
+/// A location by shipped name or folder, with its files.
+pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTreeMap<String, Vec<u8>>), Complaint> {
+    let wrong = |faults: Vec<Fault>| {
+        Complaint::faults(
+            format!("the location `{name}` is not usable"),
+            &faults,
+            format!(
+                "`socrates map check {}` lists everything; shipped locations: {}",
+                files::shell(Path::new(name)),
+                socrates_maps::shipped::names().join(", ")
+            ),
+        )
+    };
+    if let Some(files) = socrates_maps::shipped::files(name) {
+        return Ok((socrates_maps::shipped::load(name).map_err(wrong)?, files));
+    }
+    let beside = folder.join(name);
+    let dir = if beside.is_dir() { beside } else { PathBuf::from(name) };
+    if !dir.is_dir() {
+        return Err(Complaint::input(
+            format!("there is no location `{name}`"),
+            format!(
+                "give a folder with map.yaml and scene_graph.json, or one of: {}",
+                socrates_maps::shipped::names().join(", ")
+            ),
+        ));
+    }
+    let location = socrates_maps::load(&dir).map_err(wrong)?;
+    let mut files = BTreeMap::new();
+    for entry in std::fs::read_dir(&dir).into_iter().flatten().filter_map(Result::ok) {
+        let file = entry.file_name().to_string_lossy().into_owned();
+        let fits = ["yaml", "pgm", "png", "json", "toml"].iter().any(|ext| file.ends_with(&format!(".{ext}")));
+        if fits && let Ok(bytes) = std::fs::read(entry.path()) {
+            files.insert(file, bytes);
+        }
+    }
+    Ok((location, files))
+}
+
+/// A pinned artifact in our own form, or out of a file of the published tool.
+fn read_pin(role: Role, path: &Path) -> Result<String, Complaint> {
+    let text = files::text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
+    let own = match role {
+        Role::Proposal => serde_json::from_str::<socrates_model::Proposal>(&text).map(|_| ()),
+        Role::Paths => serde_json::from_str::<socrates_model::Paths>(&text).map(|_| ()),
+        _ => serde_json::from_str::<socrates_model::Behaviors>(&text).map(|_| ()),
+    };
+    let Err(own) = own else { return Ok(text) };
+    let wrong = |cause: String| {
+        let mut complaint = Complaint::input(
+            format!("the pinned {role} `{}` cannot be read", path.display()),
+            format!("`socrates dev schema {role}` prints the form"),
+        );
+        complaint.causes = vec![format!("as our own form: {own}"), format!("as a file of the published tool: {cause}")];
+        complaint
+    };
+    let imported = socrates_export::socrates_json::read(&text).map_err(|why| wrong(why.to_string()))?;
+    let json = match role {
+        Role::Proposal => imported.proposal.map(|artifact| serde_json::to_string(&artifact)),
+        Role::Paths => imported.paths.map(|artifact| serde_json::to_string(&artifact)),
+        _ => imported.behaviors.map(|artifact| serde_json::to_string(&artifact)),
+    };
+    match json {
+        Some(Ok(json)) => Ok(json),
+        Some(Err(why)) => Err(wrong(why.to_string())),
+        None => Err(wrong(format!("it holds no {role}"))),
+    }
+}
+
+fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(String, String), Complaint> {
+    let configured = || {
+        config.text("author.kind").parse::<AuthorSpec>().map_err(|bad| {
+            Complaint::input(format!("`author.kind`: {bad}"), "`socrates config author` prints the manual")
+        })
+    };
+    match if *wish == AuthorSpec::Auto { configured()? } else { wish.clone() } {
+        AuthorSpec::Auto => {}
+        AuthorSpec::Offline => return Ok(("offline".to_owned(), "offline, rules".to_owned())),
+        named => return Ok((named.to_string(), named.to_string())),
+    }
+    let model = config.text("author.model");
+    let key_found = crate::authors::key_found(config)?;
+    Ok(if key_found && !model.is_empty() {
+        (format!("openai:{model}"), format!("openai:{model}"))
+    } else if key_found {
+        (
+            "offline".to_owned(),
+            "offline, rules (a key was found, but no model: `socrates config author` to change)".to_owned(),
+        )
+    } else {
+        ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
+    })
+}
+
+/// A word that is safe as folder and scenario id.
+pub(crate) fn slug(text: &str) -> String {
+    let mut out: String = text
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_') { c.to_ascii_lowercase() } else { '-' })
+        .take(60)
+        .collect();
+    if out.trim_matches('-').is_empty() {
+        out = "scenario".to_owned();
+    }
+    out
+}
+
+/// `1 problem`, `2 problems`.
+pub(crate) fn plural(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}
+
+/// The scenario id of variant `index` of `count`.
+pub(crate) fn scenario_id(name: &str, seed: u64, index: u32, count: u32) -> Result<ScenarioId, Complaint> {
+    let id = if count == 1 { format!("{name}-{seed}") } else { format!("{name}-{seed}-{:05}", index + 1) };
+    ScenarioId::new(id).map_err(|bad| Complaint::input(bad.to_string(), "rename the request file"))
+}

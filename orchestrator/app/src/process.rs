@@ -1,0 +1,293 @@
+//! Child processes: one worker, or the orchestrator.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
+use socrates_link::{Bus, Mode, ZenohConfig};
+use socrates_model::job::Stage;
+use socrates_store::{Durability, StoreError};
+use socrates_stream::{ShmConfig, ShmHost};
+use tokio::sync::watch;
+
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::orchestrate::{self, OrchestratorConfig};
+use crate::output::Printer;
+
+/// Options of one worker process.
+#[derive(Debug, Clone)]
+pub struct WorkerOptions {
+    /// Stage it serves.
+    pub stage: String,
+    /// Endpoint of the orchestrator's router.
+    pub connect: String,
+    /// Namespace.
+    pub namespace: String,
+    /// Artifact folder shared with the orchestrator; without it artifacts travel over the bus.
+    pub blobs: Option<PathBuf>,
+    /// Folder for reports that are not yet recorded.
+    pub spool: PathBuf,
+    /// Leave when standard input closes.
+    pub tied: bool,
+    /// Faults to inject, for experiments: `die_before_report=0.1,drop_report=0.05`.
+    pub inject: String,
+}
+
+/// Options of the orchestrator process.
+#[derive(Debug, Clone)]
+pub struct OrchestratorOptions {
+    /// Folder of the job store and the artifacts; on a local disk.
+    pub dir: PathBuf,
+    /// Endpoint to listen on, such as `tcp/127.0.0.1:7447`; one that other machines can reach, such as `tcp/0.0.0.0:7447`,
+    /// needs `--insecure`.
+    pub listen: Option<String>,
+    /// Listens where other machines can reach it: whoever does may hand in and read jobs, and join as a worker that
+    /// returns any result. There is no password and no encryption.
+    pub insecure: bool,
+    /// Endpoint of a router to use instead of listening.
+    pub connect: Option<String>,
+    /// Namespace.
+    pub namespace: String,
+    /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
+    pub durable: String,
+    /// Leave when standard input closes.
+    pub tied: bool,
+    /// No worker of before is alive: what they held is handed out again at once.
+    pub alone: bool,
+}
+
+/// Version of the stages' code; results of another version are not reused.
+pub(crate) const CODE_VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Where this user's shared memory is arranged.
+pub(crate) fn shared_memory(config: &Config) -> ShmConfig {
+    ShmConfig::of_user(&config.program().temp, rustix::process::getuid().as_raw())
+}
+
+/// Serves one stage until told to leave.
+pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Complaint> {
+    let stage: Stage = options.stage.parse().map_err(|bad: socrates_model::ids::BadId| {
+        Complaint::input(bad.to_string(), "`socrates cluster worker --help`")
+    })?;
+    let shutdown = leave(options.tied);
+    let bus = joined(&options.connect, &options.namespace, &format!("worker-{stage}"), options.tied).await?;
+    let blobs = options.blobs.as_ref().map_or(Blobs::Bus, |dir| Blobs::Local(LocalBlobs::new(dir, false)));
+    let mut settings = WorkerConfig::new(blobs, &options.spool, CODE_VERSION);
+    settings.faults = FaultPlan::parse(&options.inject)
+        .map_err(|why| Complaint::input(why.to_string(), "for example --inject die_before_report=2"))?;
+    settings.host = host();
+    // A worker that leaves with its supervisor shares the machine with whoever records its reports.
+    settings.durable = !options.tied;
+    settings.waits_for_disk = !options.tied;
+    if stage == Stage::Simulation && config.text("stream.live") != "off" {
+        // Control and stream never share a session, so that a frozen viewer stalls no job.
+        settings.live = Some(joined(&options.connect, &options.namespace, "stream", options.tied).await?);
+    }
+    let keys = crate::authors::keys(config)?;
+    let live = settings.live.clone();
+    let served = match stage {
+        Stage::Proposal => {
+            socrates_kit::serve(socrates_authoring::ProposalStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Paths => {
+            socrates_kit::serve(socrates_authoring::PathsStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Behaviors => {
+            socrates_kit::serve(socrates_authoring::BehaviorsStage::new(keys), bus.clone(), settings, shutdown).await
+        }
+        Stage::Simulation => {
+            let stage = socrates_simulation::Simulation::new(ShmHost::new(shared_memory(config)));
+            socrates_kit::serve(stage, bus.clone(), settings, shutdown).await
+        }
+        Stage::Scoring => socrates_kit::serve(socrates_scoring::ScoringStage, bus.clone(), settings, shutdown).await,
+        Stage::Review => {
+            return Err(Complaint::input(
+                "a review is done by a person: `socrates run --ask`",
+                "stages of workers: proposal, paths, behaviors, simulation, scoring",
+            ));
+        }
+    };
+    if let Some(live) = live {
+        live.close().await;
+    }
+    bus.close().await;
+    if let Err(KitError::InjectedDeath { .. }) = served {
+        // An experiment asked for this death: as sudden as kill -9, without any farewell.
+        std::process::abort();
+    }
+    served.map_err(|why| {
+        // Neither a folder nor a version mends itself when the worker is started again.
+        let stuck = matches!(why, KitError::Folder { .. } | KitError::Incompatible { .. });
+        Complaint::input(format!("the {stage} worker stops: {why}"), "the same command resumes once that is mended")
+            .with_code(if stuck { Code::Input } else { Code::Ours })
+    })
+}
+
+/// A client of a router. That the router of a supervisor is gone is nothing that a child is stuck with: it leaves.
+async fn joined(endpoint: &str, namespace: &str, name: &str, tied: bool) -> Result<Arc<dyn Bus>, Complaint> {
+    let joined = client(endpoint, namespace, name).await;
+    joined.map_err(|why| if tied { why.with_code(Code::Ours) } else { why })
+}
+
+/// Refuses to listen where other machines can reach it, unless that is meant.
+fn reachable(listen: &str, insecure: bool) -> Result<(), Complaint> {
+    if is_local(listen) {
+        return Ok(());
+    }
+    let open = format!(
+        "`{listen}` can be reached from other machines: whoever does can hand in jobs, read all of them, and join as a \
+         worker that returns any result; there is no password and no encryption"
+    );
+    if insecure {
+        tracing::warn!("{open}");
+        return Ok(());
+    }
+    Err(Complaint::input(
+        open,
+        "listen on tcp/127.0.0.1:7447 and let workers come through `ssh -L`, or say --insecure in a network that you trust",
+    ))
+}
+
+/// Whether an endpoint can be reached from this machine alone. What is not understood is taken as open.
+fn is_local(endpoint: &str) -> bool {
+    let Some((protocol, rest)) = endpoint.split_once('/') else { return false };
+    if protocol == "unixsock-stream" {
+        return true;
+    }
+    let address = rest.split(['?', '#']).next().unwrap_or_default();
+    let host = address.rsplit_once(':').map_or(address, |(host, _port)| host);
+    let host = host.trim_start_matches('[').trim_end_matches(']');
+    host == "localhost" || host.parse::<std::net::IpAddr>().is_ok_and(|host| host.is_loopback())
+}
+
+/// Runs the orchestrator until told to leave.
+pub async fn orchestrator(talk: &Printer, config: &Config, options: &OrchestratorOptions) -> Result<(), Complaint> {
+    let bus: Arc<dyn Bus> = match (&options.listen, &options.connect) {
+        (Some(listen), None) => {
+            reachable(listen, options.insecure)?;
+            let settings = ZenohConfig::new(Mode::Router, &options.namespace, "orchestrator").listen(listen);
+            let opened = socrates_link::join(settings).await.map_err(|why| {
+                Complaint::input(
+                    format!("cannot listen on `{listen}`: {why}"),
+                    "another port, or end the program that has it",
+                )
+            })?;
+            talk.warn(&format!("listening  {listen} · namespace {}", options.namespace));
+            opened
+        }
+        (None, Some(connect)) => joined(connect, &options.namespace, "orchestrator", options.tied).await?,
+        (Some(_), Some(_)) | (None, None) => {
+            return Err(Complaint::input(
+                "give either --listen or --connect",
+                "for example `socrates cluster up --dir jobs --listen tcp/127.0.0.1:7447`",
+            ));
+        }
+    };
+    let settings = OrchestratorConfig {
+        dir: options.dir.clone(),
+        lease_ms: config.number("orchestrator.lease_ms").clamp(1_000, 600_000),
+        beat_ms: config.number("orchestrator.beat_ms").clamp(100, 200_000),
+        deadlines_ms: crate::authors::deadlines_ms(config)?,
+        repairs: u32::try_from(config.number("orchestrator.repairs")).unwrap_or(3).min(10),
+        asks_again: u32::try_from(config.number("orchestrator.asks_again")).unwrap_or(3).min(10),
+        author_rates: (config.number("author.tokens_per_minute"), config.number("author.requests_per_minute")),
+        author_budget: (
+            config.number("orchestrator.tokens_per_scenario"),
+            config.number("orchestrator.author_s_per_scenario").saturating_mul(1_000),
+        ),
+        cents_per_scenario: config.number("orchestrator.cents_per_scenario"),
+        prices: crate::cost::prices_of(config)?,
+        durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
+        code_version: CODE_VERSION.to_owned(),
+        alone: options.alone,
+        waits: !options.tied,
+    };
+    let served = orchestrate::serve(settings, bus.clone(), leave(options.tied)).await;
+    bus.close().await;
+    served.map_err(|why| {
+        // What is wrong with the store is still wrong after another start.
+        let stuck = why.is::<StoreError>() || why.is::<BlobError>();
+        let in_use = why.downcast_ref::<StoreError>().is_some_and(|why| matches!(why, StoreError::Locked { .. }));
+        Complaint::input(
+            format!("the orchestrator stops: {why:#}"),
+            format!("the jobs are kept in `{}`", options.dir.display()),
+        )
+        .with_code(if in_use || stuck && options.tied { Code::Input } else { Code::Ours })
+    })
+}
+
+/// A client of a router.
+pub(crate) async fn client(endpoint: &str, namespace: &str, name: &str) -> Result<Arc<dyn Bus>, Complaint> {
+    let bus = socrates_link::join(ZenohConfig::new(Mode::Client, namespace, name).connect(endpoint)).await;
+    bus.map_err(|why| {
+        Complaint::input(
+            format!("cannot connect to `{endpoint}`: {why}"),
+            "is `socrates run` or `socrates cluster up` running there?",
+        )
+    })
+}
+
+/// Turns SIGTERM, SIGINT and, for children of a supervisor, the end of standard input into a wish to leave.
+fn leave(tied: bool) -> watch::Receiver<Stop> {
+    let (wish, shutdown) = watch::channel(Stop::Run);
+    let wish = Arc::new(wish);
+    if tied {
+        let wish = wish.clone();
+        // Nothing is ever written to a child's standard input: reading it ends when its supervisor does.
+        drop(tokio::task::spawn_blocking(move || {
+            drop(std::io::copy(&mut std::io::stdin(), &mut std::io::sink()));
+            wish.send_replace(Stop::Now);
+        }));
+    }
+    drop(tokio::spawn(async move {
+        use tokio::signal::unix::{SignalKind, signal};
+        let (Ok(mut term), Ok(mut int)) = (signal(SignalKind::terminate()), signal(SignalKind::interrupt())) else {
+            return;
+        };
+        let mut asked = 0;
+        loop {
+            tokio::select! {
+                _ = term.recv() => {}
+                _ = int.recv() => {}
+            }
+            asked += 1;
+            wish.send_replace(if asked == 1 { Stop::Drain } else { Stop::Now });
+        }
+    }));
+    shutdown
+}
+
+fn host() -> String {
+    std::fs::read_to_string(Path::new("/proc/sys/kernel/hostname"))
+        .map(|name| name.trim().to_owned())
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_this_machine_is_listened_to_unless_more_is_meant() {
+        let near =
+            ["tcp/127.0.0.1:7447", "tcp/127.8.9.1:1", "tcp/[::1]:7447", "tcp/localhost:0", "unixsock-stream//run/x"];
+        for endpoint in near {
+            reachable(endpoint, false).unwrap();
+        }
+        let far = [
+            "tcp/0.0.0.0:7447",
+            "tcp/[::]:7447",
+            "tcp/192.0.2.2:7447",
+            "tcp/a.example:1",
+            "udp/0.0.0.0:1",
+            "0.0.0.0:1",
+        ];
+        for endpoint in far {
+            let why = reachable(endpoint, false).unwrap_err();
+            assert_eq!(why.code, Code::Input, "{endpoint}");
+            assert!(why.what.contains("join as a worker") && why.hint.contains("--insecure"), "{why}");
+            reachable(endpoint, true).unwrap();
+        }
+    }
+}

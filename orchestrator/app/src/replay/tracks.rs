@@ -1,0 +1,270 @@
+//! One recording from a file, ours or anybody's, scored with what is said of it on the command line.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use socrates_model::{AgentId, HumanId, Location, Point, Recording, Report};
+use socrates_scoring::Evidence;
+use socrates_stream::csv::{HUMAN_RADIUS_M, Named, ROBOT_RADIUS_M, ROBOT_SPEED_MPS, RunChoice, Table};
+use socrates_stream::{StreamError, mcap};
+
+use super::lines;
+use crate::exit::Complaint;
+
+/// Radii that are believed, m.
+const RADII_M: std::ops::RangeInclusive<f64> = 0.05..=2.0;
+
+/// What is known of a recording beside its tracks.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Known {
+    pub(crate) location: Option<Location>,
+    pub(crate) goal: Option<Point>,
+    pub(crate) radius_m: Option<f64>,
+    pub(crate) speed_mps: Option<f64>,
+    pub(crate) groups: Vec<Group>,
+    /// The id of the robot in the file, where it is neither `robot` nor 0.
+    pub(crate) robot: Option<String>,
+    /// Which run of a table of several.
+    pub(crate) run: RunChoice,
+}
+
+/// A recording with its report.
+#[derive(Debug)]
+pub(crate) struct Scored {
+    pub(crate) recording: Recording,
+    pub(crate) report: Report,
+    /// Where the robot wants to go, as far as it is known.
+    pub(crate) goal: Option<Point>,
+    /// What looks wrong, what was mended, and what was assumed, in sentences.
+    pub(crate) told: Vec<String>,
+}
+
+/// So many ids are told with their new names.
+const RENAMED: usize = 6;
+
+/// A file as it was read.
+struct Read {
+    recording: Recording,
+    goal: Option<Point>,
+    groups: Vec<Vec<HumanId>>,
+    named: Named,
+}
+
+/// Reads and scores the bytes of a file.
+///
+/// # Errors
+/// What cannot be read, with what would be.
+pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, Complaint> {
+    let mut told = Vec::new();
+    let is_mcap = mcap::begins(bytes) || (bytes.is_empty() && name.ends_with(".mcap"));
+    let Read { mut recording, goal, groups, named } =
+        if is_mcap { ours(name, bytes, known, &mut told)? } else { table(name, bytes, known, &mut told)? };
+    let goal = known.goal.or(goal);
+    let groups = if known.groups.is_empty() { groups } else { members(&known.groups, &recording, &named, &mut told) };
+    if let Some(radius) = known.radius_m.filter(|radius| !RADII_M.contains(radius)) {
+        return Err(Complaint::input(
+            format!("the robot's radius cannot be {radius} m"),
+            format!("--radius takes meters from {} to {}", RADII_M.start(), RADII_M.end()),
+        ));
+    }
+    for info in recording.header.agents.iter_mut().filter(|info| info.agent == AgentId::Robot) {
+        info.radius_m = known.radius_m.unwrap_or(info.radius_m);
+        info.speed_mps = known.speed_mps.unwrap_or(info.speed_mps);
+    }
+    told.extend(socrates_scoring::doubts(&recording, known.location.as_ref()));
+    let tracks = socrates_scoring::Tracks::read(&recording).map_err(|why| {
+        Complaint::input(
+            format!("`{name}`: {why}"),
+            "a recording has at least two moments, finite numbers, rising times and one track for each agent",
+        )
+    })?;
+    if !is_mcap && tracks.robot.is_some() {
+        told.extend(assumed(known));
+    }
+    told.extend(renamed(&named));
+    if tracks.robot.is_none() {
+        let ids: Vec<String> = named.agents.keys().take(RENAMED).map(|id| format!("`{id}`")).collect();
+        let ids = if ids.is_empty() { String::new() } else { format!(" among {}", ids.join(", ")) };
+        told.push(format!("there is no robot{ids}: --robot ID says who it is; figures of a robot have no value"));
+    }
+    let evidence = Evidence { location: known.location.as_ref(), goal, groups: &groups, ..Evidence::of(&recording) };
+    let report = socrates_scoring::score(&evidence);
+    let arrives = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
+    if tracks.robot.is_some() && !arrives {
+        told.push(
+            "the robot's goal is not known: success, SPL and whatever asks for it have no value, and standing at the end is not counted as freezing; --goal X,Y tells it"
+                .to_owned(),
+        );
+    }
+    Ok(Scored { recording, report, goal, told })
+}
+
+/// Whom the file calls otherwise than the figures do.
+fn renamed(named: &Named) -> Option<String> {
+    let all = || named.names.iter().map(|(agent, id)| format!("`{id}` is {agent}"));
+    let more = named.names.len().saturating_sub(RENAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    (!named.names.is_empty()).then(|| format!("names: {}{more}", all().take(RENAMED).collect::<Vec<_>>().join(", ")))
+}
+
+/// The people of the groups that the user names.
+fn members(groups: &[Group], recording: &Recording, named: &Named, told: &mut Vec<String>) -> Vec<Vec<HumanId>> {
+    let there = |agent: AgentId| recording.header.agents.iter().any(|info| info.agent == agent);
+    let mut found = Vec::new();
+    for Group(ids) in groups {
+        let mut group = Vec::new();
+        for id in ids {
+            match named.agent(id).or_else(|| agent(id).filter(|agent| there(*agent))) {
+                Some(AgentId::Human(id)) => group.push(id),
+                Some(AgentId::Robot) => told.push(format!("--groups names `{id}`, which is the robot")),
+                None => told.push(format!("--groups names `{id}`, who is not in the recording")),
+            }
+        }
+        // Whoever is left alone is no group.
+        if group.len() > 1 {
+            found.push(group);
+        }
+    }
+    found
+}
+
+/// What is taken where nothing is said.
+fn assumed(known: &Known) -> Option<String> {
+    let mut parts = vec![format!("radius of people {HUMAN_RADIUS_M} m")];
+    if known.radius_m.is_none() {
+        parts.push(format!("radius of the robot {ROBOT_RADIUS_M} m (--radius)"));
+    }
+    if known.speed_mps.is_none() {
+        parts.push(format!("nominal speed of the robot {ROBOT_SPEED_MPS} m/s (--speed)"));
+    }
+    Some(format!("assumed: {}", parts.join(", ")))
+}
+
+fn ours(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
+    if known.robot.is_some() || known.run != RunChoice::default() {
+        return Err(Complaint::input(
+            format!("`{name}` holds one run and names its robot"),
+            "--robot, --planner and --seed are for tables",
+        ));
+    }
+    let rest = mcap::read_rest(bytes).map_err(|why| {
+        let hint = match &why {
+            StreamError::Foreign { .. } => {
+                "MCAP files of `socrates run` and `socrates simulate` are read; of others, write a CSV with the columns t,id,x,y[,yaw,gesture]"
+            }
+            StreamError::Link { .. }
+            | StreamError::Shm { .. }
+            | StreamError::Write { .. }
+            | StreamError::Read { .. }
+            | StreamError::NotWhole { .. }
+            | StreamError::Csv { .. } => {
+                "the MCAP file is damaged or was cut off: copy it again, or make the run again with `socrates simulate BUNDLE --out FOLDER`"
+            }
+        };
+        Complaint::input(format!("`{name}`: {why}"), hint)
+    })?;
+    if let Some(why) = rest.cut {
+        let last =
+            rest.recording.frames.last().map_or(0.0, |state| socrates_model::SimTime::at_tick(state.tick).secs());
+        told.push(format!("{why}: scored up to {last:.2} s"));
+    }
+    Ok(Read { recording: rest.recording, goal: None, groups: Vec::new(), named: Named::default() })
+}
+
+fn table(name: &str, bytes: &[u8], known: &Known, told: &mut Vec<String>) -> Result<Read, Complaint> {
+    let bad = |why: String| {
+        Complaint::input(
+            format!("`{name}`: {why}"),
+            "CSV has the columns t,id,x,y[,yaw,gesture] in seconds, meters and radians; --robot ID says who is the robot where no id is `robot`",
+        )
+    };
+    let text = std::str::from_utf8(bytes).map_err(|why| bad(format!("not UTF-8 text: {why}")))?;
+    let mut table = Table::read(text).map_err(|why| bad(why.to_string()))?;
+    told.extend(socrates_stream::csv::plain(&mut table, &known.run).map_err(|why| bad(why.to_string()))?);
+    // What looks wrong is reported with the ids of the file.
+    let of_file = table.clone();
+    let named = socrates_stream::csv::named(&mut table, known.robot.as_deref()).map_err(|why| bad(why.to_string()))?;
+    let mut recording = socrates_stream::csv::read_table(&table).map_err(|why| bad(why.to_string()))?;
+    let with_name = |why: Complaint| Complaint { what: format!("`{name}`: {}", why.what), ..why };
+    told.extend(lines::doubts(&of_file).map_err(with_name)?);
+    for info in &mut recording.header.agents {
+        if let Some(id) = named.names.get(&info.agent) {
+            info.role.clone_from(id);
+        }
+    }
+    let Columns { goal, groups } = Columns::read(&table);
+    Ok(Read { recording, goal, groups, named })
+}
+
+/// What columns beside the tracks tell: `goal_x` and `goal_y` of the robot, `group` of people.
+#[derive(Debug, Default, PartialEq)]
+struct Columns {
+    goal: Option<Point>,
+    groups: Vec<Vec<HumanId>>,
+}
+
+impl Columns {
+    fn read(table: &Table) -> Self {
+        let column = |wanted: &str| table.column(wanted);
+        let Some(id) = column("id") else { return Self::default() };
+        let goal = column("goal_x").zip(column("goal_y"));
+        let group = column("group");
+        let mut found = Self::default();
+        let mut groups: BTreeMap<String, BTreeSet<HumanId>> = BTreeMap::new();
+        if goal.is_none() && group.is_none() {
+            return found;
+        }
+        for row in &table.rows {
+            let Some(agent) = row.cell(id).and_then(agent) else { continue };
+            match agent {
+                // The last goal is the one that counts: a recording may have several trips' worth of via points.
+                AgentId::Robot => {
+                    let at = goal.and_then(|(x, y)| Some(Point::new(row.number(x)?, row.number(y)?)));
+                    found.goal = at.or(found.goal);
+                }
+                AgentId::Human(id) => {
+                    let name = group.and_then(|at| row.cell(at)).filter(|name| !name.is_empty());
+                    name.into_iter().for_each(|name| {
+                        groups.entry(name.to_owned()).or_default().insert(id);
+                    });
+                }
+            }
+        }
+        found.groups =
+            groups.into_values().filter(|group| group.len() > 1).map(|group| group.into_iter().collect()).collect();
+        found
+    }
+}
+
+fn agent(id: &str) -> Option<AgentId> {
+    id.parse::<u32>().map(AgentId::from_number).ok().or_else(|| id.parse().ok())
+}
+
+/// `X,Y` as a point.
+///
+/// # Errors
+/// What is no such point.
+pub fn point(text: &str) -> Result<Point, String> {
+    let wrong = || format!("`{text}` is no point; it is X,Y in meters on the map, such as 31.5,-2");
+    let (x, y) = text.split_once(',').ok_or_else(wrong)?;
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite());
+    Ok(Point::new(number(x).ok_or_else(wrong)?, number(y).ok_or_else(wrong)?))
+}
+
+/// `1+2` or `ped1+ped2` as the people of one group.
+///
+/// # Errors
+/// What is no such group.
+pub fn group(text: &str) -> Result<Group, String> {
+    let members: Vec<String> = text.split('+').map(|id| id.trim().to_owned()).collect();
+    if members.len() < 2 || members.iter().any(String::is_empty) {
+        return Err(format!("`{text}` is no group; groups are ids of people, such as 1+2,ped3+ped4"));
+    }
+    Ok(Group(members))
+}
+
+/// Ids of people who belong together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group(pub(crate) Vec<String>);
+
+#[cfg(test)]
+mod tests;

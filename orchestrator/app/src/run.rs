@@ -1,0 +1,289 @@
+//! `run` and `demo`: the main job.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::json;
+use socrates_model::{PlannerName, Verdict};
+use socrates_store::Reader;
+
+use crate::bundle::{self, Bundle, Past};
+use crate::bundler::bundled;
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::history::PastJob;
+use crate::output::Printer;
+use crate::place::{self, Place};
+use crate::prepare::{Prepared, prepare, prepare_text, request_files, scenario_id};
+use crate::replay::values;
+use crate::run_options::RunOptions;
+use crate::session::{self, Making, Wanted};
+use crate::{many, next, stages};
+
+/// The shipped request of `demo`.
+const DEMO: (&str, &str) = ("hospital", "elevator");
+
+/// Runs the shipped request.
+pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Result<Code, Complaint> {
+    let requests = socrates_maps::shipped::requests(DEMO.0);
+    let (name, text) = requests.into_iter().find(|(stem, _)| *stem == DEMO.1).ok_or_else(|| {
+        Complaint::input("the shipped request is missing", "this build is damaged").with_code(Code::Ours)
+    })?;
+    let prepared = prepare_text(name, text, "demo", Path::new("."), Some(options), config)?;
+    single_or_batch(talk, config, options, vec![prepared]).await
+}
+
+/// Prints how a request is read, and runs nothing.
+pub fn read(talk: &Printer, config: &Config, request: &Path) -> Result<(), Complaint> {
+    let prepared = prepare(request, None, config)?;
+    print_reading(talk, &prepared);
+    talk.result(&json!({ "reading": prepared.reading }));
+    Ok(())
+}
+
+/// Runs request files.
+pub async fn run(
+    talk: &Printer,
+    config: &Config,
+    requests: &[PathBuf],
+    options: &RunOptions,
+) -> Result<Code, Complaint> {
+    let files = request_files(requests)?;
+    let (mut prepared, mut refused) = (Vec::new(), Vec::new());
+    for file in &files {
+        match prepare(file, Some(options), config) {
+            Ok(one) => prepared.push(one),
+            Err(why) if files.len() == 1 => return Err(why),
+            Err(why) => refused.push(Refused { file: file.clone(), why }),
+        }
+    }
+    if refused.is_empty() {
+        return single_or_batch(talk, config, options, prepared).await;
+    }
+    let names: Vec<String> = refused.iter().map(|bad| format!("`{}`", bad.file.display())).collect();
+    let what = format!("{} of {} requests cannot be run: {}", refused.len(), files.len(), names.join(", "));
+    if prepared.is_empty() {
+        let mut complaint = Complaint::input(what, "correct them; `socrates read FILE` looks at one alone");
+        complaint.causes = refused.iter().flat_map(Refused::lines).collect();
+        return Err(complaint);
+    }
+    for bad in &refused {
+        talk.warn(&format!("refused    {}", bad.lines().join("\n           ")));
+    }
+    many::batch(talk, config, options, prepared, &refused).await?;
+    talk.warn(&format!("error: {what}\n\nhint: the others were run; correct these and run them alone"));
+    Ok(Code::Input)
+}
+
+/// A request file that cannot be run, beside others that can.
+#[derive(Debug)]
+pub(crate) struct Refused {
+    file: PathBuf,
+    why: Complaint,
+}
+
+impl Refused {
+    /// The reason, which names the file, then causes and hint, a line each.
+    fn lines(&self) -> Vec<String> {
+        let first = self.why.what.clone();
+        let hint = Some(&self.why.hint).filter(|hint| !hint.is_empty()).map(|hint| format!("hint: {hint}"));
+        std::iter::once(first).chain(self.why.causes.iter().cloned()).chain(hint).collect()
+    }
+
+    /// The same for programs.
+    pub(crate) fn object(&self) -> serde_json::Value {
+        let mut object = self.why.object();
+        if let Some(members) = object.as_object_mut() {
+            members.insert("request".to_owned(), self.file.display().to_string().into());
+        }
+        object
+    }
+}
+
+async fn single_or_batch(
+    talk: &Printer,
+    config: &Config,
+    options: &RunOptions,
+    prepared: Vec<Prepared>,
+) -> Result<Code, Complaint> {
+    pace(&options.pace)?;
+    let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
+    if options.ask && count != 1 {
+        return Err(Complaint::input(
+            format!("`--ask` looks at one scenario; {count} are asked for"),
+            "name one request, with `--variants 1`",
+        ));
+    }
+    let mut prepared = prepared;
+    match prepared.pop() {
+        Some(one) if count == 1 => single(talk, config, options, one).await,
+        last => {
+            prepared.extend(last);
+            many::batch(talk, config, options, prepared, &[]).await
+        }
+    }
+}
+
+/// Checks a pace.
+fn pace(text: &str) -> Result<(), Complaint> {
+    if text == "max" || text.parse::<f64>().is_ok_and(|pace| pace.is_finite() && pace > 0.0) {
+        return Ok(());
+    }
+    Err(Complaint::input(format!("`--pace {text}` is no pace"), "`max`, or simulated seconds per second such as 1"))
+}
+
+async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared: Prepared) -> Result<Code, Complaint> {
+    let shipped = if socrates_maps::shipped::files(&prepared.request.location).is_some() { " (shipped)" } else { "" };
+    talk.line(&format!(
+        "location   {:<26}author  {}",
+        format!("{}{shipped}", prepared.location.name),
+        prepared.author_note
+    ));
+    print_reading(talk, &prepared);
+    let wish = bundle::wish(&prepared, options.seed);
+    let base = options
+        .out
+        .clone()
+        .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{}", prepared.name, options.seed)));
+    let dir = match place::place(&base, wish) {
+        Place::Finished(dir) => {
+            talk.line(&format!("known      {} was made from this request; nothing to do", dir.display()));
+            let bundle = bundle::read(&dir)?;
+            return Ok(finish(talk, options, &prepared, &bundle, None));
+        }
+        Place::New(dir) => place::told(talk, &base, dir),
+    };
+    crate::authors::check(config, [prepared.author.as_str()]).await?;
+    let work = place::claim(&dir, wish)?;
+    let id = place::named_like(&dir, scenario_id(&prepared.name, options.seed, 0, 1)?);
+    let prepared = Arc::new(prepared);
+    let writing = {
+        let (dir, work, id, prepared, seed) =
+            (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
+        move || -> Result<Bundle, Complaint> {
+            let reader = Reader::open(&session::store(&work)).map_err(session::unread)?;
+            bundled(&dir, &work, &id, &prepared, seed, &reader, true)
+        }
+    };
+    let want = Wanted { id, seed: options.seed, prepared: &prepared };
+    let then = async { tokio::task::spawn_blocking(writing).await };
+    let making = Making { talk, config, options, work: &work, wanted: &[want] };
+    let (mut made, outcome) = making.and(then).await?;
+    let status = made.statuses.pop().ok_or_else(|| {
+        Complaint::input("the scenario has no result", "run the same command again").with_code(Code::Ours)
+    })?;
+    let outcome = outcome.unwrap_or_else(|broke| {
+        Err(Complaint::input(format!("the bundle could not be written: {broke}"), "").with_code(Code::Ours))
+    });
+    let past = made.history.of(&status.id);
+    talk.line(&stages::line(past, &status.result));
+    let result = match outcome {
+        Ok(bundle) => {
+            // The work folder is only needed to resume; the bundle holds everything now.
+            drop(std::fs::remove_dir_all(&work));
+            finish(talk, options, &prepared, &bundle, Some(past))
+        }
+        Err(mut complaint) => {
+            if complaint.code != Code::Ours {
+                place::end(&dir, &status.result);
+            }
+            complaint.result = Some(Box::new(
+                json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": told(past), "metrics": {}, "reading": prepared.reading }),
+            ));
+            return Err(complaint);
+        }
+    };
+    Ok(result)
+}
+
+/// Writes the bundle, or says why there is none.
+pub(crate) fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
+    let status = past.status;
+    let scored =
+        status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
+    if scored {
+        return bundle::write(dir, prepared, seed, past);
+    }
+    let faults: Vec<socrates_model::Fault> =
+        status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();
+    let author = faults.iter().any(|fault| fault.code.family() == socrates_model::Family::Transport);
+    let mut complaint = Complaint::faults(
+        format!("the scenario ended as `{}` before it could be simulated", status.result),
+        &faults,
+        if author {
+            "`socrates config author` shows which author is asked; `--author offline` needs none"
+        } else {
+            "`socrates explain CODE` says what each fault means; say it in other words, or look at it with --ask"
+        },
+    );
+    complaint.code = if author { Code::Author } else { Code::NotRealised };
+    Err(complaint)
+}
+
+/// Prints verdict, robot, where to look, what to try next, and the result object.
+fn finish(
+    talk: &Printer,
+    options: &RunOptions,
+    prepared: &Prepared,
+    bundle: &Bundle,
+    past: Option<&[PastJob]>,
+) -> Code {
+    let Some((_, report)) = bundle.runs.first() else { return Code::Ours };
+    talk.line(&format!("{:<10} {}", report.verdict.name(), report.verdict_text));
+    for (_, report) in &bundle.runs {
+        let seed = if bundle.runs.len() > 1 { format!(" seed {}", report.seed) } else { String::new() };
+        if report.planner == PlannerName::NO_ROBOT {
+            talk.line(&format!("twin       without the robot{seed}: {:.1} s", report.simulated_s));
+            continue;
+        }
+        let verdict = if bundle.runs.len() > 1 { format!(" · {}", report.verdict) } else { String::new() };
+        talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
+    }
+    // The first line is that of the first run; of several, this one says how often it happened.
+    let played = || bundle.runs.iter().filter(|(_, report)| report.planner != PlannerName::NO_ROBOT);
+    if played().count() > 1 {
+        let count = |wanted: Verdict| played().filter(|(_, report)| report.verdict == wanted).count();
+        let (realised, late) = (count(Verdict::Realised), count(Verdict::RealisedLate));
+        let of_them = if late > 0 { format!(", {late} of them late") } else { String::new() };
+        talk.line(&format!("runs       realised in {} of {}{of_them}", realised + late, played().count()));
+    }
+    if bundle.proposal.author.starts_with("offline") {
+        talk.line("author     offline: written by rules, not by a language model");
+    }
+    let dir = bundle.dir.display().to_string();
+    talk.line(&format!("look       {dir}/report.html"));
+    talk.line(&format!("next       {}", next::after_run(options, bundle, prepared.file.as_deref())));
+    talk.result(&json!({
+        "bundle": dir, "verdict": report.verdict, "stages": past.map(told), "metrics": values(report), "reading": bundle.reading,
+        "author": bundle.proposal.author,
+        "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
+    }));
+    if options.require == "any" || report.verdict == Verdict::Realised { Code::Ok } else { Code::NotRealised }
+}
+
+/// Prints how a request is read.
+pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
+    talk.line(&format!("reading    {}", socrates_offline::summary(&prepared.reading)));
+    talk.line(&format!(
+        "planners   {}",
+        prepared.request.robot.planners.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    ));
+    for problem in &prepared.reading.problems {
+        talk.line(&format!("problem    {problem}"));
+    }
+    if !prepared.reading.ignored.is_empty() {
+        let words: Vec<String> = prepared.reading.ignored.iter().map(|word| format!("\"{word}\"")).collect();
+        talk.line(&format!("ignored    {}", words.join(" ")));
+    }
+    for note in &prepared.reading.notes {
+        talk.line(&format!("note       {note}"));
+    }
+}
+
+/// Stages for the result object.
+fn told(past: &[PastJob]) -> Vec<serde_json::Value> {
+    bundle::stage_rows(past)
+        .into_iter()
+        .map(|row| json!({ "stage": row.stage, "state": row.state, "attempts": row.attempts, "ms": row.wall_ms, "remark": row.remark }))
+        .collect()
+}

@@ -1,0 +1,396 @@
+//! One making: store the inputs, start the system, submit, follow, hand on what is done.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use socrates_kit::LocalBlobs;
+use socrates_link::{Bus, LinkError, Overflow, call, keys};
+use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_model::{Digest, ScenarioId};
+use socrates_store::{Reader, StoreError};
+use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::time::Instant;
+
+use crate::ask::Asking;
+use crate::bundler::Bundler;
+use crate::config::Config;
+use crate::exit::{Code, Complaint};
+use crate::folder::Hold;
+use crate::history::History;
+use crate::output::Printer;
+use crate::prepare::Prepared;
+use crate::progress::Progress;
+use crate::run_options::RunOptions;
+use crate::stages;
+use crate::supervise::Supervisor;
+
+/// One scenario to be made.
+#[derive(Debug, Clone)]
+pub(crate) struct Wanted<'a> {
+    /// Its id.
+    pub(crate) id: ScenarioId,
+    /// Its seed.
+    pub(crate) seed: u64,
+    /// What it is made from.
+    pub(crate) prepared: &'a Prepared,
+}
+
+/// What was made.
+#[derive(Debug)]
+pub(crate) struct Made {
+    /// One status per scenario, in order of submission.
+    pub(crate) statuses: Vec<ScenarioStatus>,
+    /// Every revision and attempt of each scenario.
+    pub(crate) history: History,
+    blobs: LocalBlobs,
+    /// Until the bundle is written, nobody else makes it.
+    _hold: Hold,
+}
+
+impl Made {
+    /// An artifact from the work folder.
+    pub(crate) fn fetch(&self, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+        fetch(&self.blobs, digest)
+    }
+}
+
+/// Where the artifacts of a work folder lie.
+pub(crate) fn blobs(work: &Path) -> LocalBlobs {
+    LocalBlobs::new(work.join("blobs"), false)
+}
+
+/// The job store of a work folder.
+pub(crate) fn store(work: &Path) -> PathBuf {
+    work.join("jobs.sqlite")
+}
+
+/// An artifact of a work folder.
+pub(crate) fn fetch(blobs: &LocalBlobs, digest: &Digest) -> Result<Vec<u8>, Complaint> {
+    blobs.get(digest).map_err(|why| ours(&format!("artifact {} cannot be read: {why}", digest.short())))
+}
+
+/// What is said of a store that cannot be read.
+pub(crate) fn unread(why: StoreError) -> Complaint {
+    ours(&format!("the job store cannot be read: {why}"))
+}
+
+fn ours(what: &str) -> Complaint {
+    Complaint::input(what, "run the same command again; it resumes").with_code(Code::Ours)
+}
+
+/// Name of the batch of a run.
+const BATCH: &str = "run";
+/// Limit of one call.
+const CALL: Duration = Duration::from_secs(2);
+/// How long the orchestrator may be away before the run is given up.
+const AWAY: Duration = Duration::from_secs(60);
+/// Scenarios in one submit message; keeps it under 64 KiB.
+const SUBMIT_AT_ONCE: usize = 40;
+
+/// What the store holds once its orchestrator has left.
+fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Complaint> {
+    let rows = Reader::open(&store(work)).and_then(|reader| reader.all()).map_err(unread)?;
+    let mut found: BTreeMap<ScenarioId, ScenarioStatus> =
+        socrates_orchestrator::standing(rows.clone()).into_iter().map(|status| (status.id.clone(), status)).collect();
+    let statuses = wanted.iter().filter_map(|want| found.remove(&want.id)).collect();
+    Ok(Made { statuses, history: History::of_rows(rows), blobs: blobs(work), _hold: hold })
+}
+
+/// What is made, and how. A work folder that holds a part of it already is resumed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Making<'a> {
+    /// Says how far it is.
+    pub(crate) talk: &'a Printer,
+    /// Configuration.
+    pub(crate) config: &'a Config,
+    /// Options of the run.
+    pub(crate) options: &'a RunOptions,
+    /// Work folder.
+    pub(crate) work: &'a Path,
+    /// The scenarios.
+    pub(crate) wanted: &'a [Wanted<'a>],
+}
+
+impl Making<'_> {
+    /// Makes the scenarios, at most so many `at_once`.
+    pub(crate) async fn all(&self, at_once: usize) -> Result<Made, Complaint> {
+        let hold = Hold::take(self.work)?;
+        self.carry_out(&hold, at_once, None, async {}).await?;
+        made(self.work, self.wanted, hold)
+    }
+
+    /// Makes the scenarios one after the other. What is to be done with them goes on while the processes leave.
+    pub(crate) async fn and<T>(&self, then: impl Future<Output = T>) -> Result<(Made, T), Complaint> {
+        let hold = Hold::take(self.work)?;
+        let done = self.carry_out(&hold, 1, None, then).await?;
+        Ok((made(self.work, self.wanted, hold)?, done))
+    }
+
+    /// Makes the scenarios, each of which goes to the bundler as soon as it is done. The hold is for as long as bundles are
+    /// written.
+    pub(crate) async fn bundled(&self, bundler: &mut Bundler) -> Result<Hold, Complaint> {
+        let hold = Hold::take(self.work)?;
+        // One of each request, then the next of each: whatever is there when it is stopped is of all kinds.
+        let mut wanted = self.wanted.to_vec();
+        wanted.sort_by_key(|want| want.seed);
+        let making = Making { wanted: &wanted, ..*self };
+        making.carry_out(&hold, wanted.len(), Some(bundler), async {}).await?;
+        Ok(hold)
+    }
+
+    /// Starts the system, submits so many at once and waits for them, until all are done; then ends the system, and does
+    /// what comes then meanwhile.
+    async fn carry_out<T>(
+        &self,
+        hold: &Hold,
+        at_once: usize,
+        mut bundler: Option<&mut Bundler>,
+        then: impl Future<Output = T>,
+    ) -> Result<T, Complaint> {
+        let Self { talk, config, options, work, wanted } = self;
+        let blobs = blobs(work);
+        let specs = specs(wanted, config, options, &blobs)?;
+        let workers =
+            options.workers.unwrap_or_else(|| u32::try_from(config.number("supervisor.workers")).unwrap_or(1));
+        let mut supervisor = Supervisor::start(work, config, workers).await?;
+        let mut asking = match wanted.first().filter(|want| want.prepared.looked_at) {
+            Some(want) => {
+                Some(Asking::start(talk, config, supervisor.bus.clone(), work, blobs.clone(), want.prepared)?)
+            }
+            None => None,
+        };
+        let mut followed = Ok(());
+        for (index, some) in specs.chunks(at_once.max(1)).enumerate() {
+            let before = u32::try_from(index.saturating_mul(at_once)).unwrap_or(u32::MAX);
+            let some = some.to_vec();
+            followed = follow(talk, &mut supervisor, hold, some, before, asking.as_mut(), bundler.as_deref_mut()).await;
+            if followed.is_err() {
+                break;
+            }
+        }
+        talk.clear();
+        if let Some(asking) = asking {
+            asking.end().await;
+        }
+        if let Err(why) = followed {
+            supervisor.stop().await;
+            return Err(why);
+        }
+        Ok(tokio::join!(then, supervisor.stop()).0)
+    }
+}
+
+/// Stores the inputs of scenarios and names them. Those that are made from one request differ by name and seed alone.
+pub(crate) fn specs<'a>(
+    wanted: &[Wanted<'a>],
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<Vec<ScenarioSpec>, Complaint> {
+    let mut known: Vec<(&'a Prepared, ScenarioSpec)> = Vec::new();
+    let mut of = |want: &Wanted<'a>| {
+        if let Some((_, alike)) = known.iter().find(|(prepared, _)| std::ptr::eq(*prepared, want.prepared)) {
+            return Ok(ScenarioSpec { id: want.id.clone(), seed: want.seed, ..alike.clone() });
+        }
+        let spec = spec(want, config, options, blobs)?;
+        known.push((want.prepared, spec.clone()));
+        Ok(spec)
+    };
+    wanted.iter().map(&mut of).collect()
+}
+
+/// Stores the inputs of a scenario and names them.
+fn spec(
+    want: &Wanted<'_>,
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<ScenarioSpec, Complaint> {
+    let prepared = want.prepared;
+    let put = |text: String| {
+        blobs
+            .put(text.as_bytes())
+            .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
+    };
+    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
+    let mut settings =
+        BTreeMap::from([("author".to_owned(), prepared.author.clone()), ("pace".to_owned(), options.pace.clone())]);
+    settings.extend(prepared.injected.clone());
+    settings.extend(prepared.style.clone());
+    if config.text("stream.live") != "off" {
+        settings.insert("live".to_owned(), "on".to_owned());
+    }
+    let mut pinned = BTreeMap::new();
+    for (role, text) in &prepared.pins {
+        pinned.insert(*role, put(text.clone())?);
+    }
+    Ok(ScenarioSpec {
+        id: want.id.clone(),
+        request: put(json(serde_json::to_string(&prepared.request))?)?,
+        location: put(json(serde_json::to_string(&prepared.location))?)?,
+        reading: put(json(serde_json::to_string(&prepared.reading))?)?,
+        seed: want.seed,
+        planners: prepared.request.robot.planners.clone(),
+        run_seeds: prepared.request.run.seeds().to_vec(),
+        pinned,
+        settings,
+        review: prepared.looked_at,
+    })
+}
+
+/// Submits scenarios, in several messages if need be.
+pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<(), Complaint> {
+    let mut specs = specs.into_iter().peekable();
+    while specs.peek().is_some() {
+        let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
+        let wish = Submit { batch: batch.to_owned(), scenarios };
+        let started = Instant::now();
+        loop {
+            match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
+                Ok(Submitted::Accepted { .. }) => break,
+                Ok(Submitted::Refused { why }) => {
+                    return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
+                }
+                Ok(Submitted::Busy { retry_after_ms }) => {
+                    tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await
+                }
+                Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
+                    tokio::time::sleep(Duration::from_millis(50)).await;
+                }
+                Err(why) => return Err(ours(&why.to_string())),
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Submits and waits until everything is done, besides the `before` that were done earlier.
+async fn follow(
+    talk: &Printer,
+    supervisor: &mut Supervisor,
+    hold: &Hold,
+    specs: Vec<ScenarioSpec>,
+    before: u32,
+    mut asking: Option<&mut Asking>,
+    mut bundler: Option<&mut Bundler>,
+) -> Result<(), Complaint> {
+    let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
+    let bus = supervisor.bus.clone();
+    let mut notices =
+        bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
+    submit(bus.as_ref(), BATCH, specs).await?;
+    // Listened to all the time: a signal between two rounds must not get lost.
+    let mut signals = Signals::listen()?;
+    let mut last_heard = Instant::now();
+    // Notices hasten; the poll behind them decides.
+    let mut poll = tokio::time::interval(Duration::from_millis(if ids.len() > 1 { 500 } else { 100 }));
+    let mut looks_done = true;
+    let all_of_them = (before as usize).saturating_add(ids.len());
+    let mut progress = (ids.len() > 1).then(|| Progress::new(*talk, "making", all_of_them));
+    loop {
+        // While a person has the terminal, its lines and its Ctrl-C are theirs.
+        let looking = asking.as_ref().is_some_and(|asking| asking.is_looking());
+        tokio::select! {
+            _ = poll.tick() => looks_done = true,
+            notice = notices.next() => if let Some((_, body)) = notice
+                && let Ok(envelope) = socrates_link::decode::<Notice>("notice", &body) {
+                looks_done = ids.len() == 1 && envelope.body.key.stage == socrates_model::job::Stage::Scoring;
+                if ids.len() == 1 {
+                    passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
+                }
+            },
+            complaint = supervisor.gave_up() => {
+                // A folder that is gone is the reason for whatever else its processes complain of.
+                hold.check()?;
+                return Err(complaint.with_code(Code::Ours));
+            }
+            complaint = left(&mut asking) => return Err(complaint),
+            _ = signals.interrupt.recv() => if !looking || !talk.live {
+                return Err(stopped());
+            },
+            _ = signals.terminate.recv() => return Err(stopped()),
+        }
+        if !looks_done {
+            continue;
+        }
+        looks_done = false;
+        hold.check()?;
+        match status(bus.as_ref(), 0).await {
+            Ok(reply) => {
+                last_heard = Instant::now();
+                if let Some(progress) = &mut progress {
+                    progress.at(reply.done as usize, &counted(&reply.results));
+                } else if let Some(line) = reply.scenarios.first() {
+                    passing(talk, asking.as_deref(), &stages::line_of(line));
+                }
+                if let Some(bundler) = &mut bundler {
+                    bundler.look()?;
+                }
+                if reply.done >= before.saturating_add(u32::try_from(ids.len()).unwrap_or(u32::MAX)) {
+                    return Ok(());
+                }
+            }
+            Err(why) if last_heard.elapsed() > AWAY => {
+                return Err(ours(&format!("the orchestrator does not answer: {why}")));
+            }
+            Err(_) => {}
+        }
+    }
+}
+
+/// `20 realised, 3 contradicted, 1 failed`.
+fn counted(results: &BTreeMap<String, u32>) -> String {
+    let mut rows: Vec<(&String, &u32)> = results.iter().collect();
+    rows.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+    rows.iter().map(|(result, count)| format!("{count} {result}")).collect::<Vec<_>>().join(", ")
+}
+
+/// Writes a passing line, but not over what a person types.
+fn passing(talk: &Printer, asking: Option<&Asking>, text: &str) {
+    match asking {
+        Some(asking) => asking.passing(talk, text),
+        None => talk.passing(text),
+    }
+}
+
+/// Ends when the person who looks leaves; never where nobody looks.
+async fn left(asking: &mut Option<&mut Asking>) -> Complaint {
+    match asking {
+        Some(asking) => asking.left().await,
+        None => std::future::pending().await,
+    }
+}
+
+/// The signals that end a run, from the moment on at which they are listened to: from then on nobody else hears them.
+#[derive(Debug)]
+pub(crate) struct Signals {
+    interrupt: Signal,
+    terminate: Signal,
+}
+
+impl Signals {
+    /// Begins to listen.
+    pub(crate) fn listen() -> Result<Self, Complaint> {
+        let on = |kind| signal(kind).map_err(|why| ours(&why.to_string()));
+        Ok(Self { interrupt: on(SignalKind::interrupt())?, terminate: on(SignalKind::terminate())? })
+    }
+
+    /// Waits for one of them and says what it means.
+    pub(crate) async fn come(&mut self) -> Complaint {
+        tokio::select! {
+            _ = self.interrupt.recv() => {}
+            _ = self.terminate.recv() => {}
+        }
+        stopped()
+    }
+}
+
+fn stopped() -> Complaint {
+    Complaint::input("stopped before the end; nothing is lost", "the same command again resumes").with_code(Code::Waits)
+}
+
+/// One page of statuses.
+pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
+    call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
+}

@@ -1,0 +1,385 @@
+//! `status`: how scenarios stand, in eight lines, while they are made and afterwards.
+//!
+//! ```text
+//! endpoint ─► the orchestrator's answer
+//! folder   ─► manifest │ library.json │ the job store, only read (and the orchestrator's answer while there is one)
+//! ```
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+use socrates_model::wire::StatusReply;
+use socrates_store::Reader;
+
+use crate::exit::{Code, Complaint};
+use crate::files::shell;
+use crate::history::History;
+use crate::output::Printer;
+use crate::progress::{Speed, span};
+use crate::supervise::endpoint;
+use crate::{batch, bundle, library_index, place, process, session, stages};
+
+/// How long an orchestrator may take to answer before the folder counts as one where nobody works.
+const ANSWER: Duration = Duration::from_secs(5);
+
+/// Which scenarios are listed under the eight lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Listed {
+    /// None, but a single one.
+    None,
+    /// Those of which no bundle could be made.
+    Failed,
+    /// All.
+    All,
+}
+
+/// Whether anybody works on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Phase {
+    #[default]
+    GoingOn,
+    Stopped,
+    Finished,
+}
+
+impl Phase {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::GoingOn => "going_on",
+            Self::Stopped => "stopped",
+            Self::Finished => "finished",
+        }
+    }
+}
+
+/// One scenario.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+struct Row {
+    scenario: String,
+    /// How it ended; none while it is open.
+    result: Option<String>,
+    /// Its stages, or why it failed.
+    told: String,
+}
+
+/// How everything stands.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Standing {
+    what: String,
+    phase: Phase,
+    total: u64,
+    running: u64,
+    results: BTreeMap<String, u64>,
+    /// Since when, s, and how fast; only while somebody works.
+    speed: Option<(f64, Speed)>,
+    workers: BTreeMap<String, u32>,
+    rows: Vec<Row>,
+}
+
+impl Standing {
+    fn of_rows(what: &str, phase: Phase, rows: Vec<Row>) -> Self {
+        let mut results: BTreeMap<String, u64> = BTreeMap::new();
+        for result in rows.iter().filter_map(|row| row.result.clone()) {
+            *results.entry(result).or_default() += 1;
+        }
+        let total = u64::try_from(rows.len()).unwrap_or(u64::MAX);
+        Self { what: what.to_owned(), phase, total, results, rows, ..Self::default() }
+    }
+
+    /// What the orchestrator says beside the counts.
+    fn with(mut self, reply: &StatusReply) -> Self {
+        let elapsed = Duration::from_millis(reply.serving_ms);
+        let speed = Speed::of(u64::from(reply.done), u64::from(reply.total), u64::from(reply.done_before), elapsed);
+        self.total = u64::from(reply.total);
+        self.running = u64::from(reply.running);
+        self.results = reply.results.iter().map(|(result, count)| (result.clone(), u64::from(*count))).collect();
+        self.speed = Some((elapsed.as_secs_f64(), speed));
+        self.workers.clone_from(&reply.workers);
+        self
+    }
+
+    fn done(&self) -> u64 {
+        self.results.values().sum()
+    }
+
+    fn failed(&self) -> u64 {
+        self.results.get("failed").copied().unwrap_or(0)
+    }
+
+    /// The eight lines.
+    fn lines(&self) -> [String; 8] {
+        let (total, done, failed) = (self.total, self.done(), self.failed());
+        let word = Path::new(&self.what);
+        let phase = match self.phase {
+            Phase::GoingOn => "going on".to_owned(),
+            Phase::Stopped => format!("stopped at {done} of {total}; the same command resumes"),
+            Phase::Finished => "finished".to_owned(),
+        };
+        let share = (done * 100).checked_div(total).map_or_else(String::new, |share| format!(" ({share} %)"));
+        let waiting = total.saturating_sub(done).saturating_sub(self.running);
+        let why =
+            if failed > 0 { format!(" · `socrates status --failed {}` says why", shell(word)) } else { String::new() };
+        let list = |rows: Vec<String>| if rows.is_empty() { "none".to_owned() } else { rows.join(" · ") };
+        let mut verdicts: Vec<(&String, &u64)> =
+            self.results.iter().filter(|(result, _)| *result != "failed").collect();
+        verdicts.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
+        let verdicts = list(verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect());
+        let rate = self.speed.filter(|(_, speed)| speed.per_s > 0.0);
+        let rate =
+            rate.map_or_else(|| "none".to_owned(), |(since, speed)| format!("{} over {}", speed.rate(), span(since)));
+        let left = match (self.phase, self.speed.and_then(|(_, speed)| speed.left_s)) {
+            (Phase::Finished, _) => "nothing".to_owned(),
+            (Phase::GoingOn, Some(left)) => format!("about {}", span(left)),
+            (Phase::GoingOn | Phase::Stopped, _) => "not known".to_owned(),
+        };
+        let workers = list(self.workers.iter().map(|(stage, count)| format!("{count} {stage}")).collect());
+        [
+            format!("made in    {} · {phase}", self.what),
+            format!("done       {done} of {total}{share}"),
+            format!("running    {} · {waiting} waiting", self.running),
+            format!("failed     {failed}{why}"),
+            format!("verdicts   {verdicts}"),
+            format!("rate       {rate}"),
+            format!("left       {left}"),
+            format!("workers    {workers}"),
+        ]
+    }
+
+    /// The scenarios that are listed.
+    fn listed(&self, which: Listed) -> Vec<&Row> {
+        let meant = |row: &&Row| match which {
+            Listed::None => self.total == 1,
+            Listed::Failed => row.result.as_deref() == Some("failed"),
+            Listed::All => true,
+        };
+        self.rows.iter().filter(meant).collect()
+    }
+
+    fn object(&self, which: Listed) -> Value {
+        let row = |row: &&Row| json!({ "scenario": row.scenario, "done": row.result.is_some(), "result": row.result, "told": row.told });
+        let speed = self.speed.map(|(_, speed)| speed);
+        let left = speed.and_then(|speed| speed.left_s).filter(|_| self.phase == Phase::GoingOn);
+        json!({
+            "what": self.what, "phase": self.phase.name(), "total": self.total, "done": self.done(), "running": self.running,
+            "failed": self.failed(), "verdicts": self.results, "rate_per_s": speed.map(|speed| speed.per_s), "left_s": left,
+            "workers": self.workers, "scenarios": self.listed(which).iter().map(row).collect::<Vec<_>>(),
+        })
+    }
+}
+
+/// Shows how the jobs of a folder or endpoint stand.
+pub async fn status(talk: &Printer, what: &str, listed: Listed) -> Result<(), Complaint> {
+    let folder = Path::new(what);
+    let standing =
+        if folder.exists() { of_folder(what, folder, listed).await? } else { of_endpoint(what, listed).await? };
+    for line in standing.lines() {
+        talk.line(&line);
+    }
+    for row in standing.listed(listed) {
+        let result = row.result.as_deref().unwrap_or("open");
+        talk.line(&format!("{:<28} {result:<14} {}", row.scenario, row.told));
+    }
+    talk.result(&standing.object(listed));
+    Ok(())
+}
+
+/// What the orchestrator at an endpoint says.
+async fn of_endpoint(what: &str, listed: Listed) -> Result<Standing, Complaint> {
+    let (address, namespace) = endpoint(what).ok_or_else(|| nothing(what))?;
+    let bus = process::client(&address, &namespace, "watch").await?;
+    let silent = |why: socrates_link::LinkError| {
+        Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment")
+            .with_code(Code::Ours)
+    };
+    let first = session::status(bus.as_ref(), 0).await.map_err(silent)?;
+    let mut rows = Vec::new();
+    let mut from = 0;
+    // One scenario is told with the counts; more are asked for page by page.
+    while listed != Listed::None || (from == 0 && first.total == 1) {
+        let page = session::status(bus.as_ref(), from).await.map_err(silent)?.scenarios;
+        if page.is_empty() {
+            break;
+        }
+        from += u32::try_from(page.len()).unwrap_or(u32::MAX);
+        rows.extend(page.iter().map(|scenario| Row {
+            scenario: scenario.id.to_string(),
+            result: scenario.done.then(|| scenario.result.clone()),
+            told: stages::line_of(scenario),
+        }));
+    }
+    bus.close().await;
+    Ok(Standing { rows, ..Standing::of_rows(what, Phase::GoingOn, Vec::new()).with(&first) })
+}
+
+/// What lies in a folder: a bundle, a library, something that is being made, or several of them.
+async fn of_folder(what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
+    if let Some(rows) = made(folder) {
+        return Ok(Standing::of_rows(what, Phase::Finished, rows));
+    }
+    if folder.join(place::WORK).is_dir() {
+        return being_made(what, folder, listed).await;
+    }
+    // A folder of bundles, perhaps with some that are not finished.
+    let mut below: Vec<_> = std::fs::read_dir(folder)
+        .map_err(|why| Complaint::input(format!("cannot read `{what}`: {why}"), "name a folder"))?
+        .filter_map(Result::ok)
+        .map(|entry| entry.path())
+        .filter(|dir| dir.is_dir())
+        .collect();
+    below.sort();
+    let (mut rows, mut phase) = (Vec::new(), Phase::Finished);
+    for dir in below {
+        if let Some(found) = made(&dir) {
+            rows.extend(found);
+        } else if dir.join(place::WORK).is_dir() {
+            let found = being_made(what, &dir, listed).await?;
+            let open = found.phase;
+            phase = if phase == Phase::Finished || open == Phase::GoingOn { open } else { phase };
+            rows.extend(from_store(&dir, true)?);
+        }
+    }
+    if rows.is_empty() {
+        return Err(nothing(what));
+    }
+    Ok(Standing::of_rows(what, phase, rows))
+}
+
+/// The scenarios of a finished bundle or library.
+fn made(folder: &Path) -> Option<Vec<Row>> {
+    if let Some(manifest) = bundle::manifest(folder) {
+        let verdict = manifest.verdict.to_string();
+        let told = stages::line_of_bundle(folder, &verdict);
+        return Some(vec![Row { scenario: manifest.scenario, result: Some(verdict), told }]);
+    }
+    let library = library_index::read(folder)?;
+    let row = |row: library_index::Row| Row {
+        scenario: row.scenario.to_string(),
+        result: Some(row.verdict),
+        told: row.reason,
+    };
+    Some(library.scenarios.into_iter().map(row).collect())
+}
+
+/// A folder with a job store: its rows, and what the orchestrator says where one works.
+async fn being_made(what: &str, folder: &Path, listed: Listed) -> Result<Standing, Complaint> {
+    let rows = from_store(folder, listed != Listed::None)?;
+    let ended = place::ended(folder).is_some();
+    let standing = Standing::of_rows(what, if ended { Phase::Finished } else { Phase::Stopped }, rows);
+    let endpoint = endpoint(&folder.display().to_string()).filter(|_| !ended);
+    let Some((address, namespace)) = endpoint else { return Ok(standing) };
+    let answer = tokio::time::timeout(ANSWER, async {
+        let bus = process::client(&address, &namespace, "watch").await.ok()?;
+        let reply = session::status(bus.as_ref(), 0).await.ok();
+        bus.close().await;
+        reply
+    });
+    Ok(match answer.await.ok().flatten() {
+        Some(reply) => Standing { phase: Phase::GoingOn, ..standing.with(&reply) },
+        None => standing,
+    })
+}
+
+/// The scenarios of the job store of a folder, with what they did where that is wanted or there is only one.
+fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
+    let store = folder.join(place::WORK).join("jobs.sqlite");
+    if !store.is_file() {
+        return Ok(Vec::new());
+    }
+    let unread = |why: socrates_store::StoreError| {
+        Complaint::input(format!("cannot read `{}`: {why}", store.display()), "the same command again resumes")
+    };
+    let reader = Reader::open(&store).map_err(unread)?;
+    let standings = reader.standings(0, u64::MAX).map_err(unread)?;
+    if !told && standings.len() != 1 {
+        let row = |one: socrates_store::Standing| Row {
+            scenario: one.scenario.to_string(),
+            result: one.result,
+            told: String::new(),
+        };
+        return Ok(standings.into_iter().map(row).collect());
+    }
+    let history = History::of_rows(reader.all().map_err(unread)?);
+    let row = |(id, end): &(socrates_model::ScenarioId, Option<socrates_orchestrator::ScenarioEnd>)| {
+        let result = end.map(|end| end.name().to_owned());
+        let past = history.of(id);
+        let mut told = stages::line(past, result.as_deref().unwrap_or_default());
+        // The reason of a failure: the newest fault of the job that ended it.
+        let wrong = past.iter().rev().find(|job| matches!(job.state.as_str(), "failed" | "dead"));
+        let fault = wrong.and_then(|job| job.attempts.iter().rev().find_map(|attempt| attempt.faults.first()));
+        told.push_str(&fault.map_or_else(String::new, |fault| format!(" · {fault}")));
+        Row { scenario: id.to_string(), result, told }
+    };
+    Ok(history.ends.iter().map(row).collect())
+}
+
+fn nothing(what: &str) -> Complaint {
+    let path = Path::new(what);
+    if path.is_dir() {
+        return batch::none(path);
+    }
+    Complaint::input(
+        format!("nothing is made, or being made, in `{what}`"),
+        "name a bundle, a library, or an endpoint such as tcp/127.0.0.1:7447@main",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reply() -> StatusReply {
+        StatusReply {
+            total: 60,
+            done: 24,
+            running: 5,
+            results: BTreeMap::from([
+                ("realised".to_owned(), 20),
+                ("contradicted".to_owned(), 3),
+                ("failed".to_owned(), 1),
+            ]),
+            serving_ms: 10_000,
+            done_before: 4,
+            workers: BTreeMap::from([("paths".to_owned(), 1), ("simulation".to_owned(), 2)]),
+            scenarios: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_batch_is_told_in_eight_lines() {
+        let standing = Standing::of_rows("my lib", Phase::GoingOn, Vec::new()).with(&reply());
+        let told = [
+            "made in    my lib · going on",
+            "done       24 of 60 (40 %)",
+            "running    5 · 31 waiting",
+            "failed     1 · `socrates status --failed 'my lib'` says why",
+            "verdicts   20 realised · 3 contradicted",
+            "rate       2.0 a second over 10 s",
+            "left       about 18 s",
+            "workers    1 paths · 2 simulation",
+        ];
+        assert_eq!(standing.lines(), told);
+        let object = standing.object(Listed::None);
+        assert_eq!((object["rate_per_s"].as_f64(), object["left_s"].as_f64()), (Some(2.0), Some(18.0)));
+        assert_eq!((&object["phase"], &object["failed"]), (&json!("going_on"), &json!(1)));
+    }
+
+    #[test]
+    fn what_stopped_or_ended_knows_its_counts_and_claims_no_speed() {
+        let row = |name: &str, result: Option<&str>| Row {
+            scenario: name.to_owned(),
+            result: result.map(str::to_owned),
+            told: String::new(),
+        };
+        let rows = || vec![row("a", Some("realised")), row("b", Some("failed")), row("c", None)];
+        let stopped = Standing::of_rows("lib", Phase::Stopped, rows());
+        let lines = stopped.lines();
+        assert_eq!(lines[0], "made in    lib · stopped at 2 of 3; the same command resumes");
+        assert_eq!((lines[5].as_str(), lines[6].as_str()), ("rate       none", "left       not known"));
+        assert_eq!(stopped.listed(Listed::Failed), [&row("b", Some("failed"))]);
+        assert_eq!((stopped.listed(Listed::None).len(), stopped.listed(Listed::All).len()), (0, 3));
+        let one = Standing::of_rows("x", Phase::Finished, vec![row("a", Some("realised"))]);
+        assert_eq!((one.listed(Listed::None).len(), one.lines()[6].as_str()), (1, "left       nothing"));
+    }
+}

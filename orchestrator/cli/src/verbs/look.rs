@@ -1,0 +1,48 @@
+//! `watch` and `status`: looking at what is being made.
+
+use clap::Args;
+use socrates_app::output::Printer;
+use socrates_app::standing::{self, Listed};
+use socrates_app::watch;
+
+use super::{Outcome, done};
+
+/// Arguments of `watch`.
+#[derive(Debug, Args)]
+pub(crate) struct Watch {
+    /// Its bundle folder, or a zenoh endpoint such as `tcp/127.0.0.1:7447`.
+    what: String,
+    /// Run name; default: the first that is announced.
+    #[arg(long)]
+    run: Option<String>,
+}
+
+impl Watch {
+    pub(super) async fn act(&self, talk: &Printer) -> Outcome {
+        done(watch::watch(talk, &self.what, self.run.as_deref()).await)
+    }
+}
+
+/// Arguments of `status`.
+#[derive(Debug, Args)]
+pub(crate) struct Status {
+    /// Bundle or library folder, a folder of bundles, or a zenoh endpoint.
+    what: String,
+    /// List those of which no bundle could be made, with the reason.
+    #[arg(long)]
+    failed: bool,
+    /// List every scenario with what its stages did.
+    #[arg(long)]
+    all: bool,
+}
+
+impl Status {
+    pub(super) async fn act(&self, talk: &Printer) -> Outcome {
+        let listed = match (self.all, self.failed) {
+            (true, _) => Listed::All,
+            (false, true) => Listed::Failed,
+            (false, false) => Listed::None,
+        };
+        done(standing::status(talk, &self.what, listed).await)
+    }
+}

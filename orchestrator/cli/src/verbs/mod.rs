@@ -1,0 +1,175 @@
+//! The command line, word by word: a file per verb or group of verbs, each with its own options.
+
+mod bt;
+mod bundle;
+mod cluster;
+mod dev;
+mod evaluate;
+mod explain;
+mod library;
+mod look;
+mod map;
+mod request;
+mod run;
+mod scenarios;
+mod score;
+mod simulate;
+mod video;
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use socrates_app::config::Config;
+use socrates_app::exit::{Code, Complaint};
+use socrates_app::output::Printer;
+
+/// From a few sentences and a map to a social-navigation scenario that is simulated, checked and scored.
+#[derive(Debug, Parser)]
+#[command(
+    name = "socrates",
+    version,
+    about,
+    disable_help_subcommand = true,
+    after_help = "First time? Run `socrates demo`."
+)]
+pub(crate) struct Cli {
+    /// How results are printed; with json the last line of standard output is one object.
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+    /// Configuration.
+    #[command(flatten)]
+    pub(crate) flags: Flags,
+    /// What to do.
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+/// Where the configuration comes from; child processes get the same.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Flags {
+    /// Configuration file; default `socrates.toml` in the current folder, if there is one.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// One configuration value, such as `--set supervisor.workers=2`; may be repeated.
+    #[arg(long, global = true, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+}
+
+/// How results are printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// How a verb ended.
+type Outcome = Result<Code, Complaint>;
+
+/// The code of a verb that judges nothing.
+fn done(outcome: Result<(), Complaint>) -> Outcome {
+    outcome.map(|()| Code::Ok)
+}
+
+/// The verbs.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Run a shipped request, with nothing to prepare.
+    Demo(run::Options),
+    /// Write a commented request file.
+    New(request::New),
+    /// Print how a request is read, and run nothing.
+    Read(request::Read),
+    /// Make scenarios from requests: propose, simulate, check, score.
+    Run(run::Run),
+    /// Open the page of a bundle.
+    Open(bundle::Open),
+    /// Write the page of a bundle anew, or one page for a folder of bundles.
+    Report(bundle::Report),
+    /// Film a bundle, seen from above: MP4 or WebM with ffmpeg, GIF or animated SVG without.
+    Video(video::Video),
+    /// Draw a figure for a paper: who went where and when.
+    Figure(video::Figure),
+    /// Print what a paper says about how a bundle was made, and what to cite.
+    Cite(bundle::Cite),
+    /// Add up what the authors of bundles were asked, in calls, tokens and money.
+    Cost(bundle::Cost),
+    /// Let people label runs by hand.
+    Labels(library::Labels),
+    /// Simulate a bundle again and compare the recording hashes, or run a HuNavSim agents file.
+    Simulate(simulate::Simulate),
+    /// Score a bundle again, or tracks of your own (CSV with `t,id,x,y[,yaw,gesture]`, or MCAP).
+    Score(score::Score),
+    /// Watch the agent states of a run that is being made.
+    Watch(look::Watch),
+    /// Show how the scenarios of a folder stand, while they are made and afterwards.
+    Status(look::Status),
+    /// Explain a fault code, such as G-DISC, a metric, or a word of output, pages and tables; without one, list the codes.
+    Explain(explain::Explain),
+    /// Check what this machine can do, and say what is missing.
+    Doctor,
+    /// Print the effective configuration and where each value comes from.
+    Config(explain::Config),
+    /// Check, draw and convert behavior trees (BehaviorTree.CPP XML).
+    Bt(bt::Bt),
+    /// Check, draw and generate locations.
+    Map(map::Map),
+    /// Measure authors: how often scenarios are right at first, after asking again, and in the run.
+    Evaluate(evaluate::Evaluate),
+    /// Take out of a library what others can use.
+    Library(library::Library),
+    /// List, show and rate the canonical scenarios of the catalog.
+    Scenarios(scenarios::Scenarios),
+    /// The same parts spread over machines.
+    Cluster(cluster::Cluster),
+    /// For developers of SocRATES.
+    Dev(dev::Dev),
+    /// One worker process; started by `run` and `cluster worker`.
+    #[command(hide = true)]
+    Worker(cluster::Worker),
+    /// The orchestrator process; started by `run` and `cluster up`.
+    #[command(hide = true)]
+    Orchestrator(cluster::Up),
+}
+
+impl Verb {
+    /// Whether this process is the child of a supervisor.
+    pub(crate) const fn is_tied(&self) -> bool {
+        matches!(self, Self::Worker(cluster::Worker { tied: true, .. }))
+            || matches!(self, Self::Orchestrator(cluster::Up { tied: true, .. }))
+    }
+
+    /// Does it.
+    pub(crate) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
+        match self {
+            Self::Demo(options) => options.demo(talk, config).await,
+            Self::New(verb) => verb.act(talk).await,
+            Self::Read(verb) => verb.act(talk, config),
+            Self::Run(verb) => verb.act(talk, config).await,
+            Self::Open(verb) => verb.act(talk),
+            Self::Report(verb) => verb.act(talk),
+            Self::Video(verb) => verb.act(talk, config),
+            Self::Figure(verb) => verb.act(talk),
+            Self::Cite(verb) => verb.act(talk),
+            Self::Cost(verb) => verb.act(talk, config),
+            Self::Labels(verb) => verb.act(talk),
+            Self::Simulate(verb) => verb.act(talk),
+            Self::Score(verb) => verb.act(talk),
+            Self::Watch(verb) => verb.act(talk).await,
+            Self::Status(verb) => verb.act(talk).await,
+            Self::Explain(verb) => verb.act(talk),
+            Self::Doctor => done(socrates_app::explain::doctor(talk, config)),
+            Self::Config(verb) => verb.act(talk, config),
+            Self::Bt(verb) => verb.act(talk),
+            Self::Map(verb) => verb.act(talk),
+            Self::Evaluate(verb) => verb.act(talk, config).await,
+            Self::Library(verb) => verb.act(talk),
+            Self::Scenarios(verb) => verb.act(talk).await,
+            Self::Cluster(verb) => verb.act(talk, config).await,
+            Self::Dev(verb) => verb.act(talk, config).await,
+            Self::Worker(verb) => verb.act(config).await,
+            Self::Orchestrator(verb) => verb.act(talk, config).await,
+        }
+    }
+}

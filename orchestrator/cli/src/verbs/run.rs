@@ -1,0 +1,81 @@
+//! `run` and `demo`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use socrates_app::config::Config;
+use socrates_app::output::Printer;
+use socrates_app::run;
+use socrates_app::run_options::RunOptions;
+use socrates_model::request::MAX_VARIANTS;
+use socrates_model::{AuthorSpec, PlannerName, Seeds};
+
+use super::Outcome;
+
+/// Arguments of `run`.
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Request files, or folders of them.
+    #[arg(required = true)]
+    requests: Vec<PathBuf>,
+    /// Options.
+    #[command(flatten)]
+    options: Options,
+}
+
+impl Run {
+    pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
+        run::run(talk, config, &self.requests, &self.options.values()).await
+    }
+}
+
+/// Options of `run` and `demo`.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Options {
+    /// Folder for the bundle; default `runs/<name>`. With several scenarios: the folder that holds them.
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Base seed of authoring; of the simulation too, unless `--seeds` or the request names its seeds.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Simulation seeds, `1..20` or `1,4,9`; wins over the request.
+    #[arg(long)]
+    seeds: Option<Seeds>,
+    /// Planners under test, separated by commas; wins over the request.
+    #[arg(long, value_delimiter = ',')]
+    planner: Vec<PlannerName>,
+    /// Scenarios to make from each request, 1 to 100000; wins over the request.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_VARIANTS)))]
+    variants: Option<u32>,
+    /// Author: `auto`, `offline`, `openai:MODEL`, `anthropic:MODEL`, `gemini:MODEL`, `vllm:`, `ollama:`, `llamacpp:` or
+    /// `lmstudio:MODEL`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
+    #[arg(long)]
+    author: Option<AuthorSpec>,
+    /// Pace of the simulation: `max`, or simulated seconds per second.
+    #[arg(long, default_value = "max")]
+    pace: String,
+    /// Exit with 3 unless the verdict is at least this.
+    #[arg(long, value_parser = ["realised", "any"], default_value = "realised")]
+    require: String,
+    /// Worker processes of the simulation stage.
+    #[arg(long)]
+    workers: Option<u32>,
+    /// Faults put into the author's answers, for experiments: `gdisc=0.3,bxml=0.1,first_only=true`; each number is
+    /// a probability per ask.
+    #[arg(long, value_name = "KIND=RATE,…", default_value = "")]
+    inject: String,
+    /// Look at the proposal, then at paths and behaviors, before they go on: accept, change in words, edit, have made again.
+    #[arg(long)]
+    ask: bool,
+}
+
+impl Options {
+    pub(super) async fn demo(&self, talk: &Printer, config: &Config) -> Outcome {
+        run::demo(talk, config, &self.values()).await
+    }
+
+    fn values(&self) -> RunOptions {
+        let Self { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask } = self.clone();
+        RunOptions { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask }
+    }
+}

@@ -1,0 +1,7 @@
+//! The offline author from outside: whole requests, edits and faults.
+#![cfg(test)]
+
+mod common;
+mod corpus;
+mod edits;
+mod faults;

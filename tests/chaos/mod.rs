@@ -1,0 +1,94 @@
+//! Kill -9 of any process during a batch: every scenario ends with one result, none twice, nothing left running.
+
+use std::path::Path;
+
+use socrates_tests::program::{children, finish, naming, poll, signal, start};
+
+use crate::PROGRAM;
+
+/// Scenarios of the batch.
+const COUNT: usize = 200;
+
+const REQUEST: &str = r#"
+location = "warehouse"
+social_context = "A warehouse"
+task = "Carry a box"
+rough_scenario = "One person walks towards the robot."
+
+[run]
+duration = "20s"
+"#;
+
+fn results(folder: &Path) -> usize {
+    let Ok(list) = std::fs::read_dir(folder) else { return 0 };
+    list.filter_map(Result::ok).filter(|entry| entry.path().join("details/manifest.json").is_file()).count()
+}
+
+/// Scenarios done so far, as the orchestrator's own store of artifacts shows it: a rough measure is enough.
+fn progress(folder: &Path) -> usize {
+    fn count(dir: &Path) -> usize {
+        let Ok(list) = std::fs::read_dir(dir) else { return 0 };
+        list.filter_map(Result::ok).map(|entry| if entry.path().is_dir() { count(&entry.path()) } else { 1 }).sum()
+    }
+    count(&folder.join(".socrates/blobs"))
+}
+
+#[test]
+fn two_hundred_scenarios_survive_the_death_of_every_kind_of_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("batch.toml");
+    std::fs::write(&file, REQUEST).unwrap();
+    let (file, library) = (file.display().to_string(), folder.path().join("library"));
+    let (out, count) = (library.display().to_string(), COUNT.to_string());
+    let args =
+        ["--format", "json", "run", &file, "--out", &out, "--variants", &count, "--require", "any", "--workers", "2"];
+    let run = start(PROGRAM, &args, folder.path(), "first").unwrap();
+    let mut killed = Vec::new();
+    let mut seen = 0;
+    for victim in [
+        "worker proposal ",
+        "worker paths ",
+        "worker behaviors ",
+        "worker simulation ",
+        "worker scoring ",
+        "orchestrator ",
+    ] {
+        // Each dies while the batch moves on, not before.
+        let moved = poll(|| Some(progress(&library)).filter(|now| *now > seen + 20));
+        seen = moved.unwrap_or(seen);
+        let pid = poll(|| children(run.id()).into_iter().find(|(_, line)| line.contains(victim)).map(|(pid, _)| pid))
+            .unwrap();
+        assert!(signal(pid, "KILL").unwrap(), "{victim} could not be killed");
+        killed.push((victim, pid));
+    }
+    // The fault really fired: another process serves in each place.
+    for (victim, pid) in &killed {
+        let next = poll(|| {
+            children(run.id())
+                .into_iter()
+                .find(|(other, line)| line.contains(victim) && other != pid)
+                .map(|(other, _)| other)
+        });
+        assert!(next.is_some(), "{victim} was not started again");
+    }
+    // Then the supervisor itself.
+    let moved = poll(|| Some(progress(&library)).filter(|now| *now > seen + 20));
+    assert!(moved.is_some(), "the batch stands still");
+    assert!(signal(run.id(), "KILL").unwrap());
+    let first = finish(run, folder.path(), "first").unwrap();
+    assert_eq!(first.code, -1, "the supervisor was not killed: {}", first.err);
+    let gone = poll(|| naming(folder.path()).is_empty().then_some(()));
+    assert!(gone.is_some(), "left running: {:#?}", naming(folder.path()));
+    let done_before = results(&library);
+    assert!(done_before < COUNT, "the batch was over before the supervisor died");
+    let second = finish(start(PROGRAM, &args, folder.path(), "second").unwrap(), folder.path(), "second").unwrap();
+    let json = second.json();
+    let scenarios = json["scenarios"].as_array().unwrap_or_else(|| panic!("{}\n{}", second.err, second.out));
+    assert_eq!(scenarios.len(), COUNT, "{}", second.err);
+    let names: std::collections::BTreeSet<&str> =
+        scenarios.iter().map(|row| row["scenario"].as_str().unwrap()).collect();
+    assert_eq!(names.len(), COUNT, "a scenario came twice");
+    assert!(scenarios.iter().all(|row| row["verdict"] != "failed"), "{json}");
+    assert_eq!(results(&library), COUNT);
+    assert!(poll(|| naming(folder.path()).is_empty().then_some(())).is_some());
+}

@@ -1,0 +1,36 @@
+//! `P-`: proposals, and requests that cannot be read.
+
+use socrates_author::FaultKind;
+use socrates_checks::{Likeness, check_proposal, check_repeats};
+use socrates_model::job::Stage;
+use socrates_model::{Family, ScenarioId};
+
+use super::{Examples, injected, keep, office, proposed};
+
+/// Requests that can be read and not be met.
+const UNMET: &[&str] = &[
+    "A nurse comes towards the robot. Then she sings a song.",
+    "A worker follows the robot. He runs away from it.",
+    "Ein Mann geht auf den Roboter zu und bleibt dann stehen.",
+    "60 people come towards the robot.",
+    "A visitor stands on the escalator.",
+];
+
+pub(super) async fn examples() -> Examples {
+    let mut all = injected(Stage::Proposal, |kind: FaultKind| kind.code().family() == Family::Proposal).await;
+    for rough in UNMET {
+        let (request, location) = office("Drive to the exit", rough);
+        keep(&mut all, socrates_offline::read(&request, &location).problems);
+    }
+    let (request, location) = office("Drive to the exit", "A visitor comes towards the robot.");
+    let mut proposal = proposed(&request, &location).await;
+    let likeness = Likeness::of(&proposal);
+    keep(&mut all, check_repeats(&likeness, &ScenarioId::new("frontal-1").unwrap(), &likeness));
+    let id = location.graph.nodes().iter().map(|node| node.id.clone()).find(|id| {
+        let id = id.as_str();
+        id.len() > 1 && id.chars().any(|c| c.is_ascii_digit() || c == '_')
+    });
+    proposal.description.push_str(&format!(" They meet at {}.", id.unwrap()));
+    keep(&mut all, check_proposal(&proposal, &socrates_offline::read(&request, &location), &location));
+    all
+}

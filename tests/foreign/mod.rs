@@ -1,0 +1,8 @@
+//! With programs of others: browsers, servers of models, other users, terminals. The second ring of the gate runs these with
+//! everything installed; elsewhere what is missing is left out and named.
+
+mod looks;
+mod models;
+mod readers;
+mod strangers;
+mod terminals;

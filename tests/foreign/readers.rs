@@ -1,0 +1,109 @@
+//! Recordings and films in the hands of programs that others wrote: the MCAP project's own reader, and ffmpeg.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+use socrates_tests::skip;
+
+use crate::{WAREHOUSE, make, socrates};
+
+/// The reader of the MCAP project, from the package index of Python.
+const READER: &str = "mcap==1.6.0";
+/// What that reader finds in a file: the counts of its summary, and those of going through all of it.
+const SCRIPT: &str = r#"
+import json, sys
+from mcap.reader import make_reader
+with open(sys.argv[1], "rb") as file:
+    reader = make_reader(file, validate_crcs=True)
+    summary = reader.get_summary()
+    read = {}
+    for schema, channel, message in reader.iter_messages():
+        read[channel.topic] = read.get(channel.topic, 0) + 1
+    print(json.dumps({
+        "counted": {summary.channels[number].topic: count for number, count in summary.statistics.channel_message_counts.items()},
+        "read": read,
+    }))
+"#;
+
+/// A Python that has the reader; where there is none, the running test is left out.
+#[track_caller]
+fn reader() -> Option<PathBuf> {
+    static PLACE: OnceLock<Result<PathBuf, String>> = OnceLock::new();
+    skip::installed(PLACE.get_or_init(install).clone())
+}
+
+fn install() -> Result<PathBuf, String> {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("mcap-reader");
+    let python = folder.join("bin/python3");
+    let has = || {
+        let asked = Command::new(&python).args(["-c", "import mcap.reader"]).stderr(Stdio::null()).status();
+        asked.is_ok_and(|status| status.success())
+    };
+    if has() {
+        return Ok(python);
+    }
+    if !skip::second_ring() {
+        return Err(format!("`{READER}` is not here; `./gate --foreign` installs it"));
+    }
+    for (program, args) in
+        [(Path::new("python3"), ["-m", "venv"].as_slice()), (&python, &["-m", "pip", "install", "-q", READER])]
+    {
+        let mut command = Command::new(program);
+        command.args(args);
+        if program == Path::new("python3") {
+            command.arg(&folder);
+        }
+        let out = command.stdin(Stdio::null()).output().map_err(|why| format!("{}: {why}", program.display()))?;
+        if !out.status.success() {
+            return Err(String::from_utf8_lossy(&out.stderr).into_owned());
+        }
+    }
+    if has() { Ok(python) } else { Err(format!("`{READER}` was installed and cannot be imported")) }
+}
+
+/// A finished bundle.
+fn bundle(folder: &Path) -> PathBuf {
+    let (finished, _) = make(folder, "shown", WAREHOUSE, &["--require", "any"]);
+    assert_eq!(finished.code, 0, "{}", finished.err);
+    folder.join("bundle-shown")
+}
+
+#[test]
+fn the_reader_of_the_mcap_project_reads_every_message_of_a_recording() {
+    let Some(python) = reader() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let recording = bundle(folder.path()).join("details/recordings/reference-1.mcap");
+    let out = Command::new(python).arg("-c").arg(SCRIPT).arg(&recording).stdin(Stdio::null()).output().unwrap();
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let found: Value = serde_json::from_slice(&out.stdout).unwrap();
+    assert_eq!(found["counted"], found["read"], "what the summary counts is there");
+    assert_eq!(found["read"]["/socrates/header"], 1, "{found}");
+    let states = found["read"]["/socrates/agents"].as_u64().unwrap_or_default();
+    assert!(states > 100, "{found}");
+}
+
+#[test]
+fn films_by_ffmpeg_play_in_a_player() {
+    let missing = ["ffmpeg", "ffprobe"].into_iter().find(|name| skip::program(name).is_none());
+    if skip::installed(missing.map_or(Ok(()), |name| Err(format!("there is no `{name}` in PATH")))).is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let name = bundle(folder.path()).display().to_string();
+    for (file, codec) in [("film.mp4", "h264"), ("film.webm", "vp9")] {
+        let made = socrates(folder.path(), "film", &["video", &name, "--out", file, "--size", "320x180"]);
+        assert_eq!(made.code, 0, "{file}: {}", made.err);
+        let asked = ["-v", "error", "-count_frames", "-show_streams", "-show_format", "-of", "json", file];
+        let out = Command::new("ffprobe").args(asked).current_dir(folder.path()).output().unwrap();
+        assert!(out.status.success() && out.stderr.is_empty(), "{file}: {}", String::from_utf8_lossy(&out.stderr));
+        let told: Value = serde_json::from_slice(&out.stdout).unwrap();
+        let stream = &told["streams"][0];
+        assert_eq!((&stream["width"], &stream["height"]), (&Value::from(320), &Value::from(180)), "{told}");
+        assert_eq!(stream["codec_name"], codec, "{told}");
+        let seconds: f64 = told["format"]["duration"].as_str().unwrap().parse().unwrap();
+        let frames: f64 = stream["nb_read_frames"].as_str().unwrap().parse().unwrap();
+        assert!(seconds > 1.0 && seconds <= 20.5 && frames / seconds > 9.0, "{file}: {seconds} s, {frames} frames");
+    }
+}

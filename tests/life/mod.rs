@@ -1,0 +1,22 @@
+//! The main job with real processes: requests in, bundles out.
+
+mod asking;
+mod bad_input;
+mod batches;
+mod bundles;
+mod doors;
+mod evaluations;
+mod folders;
+mod leaving;
+mod libraries;
+mod live;
+mod originals;
+mod pages;
+mod readme;
+mod release;
+mod repairs;
+mod requests;
+mod restarts;
+mod slow_author;
+mod tables;
+mod training;

@@ -1,0 +1,39 @@
+//! The tests of the whole product, in one program: they need the command line's binary.
+#![cfg(test)]
+
+mod chaos;
+mod foreign;
+mod golden;
+mod life;
+
+use std::path::Path;
+
+use socrates_tests::program::{Finished, run};
+
+/// The program under test.
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_socrates");
+
+/// Runs the program in a folder.
+pub(crate) fn socrates(folder: &Path, name: &str, args: &[&str]) -> Finished {
+    run(PROGRAM, args, folder, name).unwrap()
+}
+
+/// Makes scenarios from a request text and gives the process and its result object.
+pub(crate) fn make(folder: &Path, name: &str, request: &str, more: &[&str]) -> (Finished, serde_json::Value) {
+    let file = folder.join(format!("{name}.toml"));
+    std::fs::write(&file, request).unwrap();
+    let (file, out) = (file.display().to_string(), folder.join(format!("bundle-{name}")).display().to_string());
+    let mut args = vec!["--format", "json", "run", file.as_str(), "--out", out.as_str()];
+    args.extend(more);
+    let finished = socrates(folder, name, &args);
+    let json = finished.json();
+    (finished, json)
+}
+
+/// A request for three people in the warehouse.
+pub(crate) const WAREHOUSE: &str = r#"
+location = "warehouse"
+social_context = "A busy warehouse"
+task = "Carry a box from the loading dock to the packing area"
+rough_scenario = "One person walks towards the robot. One person follows the robot."
+"#;

@@ -1,0 +1,7 @@
+//! Whole runs of the engine: crowds, lidar and scenarios.
+#![cfg(test)]
+
+mod common;
+mod crowds;
+mod lidar;
+mod runs;

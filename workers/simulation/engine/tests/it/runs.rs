@@ -1,0 +1,67 @@
+//! Whole runs on the shipped locations with the reference robot: many ways, every relation.
+#![expect(clippy::print_stdout, reason = "what went wrong in which of many runs is told run by run")]
+
+use std::collections::BTreeMap;
+
+use crate::common::scenario::{look_through, place, relations, run, scenario, ways};
+
+#[test]
+fn on_every_shipped_location_the_reference_arrives_and_meets_who_it_should() {
+    let (every, offset) = (sampling("RUNS_EVERY", 37), sampling("RUNS_OFFSET", 0));
+    let (mut runs, mut bad) = (0_u32, 0_u32);
+    let mut lines = Vec::new();
+    let mut per: BTreeMap<&str, Vec<(f64, f64)>> = BTreeMap::new();
+    for name in socrates_maps::shipped::names() {
+        let location = place(name);
+        for way in ways(&location, every, offset) {
+            for (relation, cast, node) in relations(&location, &way) {
+                let made = scenario(&location, way.clone(), vec![cast], &[Some(node.clone())], vec![], false);
+                // One behind the other they pass the node one after the other.
+                let loose = if relation == "ahead" || relation == "behind" { 4.0 } else { 1.5 };
+                let found = look_through(&run(made, "reference"), 1, loose);
+                runs += 1;
+                per.entry(relation).or_default().push((found.closest_m, found.gaps.first().copied().unwrap_or(99.0)));
+                let (from, to) = (&way[0], &way[way.len() - 1]);
+                if !found.troubles.is_empty() {
+                    bad += 1;
+                    lines.push(format!("{name} {relation} {from} → {to} at {node}: {}", found.troubles.join(" · ")));
+                } else if found.closest_m < 0.25 {
+                    lines.push(format!("{name} {relation} {from} → {to} at {node}: near {:.2}", found.closest_m));
+                }
+            }
+        }
+    }
+    println!("{}", lines.join("\n"));
+    let mut berths: BTreeMap<&str, f64> = BTreeMap::new();
+    for (relation, all) in &mut per {
+        let mut near: Vec<f64> = all.iter().map(|(near, _)| *near).collect();
+        let mut gaps: Vec<f64> = all.iter().map(|(_, gap)| *gap).collect();
+        near.sort_by(f64::total_cmp);
+        gaps.sort_by(f64::total_cmp);
+        let at = |list: &[f64], share: f64| list[((list.len() - 1) as f64 * share) as usize];
+        berths.insert(*relation, at(&near, 0.1));
+        println!(
+            "{relation}: {} runs, closest {:.2} / 5 % {:.2} / 20 % {:.2} / median {:.2} m, gap median {:.2} s",
+            near.len(),
+            near[0],
+            at(&near, 0.05),
+            at(&near, 0.2),
+            at(&near, 0.5),
+            at(&gaps, 0.5)
+        );
+    }
+    println!("{bad} of {runs} runs with troubles");
+    assert!(runs > 30);
+    assert!(f64::from(bad) <= 0.05 * f64::from(runs), "{bad} of {runs}");
+    // Nine of ten runs keep 0.28 m between robot and person; whoever stands in a doorway is passed nearer.
+    for relation in ["ahead", "frontal", "crossing"] {
+        assert!(berths[relation] >= 0.28, "{relation}: {berths:?}");
+    }
+    // Who overtakes has what a narrow floor leaves beside the robot.
+    assert!(berths["behind"] >= 0.2, "{berths:?}");
+}
+
+/// A number from the environment, to look at more or other runs than the test takes by itself.
+fn sampling(name: &str, usual: usize) -> usize {
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
