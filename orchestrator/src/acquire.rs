@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use socrates_model::Digest;
 use socrates_model::job::{JobKey, Stage};
-use socrates_model::wire::{Acquire, Acquired, Grant, Hello};
+use socrates_model::wire::{Acquire, Acquired, Grant, Hello, NoWork};
 
 use crate::bucket::{Bucket, server_of};
 use crate::event::{Answer, Token};
@@ -51,10 +51,10 @@ impl Turn<'_> {
         }
         let wanted = &self.state.policy.code_version;
         if draining {
-            return self.none(to, "drained");
+            return self.none(to, NoWork::Drained);
         }
         if !wanted.is_empty() && *wanted != ask.code_version {
-            return self.none(to, "version");
+            return self.none(to, NoWork::Version);
         }
         match self.choose(ask) {
             Ok(chosen) => {
@@ -75,19 +75,19 @@ impl Turn<'_> {
         }
     }
 
-    fn none(&mut self, to: Token, reason: &str) {
-        let none = Acquired::None { retry_after_ms: RETRY_AFTER_MS, reason: reason.to_owned() };
+    fn none(&mut self, to: Token, reason: NoWork) {
+        let none = Acquired::None { retry_after_ms: RETRY_AFTER_MS, reason };
         self.reply(to, Answer::Acquired(none));
     }
 
     /// Jobs to hand out, or why there are none.
-    fn choose(&self, ask: &Acquire) -> Result<Vec<JobKey>, (&'static str, Option<Millis>)> {
+    fn choose(&self, ask: &Acquire) -> Result<Vec<JobKey>, (NoWork, Option<Millis>)> {
         let state = &*self.state;
         let most = usize::try_from(ask.credits).unwrap_or(GRANTS).min(GRANTS);
         let mut chosen = Vec::new();
         let mut keys: BTreeMap<Digest, ()> = BTreeMap::new();
         let mut bytes = 0;
-        let mut why = "empty";
+        let mut why = NoWork::Empty;
         let mut begun = 0;
         let mut wake = Millis::MAX;
         // Questions and their tokens that this reply already puts to each server.
@@ -96,7 +96,7 @@ impl Turn<'_> {
         let workers = u32::try_from(state.workers.len()).unwrap_or(u32::MAX);
         let wip = usize::try_from(workers.saturating_mul(state.policy.open_per_worker)).unwrap_or(usize::MAX).max(8);
         if state.paused.contains("") {
-            return Err(("paused", None));
+            return Err((NoWork::Paused, None));
         }
         for stage in pipeline::URGENCY.into_iter().filter(|stage| ask.stages.contains(stage)) {
             let mut held: BTreeSet<&str> = BTreeSet::new();
@@ -106,22 +106,22 @@ impl Turn<'_> {
                 }
                 let (Some(job), Some(scenario)) = (self.job(key), self.scenario(&key.scenario)) else { continue };
                 if state.paused.contains(&scenario.batch) {
-                    why = "paused";
+                    why = NoWork::Paused;
                     continue;
                 }
                 if pipeline::is_authored(stage) && authoring >= state.author_slots {
-                    why = "throttled";
+                    why = NoWork::Throttled;
                     break;
                 }
                 let server = server_of(&job.spec);
                 if server.is_some_and(|server| held.contains(server)) {
-                    why = "throttled";
+                    why = NoWork::Throttled;
                     continue;
                 }
                 let asked = server.and_then(|server| questions.get(server)).copied().unwrap_or_default();
                 let asks = server.map(|server| self.asks(server, stage, asked));
                 if let Some((server, (from, _))) = server.zip(asks).filter(|(_, (from, _))| *from > self.now) {
-                    (why, wake) = ("throttled", wake.min(from));
+                    (why, wake) = (NoWork::Throttled, wake.min(from));
                     // Nothing that is handed out in this reply makes it sooner: no other job of the stage need be looked at.
                     held.insert(server);
                     continue;
@@ -130,7 +130,7 @@ impl Turn<'_> {
                 if begins && state.under_way + begun >= wip {
                     // Ready jobs stand in order of submission: the later ones are not begun either,
                     // but a started one may still come.
-                    why = "throttled";
+                    why = NoWork::Throttled;
                     if stage == Stage::Proposal {
                         break;
                     }

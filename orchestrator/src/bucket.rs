@@ -10,6 +10,7 @@
 
 use std::collections::BTreeMap;
 
+use socrates_model::AuthorSpec;
 use socrates_model::job::{JobSpec, Stage};
 use socrates_model::wire::{Rate, Rates};
 
@@ -148,15 +149,7 @@ pub fn server_of(spec: &JobSpec) -> Option<&str> {
     if !pipeline::is_authored(spec.key.stage) {
         return None;
     }
-    asked_by(spec.settings.get("author")?)
-}
-
-/// The server that an author asks, with its model: `openai:gpt-4o`. Nothing for rules and recordings.
-#[must_use]
-pub fn asked_by(author: &str) -> Option<&str> {
-    // Recordings ask somebody else, who stands last.
-    let asked = author.rsplit_once('=').map_or(author, |(_, inner)| inner);
-    (asked.contains(':') && !asked.starts_with("cassette:")).then_some(asked)
+    AuthorSpec::server_in(spec.settings.get("author")?)
 }
 
 #[cfg(test)]

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use socrates_model::fault::{Fault, FaultCode};
 use socrates_model::job::{Item, JobKey, Stage};
-use socrates_model::{ScenarioId, Where, job};
+use socrates_model::{AuthorSpec, ScenarioId, Where, job};
 
-use crate::bucket::asked_by;
 use crate::pipeline;
 use crate::state::JobState;
 use crate::turn::Turn;
@@ -29,7 +28,7 @@ impl Turn<'_> {
         });
         let tokens = input.saturating_add(output);
         let author = self.scenario(id).and_then(|scenario| scenario.spec.settings.get("author"));
-        let server = author.and_then(|author| asked_by(author));
+        let server = author.and_then(|author| AuthorSpec::server_in(author));
         let price = server.and_then(|server| price_of(&policy.prices, server)).copied().unwrap_or_default();
         let cost = |tokens: u64, price: u64| u128::from(tokens) * u128::from(price) / 1_000_000;
         let money = u64::try_from(cost(input, price.0) + cost(output, price.1)).unwrap_or(u64::MAX);

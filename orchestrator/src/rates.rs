@@ -2,7 +2,7 @@
 
 use socrates_model::fault::{FailureClass, FaultCode};
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquired, Outcome, Rate, Rates, Report, ScenarioSpec};
+use socrates_model::wire::{Acquired, NoWork, Outcome, Rate, Rates, Report, ScenarioSpec};
 
 use crate::world::{World, fault, report, spec, success};
 use crate::{Effect, JobState, Policy};
@@ -16,7 +16,7 @@ fn by(author: &str, id: &str) -> ScenarioSpec {
 }
 
 /// Why there is no proposal to be made now; nothing where there is one.
-fn held_back(world: &mut World) -> Option<String> {
+fn held_back(world: &mut World) -> Option<NoWork> {
     match world.ask("w", &[Stage::Proposal], 1) {
         Acquired::None { reason, .. } => Some(reason),
         Acquired::Grants(_) => None,
@@ -31,9 +31,9 @@ fn a_configured_rate_holds_questions_back_until_there_is_room() {
     let given = world.grants("w", Stage::Proposal);
     let names: Vec<String> = given.iter().map(|grant| grant.spec.key.scenario.to_string()).collect();
     assert_eq!(names, ["a", "b", "d"]);
-    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    assert_eq!(held_back(&mut world), Some(NoWork::Throttled));
     world.wait(29_000);
-    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    assert_eq!(held_back(&mut world), Some(NoWork::Throttled));
     // When there is room again the workers are told so.
     world.wait(1_100);
     assert!(world.effects.iter().any(|effect| matches!(effect, Effect::Hint(Stage::Proposal))), "{:?}", world.effects);
@@ -50,7 +50,7 @@ fn what_a_server_says_is_left_holds_for_every_worker() {
     // Another model has rates of its own.
     let second = world.grant("another", Stage::Proposal);
     assert_eq!(second.spec.settings["author"], "openai:other");
-    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    assert_eq!(held_back(&mut world), Some(NoWork::Throttled));
     // A question took 1 000 tokens; 9 990 come back in a minute.
     world.wait(6_100);
     assert_eq!(world.grant("w", Stage::Proposal).spec.key.scenario.to_string(), "b");
@@ -66,7 +66,7 @@ fn a_pause_that_a_server_wants_is_its_own() {
     world.send_report(report(&first, outcome));
     assert_eq!(world.state_of(&first), JobState::Delayed);
     assert_eq!(world.grant("w", Stage::Proposal).spec.settings["author"], "vllm:x");
-    assert_eq!(held_back(&mut world).as_deref(), Some("throttled"));
+    assert_eq!(held_back(&mut world), Some(NoWork::Throttled));
     world.wait(20_000);
     assert_eq!(held_back(&mut world), None);
 }

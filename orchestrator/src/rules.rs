@@ -4,7 +4,9 @@ use socrates_model::Role;
 use socrates_model::fault::{FailureClass, Fault, FaultCode};
 use socrates_model::job::{Item, Stage};
 use socrates_model::report::{Repair, Verdict};
-use socrates_model::wire::{Acquired, BeatVerdict, Control, Grant, Outcome, Recorded, Report, StatusAsk, Submitted};
+use socrates_model::wire::{
+    Acquired, BeatVerdict, Control, Grant, NoWork, Outcome, Recorded, Report, StatusAsk, Submitted,
+};
 
 use crate::world::{World, fault, report, spec, success};
 use crate::{AttemptEnd, Effect, Event, JobState, Policy, Row, ScenarioEnd, status};
@@ -424,7 +426,7 @@ fn a_paused_batch_is_not_handed_out() {
     let mut world = begun();
     world.control(Control::Pause("b".to_owned()));
     let answer = world.ask("w", &[Stage::Proposal], 1);
-    assert!(matches!(answer, Acquired::None { reason, .. } if reason == "paused"));
+    assert!(matches!(answer, Acquired::None { reason: NoWork::Paused, .. }));
     world.control(Control::Resume("b".to_owned()));
     world.pass(Stage::Proposal);
 }

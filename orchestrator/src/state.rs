@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use socrates_model::fault::FailureClass;
 use socrates_model::job::{Artifact, Item, JobKey, JobSpec, Look, Stage};
 use socrates_model::report::{Repair, Verdict};
+pub use socrates_model::standing::{JobState, ScenarioEnd};
 use socrates_model::wire::{Hello, ScenarioSpec};
 use socrates_model::{Digest, Fault, Role, ScenarioId};
 
@@ -14,74 +15,6 @@ use crate::policy::Policy;
 
 /// Time on the shell's monotonic clock, ms. Its zero has no meaning.
 pub type Millis = u64;
-
-/// Where a job stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum JobState {
-    /// Waits for other jobs.
-    Blocked,
-    /// Waits for a worker.
-    Ready,
-    /// Waits for a time.
-    Delayed,
-    /// A worker has it.
-    Leased,
-    /// A worker has it and is told to stop.
-    Canceling,
-    /// Ended: it has a result.
-    Succeeded,
-    /// Ended: it cannot get better by itself, or a job before it did not succeed.
-    Failed,
-    /// Ended: its budget is spent, or it kills its workers.
-    Dead,
-    /// Ended: a client gave it up.
-    Canceled,
-    /// Ended: a newer revision took its place.
-    Superseded,
-}
-
-impl JobState {
-    /// Whether nothing more will happen (but for a requeue).
-    #[must_use]
-    pub const fn is_terminal(self) -> bool {
-        match self {
-            Self::Blocked | Self::Ready | Self::Delayed | Self::Leased | Self::Canceling => false,
-            Self::Succeeded | Self::Failed | Self::Dead | Self::Canceled | Self::Superseded => true,
-        }
-    }
-
-    /// Whether a job may go from this state to the next one; the arms below are the whole table.
-    #[must_use]
-    pub const fn may_become(self, next: Self) -> bool {
-        match self {
-            Self::Blocked | Self::Delayed => !matches!(next, Self::Leased | Self::Canceling),
-            Self::Ready => !matches!(next, Self::Blocked | Self::Canceling),
-            Self::Leased => !matches!(next, Self::Blocked),
-            Self::Canceling => matches!(next, Self::Canceled),
-            // Requeue, the one way back.
-            Self::Failed | Self::Dead => matches!(next, Self::Blocked | Self::Ready),
-            Self::Succeeded | Self::Canceled | Self::Superseded => false,
-        }
-    }
-
-    /// Name in the store, in notices and status lines.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Blocked => "blocked",
-            Self::Ready => "ready",
-            Self::Delayed => "delayed",
-            Self::Leased => "leased",
-            Self::Canceling => "canceling",
-            Self::Succeeded => "succeeded",
-            Self::Failed => "failed",
-            Self::Dead => "dead",
-            Self::Canceled => "canceled",
-            Self::Superseded => "superseded",
-        }
-    }
-}
 
 /// How an attempt ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -251,30 +184,6 @@ impl Job {
     pub fn shares(&self) -> bool {
         // A person's look is never a function of its inputs; experiments switch the cache off.
         self.key.stage != Stage::Review && self.spec.settings.get("cache").is_none_or(|cache| cache != "off")
-    }
-}
-
-/// How a scenario ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ScenarioEnd {
-    /// It was simulated and judged.
-    Judged(Verdict),
-    /// No revision came to a verdict.
-    Failed,
-    /// Given up by a client.
-    Canceled,
-}
-
-impl ScenarioEnd {
-    /// Word for status lines.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Judged(verdict) => verdict.name(),
-            Self::Failed => "failed",
-            Self::Canceled => "canceled",
-        }
     }
 }
 

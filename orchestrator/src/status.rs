@@ -8,7 +8,7 @@ use socrates_model::wire::{JobStatus, ScenarioStatus, StatusAsk, StatusReply};
 
 use crate::policy::Policy;
 use crate::recover::Snapshot;
-use crate::state::{Job, Millis, Scenario, State};
+use crate::state::{Job, Millis, Scenario, ScenarioEnd, State};
 
 /// Scenario lines in one reply at most.
 const LINES: usize = 200;
@@ -35,9 +35,9 @@ pub fn status(state: &State, ask: &StatusAsk, now: Millis) -> StatusReply {
     } else {
         chosen().fold((0, 0), |(total, done), scenario| (total + 1, done + usize::from(scenario.end.is_some())))
     };
-    let mut results: BTreeMap<String, u32> = BTreeMap::new();
+    let mut results: BTreeMap<ScenarioEnd, u32> = BTreeMap::new();
     for end in chosen().filter_map(|scenario| scenario.end) {
-        *results.entry(end.name().to_owned()).or_default() += 1;
+        *results.entry(end).or_default() += 1;
     }
     let held = state.workers.values().flat_map(|worker| &worker.held).map(|key| &key.scenario);
     let running: BTreeSet<&ScenarioId> = held.collect();
@@ -106,12 +106,8 @@ fn line<'a>(state: &State, scenario: &Scenario, jobs: impl Iterator<Item = &'a &
         jobs.iter_mut().for_each(|job| job.faults.clear());
     }
     let size = size(&jobs);
-    let line = ScenarioStatus {
-        id: scenario.spec.id.clone(),
-        done: scenario.end.is_some(),
-        result: scenario.end.map(|end| end.name().to_owned()).unwrap_or_default(),
-        jobs,
-    };
+    let line =
+        ScenarioStatus { id: scenario.spec.id.clone(), done: scenario.end.is_some(), result: scenario.end, jobs };
     (line, size)
 }
 
@@ -127,7 +123,7 @@ fn job_status(job: &Job) -> JobStatus {
     };
     JobStatus {
         key: job.key.clone(),
-        state: job.state.name().to_owned(),
+        state: job.state,
         attempts: last.map_or(0, |attempt| attempt.number),
         wall_ms,
         remark,

@@ -315,7 +315,7 @@ impl<'a> Turn<'a> {
         let notice = Box::new(Notice {
             seq: self.state.next_seq,
             key: key.clone(),
-            state: job.state.name().to_owned(),
+            state: job.state,
             attempt: job.attempts.last().map_or(0, |attempt| attempt.number),
             remark,
             wall_ms,

@@ -117,7 +117,7 @@ impl World {
     pub(crate) fn grant(&mut self, instance: &str, stage: Stage) -> Grant {
         match self.ask(instance, &[stage], 1) {
             Acquired::Grants(mut grants) => grants.remove(0),
-            Acquired::None { reason, .. } => panic!("no {stage}: {reason}"),
+            Acquired::None { reason, .. } => panic!("no {stage}: {reason:?}"),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
-use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Where};
+use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Signature, Where};
 
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
@@ -110,7 +110,7 @@ mod tests {
         members["humans"][0]["group"] = Value::Null;
         members["expected_events"][0]["source"] = Value::Null;
         let read = parse_proposal(&value.to_string(), &asked()).unwrap();
-        assert_eq!((read.format, read.author.as_str()), (FORMAT, ""));
+        assert_eq!((read.format, read.author), (FORMAT, Signature::default()));
     }
 
     #[test]

@@ -21,7 +21,7 @@ const MOST_RULES: usize = 12;
 /// those of all humans at once.
 pub fn parse_behaviors(text: &str, question: &Question) -> Result<Behaviors, Vec<Fault>> {
     let value = prepared(crate::json::object(text)?);
-    let author = value.get("author").and_then(Value::as_str).unwrap_or_default().to_owned();
+    let author = value.get("author").and_then(Value::as_str).unwrap_or_default().into();
     let Some(members) = value.get("humans").and_then(Value::as_object) else {
         return Err(vec![Fault::new(
             FaultCode::ESchema,
@@ -185,6 +185,6 @@ mod tests {
     fn behaviors_as_they_are_stored_are_read_too() {
         let stored =
             json!({"format": 1, "author": "x", "humans": {"human_1": {"tree": "<root/>", "description": "d"}}});
-        assert_eq!(parse(&stored).unwrap().author, "x");
+        assert_eq!(parse(&stored).unwrap().author, "x".into());
     }
 }

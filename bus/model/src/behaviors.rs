@@ -27,5 +27,5 @@ pub struct Behaviors {
     /// The trees.
     pub humans: BTreeMap<HumanId, HumanBehavior>,
     /// Who wrote them.
-    pub author: String,
+    pub author: crate::Signature,
 }

@@ -42,6 +42,8 @@ pub mod fault;
 pub mod job;
 pub mod role;
 pub mod schema;
+pub mod signature;
+pub mod standing;
 pub mod wire;
 pub mod words;
 
@@ -69,6 +71,8 @@ pub use request::{AuthorSpec, BadRequest, Moment, Request, Seeds};
 pub use role::Role;
 pub use rule::{Action, RobotRule, Rule, Trigger};
 pub use run::Run;
+pub use signature::Signature;
+pub use standing::{JobState, ScenarioEnd};
 pub use time::SimTime;
 
 /// Format number written into every artifact. A reader refuses a larger one.

@@ -47,7 +47,7 @@ pub struct Paths {
     #[serde(default)]
     pub reasoning: String,
     /// Who wrote it.
-    pub author: String,
+    pub author: crate::Signature,
 }
 
 impl Paths {
@@ -134,7 +134,7 @@ mod tests {
             humans: BTreeMap::from([(who, nodes(human)), (HumanId::new(2), nodes("z"))]),
             encounters: nodes(meets).into_iter().map(|node| Encounter { human: who, node }).collect(),
             reasoning: String::new(),
-            author: String::new(),
+            author: crate::Signature::default(),
         };
         assert_eq!(paths.encounters_of(HumanId::new(2)).count(), 0);
         assert_eq!(paths.encounter_of(who), paths.encounters_of(who).next());

@@ -137,7 +137,7 @@ pub struct Proposal {
     #[serde(default)]
     pub notes: Vec<String>,
     /// Who wrote it: `offline/1`, `openai:gpt-…`, `pinned`.
-    pub author: String,
+    pub author: crate::Signature,
 }
 
 impl Proposal {

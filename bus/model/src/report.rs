@@ -31,6 +31,16 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// Every verdict.
+    pub const ALL: [Self; 6] = [
+        Self::Realised,
+        Self::RealisedLate,
+        Self::NotTriggered,
+        Self::Contradicted,
+        Self::Invalid,
+        Self::RobotPrevented,
+    ];
+
     /// Spelled as in every file.
     #[must_use]
     pub const fn name(self) -> &'static str {

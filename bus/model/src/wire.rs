@@ -12,6 +12,7 @@ use crate::hash::Digest;
 use crate::ids::{PlannerName, ScenarioId};
 use crate::job::{Artifact, JobKey, JobSpec, Stage};
 use crate::role::Role;
+use crate::standing::{JobState, ScenarioEnd};
 
 /// A worker introduces itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,6 +86,22 @@ pub struct Grant {
     pub inline: BTreeMap<Digest, String>,
 }
 
+/// Why there is no work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoWork {
+    /// Nothing is ready: the worker may ask again at its own pace.
+    Empty,
+    /// A person holds the batch, or the whole orchestrator.
+    Paused,
+    /// A limit of authors or of a server is reached: the worker waits as told.
+    Throttled,
+    /// The worker is leaving.
+    Drained,
+    /// The worker is of another version than the jobs.
+    Version,
+}
+
 /// Answer to [`Acquire`]. "No work" is said; silence never means it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -95,8 +112,8 @@ pub enum Acquired {
     None {
         /// Ask again after, ms.
         retry_after_ms: u64,
-        /// `empty`, `paused`, `throttled`, `standby`, `drained`.
-        reason: String,
+        /// Why.
+        reason: NoWork,
     },
 }
 
@@ -347,8 +364,8 @@ pub struct ScenarioStatus {
     pub id: ScenarioId,
     /// Whether nothing more will happen.
     pub done: bool,
-    /// `realised` … or `failed`, `canceled`; empty while it is not done.
-    pub result: String,
+    /// How it ended; none while it is not done.
+    pub result: Option<ScenarioEnd>,
     /// Newest jobs of each stage and item.
     pub jobs: Vec<JobStatus>,
 }
@@ -358,8 +375,8 @@ pub struct ScenarioStatus {
 pub struct JobStatus {
     /// Which.
     pub key: JobKey,
-    /// State in lower case: `ready`, `leased`, `succeeded`, …
-    pub state: String,
+    /// Where it stands.
+    pub state: JobState,
     /// Attempts so far.
     pub attempts: u32,
     /// Working time of the last attempt, ms.
@@ -382,9 +399,9 @@ pub struct StatusReply {
     /// Scenarios of which a worker holds a job.
     #[serde(default)]
     pub running: u32,
-    /// Scenarios that are done, by how they ended: `realised` … or `failed`, `canceled`.
+    /// Scenarios that are done, by how they ended.
     #[serde(default)]
-    pub results: BTreeMap<String, u32>,
+    pub results: BTreeMap<ScenarioEnd, u32>,
     /// How long this orchestrator has been serving, ms.
     #[serde(default)]
     pub serving_ms: u64,
@@ -405,7 +422,7 @@ pub struct Notice {
     /// Job.
     pub key: JobKey,
     /// State it has now.
-    pub state: String,
+    pub state: JobState,
     /// Attempt.
     pub attempt: u32,
     /// Remark: fault codes or the report's remark.

@@ -104,11 +104,16 @@ pub(crate) fn report(recording: &Recording, text: &str) -> Report {
     }))
 }
 
-/// A request, a reading, a proposal and paths made of this text.
+/// A request, a reading, a proposal and paths made of this text, behind the door that would refuse some of it.
 pub(crate) fn papers(text: &str) -> (Request, Reading, Proposal, Paths) {
-    let request = read(json!({
-        "location": text, "social_context": text, "task": text, "rough_scenario": text,
-    }));
+    let plain: Request = read(json!({ "location": "office", "social_context": "", "task": "Go" }));
+    let request = Request {
+        location: text.to_owned(),
+        social_context: text.to_owned(),
+        task: text.to_owned(),
+        rough_scenario: Some(text.to_owned()),
+        ..plain
+    };
     let reading = read(json!({
         "format": 1, "humans": [], "task": text, "ignored": [text], "notes": [text], "problems": [],
         "facts": [{ "id": "f1", "quote": text, "kind": { "humans": 1 } }, { "id": "f2", "quote": "", "kind": { "robot_task": text } }],

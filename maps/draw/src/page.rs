@@ -72,7 +72,7 @@ impl Page<'_> {
             about => format!("<abbr title=\"{}\">{}</abbr>", escape(about), escape(&self.location.name)),
         };
         let own = vec![
-            ("author", escape(&self.proposal.author)),
+            ("author", escape(&self.proposal.author.to_string())),
             ("location", location),
             ("reading_line", escape_code(self.reading_line)),
             ("reading", self.reading_html()),

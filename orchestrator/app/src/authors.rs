@@ -10,6 +10,7 @@ use std::time::Duration;
 use socrates_author::{Keys, Server};
 use socrates_llm::probe::Kept;
 use socrates_llm::{ApiKey, Dialect, Rung};
+use socrates_model::AuthorSpec;
 use socrates_orchestrator::policy::AFTER_CALL_MS;
 use socrates_prompts::Style;
 
@@ -110,11 +111,11 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
 }
 
 /// Looks whether these authors can be asked, before anything is made.
-pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &str>) -> Result<(), Complaint> {
-    let authors: BTreeSet<&str> = authors.into_iter().collect();
+pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &AuthorSpec>) -> Result<(), Complaint> {
+    let authors: BTreeSet<String> = authors.into_iter().map(AuthorSpec::to_string).collect();
     let keys = keys(config)?;
     for author in authors {
-        if let Err(why) = socrates_author::check(author, &keys).await {
+        if let Err(why) = socrates_author::check(&author, &keys).await {
             let code = if why.code.family() == socrates_model::Family::Transport { Code::Author } else { Code::Input };
             let what = format!("the author `{author}` cannot be asked; nothing was made");
             let hint = "`socrates config author` shows model, address and key; `--author offline` needs none";

@@ -5,23 +5,25 @@
 //! ```
 
 mod beside;
+mod collect;
 mod read;
 
 pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports, reports_in};
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use socrates_draw::StageRow;
-use socrates_model::job::{Artifact, Item, Stage};
-use socrates_model::wire::{JobStatus, ScenarioStatus};
+use socrates_model::job::{Artifact, Item};
+use socrates_model::wire::ScenarioStatus;
 use socrates_model::{
     Behaviors, Digest, Location, Paths, PlannerName, Proposal, Reading, Recording, Report, Request, Role, Run, Verdict,
 };
 
 use self::beside::Beside;
+use self::collect::{Judged, Made, MadeRun, string};
 use crate::exit::Complaint;
 use crate::history::PastJob;
 use crate::layout::{self, Sheet};
@@ -111,7 +113,7 @@ impl Bundle {
 pub(crate) fn wish(prepared: &Prepared, seed: u64) -> Digest {
     let mut text = json!({
         "request": prepared.request, "location": prepared.location, "pins": prepared.pins, "seed": seed,
-        "author": prepared.author, "injected": prepared.injected, "version": env!("CARGO_PKG_VERSION"),
+        "author": prepared.author.to_string(), "injected": prepared.injected, "version": env!("CARGO_PKG_VERSION"),
     });
     if let Some(members) = text.as_object_mut().filter(|_| !prepared.style.is_empty()) {
         members.insert("style".to_owned(), json!(prepared.style));
@@ -149,51 +151,21 @@ pub(crate) fn write(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>)
 
 /// Writes the files of a bundle that will lie in `dir` into the folder `beside`.
 fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
-    let Past { status, jobs: past, fetch, alone, .. } = *past;
-    let judged = scoring_jobs(status).first().and_then(|lead| past.iter().find(|job| job.key == lead.key));
-    let text = |role: Role, stage: Stage| -> Result<String, Complaint> {
-        // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
-        if let Some(digest) = judged.and_then(|job| job.inputs.get(&role)) {
-            return utf8(role, fetch(digest)?);
-        }
-        if let Some(pinned) = prepared.pins.get(&role) {
-            return Ok(pinned.clone());
-        }
-        let artifact = newest(status, stage, &Item::Whole).and_then(|job| made(job, role));
-        string(artifact.ok_or_else(|| missing(role))?, fetch)
-    };
-    let reading: Reading = match judged.and_then(|job| job.inputs.get(&Role::Reading)) {
-        Some(digest) => parse(Role::Reading, &utf8(Role::Reading, fetch(digest)?)?)?,
-        None => prepared.reading.clone(),
-    };
-    let (proposal_text, paths_text, behaviors_text) = (
-        text(Role::Proposal, Stage::Proposal)?,
-        text(Role::Paths, Stage::Paths)?,
-        text(Role::Behaviors, Stage::Behaviors)?,
-    );
-    let proposal: Proposal = parse(Role::Proposal, &proposal_text)?;
-    let paths: Paths = parse(Role::Paths, &paths_text)?;
-    let behaviors: Behaviors = parse(Role::Behaviors, &behaviors_text)?;
-    let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
-    let (runs, entries) = put_runs(&mut out, status, fetch)?;
-    let Some((recording, report)) = runs.first() else { return Err(missing(Role::Report)) };
+    let Made { reading, proposal, paths, behaviors, runs } = collect::made(prepared, past)?;
+    let Some((_, (recording, report))) = runs.first() else { return Err(missing(Role::Report)) };
     let verdict = report.verdict;
+    let mut out = Writer { dir: beside.to_path_buf(), files: BTreeMap::new() };
     let title = format!("{} · {}", proposal.title, prepared.location.name);
     let svg = socrates_draw::run_picture(&prepared.location, recording, Some(&paths), Some(report), &title);
     out.put(&layout::DRAWING, &"", svg.as_bytes())?;
     let paint = move || socrates_draw::png_from_svg(&svg, 1.5).map_err(|why| ours(&why.to_string()));
     // Painting takes as long as everything else of a bundle, so it goes on beside it where a core is free.
-    let (painting, painted) = if alone { (Some(std::thread::spawn(paint)), None) } else { (None, Some(paint())) };
+    let (painting, painted) = if past.alone { (Some(std::thread::spawn(paint)), None) } else { (None, Some(paint())) };
     out.put(&layout::STORY, &"", story(&title, &proposal, report).as_bytes())?;
-    out.put(&layout::METRICS, &"", metrics(runs.iter().map(|(_, report)| report)).as_bytes())?;
-    let recordings: Vec<&Recording> = runs.iter().map(|(recording, _)| recording).collect();
+    out.put(&layout::METRICS, &"", metrics(runs.iter().map(|(_, (_, report))| report)).as_bytes())?;
+    let recordings: Vec<&Recording> = runs.iter().map(|(_, (recording, _))| recording).collect();
     out.put(&layout::AGENTS, &"", socrates_stream::csv::write_agents(&recordings).as_bytes())?;
-    let request_text = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
-    out.put(&layout::REQUEST, &"", request_text.as_bytes())?;
-    for (name, bytes) in &prepared.location_files {
-        out.put(&layout::LOCATION_FILES, name, bytes)?;
-    }
-    out.put(&layout::LOCATION, &"", pretty(&prepared.location)?.as_bytes())?;
+    put_request(&mut out, prepared)?;
     out.put(&layout::READING, &"", pretty(&reading)?.as_bytes())?;
     out.put(&layout::PROPOSAL, &"", pretty(&proposal)?.as_bytes())?;
     out.put(&layout::PATHS, &"", pretty(&paths)?.as_bytes())?;
@@ -201,15 +173,15 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     for (id, human) in &behaviors.humans {
         out.put(&layout::TREES, id, human.tree.as_bytes())?;
     }
+    let (runs, entries) = put_runs(&mut out, runs)?;
     let broke = || Err(ours("the thread that painted `run.png` broke"));
     let painted = painted.or_else(|| painting?.join().ok()).unwrap_or_else(broke)?;
     out.put(&layout::PICTURE, &"", &painted)?;
-    let stages = stage_rows(past);
-    let provenance = provenance(prepared, seed, status, past, fetch);
+    let provenance = provenance(prepared, seed, past);
     out.put(&layout::PROVENANCE, &"", pretty(&provenance)?.as_bytes())?;
     let manifest = Manifest {
         format: socrates_model::FORMAT,
-        scenario: status.id.to_string(),
+        scenario: past.status.id.to_string(),
         request: prepared.name.clone(),
         seed,
         wish: wish(prepared, seed),
@@ -217,53 +189,38 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
         runs: entries,
         files: out.files.clone(),
     };
-    let bundle = Bundle {
-        dir: dir.to_path_buf(),
-        manifest,
-        request: prepared.request.clone(),
-        location: prepared.location.clone(),
-        reading,
-        proposal,
-        paths,
-        behaviors,
-        runs,
-    };
+    let (request, location) = (prepared.request.clone(), prepared.location.clone());
+    let dir = dir.to_path_buf();
+    let bundle = Bundle { dir, manifest, request, location, reading, proposal, paths, behaviors, runs };
     // The page shows working times, so it stands outside the bundle's digest, like the provenance.
-    out.put(&layout::PAGE, &"", crate::report::page(&bundle, &stages, &prepared.author).as_bytes())?;
+    let page = crate::report::page(&bundle, &stage_rows(past.jobs), &prepared.author.to_string());
+    out.put(&layout::PAGE, &"", page.as_bytes())?;
     out.put(&layout::MANIFEST, &"", pretty(&bundle.manifest)?.as_bytes())?;
     Ok(bundle)
 }
 
-/// A run with what was found of it.
-type Judged = (Recording, Report);
+/// Writes the request and its location, which make the scenario again.
+fn put_request(out: &mut Writer, prepared: &Prepared) -> Result<(), Complaint> {
+    let request = toml::to_string_pretty(&portable(prepared)).map_err(|why| ours(&why.to_string()))?;
+    out.put(&layout::REQUEST, &"", request.as_bytes())?;
+    for (name, bytes) in &prepared.location_files {
+        out.put(&layout::LOCATION_FILES, name, bytes)?;
+    }
+    out.put(&layout::LOCATION, &"", pretty(&prepared.location)?.as_bytes())?;
+    Ok(())
+}
 
 /// Writes every recording and report, and hands them back with their entries in the manifest.
-fn put_runs(
-    out: &mut Writer,
-    status: &ScenarioStatus,
-    fetch: &Fetch<'_>,
-) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
-    let mut runs: Vec<(Recording, Report)> = Vec::new();
-    let mut entries = Vec::new();
-    for job in scoring_jobs(status) {
-        let simulation = newest(status, Stage::Simulation, &job.key.item);
-        let (Some(run), Some(judged), Some(simulation)) = (job.key.item.run(), made(job, Role::Report), simulation)
-        else {
-            continue;
-        };
-        let report: Report = parse(Role::Report, &string(judged, fetch)?)?;
-        let recorded = made(simulation, Role::Recording).ok_or_else(|| missing(Role::Recording))?;
-        let bytes = fetch(&recorded.digest)?;
-        let recording =
-            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
-        out.put(&layout::RECORDINGS, run, &bytes)?;
-        let report_digest = out.put(&layout::REPORTS, run, pretty(&report)?.as_bytes())?;
+fn put_runs(out: &mut Writer, made: Vec<MadeRun>) -> Result<(Vec<Judged>, Vec<RunEntry>), Complaint> {
+    let (mut runs, mut entries) = (Vec::new(), Vec::new());
+    for ((run, bytes), (recording, report)) in made {
+        out.put(&layout::RECORDINGS, &run, &bytes)?;
         entries.push(RunEntry {
-            planner: run.planner.clone(),
-            seed: run.seed,
             verdict: report.verdict,
             recording_hash: recording.hash(),
-            report: report_digest,
+            report: out.put(&layout::REPORTS, &run, pretty(&report)?.as_bytes())?,
+            planner: run.planner,
+            seed: run.seed,
         });
         runs.push((recording, report));
     }
@@ -304,44 +261,8 @@ fn missing(role: Role) -> Complaint {
     ours(&format!("the scenario ended without a {role}"))
 }
 
-fn parse<T: serde::de::DeserializeOwned>(role: Role, text: &str) -> Result<T, Complaint> {
-    serde_json::from_str(text).map_err(|why| ours(&format!("the {role} cannot be decoded: {why}")))
-}
-
 fn pretty<T: Serialize>(value: &T) -> Result<String, Complaint> {
     serde_json::to_string_pretty(value).map(|text| text + "\n").map_err(|why| ours(&why.to_string()))
-}
-
-fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
-    if let Some(text) = &artifact.inline {
-        return Ok(text.clone());
-    }
-    utf8(artifact.role, fetch(&artifact.digest)?)
-}
-
-fn utf8(role: Role, bytes: Vec<u8>) -> Result<String, Complaint> {
-    String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
-}
-
-/// The output of a job in this role.
-fn made(job: &JobStatus, role: Role) -> Option<&Artifact> {
-    job.artifacts.iter().find(|artifact| artifact.role == role)
-}
-
-/// The newest job of a stage and item that has a result.
-fn newest<'a>(status: &'a ScenarioStatus, stage: Stage, item: &Item) -> Option<&'a JobStatus> {
-    status
-        .jobs
-        .iter()
-        .filter(|job| job.key.stage == stage && job.key.item == *item && job.state == "succeeded")
-        .max_by_key(|job| job.key.revision)
-}
-
-/// Newest scoring jobs, the reference first, then by planner and seed.
-fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
-    let items: BTreeSet<&Item> =
-        status.jobs.iter().filter(|job| job.key.stage == Stage::Scoring).map(|job| &job.key.item).collect();
-    items.into_iter().filter_map(|item| newest(status, Stage::Scoring, item)).collect()
 }
 
 /// The request as the bundle keeps it: its location lies beside it, so it can be moved.
@@ -408,7 +329,7 @@ pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
         let remark = [job.remark.clone(), faults.join("; ")];
         StageRow {
             stage: format!("{}{item}{revision}", job.key.stage),
-            state: job.state.clone(),
+            state: job.state,
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
             remark: remark.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · "),
@@ -428,13 +349,8 @@ fn without_words(mut exchange: serde_json::Value) -> serde_json::Value {
 }
 
 /// Versions, seeds, every question, answer, fault and attempt, superseded revisions included.
-fn provenance(
-    prepared: &Prepared,
-    seed: u64,
-    status: &ScenarioStatus,
-    past: &[PastJob],
-    fetch: &Fetch<'_>,
-) -> serde_json::Value {
+fn provenance(prepared: &Prepared, seed: u64, past: &Past<'_>) -> serde_json::Value {
+    let Past { status, jobs: past, fetch, .. } = *past;
     // What passed between the stage and its author, as text or as the object it is.
     let exchanges = |artifacts: &[Artifact]| -> Vec<serde_json::Value> {
         artifacts
@@ -472,5 +388,5 @@ fn provenance(
                     "said": said(&job.artifacts) })
         })
         .collect();
-    json!({ "version": env!("CARGO_PKG_VERSION"), "program": prepared.build, "author": prepared.author, "seed": seed, "result": status.result, "jobs": jobs })
+    json!({ "version": env!("CARGO_PKG_VERSION"), "program": prepared.build, "author": prepared.author.to_string(), "seed": seed, "result": status.result, "jobs": jobs })
 }

@@ -64,7 +64,7 @@ fn paragraph(bundle: &Bundle, asked: u32, program: Option<&str>) -> String {
         Some(rough) => out.push_str(&format!(", guided by the rough scenario \"{}\".", sentence(rough))),
         None => out.push_str(", without a rough scenario (unguided)."),
     }
-    let author = if proposal.author.starts_with("offline") {
+    let author = if proposal.author.is_rules() {
         format!("the rule-based offline author ({})", proposal.author)
     } else {
         format!("`{}`", proposal.author)

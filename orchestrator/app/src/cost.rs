@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use socrates_orchestrator::bucket::asked_by;
+use socrates_model::{AuthorSpec, Signature};
 use socrates_orchestrator::{pipeline, price_of};
 
 use crate::config::Config;
@@ -125,7 +125,7 @@ fn lines(models: &BTreeMap<String, Sum>, prices: &BTreeMap<String, Price>) -> Ve
 
 /// The cost and its currency; nothing where the price is not known. The offline author costs nothing.
 fn money(model: &str, sum: &Sum, prices: &BTreeMap<String, Price>) -> Option<(f64, String)> {
-    if model.starts_with("offline") {
+    if Signature::from(model).is_rules() {
         return Some((0.0, dollars()));
     }
     let price = price_of(prices, model)?;
@@ -145,13 +145,12 @@ pub(crate) fn prices_of(config: &Config) -> Result<BTreeMap<String, (u64, u64)>,
 }
 
 /// A limit of money holds only where the author has a price.
-pub(crate) fn check_limit(config: &Config, author: &str) -> Result<(), Complaint> {
+pub(crate) fn check_limit(config: &Config, author: &AuthorSpec) -> Result<(), Complaint> {
     let limit = config.number("orchestrator.cents_per_scenario");
-    let Some(server) = asked_by(author).filter(|_| limit > 0) else { return Ok(()) };
-    if price_of(&prices_of(config)?, server).is_some() {
+    let Some((kind, model)) = author.server().filter(|_| limit > 0) else { return Ok(()) };
+    if price_of(&prices_of(config)?, &format!("{}:{model}", kind.name())).is_some() {
         return Ok(());
     }
-    let model = server.split_once(':').map_or(server, |(_, model)| model);
     Err(Complaint::input(
         format!("`orchestrator.cents_per_scenario` is {limit}, but `{model}` has no price"),
         "`author.prices` names a table of prices; a model without one would be asked without a limit",

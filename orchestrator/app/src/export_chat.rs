@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use socrates_export::chat_jsonl::{ChatAnswered, ChatAsked, ChatRole, Fate, write};
 use socrates_model::job::Stage;
-use socrates_model::{Behaviors, Paths, Proposal};
+use socrates_model::{Behaviors, Paths, Proposal, Signature};
 use socrates_prompts::{Question, Role, parse_behaviors, parse_paths, parse_proposal};
 
 use crate::bundle;
@@ -116,23 +116,23 @@ fn questions(dir: &Path) -> Result<Vec<ChatAsked>, Complaint> {
 /// What can be signed by whoever wrote it.
 trait Signed: Clone + PartialEq + serde::Serialize {
     /// Where the name stands.
-    fn author(&mut self) -> &mut String;
+    fn author(&mut self) -> &mut Signature;
 }
 
 impl Signed for Proposal {
-    fn author(&mut self) -> &mut String {
+    fn author(&mut self) -> &mut Signature {
         &mut self.author
     }
 }
 
 impl Signed for Paths {
-    fn author(&mut self) -> &mut String {
+    fn author(&mut self) -> &mut Signature {
         &mut self.author
     }
 }
 
 impl Signed for Behaviors {
-    fn author(&mut self) -> &mut String {
+    fn author(&mut self) -> &mut Signature {
         &mut self.author
     }
 }
@@ -142,7 +142,7 @@ fn edited<T: Signed>(answers: &mut Vec<ChatAnswered>, mut left: T, read: impl Fn
     let author = std::mem::take(left.author());
     let same = |text: &str| {
         read(text).is_some_and(|mut read| {
-            read.author().clear();
+            *read.author() = Signature::default();
             read == left
         })
     };

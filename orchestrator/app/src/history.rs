@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use socrates_model::job::{Artifact, JobKey, Stage};
-use socrates_model::{Digest, Fault, Role, ScenarioId};
-use socrates_orchestrator::{Attempt, ScenarioEnd, Snapshot};
+use socrates_model::{Digest, Fault, JobState, Role, ScenarioEnd, ScenarioId};
+use socrates_orchestrator::{Attempt, Snapshot};
 
 /// One revision of one job.
 #[derive(Debug, Clone)]
@@ -12,7 +12,7 @@ pub(crate) struct PastJob {
     /// Which.
     pub(crate) key: JobKey,
     /// How it ended, in lower case.
-    pub(crate) state: String,
+    pub(crate) state: JobState,
     /// Seed it was done with.
     pub(crate) seed: u64,
     /// Inputs by role.
@@ -52,7 +52,7 @@ impl History {
         for job in rows.jobs {
             let result = results.remove(&job.key);
             let past = PastJob {
-                state: job.state.name().to_owned(),
+                state: job.state,
                 seed: job.spec.seed,
                 inputs: job.spec.inputs,
                 sent_back: job.sent_back,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use socrates_model::Report;
+use socrates_model::{Report, ScenarioEnd};
 use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
 use socrates_stream::csv::quoted;
 
@@ -16,7 +16,7 @@ pub(crate) const COLUMNS: [&str; 8] = ["request", "location", "planner", "seed",
 /// Place of the kind among them.
 const KIND: usize = 6;
 /// Verdict of a scenario of which there is no run.
-pub(crate) const FAILED: &str = "failed";
+pub(crate) const FAILED: &str = ScenarioEnd::Failed.name();
 
 /// What the runs of one scenario have in common.
 #[derive(Debug, Clone, Copy)]

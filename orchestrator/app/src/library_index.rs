@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 use socrates_checks::{Likeness, Signature, check_repeats};
-use socrates_model::{Digest, Reading, ScenarioId};
+use socrates_model::{Digest, Reading, ScenarioEnd, ScenarioId, Verdict};
 
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
@@ -30,7 +30,7 @@ pub(crate) struct Row {
     /// Its folder.
     pub(crate) bundle: String,
     /// Verdict, or `failed` where no bundle could be made.
-    pub(crate) verdict: String,
+    pub(crate) verdict: ScenarioEnd,
     /// Why there is no bundle; empty where there is one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub(crate) reason: String,
@@ -128,9 +128,9 @@ impl Repeats {
 
 /// Scenarios by verdict, the most frequent first: `12 realised · 3 contradicted`.
 fn counted<'a>(rows: impl Iterator<Item = &'a Row>) -> String {
-    let mut verdicts = BTreeMap::<&str, u64>::new();
-    rows.for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
-    let mut verdicts: Vec<(&str, u64)> = verdicts.into_iter().collect();
+    let mut verdicts = BTreeMap::<ScenarioEnd, u64>::new();
+    rows.for_each(|row| *verdicts.entry(row.verdict).or_default() += 1);
+    let mut verdicts: Vec<(ScenarioEnd, u64)> = verdicts.into_iter().collect();
     verdicts.sort_by_key(|(verdict, count)| (std::cmp::Reverse(*count), *verdict));
     let words: Vec<String> = verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect();
     words.join(" · ")
@@ -166,15 +166,15 @@ pub(crate) fn finish(
 ) -> Result<Code, Complaint> {
     let library = read(root)
         .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
-    let mut verdicts = BTreeMap::<&str, u64>::new();
-    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict.as_str()).or_default() += 1);
+    let mut verdicts = BTreeMap::<ScenarioEnd, u64>::new();
+    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict).or_default() += 1);
     for line in library.told() {
         talk.line(&line);
     }
     talk.line(&format!("table      {}", root.join(crate::index::FILE).display()));
     talk.line(&format!("look       {}", root.join("report.html").display()));
     talk.line(&format!("next       {}", crate::next::after_batch(root, &library)));
-    let whole = verdicts.get("realised").copied().unwrap_or(0) == library.count;
+    let whole = verdicts.get(&ScenarioEnd::Judged(Verdict::Realised)).copied().unwrap_or(0) == library.count;
     talk.result(&json!({
         "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
         "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
@@ -226,7 +226,7 @@ mod tests {
             scenario: ScenarioId::new(name).unwrap(),
             request: "hall".to_owned(),
             bundle: name.to_owned(),
-            verdict: verdict.to_owned(),
+            verdict: verdict.parse().unwrap(),
             reason: String::new(),
             repeats: repeats.map(|other| ScenarioId::new(other).unwrap()),
         };

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use socrates_model::ScenarioId;
+use socrates_model::{ScenarioEnd, ScenarioId};
 
 use crate::batch::Card;
 use crate::bundler::{Bundled, Bundler};
@@ -41,7 +41,7 @@ pub(crate) async fn batch(
         }
         Place::New(root) => place::told(talk, &base, root),
     };
-    crate::authors::check(config, prepared.iter().map(|one| one.author.as_str())).await?;
+    crate::authors::check(config, prepared.iter().map(|one| &one.author)).await?;
     let work = place::claim(&root, wish)?;
     for one in &prepared {
         talk.line(&format!("request    {:<26}author  {}", one.name, one.author_note));
@@ -108,7 +108,7 @@ fn rows(
         let (verdict, repeats, reason) = match bundled {
             Ok(card) => {
                 let earlier = repeats.of(&want.id, card.likeness.clone());
-                let verdict = card.verdict.to_string();
+                let verdict = ScenarioEnd::Judged(card.verdict);
                 cards.insert(want.id.to_string(), card);
                 (verdict, earlier, String::new())
             }
@@ -119,7 +119,7 @@ fn rows(
                     Some(first) => talk.warn(&format!("{}: failed as `{first}` did", want.id)),
                     None => talk.warn(&format!("{}: {why}", want.id)),
                 }
-                (crate::index::FAILED.to_owned(), earlier, reason)
+                (ScenarioEnd::Failed, earlier, reason)
             }
         };
         let request = want.prepared.name.clone();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use socrates_model::{PlannerName, Verdict};
+use socrates_model::{PlannerName, ScenarioEnd, Verdict};
 
 use crate::bundle::Bundle;
 use crate::files::shell;
@@ -100,7 +100,7 @@ fn robots(planners: &[PlannerName]) -> String {
 
 /// The line after a batch: why some failed, else what people say of the runs.
 pub(crate) fn after_batch(root: &Path, library: &Library) -> String {
-    let failed = library.scenarios.iter().any(|row| row.verdict == "failed");
+    let failed = library.scenarios.iter().any(|row| row.verdict == ScenarioEnd::Failed);
     let what = if failed { "status --failed" } else { "labels page" };
     format!("socrates {what} {}", shell(root))
 }

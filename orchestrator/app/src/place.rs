@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use socrates_model::{Digest, ScenarioId};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 
 use crate::exit::Complaint;
 use crate::output::Printer;
@@ -73,9 +73,10 @@ pub(crate) fn claim(dir: &Path, wish: Digest) -> Result<PathBuf, Complaint> {
 }
 
 /// Marks a folder as one of which nothing more will come by itself.
-pub(crate) fn end(dir: &Path, result: &str) {
+pub(crate) fn end(dir: &Path, result: Option<ScenarioEnd>) {
     // Where it cannot be written, the folder counts as one to resume.
-    drop(std::fs::write(dir.join(WORK).join(ENDED), result));
+    let word = result.map_or("", ScenarioEnd::name);
+    drop(std::fs::write(dir.join(WORK).join(ENDED), word));
 }
 
 /// How it ended without a bundle, if it did.
@@ -124,7 +125,7 @@ mod tests {
         assert_eq!((new(one).as_str(), new(other).as_str()), ("my-1", "my-1-2"), "what is being made keeps its folder");
         claim(&base, one).unwrap();
         assert!(work.join("jobs.sqlite").is_file(), "the same again resumes");
-        end(&base, "failed");
+        end(&base, Some(ScenarioEnd::Failed));
         assert_eq!((new(other).as_str(), ended(&base).as_deref()), ("my-1", Some("failed")));
         claim(&base, other).unwrap();
         assert!(!work.join("jobs.sqlite").exists() && ended(&base).is_none(), "what failed makes room");

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use socrates_model::request::ServerKind;
 use socrates_model::{AuthorSpec, Fault, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
 
 use crate::config::Config;
@@ -42,8 +43,8 @@ pub(crate) struct Prepared {
     pub(crate) build: String,
     /// Whether the provenance keeps questions and answers.
     pub(crate) keep_answers: bool,
-    /// Resolved author: `offline`, `openai:MODEL`, `cassette:FOLDER`.
-    pub(crate) author: String,
+    /// Resolved author, never [`AuthorSpec::Auto`].
+    pub(crate) author: AuthorSpec,
     /// Why this author, for the first line of a run.
     pub(crate) author_note: String,
 }
@@ -128,18 +129,18 @@ pub(crate) fn prepare_text(
     let reading = socrates_offline::read(&request, &location);
     check_reading(&reading, &request, &location, shown)?;
     let mut pins = BTreeMap::new();
-    for (role, pinned) in
+    for (role, file) in
         [(Role::Proposal, &request.proposal), (Role::Paths, &request.paths), (Role::Behaviors, &request.behaviors)]
     {
-        if let Some(pinned) = pinned {
-            pins.insert(role, read_pin(role, &folder.join(pinned))?);
+        if let Some(file) = file {
+            pins.insert(role, read_pin(role, &folder.join(file))?);
         }
     }
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     crate::cost::check_limit(config, &author)?;
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.
-    if author != "offline" && !long.is_empty() {
+    if author != AuthorSpec::Offline && !long.is_empty() {
         let mut complaint = Complaint::input(
             format!("the request `{shown}` is too long for a language model"),
             "shorten these texts, or take `--author offline`, which reads them whole",
@@ -152,7 +153,7 @@ pub(crate) fn prepare_text(
         author_note.push_str("; FAULTS ARE PUT INTO ITS ANSWERS");
     }
     let mut style = crate::authors::style(config)?;
-    if author == "offline" {
+    if author == AuthorSpec::Offline {
         // Rules have no style of being asked: the offline author's results stay the same results. What it is told of faults
         // that were put in matters.
         style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
@@ -305,7 +306,8 @@ fn read_pin(role: Role, path: &Path) -> Result<String, Complaint> {
     }
 }
 
-fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(String, String), Complaint> {
+/// The author to ask, and why this one.
+fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(AuthorSpec, String), Complaint> {
     let configured = || {
         config.text("author.kind").parse::<AuthorSpec>().map_err(|bad| {
             Complaint::input(format!("`author.kind`: {bad}"), "`socrates config author` prints the manual")
@@ -313,21 +315,22 @@ fn choose_author(wish: &AuthorSpec, config: &Config) -> Result<(String, String),
     };
     match if *wish == AuthorSpec::Auto { configured()? } else { wish.clone() } {
         AuthorSpec::Auto => {}
-        AuthorSpec::Offline => return Ok(("offline".to_owned(), "offline, rules".to_owned())),
-        named => return Ok((named.to_string(), named.to_string())),
+        AuthorSpec::Offline => return Ok((AuthorSpec::Offline, "offline, rules".to_owned())),
+        named
+        @ (AuthorSpec::Server(..) | AuthorSpec::Cassette(_) | AuthorSpec::Record(..) | AuthorSpec::Replay(..)) => {
+            let note = named.to_string();
+            return Ok((named, note));
+        }
     }
     let model = config.text("author.model");
     let key_found = crate::authors::key_found(config)?;
-    Ok(if key_found && !model.is_empty() {
-        (format!("openai:{model}"), format!("openai:{model}"))
-    } else if key_found {
-        (
-            "offline".to_owned(),
-            "offline, rules (a key was found, but no model: `socrates config author` to change)".to_owned(),
-        )
-    } else {
-        ("offline".to_owned(), "offline, rules (no key found; `socrates config author` to change)".to_owned())
-    })
+    if key_found && !model.is_empty() {
+        let author = AuthorSpec::Server(ServerKind::OpenAi, model);
+        let note = author.to_string();
+        return Ok((author, note));
+    }
+    let why = if key_found { "a key was found, but no model" } else { "no key found" };
+    Ok((AuthorSpec::Offline, format!("offline, rules ({why}: `socrates config author` to change)")))
 }
 
 /// A word that is safe as folder and scenario id.

@@ -118,7 +118,7 @@ pub async fn worker(config: &Config, options: &WorkerOptions) -> Result<(), Comp
     }
     served.map_err(|why| {
         // Neither a folder nor a version mends itself when the worker is started again.
-        let stuck = matches!(why, KitError::Folder { .. } | KitError::Incompatible { .. });
+        let stuck = matches!(why, KitError::Folder { .. } | KitError::Incompatible(_));
         Complaint::input(format!("the {stage} worker stops: {why}"), "the same command resumes once that is mended")
             .with_code(if stuck { Code::Input } else { Code::Ours })
     })

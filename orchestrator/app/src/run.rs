@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::{PlannerName, Verdict};
+use socrates_model::{JobState, PlannerName, ScenarioEnd, Verdict};
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle, Past};
@@ -153,7 +153,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         }
         Place::New(dir) => place::told(talk, &base, dir),
     };
-    crate::authors::check(config, [prepared.author.as_str()]).await?;
+    crate::authors::check(config, [&prepared.author]).await?;
     let work = place::claim(&dir, wish)?;
     let id = place::named_like(&dir, scenario_id(&prepared.name, options.seed, 0, 1)?);
     let prepared = Arc::new(prepared);
@@ -176,7 +176,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         Err(Complaint::input(format!("the bundle could not be written: {broke}"), "").with_code(Code::Ours))
     });
     let past = made.history.of(&status.id);
-    talk.line(&stages::line(past, &status.result));
+    talk.line(&stages::line(past, status.result));
     let result = match outcome {
         Ok(bundle) => {
             // The work folder is only needed to resume; the bundle holds everything now.
@@ -185,7 +185,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         }
         Err(mut complaint) => {
             if complaint.code != Code::Ours {
-                place::end(&dir, &status.result);
+                place::end(&dir, status.result);
             }
             complaint.result = Some(Box::new(
                 json!({ "bundle": dir.display().to_string(), "verdict": null, "stages": told(past), "metrics": {}, "reading": prepared.reading }),
@@ -199,16 +199,21 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
 /// Writes the bundle, or says why there is none.
 pub(crate) fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
     let status = past.status;
-    let scored =
-        status.jobs.iter().any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == "succeeded");
+    let scored = status
+        .jobs
+        .iter()
+        .any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == JobState::Succeeded);
     if scored {
         return bundle::write(dir, prepared, seed, past);
     }
     let faults: Vec<socrates_model::Fault> =
-        status.jobs.iter().filter(|job| job.state != "succeeded").flat_map(|job| job.faults.clone()).collect();
+        status.jobs.iter().filter(|job| job.state != JobState::Succeeded).flat_map(|job| job.faults.clone()).collect();
     let author = faults.iter().any(|fault| fault.code.family() == socrates_model::Family::Transport);
     let mut complaint = Complaint::faults(
-        format!("the scenario ended as `{}` before it could be simulated", status.result),
+        match status.result {
+            Some(end) => format!("the scenario ended as `{end}` before it could be simulated"),
+            None => "the scenario has not ended and was not simulated".to_owned(),
+        },
         &faults,
         if author {
             "`socrates config author` shows which author is asked; `--author offline` needs none"
@@ -247,7 +252,7 @@ fn finish(
         let of_them = if late > 0 { format!(", {late} of them late") } else { String::new() };
         talk.line(&format!("runs       realised in {} of {}{of_them}", realised + late, played().count()));
     }
-    if bundle.proposal.author.starts_with("offline") {
+    if bundle.proposal.author.is_rules() {
         talk.line("author     offline: written by rules, not by a language model");
     }
     let dir = bundle.dir.display().to_string();

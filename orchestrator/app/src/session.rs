@@ -215,7 +215,7 @@ fn spec(
     };
     let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
     let mut settings =
-        BTreeMap::from([("author".to_owned(), prepared.author.clone()), ("pace".to_owned(), options.pace.clone())]);
+        BTreeMap::from([("author".to_owned(), prepared.author.to_string()), ("pace".to_owned(), options.pace.clone())]);
     settings.extend(prepared.injected.clone());
     settings.extend(prepared.style.clone());
     if config.text("stream.live") != "off" {

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use socrates_model::job::{Item, JobKey, Stage};
 use socrates_model::wire::{JobStatus, ScenarioStatus};
-use socrates_model::{Fault, Verdict};
+use socrates_model::{Fault, JobState, ScenarioEnd, Verdict};
 
 use crate::history::PastJob;
 use crate::prepare::plural;
@@ -21,7 +21,7 @@ pub(crate) struct StageJob {
     /// Revision.
     pub(crate) revision: u32,
     /// State in lower case.
-    pub(crate) state: String,
+    pub(crate) state: JobState,
     /// Attempts so far; 0 where its result was known already.
     pub(crate) attempts: u32,
     /// Working time of all of them, ms.
@@ -41,7 +41,7 @@ impl From<&PastJob> for StageJob {
             stage: job.key.stage,
             item: job.key.item.clone(),
             revision: job.key.revision,
-            state: job.state.clone(),
+            state: job.state,
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
             codes: faults.map(|fault| fault.code.code()).collect(),
@@ -57,7 +57,7 @@ impl From<&JobStatus> for StageJob {
             stage: job.key.stage,
             item: job.key.item.clone(),
             revision: job.key.revision,
-            state: job.state.clone(),
+            state: job.state,
             attempts: job.attempts,
             wall_ms: job.wall_ms,
             codes: job.faults.iter().map(|fault| fault.code.code()).collect(),
@@ -67,22 +67,22 @@ impl From<&JobStatus> for StageJob {
     }
 }
 
-/// The line of a scenario as the store tells of it; `result` is how it ended, empty while it goes on.
-pub(crate) fn line(past: &[PastJob], result: &str) -> String {
+/// The line of a scenario as the store tells of it; `result` is how it ended, none while it goes on.
+pub(crate) fn line(past: &[PastJob], result: Option<ScenarioEnd>) -> String {
     of(&past.iter().map(StageJob::from).collect::<Vec<_>>(), result)
 }
 
 /// The line of a scenario as an answer on the bus tells of it.
 pub(crate) fn line_of(status: &ScenarioStatus) -> String {
-    of(&status.jobs.iter().map(StageJob::from).collect::<Vec<_>>(), &status.result)
+    of(&status.jobs.iter().map(StageJob::from).collect::<Vec<_>>(), status.result)
 }
 
 /// The line of a finished bundle as its provenance tells of it; empty where it has none.
-pub(crate) fn line_of_bundle(dir: &Path, verdict: &str) -> String {
+pub(crate) fn line_of_bundle(dir: &Path, verdict: Verdict) -> String {
     let text = std::fs::read_to_string(dir.join(crate::layout::PROVENANCE.path)).unwrap_or_default();
     let provenance: Value = serde_json::from_str(&text).unwrap_or_default();
     let jobs = provenance.get("jobs").and_then(Value::as_array).into_iter().flatten();
-    of(&jobs.filter_map(told).collect::<Vec<_>>(), verdict)
+    of(&jobs.filter_map(told).collect::<Vec<_>>(), Some(ScenarioEnd::Judged(verdict)))
 }
 
 /// A job of a provenance.
@@ -96,7 +96,7 @@ fn told(job: &Value) -> Option<StageJob> {
         stage: key.stage,
         item: key.item,
         revision: key.revision,
-        state: job.get("state")?.as_str()?.to_owned(),
+        state: serde_json::from_value(job.get("state")?.clone()).ok()?,
         attempts: u32::try_from(attempts.len()).unwrap_or(u32::MAX),
         wall_ms: attempts.iter().filter_map(|attempt| attempt.get("wall_ms")?.as_u64()).sum(),
         codes: faults.filter_map(|fault| Some(serde_json::from_value::<Fault>(fault).ok()?.code.code())).collect(),
@@ -105,27 +105,27 @@ fn told(job: &Value) -> Option<StageJob> {
     })
 }
 
-fn of(jobs: &[StageJob], result: &str) -> String {
+fn of(jobs: &[StageJob], result: Option<ScenarioEnd>) -> String {
     // A verdict that is not the wanted one stands at the stage that found it, and at the one that it sends back.
-    let missed = !matches!(result, "" | "failed" | "canceled") && result != Verdict::Realised.name();
+    let missed = result.and_then(ScenarioEnd::verdict).filter(|verdict| *verdict != Verdict::Realised);
     let newest = jobs.iter().filter(|job| job.stage == Stage::Scoring).max_by_key(|job| job.revision);
-    let blamed = newest.and_then(|job| job.blames).filter(|_| missed);
+    let blamed = newest.and_then(|job| job.blames).filter(|_| missed.is_some());
     let parts = Stage::WORKERS.into_iter().filter_map(|stage| {
         let mut own: Vec<&StageJob> = jobs.iter().filter(|job| job.stage == stage).collect();
         own.sort_by_key(|job| job.revision);
-        let found = missed && stage == Stage::Scoring;
-        part(stage, &own, found || blamed == Some(stage), if found { result } else { "" })
+        let found = missed.filter(|_| stage == Stage::Scoring);
+        part(stage, &own, found.is_some() || blamed == Some(stage), found)
     });
     parts.collect::<Vec<_>>().join("   ")
 }
 
 /// One stage; nothing where it has no job that counts.
-fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: &str) -> Option<String> {
+fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: Option<Verdict>) -> Option<String> {
     // Of each item the newest job that nothing newer made needless.
-    let counts = jobs.iter().filter(|job| job.state != "superseded");
+    let counts = jobs.iter().filter(|job| job.state != JobState::Superseded);
     let last: BTreeMap<&Item, &&StageJob> = counts.map(|job| (&job.item, job)).collect();
     let one = last.values().max_by_key(|job| job.revision)?;
-    let ended = |job: &StageJob| matches!(job.state.as_str(), "failed" | "dead" | "canceled");
+    let ended = |job: &StageJob| matches!(job.state, JobState::Failed | JobState::Dead | JobState::Canceled);
     let attempts: u32 = jobs.iter().map(|job| job.attempts).sum();
     // A stage that nothing came to has no fault of its own.
     let unreached = attempts == 0 && last.values().all(|job| ended(job));
@@ -133,14 +133,14 @@ fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: &str) -> Option<
         "–"
     } else if wrong || last.values().any(|job| ended(job)) {
         "✘"
-    } else if last.values().all(|job| job.state == "succeeded") {
+    } else if last.values().all(|job| job.state == JobState::Succeeded) {
         "✔"
     } else {
         "…"
     };
     let ms: u64 = jobs.iter().map(|job| job.wall_ms).sum();
-    let took = match (attempts, one.state.as_str()) {
-        (0, "succeeded") => "known".to_owned(),
+    let took = match (attempts, one.state) {
+        (0, JobState::Succeeded) => "known".to_owned(),
         (0, _) if unreached => "not reached".to_owned(),
         (0, _) => "waiting".to_owned(),
         _ => format!("{ms} ms"),
@@ -150,7 +150,7 @@ fn part(stage: Stage, jobs: &[&StageJob], wrong: bool, verdict: &str) -> Option<
     } else {
         took
     };
-    let verdict = if verdict.is_empty() { String::new() } else { format!(": {verdict}") };
+    let verdict = verdict.map_or_else(String::new, |verdict| format!(": {verdict}"));
     Some(format!("{stage} {mark} {what}{verdict}{}", again(jobs, attempts)))
 }
 
@@ -180,7 +180,7 @@ mod tests {
             stage,
             item: Item::Whole,
             revision,
-            state: "succeeded".to_owned(),
+            state: JobState::Succeeded,
             attempts,
             wall_ms,
             codes: Vec::new(),
@@ -192,7 +192,7 @@ mod tests {
     /// Two revisions of the behaviors; the second simulation was the same as the first, so its result was known.
     fn repaired() -> Vec<StageJob> {
         let sent = |revision| StageJob { codes: vec!["D-NOTRIG"], ..job(Stage::Behaviors, revision, 1, 4) };
-        let old = |job: StageJob| StageJob { state: "superseded".to_owned(), ..job };
+        let old = |job: StageJob| StageJob { state: JobState::Superseded, ..job };
         let run = StageJob { remark: "62.8 s simulated".to_owned(), ..job(Stage::Simulation, 0, 1, 400) };
         let judged = StageJob { blames: Some(Stage::Behaviors), ..job(Stage::Scoring, 1, 1, 9) };
         vec![
@@ -228,11 +228,11 @@ mod tests {
     fn what_was_known_took_no_time_and_what_failed_is_marked() {
         let known = of(&[job(Stage::Proposal, 0, 0, 0)], "realised");
         assert_eq!(known, "proposal ✔ known");
-        let failed = StageJob { state: "failed".to_owned(), ..job(Stage::Paths, 0, 4, 12) };
+        let failed = StageJob { state: JobState::Failed, ..job(Stage::Paths, 0, 4, 12) };
         assert_eq!(of(&[failed], "failed"), "paths ✘ 12 ms (3 retries)");
-        let dead = StageJob { state: "dead".to_owned(), ..job(Stage::Simulation, 0, 0, 0) };
+        let dead = StageJob { state: JobState::Dead, ..job(Stage::Simulation, 0, 0, 0) };
         assert_eq!(of(&[dead], "failed"), "simulation – not reached");
-        let waiting = StageJob { state: "waiting".to_owned(), ..job(Stage::Simulation, 0, 0, 0) };
+        let waiting = StageJob { state: JobState::Ready, ..job(Stage::Simulation, 0, 0, 0) };
         assert_eq!(of(&[waiting], ""), "simulation … waiting");
         let item = |item: &str, state: &str| StageJob {
             item: item.parse().unwrap(),

@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 use socrates_model::wire::StatusReply;
+use socrates_model::{JobState, ScenarioEnd};
 use socrates_store::Reader;
 
 use crate::exit::{Code, Complaint};
@@ -59,7 +60,7 @@ impl Phase {
 struct Row {
     scenario: String,
     /// How it ended; none while it is open.
-    result: Option<String>,
+    result: Option<ScenarioEnd>,
     /// Its stages, or why it failed.
     told: String,
 }
@@ -71,7 +72,7 @@ struct Standing {
     phase: Phase,
     total: u64,
     running: u64,
-    results: BTreeMap<String, u64>,
+    results: BTreeMap<ScenarioEnd, u64>,
     /// Since when, s, and how fast; only while somebody works.
     speed: Option<(f64, Speed)>,
     workers: BTreeMap<String, u32>,
@@ -80,8 +81,8 @@ struct Standing {
 
 impl Standing {
     fn of_rows(what: &str, phase: Phase, rows: Vec<Row>) -> Self {
-        let mut results: BTreeMap<String, u64> = BTreeMap::new();
-        for result in rows.iter().filter_map(|row| row.result.clone()) {
+        let mut results: BTreeMap<ScenarioEnd, u64> = BTreeMap::new();
+        for result in rows.iter().filter_map(|row| row.result) {
             *results.entry(result).or_default() += 1;
         }
         let total = u64::try_from(rows.len()).unwrap_or(u64::MAX);
@@ -94,7 +95,7 @@ impl Standing {
         let speed = Speed::of(u64::from(reply.done), u64::from(reply.total), u64::from(reply.done_before), elapsed);
         self.total = u64::from(reply.total);
         self.running = u64::from(reply.running);
-        self.results = reply.results.iter().map(|(result, count)| (result.clone(), u64::from(*count))).collect();
+        self.results = reply.results.iter().map(|(result, count)| (*result, u64::from(*count))).collect();
         self.speed = Some((elapsed.as_secs_f64(), speed));
         self.workers.clone_from(&reply.workers);
         self
@@ -105,7 +106,7 @@ impl Standing {
     }
 
     fn failed(&self) -> u64 {
-        self.results.get("failed").copied().unwrap_or(0)
+        self.results.get(&ScenarioEnd::Failed).copied().unwrap_or(0)
     }
 
     /// The eight lines.
@@ -122,8 +123,8 @@ impl Standing {
         let why =
             if failed > 0 { format!(" · `socrates status --failed {}` says why", shell(word)) } else { String::new() };
         let list = |rows: Vec<String>| if rows.is_empty() { "none".to_owned() } else { rows.join(" · ") };
-        let mut verdicts: Vec<(&String, &u64)> =
-            self.results.iter().filter(|(result, _)| *result != "failed").collect();
+        let mut verdicts: Vec<(&ScenarioEnd, &u64)> =
+            self.results.iter().filter(|(result, _)| **result != ScenarioEnd::Failed).collect();
         verdicts.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
         let verdicts = list(verdicts.iter().map(|(verdict, count)| format!("{count} {verdict}")).collect());
         let rate = self.speed.filter(|(_, speed)| speed.per_s > 0.0);
@@ -151,7 +152,7 @@ impl Standing {
     fn listed(&self, which: Listed) -> Vec<&Row> {
         let meant = |row: &&Row| match which {
             Listed::None => self.total == 1,
-            Listed::Failed => row.result.as_deref() == Some("failed"),
+            Listed::Failed => row.result == Some(ScenarioEnd::Failed),
             Listed::All => true,
         };
         self.rows.iter().filter(meant).collect()
@@ -178,7 +179,7 @@ pub async fn status(talk: &Printer, what: &str, listed: Listed) -> Result<(), Co
         talk.line(&line);
     }
     for row in standing.listed(listed) {
-        let result = row.result.as_deref().unwrap_or("open");
+        let result = row.result.map_or("open", ScenarioEnd::name);
         talk.line(&format!("{:<28} {result:<14} {}", row.scenario, row.told));
     }
     talk.result(&standing.object(listed));
@@ -205,7 +206,7 @@ async fn of_endpoint(what: &str, listed: Listed) -> Result<Standing, Complaint> 
         from += u32::try_from(page.len()).unwrap_or(u32::MAX);
         rows.extend(page.iter().map(|scenario| Row {
             scenario: scenario.id.to_string(),
-            result: scenario.done.then(|| scenario.result.clone()),
+            result: scenario.result,
             told: stages::line_of(scenario),
         }));
     }
@@ -249,9 +250,9 @@ async fn of_folder(what: &str, folder: &Path, listed: Listed) -> Result<Standing
 /// The scenarios of a finished bundle or library.
 fn made(folder: &Path) -> Option<Vec<Row>> {
     if let Some(manifest) = bundle::manifest(folder) {
-        let verdict = manifest.verdict.to_string();
-        let told = stages::line_of_bundle(folder, &verdict);
-        return Some(vec![Row { scenario: manifest.scenario, result: Some(verdict), told }]);
+        let told = stages::line_of_bundle(folder, manifest.verdict);
+        let result = Some(ScenarioEnd::Judged(manifest.verdict));
+        return Some(vec![Row { scenario: manifest.scenario, result, told }]);
     }
     let library = library_index::read(folder)?;
     let row = |row: library_index::Row| Row {
@@ -301,15 +302,14 @@ fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
         return Ok(standings.into_iter().map(row).collect());
     }
     let history = History::of_rows(reader.all().map_err(unread)?);
-    let row = |(id, end): &(socrates_model::ScenarioId, Option<socrates_orchestrator::ScenarioEnd>)| {
-        let result = end.map(|end| end.name().to_owned());
+    let row = |(id, end): &(socrates_model::ScenarioId, Option<ScenarioEnd>)| {
         let past = history.of(id);
-        let mut told = stages::line(past, result.as_deref().unwrap_or_default());
+        let mut told = stages::line(past, *end);
         // The reason of a failure: the newest fault of the job that ended it.
-        let wrong = past.iter().rev().find(|job| matches!(job.state.as_str(), "failed" | "dead"));
+        let wrong = past.iter().rev().find(|job| matches!(job.state, JobState::Failed | JobState::Dead));
         let fault = wrong.and_then(|job| job.attempts.iter().rev().find_map(|attempt| attempt.faults.first()));
         told.push_str(&fault.map_or_else(String::new, |fault| format!(" · {fault}")));
-        Row { scenario: id.to_string(), result, told }
+        Row { scenario: id.to_string(), result: *end, told }
     };
     Ok(history.ends.iter().map(row).collect())
 }
@@ -335,9 +335,9 @@ mod tests {
             done: 24,
             running: 5,
             results: BTreeMap::from([
-                ("realised".to_owned(), 20),
-                ("contradicted".to_owned(), 3),
-                ("failed".to_owned(), 1),
+                (ScenarioEnd::Judged(Verdict::Realised), 20),
+                (ScenarioEnd::Judged(Verdict::Contradicted), 3),
+                (ScenarioEnd::Failed, 1),
             ]),
             serving_ms: 10_000,
             done_before: 4,
@@ -369,7 +369,7 @@ mod tests {
     fn what_stopped_or_ended_knows_its_counts_and_claims_no_speed() {
         let row = |name: &str, result: Option<&str>| Row {
             scenario: name.to_owned(),
-            result: result.map(str::to_owned),
+            result: result.map(|word| word.parse().unwrap()),
             told: String::new(),
         };
         let rows = || vec![row("a", Some("realised")), row("b", Some("failed")), row("c", None)];

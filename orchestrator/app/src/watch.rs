@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::{Value, json};
 use socrates_link::{Bus, Overflow, keys};
-use socrates_model::{AgentState, EventKind, RunId, SimTime};
+use socrates_model::{AgentState, EventKind, JobState, RunId, SimTime};
 use socrates_stream::{Sight, TickRange, Watch};
 
 use crate::exit::{Code, Complaint};
@@ -204,7 +204,7 @@ async fn going_on(bus: &dyn Bus) -> Option<RunId> {
     let reply = session::status(bus, 0).await.ok()?;
     let jobs = reply.scenarios.iter().flat_map(|scenario| &scenario.jobs);
     let mut leased =
-        jobs.filter(|job| job.key.stage == socrates_model::job::Stage::Simulation && job.state == "leased");
+        jobs.filter(|job| job.key.stage == socrates_model::job::Stage::Simulation && job.state == JobState::Leased);
     let key = &leased.next()?.key;
     Some(key.item.run()?.id(&key.scenario))
 }

@@ -207,14 +207,7 @@ fn read_paths(map: &Map<String, Value>) -> Result<Paths, SocratesJsonError> {
     let mut encounters: Vec<Encounter> = encounters.into_iter().collect::<Result<_, _>>()?;
     // The order in which the robot comes to them.
     encounters.sort_by_key(|encounter| robot.iter().position(|node| *node == encounter.node));
-    Ok(Paths {
-        format: FORMAT,
-        robot,
-        humans,
-        encounters,
-        reasoning: String::new(),
-        author: "socrates-json".to_owned(),
-    })
+    Ok(Paths { format: FORMAT, robot, humans, encounters, reasoning: String::new(), author: "socrates-json".into() })
 }
 
 fn read_trees(value: &Value) -> Result<Behaviors, SocratesJsonError> {
@@ -225,7 +218,7 @@ fn read_trees(value: &Value) -> Result<Behaviors, SocratesJsonError> {
         let tree = tree.as_str().ok_or_else(|| bad(&at, tree, "XML as text"))?.to_owned();
         humans.insert(human(&at, name)?, HumanBehavior { tree, description: String::new() });
     }
-    Ok(Behaviors { format: FORMAT, humans, author: "socrates-json".to_owned() })
+    Ok(Behaviors { format: FORMAT, humans, author: "socrates-json".into() })
 }
 
 fn read_scenario(value: &Value, groups: Option<&Value>, paths: Option<&Paths>) -> Result<Proposal, SocratesJsonError> {
@@ -292,7 +285,7 @@ fn read_scenario(value: &Value, groups: Option<&Value>, paths: Option<&Paths>) -
         },
         not_understood: Vec::new(),
         notes: vec!["imported; clauses are made from the paths alone".to_owned()],
-        author: "socrates-json".to_owned(),
+        author: "socrates-json".into(),
     })
 }
 

@@ -194,7 +194,7 @@ fn a_store_can_be_looked_at_while_it_is_held_and_nothing_changes() {
     let peek = Reader::open(&path).unwrap().all().unwrap();
     assert_eq!(peek.scenarios[0].end, state.scenarios.values().next().unwrap().end);
     assert_eq!((peek.results.len(), peek.attempts.len()), (11, 11));
-    let ended = peek.scenarios[0].end.unwrap().name().to_owned();
+    let ended = peek.scenarios[0].end.unwrap();
     assert_eq!(of(standings(&path).unwrap()), [("a".to_owned(), Some(ended))]);
     // A scenario whose name begins alike is another one.
     store.save(&submit(&mut state, "a0")).unwrap();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags, params};
 use serde::de::DeserializeOwned;
-use socrates_model::ScenarioId;
+use socrates_model::{ScenarioEnd, ScenarioId};
 use socrates_orchestrator::Snapshot;
 
 use crate::sqlite::failure;
@@ -18,8 +18,8 @@ pub struct Standing {
     pub place: u64,
     /// Its id.
     pub scenario: ScenarioId,
-    /// `realised` … or `failed`, `canceled`; none while it is not done.
-    pub result: Option<String>,
+    /// How it ended; none while it is not done.
+    pub result: Option<ScenarioEnd>,
 }
 
 /// Reads a store that another process writes.
@@ -51,13 +51,15 @@ impl Reader {
         let mut statement = connection.prepare_cached(sql).map_err(failed)?;
         let rows = statement
             .query_map(params![number(from), number(limit)], |row| {
-                Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?, row.get(2)?))
+                Ok((row.get::<_, i64>(0)?, row.get::<_, String>(1)?, row.get::<_, Option<String>>(2)?))
             })
             .map_err(failed)?;
         let mut standings = Vec::new();
         for row in rows {
             let (place, id, result) = row.map_err(failed)?;
             let Ok(scenario) = ScenarioId::new(id) else { continue };
+            let result = serde_json::from_value(result.into())
+                .map_err(|source| StoreError::Row { table: "scenario", source })?;
             standings.push(Standing { place: u64::try_from(place).unwrap_or(0), scenario, result });
         }
         Ok(standings)

@@ -80,7 +80,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         expected_events: Vec::new(),
         not_understood: reading.ignored.clone(),
         notes,
-        author: NAME.to_owned(),
+        author: NAME.into(),
     };
     proposal.expected_events = events::events(&proposal, reading, &part, &extras, location);
     reachable(&mut proposal, question);

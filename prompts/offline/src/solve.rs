@@ -591,6 +591,6 @@ fn written(net: &Net<'_>, solution: &Solution, proposal: &Proposal) -> Paths {
         humans,
         encounters,
         reasoning,
-        author: NAME.to_owned(),
+        author: NAME.into(),
     }
 }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use socrates_author::{Asking, AuthorContext};
+use socrates_kit::KitError;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquire, Acquired, Grant, Outcome, Report, ScenarioSpec, Submit};
+use socrates_model::wire::{Acquire, Acquired, Grant, Hello, Outcome, Report, ScenarioSpec, Submit, Welcome};
 use socrates_model::{Digest, FailureClass, Fault, FaultCode, PlannerName, ScenarioId};
 use socrates_orchestrator::{Answer, Effect, Event, Policy, State, step};
 use socrates_prompts::Style;
@@ -49,9 +50,9 @@ impl Machine {
 
     fn send(&mut self, event: impl FnOnce(u64) -> Event) -> Option<Answer> {
         let token = self.now;
-        step(&mut self.state, event(token), self.now).into_iter().find_map(|effect| match effect {
-            Effect::Reply { to, answer } if to == token => Some(*answer),
-            _ => None,
+        step(&mut self.state, event(token), self.now).into_iter().find_map(|effect| {
+            let Effect::Reply { to, answer } = effect else { return None };
+            (to == token).then(|| *answer)
         })
     }
 
@@ -64,6 +65,25 @@ impl Machine {
         self.now += ms;
         self.send(|_| Event::Tick);
         self.faults()
+    }
+
+    /// What a worker of version `ours` is told by an orchestrator that works with version `theirs`.
+    fn other_version(ours: &str, theirs: &str) -> Option<Fault> {
+        let policy = Policy { code_version: theirs.to_owned(), ..Policy::default() };
+        let mut machine = Self { state: State::new(policy), now: 1_000 };
+        let hello = Hello {
+            instance: "worker-1".to_owned(),
+            stages: vec![Stage::Proposal],
+            code_version: ours.to_owned(),
+            pid: 1,
+            host: String::new(),
+        };
+        let Some(Answer::Welcome(Welcome::Incompatible { range })) = machine.send(|to| Event::Hello { hello, to })
+        else {
+            return None;
+        };
+        let KitError::Incompatible(fault) = KitError::incompatible(ours, &range) else { return None };
+        Some(fault)
     }
 
     fn report(mut self, grant: &Grant, outcome: Outcome) -> Vec<Fault> {
@@ -101,6 +121,7 @@ pub(super) async fn examples() -> Examples {
     keep(&mut all, machine.report(&grant, wrong).into_iter().filter(|fault| fault.code == FaultCode::JBudget));
     let (machine, grant) = Machine::new(policy);
     keep(&mut all, machine.report(&grant, Outcome::Ok));
+    keep(&mut all, Machine::other_version("0.1.0", "0.2.0"));
     keep(&mut all, [socrates_planners::catalog::unknown("teb")]);
     let style = BTreeMap::from([("prompt.mode".to_owned(), "verbose".to_owned())]);
     keep(&mut all, Style::from_settings(&style).err());

@@ -32,7 +32,6 @@ const LEFT: &[(FaultCode, &str)] = &[
     (FaultCode::PPerson, "a person sends something back in a conversation at a terminal"),
     (FaultCode::JPanic, "a worker breaks on a job: a defect, of which none is known"),
     (FaultCode::JBlob, "an artifact store of another process loses what it was given"),
-    (FaultCode::JVersion, "two programs of different versions meet on one bus"),
 ];
 
 /// Codes that are provoked here and whose pages still show an example written by hand: `SOCRATES_WRITE_PAGES=1` writes theirs

@@ -54,7 +54,7 @@ impl Written {
             Self::Paths(paths) => &mut paths.author,
             Self::Behaviors(behaviors) => &mut behaviors.author,
         };
-        author.clone_into(place);
+        *place = author.into();
     }
 }
 
@@ -290,7 +290,7 @@ mod tests {
     async fn a_good_answer_is_signed_by_its_author() {
         let made = attempt(&Scripted::says(&good_paths()), &question(Stage::Paths)).await.unwrap();
         let Written::Paths(paths) = &made.written else { panic!("{made:?}") };
-        assert_eq!(paths.author, "scripted");
+        assert_eq!(paths.author, "scripted".into());
         assert_eq!(made.written.remark(), "5 nodes · 2 encounters");
         assert!(made.exchange.faults.is_empty() && made.exchange.repairs.is_empty());
     }

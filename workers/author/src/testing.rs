@@ -112,7 +112,7 @@ pub(crate) fn proposal() -> Proposal {
         ],
         not_understood: Vec::new(),
         notes: Vec::new(),
-        author: String::new(),
+        author: socrates_model::Signature::default(),
     }
 }
 

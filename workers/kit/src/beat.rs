@@ -8,6 +8,7 @@ use socrates_model::wire::{Beat, BeatReply, BeatVerdict, Grant, Hello, Welcome};
 use tokio::sync::mpsc;
 use tokio::time::{Instant, MissedTickBehavior};
 
+use crate::error::KitError;
 use crate::held::slot_of;
 use crate::messages::{Worker, left};
 
@@ -62,7 +63,8 @@ async fn introduce(worker: &Worker) {
     match worker.ask::<Hello, Welcome>(keys::HELLO, "hello", &worker.introduction()).await {
         Ok(Welcome::Welcome { .. }) => {}
         Ok(Welcome::Incompatible { range }) => {
-            tracing::warn!(ours = worker.config.code_version, range, "a new orchestrator gives this worker no work");
+            let why = KitError::incompatible(&worker.config.code_version, &range);
+            tracing::warn!(%why, "a new orchestrator gives this worker no work");
         }
         Err(why) => {
             tracing::debug!(%why, "the hello to a new orchestrator is tried again");

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use socrates_link::LinkError;
+use socrates_model::{Fault, FaultCode};
 
 /// What ends [`crate::serve`] other than an orderly stop.
 #[derive(Debug, thiserror::Error)]
@@ -10,14 +11,9 @@ pub enum KitError {
     /// The bus refused a declaration.
     #[error("worker cannot join the bus")]
     Link(#[from] LinkError),
-    /// The orchestrator speaks other versions.
-    #[error("worker of version `{ours}` and the orchestrator cannot talk: it speaks {range}")]
-    Incompatible {
-        /// Code version of this worker.
-        ours: String,
-        /// What the orchestrator speaks.
-        range: String,
-    },
+    /// The orchestrator works with another version: J-VERSION.
+    #[error("{0}")]
+    Incompatible(Fault),
     /// A folder of the worker cannot be used.
     #[error("`{}` cannot be used: {why}", path.display())]
     Folder {
@@ -38,4 +34,13 @@ pub enum KitError {
         /// Where: before or after a report.
         at: &'static str,
     },
+}
+
+impl KitError {
+    /// A worker of version `ours` and an orchestrator that works with version `theirs`.
+    #[must_use]
+    pub fn incompatible(ours: &str, theirs: &str) -> Self {
+        let message = format!("this worker has version {ours}, the orchestrator works with {theirs}");
+        Self::Incompatible(Fault::new(FaultCode::JVersion, "version", message))
+    }
 }

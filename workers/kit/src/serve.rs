@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use socrates_link::{Bus, Overflow, Subscription, keys};
-use socrates_model::wire::{Acquire, Acquired, Grant, Hello, Welcome};
+use socrates_model::wire::{Acquire, Acquired, Grant, Hello, NoWork, Welcome};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinSet;
 
@@ -110,7 +110,7 @@ async fn hello(worker: &Worker) -> Result<Duration, KitError> {
         match worker.ask::<Hello, Welcome>(keys::HELLO, "hello", &hello).await {
             Ok(Welcome::Welcome { beat_ms, .. }) => return Ok(Duration::from_millis(beat_ms)),
             Ok(Welcome::Incompatible { range }) => {
-                return Err(KitError::Incompatible { ours: worker.config.code_version.clone(), range });
+                return Err(KitError::incompatible(&worker.config.code_version, &range));
             }
             Err(why) if why.is_transient() => {
                 tracing::debug!(%why, "no orchestrator yet");
@@ -172,10 +172,10 @@ async fn asks(worker: Arc<Worker>, mut hints: Subscription, granted: mpsc::Sende
             }
             Acquired::Grants(_none) => pause(&worker, &mut hints, &mut leaving, Duration::ZERO).await,
             Acquired::None { retry_after_ms, reason } => {
-                tracing::trace!(reason, "no work");
-                // Only "empty" may be cut short by the poll period: whoever is throttled waits as told.
+                tracing::trace!(?reason, "no work");
+                // Only an empty queue may be cut short by the poll period: whoever is throttled waits as told.
                 let told = Duration::from_millis(retry_after_ms).min(LONGEST_PAUSE);
-                let told = if reason == "empty" { told.min(worker.config.poll) } else { told };
+                let told = if reason == NoWork::Empty { told.min(worker.config.poll) } else { told };
                 pause(&worker, &mut hints, &mut leaving, told).await;
             }
         }

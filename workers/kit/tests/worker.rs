@@ -14,7 +14,7 @@ use socrates_kit::{
 use socrates_link::{Bus, MemoryBus, Qos, keys};
 use socrates_model::job::{Item, JobKey, JobSpec};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, BeatVerdict, Grant, Hello, Outcome, Recorded, Release, Report, Welcome,
+    Acquire, Acquired, Beat, BeatReply, BeatVerdict, Grant, Hello, NoWork, Outcome, Recorded, Release, Report, Welcome,
 };
 use socrates_model::{Digest, FailureClass, FaultCode, Role, ScenarioId};
 use tokio::sync::watch;
@@ -98,7 +98,7 @@ fn office(bus: &MemoryBus) -> (Arc<Mutex<Office>>, JoinHandle<()>) {
                             office.lose_acquires -= 1;
                             None
                         } else if grants.is_empty() {
-                            Some(Acquired::None { retry_after_ms: 60_000, reason: "empty".into() })
+                            Some(Acquired::None { retry_after_ms: 60_000, reason: NoWork::Empty })
                         } else {
                             Some(Acquired::Grants(grants))
                         }

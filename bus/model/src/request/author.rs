@@ -83,6 +83,15 @@ impl AuthorSpec {
             Self::Record(_, inner) | Self::Replay(_, inner) => inner.server(),
         }
     }
+
+    /// The server with its model in an author that was read before and is kept as text: what [`AuthorSpec::server`] finds, as
+    /// one word and without reading it anew.
+    #[must_use]
+    pub fn server_in(author: &str) -> Option<&str> {
+        // Recordings ask somebody else, who stands last.
+        let asked = author.rsplit_once('=').map_or(author, |(_, inner)| inner);
+        (asked.contains(':') && !asked.starts_with("cassette:")).then_some(asked)
+    }
 }
 
 impl fmt::Display for AuthorSpec {
@@ -159,5 +168,10 @@ mod tests {
         };
         assert_eq!(asked("replay:a=record:b=vllm:m").as_deref(), Some("vllm:m"));
         assert_eq!(asked("record:tape=offline"), None);
+        for text in
+            ["auto", "offline", "cassette:a", "record:a=cassette:b", "gemini:m", "replay:a=record:b=ollama:l:8b"]
+        {
+            assert_eq!(AuthorSpec::server_in(text), asked(text).as_deref(), "{text}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use socrates_checks::check_proposal;
 use socrates_model::fault::hard;
 use socrates_model::job::Stage;
 use socrates_model::report::Repair;
-use socrates_model::{Fault, FaultCode, HumanBehavior, HumanId, Proposal};
+use socrates_model::{AuthorSpec, Fault, FaultCode, HumanBehavior, HumanId, Proposal};
 use socrates_offline::{Draft, edit};
 use socrates_prompts::Question;
 
@@ -82,7 +82,7 @@ pub(super) struct Look {
     /// Request, location and seed; the rest of it is filled in for each edit.
     pub(super) question: Question,
     /// Who was asked.
-    pub(super) author: String,
+    pub(super) author: AuthorSpec,
     /// Stages that the request pins; nobody is asked for them.
     pub(super) pinned: Vec<Stage>,
 }
@@ -390,7 +390,7 @@ impl Conversation<'_> {
             self.all(Tone::Bad, &named("not done", &fault.message.to_string()));
         }
         if edited.done.is_empty() && edited.draft == draft {
-            if !self.look.author.starts_with("offline") {
+            if self.look.author != AuthorSpec::Offline {
                 let hint = format!("`again {words}` hands these words to {}", self.look.author);
                 self.say(Tone::Quiet, &hint);
             }

@@ -28,7 +28,7 @@ use socrates_author::{Exchange, variants};
 use socrates_kit::{Blobs, Done, Failure, Job, KitError, LocalBlobs, Output, Stage, Stop, WorkerConfig};
 use socrates_link::Bus;
 use socrates_model::job;
-use socrates_model::{FailureClass, Fault, FaultCode, Proposal, Role};
+use socrates_model::{AuthorSpec, FailureClass, Fault, FaultCode, Proposal, Role};
 use socrates_prompts::Question;
 use tokio::sync::{oneshot, watch};
 use tokio::task::JoinHandle;
@@ -156,7 +156,7 @@ fn set(flag: &Mutex<bool>, value: bool) {
 /// The stage that a person does.
 struct Reviewer {
     looks: mpsc::SyncSender<(Look, oneshot::Sender<Decision>)>,
-    author: String,
+    author: AuthorSpec,
     pinned: Vec<job::Stage>,
 }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::Path;
 
 use socrates_model::job::Stage;
-use socrates_model::{Fault, FaultCode};
+use socrates_model::{AuthorSpec, Fault, FaultCode};
 use socrates_offline::Offline;
 use socrates_prompts::{Question, parse_behaviors, parse_paths, parse_proposal};
 
@@ -90,7 +90,7 @@ fn look(about: About) -> Look {
         others: Vec::new(),
         reasons: Vec::new(),
         question,
-        author: "offline".to_owned(),
+        author: AuthorSpec::Offline,
         pinned: Vec::new(),
     }
 }
@@ -124,7 +124,7 @@ fn words_change_what_they_speak_of_and_undo_takes_it_back() {
     let length = |version: &Version| look.question.location.graph.length_m(&version.paths.as_ref().unwrap().robot);
     assert!(length(&left) > length(&look.came), "{}", person.text());
     assert_eq!(left.behaviors, look.came.behaviors, "of which nothing was said");
-    assert!(left.paths.unwrap().author.ends_with("+ person"));
+    assert!(left.paths.unwrap().author.has_person());
     assert!(person.heard.iter().any(|(tone, line)| *tone == Tone::Good && line.starts_with("+ robot")));
     assert_eq!(log.said, ["make the robot's path longer", "accept"]);
 

@@ -5,12 +5,10 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use socrates_checks::{check_behaviors, check_paths, check_proposal};
 use socrates_model::job::Stage;
-use socrates_model::{AgentId, Behaviors, Fault, HumanProposal, Location, Paths, Proposal, Reading};
+use socrates_model::{AgentId, Behaviors, Fault, HumanProposal, Location, Paths, Proposal, Reading, Signature};
 
 /// Letters in a line of text.
 const WIDTH: usize = 96;
-/// What the name of the author ends with where a person changed the work.
-const SIGNATURE: &str = " + person";
 /// Name of the entry that tells the whole proposal in sentences.
 const STORY: &str = "story";
 /// Letters of the name before a line.
@@ -45,11 +43,7 @@ impl Version {
 
     /// Signs what a person changed.
     pub(super) fn sign(&mut self, before: &Self) {
-        let signed = |author: &mut String| {
-            if !author.ends_with(SIGNATURE) {
-                author.push_str(SIGNATURE);
-            }
-        };
+        let signed = |author: &mut Signature| *author = std::mem::take(author).and_person();
         if self.proposal != before.proposal {
             signed(&mut self.proposal.author);
         }

@@ -15,7 +15,7 @@ mod spec;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
-use socrates_model::Digest;
+use socrates_model::{AuthorSpec, Digest};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -61,7 +61,7 @@ pub async fn evaluate(talk: &Printer, config: &Config, options: &AuthorOptions) 
     }
     // Before the first arm: hours are lost where the last one turns out to have no key.
     for arm in &spec.arms {
-        crate::authors::check(&config.clone().with(&flags_of(arm))?, [arm.author.as_str()]).await?;
+        crate::authors::check(&config.clone().with(&flags_of(arm))?, [&arm.author]).await?;
     }
     let mut done: Vec<report::Done<'_>> = Vec::new();
     for (number, arm) in (1..).zip(&spec.arms) {
@@ -147,7 +147,7 @@ impl Maker<'_> {
 
     /// The table of injected faults, on the offline author's answers.
     async fn confusion(&self, cases: &[Case]) -> Result<(), Complaint> {
-        let offline = Arm { author: "offline".to_owned(), ..Arm::default() };
+        let offline = Arm { author: AuthorSpec::Offline, ..Arm::default() };
         let prepared = cases
             .iter()
             .map(|case| Ok((self.prepare(&offline, case, self.config)?, case.seed)))
@@ -165,9 +165,7 @@ impl Maker<'_> {
         let rates = arm.faults_unguided.as_ref().filter(|_| !case.guided).or(arm.faults.as_ref());
         let rates = rates.and_then(|name| self.spec.rates.get(name)).into_iter().flatten();
         let options = RunOptions {
-            author: Some(arm.author.parse().map_err(|bad: socrates_model::ids::BadId| {
-                Complaint::input(format!("arm `{}`: {bad}", arm.name), "`author` of an arm is what `--author` takes")
-            })?),
+            author: Some(arm.author.clone()),
             inject: rates.map(|(kind, rate)| format!("{kind}={rate}")).collect::<Vec<_>>().join(","),
             ..RunOptions::plain(case.seed)
         };

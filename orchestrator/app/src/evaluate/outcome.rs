@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::ScenarioStatus;
-use socrates_model::{Digest, FailureClass, Family, Fault, Role, Verdict};
+use socrates_model::{Digest, FailureClass, Family, Fault, JobState, Role, ScenarioEnd, Verdict};
 use socrates_orchestrator::{Attempt, AttemptEnd};
 use socrates_stream::csv::quoted;
 
@@ -19,7 +19,7 @@ const AUTHORED: [Stage; 3] = [Stage::Proposal, Stage::Paths, Stage::Behaviors];
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outcome {
     /// How it ended: a verdict, or `failed`.
-    pub(super) result: String,
+    pub(super) result: Option<ScenarioEnd>,
     /// Every stage's first answer was right as it came. What a server did (429, 5xx …) is no answer.
     pub(super) first_pass: bool,
     /// As above, or after a repair that changes no meaning.
@@ -65,8 +65,8 @@ pub(super) type Fetch<'a> = &'a dyn Fn(&Digest) -> Option<Vec<u8>>;
 impl Outcome {
     /// Out of the history of a scenario.
     pub(super) fn of(status: &ScenarioStatus, jobs: &[PastJob], fetch: Fetch<'_>) -> Self {
-        let realised = Verdict::Realised.name();
-        let mut out = Self { result: status.result.clone(), realised: status.result == realised, ..Self::default() };
+        let realised = status.result == Some(ScenarioEnd::Judged(Verdict::Realised));
+        let mut out = Self { result: status.result, realised, ..Self::default() };
         (out.first_pass, out.after_repair, out.after_asking) = (true, true, true);
         for stage in AUTHORED {
             let mut first = jobs.iter().filter(|job| job.key.stage == stage && job.key.revision == 0);
@@ -75,7 +75,7 @@ impl Outcome {
                 (out.first_pass, out.after_repair, out.after_asking) = (false, false, false);
                 continue;
             };
-            let done = job.state == "succeeded";
+            let done = job.state == JobState::Succeeded;
             let refused = job.attempts.iter().filter(|attempt| was_refused(attempt)).count();
             let repaired = exchange(&job.artifacts, fetch).is_some_and(|told| !told.repairs.is_empty());
             out.after_asking &= done;
@@ -135,7 +135,7 @@ impl Outcome {
             quoted(&case.location),
             case.repeat.to_string(),
             case.seed.to_string(),
-            self.result.clone(),
+            self.result.map_or_else(String::new, |end| end.to_string()),
             bit(self.first_pass),
             bit(self.after_repair),
             bit(self.after_asking),

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::Deserialize;
+use socrates_model::AuthorSpec;
 
 use crate::exit::Complaint;
 use crate::files;
@@ -88,7 +89,7 @@ pub(super) struct Arm {
     #[serde(default)]
     pub(super) about: String,
     /// As `--author` takes it.
-    pub(super) author: String,
+    pub(super) author: AuthorSpec,
     /// Configuration values, such as `{ "author.paths" = "nodes", "author.image" = "off" }`.
     #[serde(default)]
     pub(super) set: BTreeMap<String, toml::Value>,

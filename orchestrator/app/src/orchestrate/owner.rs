@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use socrates_kit::BlobError;
 use socrates_link::Ask;
 use socrates_model::job::Stage;
-use socrates_model::wire::{Acquire, Acquired};
+use socrates_model::wire::{Acquire, Acquired, NoWork};
 use socrates_orchestrator::{Answer, Effect, Event, Millis, Row, State, Token, status, step};
 use tokio::sync::mpsc;
 
@@ -42,7 +42,7 @@ fn hint(effect: &Effect) -> Option<Stage> {
 fn pause_of_idle(effect: &mut Effect) -> Option<&mut Millis> {
     let Effect::Reply { answer, .. } = effect else { return None };
     match &mut **answer {
-        Answer::Acquired(Acquired::None { retry_after_ms, reason }) if reason == "empty" => Some(retry_after_ms),
+        Answer::Acquired(Acquired::None { retry_after_ms, reason: NoWork::Empty }) => Some(retry_after_ms),
         Answer::Acquired(_) | Answer::Welcome(_) | Answer::Beat(_) | Answer::Recorded(_) | Answer::Submitted(_) => None,
     }
 }

@@ -9,10 +9,10 @@ use socrates_kit::{LocalBlobs, Stop};
 use socrates_link::{Bus, MemoryBus, Overflow, call, decode, keys};
 use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::{
-    Acquire, Acquired, Beat, BeatReply, Control, Grant, Hello, Notice, Outcome, Recorded, Report, ScenarioSpec,
+    Acquire, Acquired, Beat, BeatReply, Control, Grant, Hello, NoWork, Notice, Outcome, Recorded, Report, ScenarioSpec,
     StatusAsk, StatusReply, Submit, Submitted, Welcome,
 };
-use socrates_model::{Digest, ScenarioId, Verdict};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId, Verdict};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
 
@@ -179,7 +179,7 @@ async fn a_scenario_is_made_over_the_bus_and_known_after_a_restart() {
     }
     let status = site.status().await;
     assert_eq!((status.total, status.done), (1, 1));
-    assert_eq!(status.scenarios[0].result, "realised");
+    assert_eq!(status.scenarios[0].result, Some(ScenarioEnd::Judged(Verdict::Realised)));
     let (key, body) = tokio::time::timeout(LIMIT, notices.next()).await.unwrap().unwrap();
     let notice = decode::<Notice>("notice", &body).unwrap().body;
     assert!(key.starts_with("ev/b/a") && notice.seq == 1, "{key} {notice:?}");
@@ -192,7 +192,7 @@ async fn a_scenario_is_made_over_the_bus_and_known_after_a_restart() {
 async fn an_acquire_waits_a_little_and_is_served_by_what_comes() {
     let dir = tempfile::tempdir().unwrap();
     let site = open(dir.path()).await;
-    assert!(matches!(site.acquire("idle").await, Acquired::None { reason, .. } if reason == "empty"));
+    assert!(matches!(site.acquire("idle").await, Acquired::None { reason: NoWork::Empty, .. }));
     // The grant comes to the ask that was there first, or to its repetition.
     let (grant, submitted) = tokio::join!(site.grant("q"), site.submit("a"));
     assert_eq!(submitted, Submitted::Accepted { new: 1 });

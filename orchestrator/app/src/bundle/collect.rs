@@ -1,0 +1,111 @@
+//! What a finished scenario's artifacts hold, before anything of it is written.
+
+use std::collections::BTreeSet;
+
+use socrates_model::job::{Artifact, Item, Stage};
+use socrates_model::wire::{JobStatus, ScenarioStatus};
+use socrates_model::{Behaviors, JobState, Paths, Proposal, Reading, Recording, Report, Role, Run};
+
+use super::{Fetch, Past, missing, ours};
+use crate::exit::Complaint;
+use crate::prepare::Prepared;
+
+/// A run with what was found of it.
+pub(super) type Judged = (Recording, Report);
+/// A run, its recording as it is stored, and what both hold.
+pub(super) type MadeRun = ((Run, Vec<u8>), Judged);
+
+/// What was made.
+pub(super) struct Made {
+    pub(super) reading: Reading,
+    pub(super) proposal: Proposal,
+    pub(super) paths: Paths,
+    pub(super) behaviors: Behaviors,
+    /// Runs, the reference first.
+    pub(super) runs: Vec<MadeRun>,
+}
+
+/// Reads every artifact that the bundle is made of.
+pub(super) fn made(prepared: &Prepared, past: &Past<'_>) -> Result<Made, Complaint> {
+    let Past { status, fetch, .. } = *past;
+    let lead = scoring_jobs(status).into_iter().next();
+    // What the leading run was judged with: a person may have changed what the stage made, or what was pinned.
+    let judged = lead.and_then(|lead| past.jobs.iter().find(|job| job.key == lead.key));
+    let text = |role: Role, stage: Stage| -> Result<String, Complaint> {
+        if let Some(digest) = judged.and_then(|job| job.inputs.get(&role)) {
+            return utf8(role, fetch(digest)?);
+        }
+        if let Some(pinned) = prepared.pins.get(&role) {
+            return Ok(pinned.clone());
+        }
+        let artifact = newest(status, stage, &Item::Whole).and_then(|job| output(job, role));
+        string(artifact.ok_or_else(|| missing(role))?, fetch)
+    };
+    let reading = match judged.and_then(|job| job.inputs.get(&Role::Reading)) {
+        Some(digest) => parse(Role::Reading, &utf8(Role::Reading, fetch(digest)?)?)?,
+        None => prepared.reading.clone(),
+    };
+    Ok(Made {
+        reading,
+        proposal: parse(Role::Proposal, &text(Role::Proposal, Stage::Proposal)?)?,
+        paths: parse(Role::Paths, &text(Role::Paths, Stage::Paths)?)?,
+        behaviors: parse(Role::Behaviors, &text(Role::Behaviors, Stage::Behaviors)?)?,
+        runs: runs(status, fetch)?,
+    })
+}
+
+/// Every run that was judged.
+fn runs(status: &ScenarioStatus, fetch: &Fetch<'_>) -> Result<Vec<MadeRun>, Complaint> {
+    let mut runs = Vec::new();
+    for job in scoring_jobs(status) {
+        let simulation = newest(status, Stage::Simulation, &job.key.item);
+        let (Some(run), Some(judged), Some(simulation)) = (job.key.item.run(), output(job, Role::Report), simulation)
+        else {
+            continue;
+        };
+        let report: Report = parse(Role::Report, &string(judged, fetch)?)?;
+        let recorded = output(simulation, Role::Recording).ok_or_else(|| missing(Role::Recording))?;
+        let bytes = fetch(&recorded.digest)?;
+        let recording =
+            socrates_stream::mcap::read(&bytes).map_err(|why| ours(&format!("the recording cannot be read: {why}")))?;
+        runs.push(((run.clone(), bytes), (recording, report)));
+    }
+    Ok(runs)
+}
+
+fn parse<T: serde::de::DeserializeOwned>(role: Role, text: &str) -> Result<T, Complaint> {
+    serde_json::from_str(text).map_err(|why| ours(&format!("the {role} cannot be decoded: {why}")))
+}
+
+/// An artifact as text.
+pub(super) fn string(artifact: &Artifact, fetch: &Fetch<'_>) -> Result<String, Complaint> {
+    if let Some(text) = &artifact.inline {
+        return Ok(text.clone());
+    }
+    utf8(artifact.role, fetch(&artifact.digest)?)
+}
+
+fn utf8(role: Role, bytes: Vec<u8>) -> Result<String, Complaint> {
+    String::from_utf8(bytes).map_err(|why| ours(&format!("the {role} is no text: {why}")))
+}
+
+/// The output of a job in this role.
+fn output(job: &JobStatus, role: Role) -> Option<&Artifact> {
+    job.artifacts.iter().find(|artifact| artifact.role == role)
+}
+
+/// The newest job of a stage and item that has a result.
+fn newest<'a>(status: &'a ScenarioStatus, stage: Stage, item: &Item) -> Option<&'a JobStatus> {
+    status
+        .jobs
+        .iter()
+        .filter(|job| job.key.stage == stage && job.key.item == *item && job.state == JobState::Succeeded)
+        .max_by_key(|job| job.key.revision)
+}
+
+/// Newest scoring jobs, the reference first, then by planner and seed.
+fn scoring_jobs(status: &ScenarioStatus) -> Vec<&JobStatus> {
+    let items: BTreeSet<&Item> =
+        status.jobs.iter().filter(|job| job.key.stage == Stage::Scoring).map(|job| &job.key.item).collect();
+    items.into_iter().filter_map(|item| newest(status, Stage::Scoring, item)).collect()
+}
