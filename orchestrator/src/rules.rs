@@ -496,7 +496,7 @@ fn status_counts_what_runs_and_how_the_others_ended() {
     world.score(&lead, Verdict::Contradicted, None);
     let reply = status(&world.state, &ask, world.now);
     assert_eq!((reply.done, reply.running), (1, 0), "{reply:?}");
-    assert_eq!(reply.results.get("contradicted"), Some(&1), "{:?}", reply.results);
+    assert_eq!(reply.results.get(&ScenarioEnd::Judged(Verdict::Contradicted)), Some(&1), "{:?}", reply.results);
 }
 
 #[test]

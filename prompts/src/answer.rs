@@ -2,7 +2,7 @@
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
-use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Signature, Where};
+use socrates_model::{FORMAT, Fault, FaultCode, Paths, Proposal, Where};
 
 use crate::question::Question;
 use crate::schema::{THINKING, derived};
@@ -88,6 +88,7 @@ fn without_nulls(value: &mut Value) {
 mod tests {
     use super::*;
     use crate::testing::{proposal, question};
+    use socrates_model::Signature;
     use socrates_model::job::Stage;
 
     fn asked() -> Question {

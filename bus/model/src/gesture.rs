@@ -113,7 +113,6 @@ pub mod or_none {
     ///
     /// # Errors
     /// Those of the format.
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
     pub fn serialize<S: Serializer>(said: &Option<Gesture>, to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(Gesture::name_of(*said))
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Location, Paths, Proposal, Reading, Recording, Report, Request};
+use socrates_model::{JobState, Location, Paths, Proposal, Reading, Recording, Report, Request};
 
 use crate::page_data::page_data;
 use crate::svg::{escape, escape_code};
@@ -17,8 +17,8 @@ const SCRIPT: &str = include_str!("web/page.js");
 pub struct StageRow {
     /// Stage name, with planner and seed where there are several.
     pub stage: String,
-    /// `succeeded`, `superseded`, …
-    pub state: String,
+    /// Where the job stands; `None` where the provenance does not say.
+    pub state: Option<JobState>,
     /// Attempts.
     pub attempts: u32,
     /// Working time, ms.
@@ -137,7 +137,7 @@ impl Page<'_> {
                 format!(
                     "<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{} ms</td><td>{}</td></tr>",
                     escape(&row.stage),
-                    escape(&row.state),
+                    row.state.map_or("", JobState::name),
                     row.attempts,
                     row.wall_ms,
                     escape_code(&row.remark)
@@ -162,7 +162,13 @@ mod tests {
     fn html(text: &str, runs: &[(Recording, Report)]) -> String {
         let (request, reading, proposal, paths) = papers(text);
         let row = |text: &str| text.to_owned();
-        let stages = [StageRow { stage: row(text), state: row(text), attempts: 1, wall_ms: 2, remark: row(text) }];
+        let stages = [StageRow {
+            stage: row(text),
+            state: Some(JobState::Succeeded),
+            attempts: 1,
+            wall_ms: 2,
+            remark: row(text),
+        }];
         let provenance = [ProvenanceRow { name: row(text), value: row(text) }];
         let page = Page {
             title: text,

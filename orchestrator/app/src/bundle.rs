@@ -329,7 +329,7 @@ pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
         let remark = [job.remark.clone(), faults.join("; ")];
         StageRow {
             stage: format!("{}{item}{revision}", job.key.stage),
-            state: job.state,
+            state: Some(job.state),
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),
             remark: remark.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" · "),

@@ -150,6 +150,7 @@ fn edited<T: Signed>(answers: &mut Vec<ChatAnswered>, mut left: T, read: impl Fn
         return;
     }
     if let Some(text) = serde_json::to_string(&left).ok().filter(|text| same(text)) {
+        let author = author.to_string();
         answers.push(ChatAnswered { text, fate: Fate::Edited, author, faults: Vec::new(), injected: Vec::new() });
     }
 }

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use socrates_export::socrates_json::Imported;
 use socrates_model::request::ServerKind;
 use socrates_model::{AuthorSpec, Fault, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
 
@@ -129,12 +132,14 @@ pub(crate) fn prepare_text(
     let reading = socrates_offline::read(&request, &location);
     check_reading(&reading, &request, &location, shown)?;
     let mut pins = BTreeMap::new();
-    for (role, file) in
-        [(Role::Proposal, &request.proposal), (Role::Paths, &request.paths), (Role::Behaviors, &request.behaviors)]
-    {
-        if let Some(file) = file {
-            pins.insert(role, read_pin(role, &folder.join(file))?);
-        }
+    if let Some(file) = &request.proposal {
+        pins.insert(Role::Proposal, read_pin(Role::Proposal, &folder.join(file), |all| all.proposal)?);
+    }
+    if let Some(file) = &request.paths {
+        pins.insert(Role::Paths, read_pin(Role::Paths, &folder.join(file), |all| all.paths)?);
+    }
+    if let Some(file) = &request.behaviors {
+        pins.insert(Role::Behaviors, read_pin(Role::Behaviors, &folder.join(file), |all| all.behaviors)?);
     }
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
     crate::cost::check_limit(config, &author)?;
@@ -276,15 +281,14 @@ pub(crate) fn load_location(name: &str, folder: &Path) -> Result<(Location, BTre
     Ok((location, files))
 }
 
-/// A pinned artifact in our own form, or out of a file of the published tool.
-fn read_pin(role: Role, path: &Path) -> Result<String, Complaint> {
+/// A pinned artifact in our own form, or out of a file of the published tool, of whose artifacts one is taken.
+fn read_pin<T: Serialize + DeserializeOwned>(
+    role: Role,
+    path: &Path,
+    take: impl Fn(Imported) -> Option<T>,
+) -> Result<String, Complaint> {
     let text = files::text(path, MAX_PIN_BYTES, "the path is taken from the folder of the request")?;
-    let own = match role {
-        Role::Proposal => serde_json::from_str::<socrates_model::Proposal>(&text).map(|_| ()),
-        Role::Paths => serde_json::from_str::<socrates_model::Paths>(&text).map(|_| ()),
-        _ => serde_json::from_str::<socrates_model::Behaviors>(&text).map(|_| ()),
-    };
-    let Err(own) = own else { return Ok(text) };
+    let Err(own) = serde_json::from_str::<T>(&text) else { return Ok(text) };
     let wrong = |cause: String| {
         let mut complaint = Complaint::input(
             format!("the pinned {role} `{}` cannot be read", path.display()),
@@ -294,12 +298,7 @@ fn read_pin(role: Role, path: &Path) -> Result<String, Complaint> {
         complaint
     };
     let imported = socrates_export::socrates_json::read(&text).map_err(|why| wrong(why.to_string()))?;
-    let json = match role {
-        Role::Proposal => imported.proposal.map(|artifact| serde_json::to_string(&artifact)),
-        Role::Paths => imported.paths.map(|artifact| serde_json::to_string(&artifact)),
-        _ => imported.behaviors.map(|artifact| serde_json::to_string(&artifact)),
-    };
-    match json {
+    match take(imported).map(|artifact| serde_json::to_string(&artifact)) {
         Some(Ok(json)) => Ok(json),
         Some(Err(why)) => Err(wrong(why.to_string())),
         None => Err(wrong(format!("it holds no {role}"))),

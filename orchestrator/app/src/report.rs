@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use serde::Deserialize as _;
 use serde_json::json;
 use socrates_draw::{Page, ProvenanceRow, StageRow};
+use socrates_model::JobState;
 
 use crate::batch;
 use crate::batch_stats;
@@ -110,7 +112,7 @@ pub(crate) fn past(dir: &Path) -> (Vec<StageRow>, String) {
                 if item.is_empty() { String::new() } else { format!(" {item}") },
                 if revision == 0 { String::new() } else { format!(" (revision {revision})") }
             ),
-            state: word(job, "state"),
+            state: job.get("state").and_then(|state| JobState::deserialize(state).ok()),
             attempts: u32::try_from(attempts.len()).unwrap_or(u32::MAX),
             wall_ms: attempts.iter().filter_map(|attempt| attempt.get("wall_ms")?.as_u64()).sum(),
             remark: remarks.join(" · "),

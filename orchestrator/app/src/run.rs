@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::{JobState, PlannerName, ScenarioEnd, Verdict};
+use socrates_model::{JobState, PlannerName, Verdict};
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle, Past};

@@ -7,7 +7,7 @@ use std::time::Duration;
 use socrates_kit::LocalBlobs;
 use socrates_link::{Bus, LinkError, Overflow, call, keys};
 use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
-use socrates_model::{Digest, ScenarioId};
+use socrates_model::{Digest, ScenarioEnd, ScenarioId};
 use socrates_store::{Reader, StoreError};
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::time::Instant;
@@ -297,7 +297,7 @@ async fn follow(
                 && let Ok(envelope) = socrates_link::decode::<Notice>("notice", &body) {
                 looks_done = ids.len() == 1 && envelope.body.key.stage == socrates_model::job::Stage::Scoring;
                 if ids.len() == 1 {
-                    passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state, envelope.body.remark));
+                    passing(talk, asking.as_deref(), &format!("{:<10} {} {}", envelope.body.key.stage.name(), envelope.body.state.name(), envelope.body.remark));
                 }
             },
             complaint = supervisor.gave_up() => {
@@ -340,8 +340,8 @@ async fn follow(
 }
 
 /// `20 realised, 3 contradicted, 1 failed`.
-fn counted(results: &BTreeMap<String, u32>) -> String {
-    let mut rows: Vec<(&String, &u32)> = results.iter().collect();
+fn counted(results: &BTreeMap<ScenarioEnd, u32>) -> String {
+    let mut rows: Vec<(&ScenarioEnd, &u32)> = results.iter().collect();
     rows.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
     rows.iter().map(|(result, count)| format!("{count} {result}")).collect::<Vec<_>>().join(", ")
 }

@@ -208,7 +208,7 @@ mod tests {
 
     #[test]
     fn times_are_those_of_all_attempts_and_revisions() {
-        let line = of(&repaired(), "realised");
+        let line = of(&repaired(), Some(ScenarioEnd::Judged(Verdict::Realised)));
         assert_eq!(
             line,
             "proposal ✔ 3 ms   paths ✔ 11 ms (1 retry: G-MEET)   behaviors ✔ 9 ms (1 retry: D-NOTRIG)   \
@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn a_verdict_that_was_not_wanted_marks_the_stage_that_found_it_and_the_one_sent_back() {
-        let line = of(&repaired(), "contradicted");
+        let line = of(&repaired(), Some(ScenarioEnd::Judged(Verdict::Contradicted)));
         assert!(line.contains("behaviors ✘ 9 ms (1 retry: D-NOTRIG)"), "{line}");
         assert!(line.ends_with("scoring ✘ 9 ms: contradicted"), "{line}");
         assert!(line.contains("proposal ✔") && line.contains("paths ✔") && line.contains("simulation ✔"), "{line}");
@@ -226,20 +226,20 @@ mod tests {
 
     #[test]
     fn what_was_known_took_no_time_and_what_failed_is_marked() {
-        let known = of(&[job(Stage::Proposal, 0, 0, 0)], "realised");
+        let known = of(&[job(Stage::Proposal, 0, 0, 0)], Some(ScenarioEnd::Judged(Verdict::Realised)));
         assert_eq!(known, "proposal ✔ known");
         let failed = StageJob { state: JobState::Failed, ..job(Stage::Paths, 0, 4, 12) };
-        assert_eq!(of(&[failed], "failed"), "paths ✘ 12 ms (3 retries)");
+        assert_eq!(of(&[failed], Some(ScenarioEnd::Failed)), "paths ✘ 12 ms (3 retries)");
         let dead = StageJob { state: JobState::Dead, ..job(Stage::Simulation, 0, 0, 0) };
-        assert_eq!(of(&[dead], "failed"), "simulation – not reached");
+        assert_eq!(of(&[dead], Some(ScenarioEnd::Failed)), "simulation – not reached");
         let waiting = StageJob { state: JobState::Ready, ..job(Stage::Simulation, 0, 0, 0) };
-        assert_eq!(of(&[waiting], ""), "simulation … waiting");
-        let item = |item: &str, state: &str| StageJob {
+        assert_eq!(of(&[waiting], None), "simulation … waiting");
+        let item = |item: &str, state: JobState| StageJob {
             item: item.parse().unwrap(),
-            state: state.to_owned(),
+            state,
             ..job(Stage::Scoring, 0, 1, 2)
         };
-        let several = [item("reference-1", "succeeded"), item("reference-2", "leased")];
-        assert_eq!(of(&several, ""), "scoring … 4 ms");
+        let several = [item("reference-1", JobState::Succeeded), item("reference-2", JobState::Leased)];
+        assert_eq!(of(&several, None), "scoring … 4 ms");
     }
 }

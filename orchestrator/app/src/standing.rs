@@ -328,6 +328,7 @@ fn nothing(what: &str) -> Complaint {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use socrates_model::Verdict;
 
     fn reply() -> StatusReply {
         StatusReply {

@@ -52,7 +52,7 @@ impl Machine {
         let token = self.now;
         step(&mut self.state, event(token), self.now).into_iter().find_map(|effect| {
             let Effect::Reply { to, answer } = effect else { return None };
-            (to == token).then(|| *answer)
+            (to == token).then_some(*answer)
         })
     }
 

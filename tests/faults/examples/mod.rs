@@ -97,7 +97,7 @@ pub(crate) async fn proposed(request: &Request, location: &Location) -> Proposal
     let question = Question::first(request.clone(), reading, location.clone(), 1);
     match attempt(&Offline, &question).await.unwrap().written {
         socrates_author::Written::Proposal(proposal) => proposal,
-        other => panic!("{other:?}"),
+        other @ (socrates_author::Written::Paths(_) | socrates_author::Written::Behaviors(_)) => panic!("{other:?}"),
     }
 }
 

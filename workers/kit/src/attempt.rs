@@ -208,7 +208,7 @@ async fn report(
             }
             Err(why) => {
                 let message = format!("output `{role}` could not be stored: {}", chain(&why));
-                let fault = Fault::new(FaultCode::JBlob, Where::key(&role), message);
+                let fault = Fault::new(FaultCode::JBlob, Where::key(role), message);
                 report.outcome =
                     Outcome::Failed { class: FailureClass::Transient, faults: vec![fault], retry_after_ms: None };
                 (report.repair, report.verdict) = (None, None);

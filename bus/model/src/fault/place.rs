@@ -142,7 +142,7 @@ impl Where {
     /// The same of this agent, where it names none.
     #[must_use]
     pub fn of(mut self, agent: impl Into<AgentId>) -> Self {
-        self.agent.get_or_insert(agent.into());
+        self.agent.get_or_insert_with(|| agent.into());
         self
     }
 

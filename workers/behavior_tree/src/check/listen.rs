@@ -46,7 +46,7 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
 fn awaits_silence(sheet: &NodeSheet, ports: &Ports<'_>) -> Option<String> {
     let port = sheet.ports.iter().position(|port| port.kind == PortKind::Gesture)?;
     let name = sheet.ports.get(port).map(|port| port.name)?;
-    (ports.said(port)? == None).then(|| format!("waits for no gesture: {name}=`0`; allowed: {}", Gesture::messages()))
+    ports.said(port)?.is_none().then(|| format!("waits for no gesture: {name}=`0`; allowed: {}", Gesture::messages()))
 }
 
 fn hear(
