@@ -12,7 +12,10 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use syn::visit::{self, Visit};
-use syn::{Attribute, Expr, Fields, ImplItemFn, Item, ItemFn, ItemMod, Local, Member, Pat, Type, Visibility};
+use syn::{
+    Attribute, Expr, Fields, ImplItemConst, ImplItemFn, Item, ItemConst, ItemFn, ItemMod, Local, Member, Pat, Type,
+    Visibility,
+};
 
 use crate::{files, shown};
 
@@ -135,9 +138,34 @@ fn is_test(attrs: &[Attribute]) -> bool {
     })
 }
 
+/// Names of the constants of a file that are texts.
+#[derive(Default)]
+struct Texts(BTreeSet<String>);
+
+impl Texts {
+    fn add(&mut self, name: &syn::Ident, of: &Type) {
+        let Type::Reference(of) = of else { return };
+        if matches!(&*of.elem, Type::Path(path) if path.path.is_ident("str")) {
+            self.0.insert(name.to_string());
+        }
+    }
+}
+
+impl<'ast> Visit<'ast> for Texts {
+    fn visit_item_const(&mut self, item: &'ast ItemConst) {
+        self.add(&item.ident, &item.ty);
+    }
+
+    fn visit_impl_item_const(&mut self, item: &'ast ImplItemConst) {
+        self.add(&item.ident, &item.ty);
+    }
+}
+
 struct Reader<'a> {
     /// Text fields of public types; nothing is looked for in them where there are none.
     fields: &'a BTreeSet<String>,
+    /// Constants that are texts.
+    texts: &'a Texts,
     /// Names of this function that hold text for people.
     known: Vec<String>,
     within: String,
@@ -186,6 +214,17 @@ impl Reader<'_> {
         }
     }
 
+    /// Whether an expression is a text that stands in the program.
+    fn is_text(&self, expr: &Expr) -> bool {
+        match bare(expr) {
+            Expr::Lit(lit) => matches!(lit.lit, syn::Lit::Str(_)),
+            Expr::Path(path) => {
+                path.path.segments.last().is_some_and(|last| self.texts.0.contains(&last.ident.to_string()))
+            }
+            _ => false,
+        }
+    }
+
     fn add(&mut self, what: String) {
         self.found.push(Reading { within: self.within.clone(), what });
     }
@@ -217,16 +256,13 @@ fn bare(expr: &Expr) -> &Expr {
     }
 }
 
-/// Whether an expression is a text that stands in the program.
-fn is_text(expr: &Expr) -> bool {
-    match bare(expr) {
-        Expr::Lit(lit) => matches!(lit.lit, syn::Lit::Str(_)),
-        // A constant.
-        Expr::Path(path) => path
-            .path
-            .segments
-            .last()
-            .is_some_and(|last| last.ident.to_string().chars().all(|c| c.is_uppercase() || c == '_')),
+/// Whether a pattern compares with a text that stands in the program.
+fn is_text_pattern(pat: &Pat) -> bool {
+    match pat {
+        Pat::Lit(lit) => matches!(lit.lit, syn::Lit::Str(_)),
+        Pat::Or(or) => or.cases.iter().any(is_text_pattern),
+        Pat::Paren(inner) => is_text_pattern(&inner.pat),
+        Pat::TupleStruct(parts) => parts.elems.iter().any(is_text_pattern),
         _ => false,
     }
 }
@@ -290,14 +326,17 @@ impl<'ast> Visit<'ast> for Reader<'_> {
                     self.add(format!("{text} =="));
                 } else if let Some(name) = self
                     .field_of(&both.left)
-                    .filter(|_| is_text(&both.right))
-                    .or_else(|| self.field_of(&both.right).filter(|_| is_text(&both.left)))
+                    .filter(|_| self.is_text(&both.right))
+                    .or_else(|| self.field_of(&both.right).filter(|_| self.is_text(&both.left)))
                 {
                     self.add(format!("{name} =="));
                 }
             }
             Expr::Match(of) => {
-                if let Some(text) = self.shows(&of.expr).or_else(|| self.field_of(&of.expr)) {
+                if let Some(text) = self
+                    .shows(&of.expr)
+                    .or_else(|| self.field_of(&of.expr).filter(|_| of.arms.iter().any(|arm| is_text_pattern(&arm.pat))))
+                {
                     self.add(format!("{text} match"));
                 }
             }
@@ -307,8 +346,8 @@ impl<'ast> Visit<'ast> for Reader<'_> {
     }
 }
 
-fn readings(file: &syn::File, fields: &BTreeSet<String>) -> Vec<Reading> {
-    let mut reader = Reader { fields, known: Vec::new(), within: String::new(), found: Vec::new() };
+fn readings(file: &syn::File, fields: &BTreeSet<String>, texts: &Texts) -> Vec<Reading> {
+    let mut reader = Reader { fields, texts, known: Vec::new(), within: String::new(), found: Vec::new() };
     reader.visit_file(file);
     reader.found
 }
@@ -354,11 +393,13 @@ fn nothing_is_read_back_out_of_a_text_for_people() {
     }
     assert!(fields.contains("verdict_text") && fields.len() > 40, "{fields:?}");
     let none = BTreeSet::new();
+    let mut texts = Texts::default();
+    parsed.iter().for_each(|(_, file)| texts.visit_file(file));
     let mut found = Vec::new();
     let mut used = BTreeSet::new();
     for (name, file) in parsed.iter().filter(|(name, _)| !tests.contains(name)) {
         let own = name.starts_with("prompts/offline");
-        for reading in readings(file, if own { &none } else { &fields }) {
+        for reading in readings(file, if own { &none } else { &fields }, &texts) {
             let excepted = EXCEPTIONS.iter().position(|(file, what, _)| *file == name && reading.what == *what);
             match excepted {
                 Some(place) => {
@@ -377,9 +418,10 @@ fn nothing_is_read_back_out_of_a_text_for_people() {
 #[test]
 fn a_line_that_reads_a_text_is_found_and_one_that_shows_it_is_not() {
     let fields = BTreeSet::from(["item".to_owned()]);
+    let texts = Texts(BTreeSet::from(["WHOLE".to_owned()]));
     let what = |body: &str| -> Vec<String> {
         let file = syn::parse_file(&format!("fn f() {{ {body} }}")).unwrap();
-        readings(&file, &fields).into_iter().map(|reading| reading.what).collect()
+        readings(&file, &fields, &texts).into_iter().map(|reading| reading.what).collect()
     };
     for (body, found) in [
         ("let wish = fault.message.to_string().split('`').nth(1);", "message .split"),
@@ -410,9 +452,11 @@ fn a_line_that_reads_a_text_is_found_and_one_that_shows_it_is_not() {
         "if fault.at == Where::key(\"task\") {}",
         "let text = why.to_string(); let text = read(file); text.contains(\"x\");",
         "let same = run.item == other.item;",
+        "if run.item == LIMIT {}",
+        "match run.item { Item::Whole => {} Item::Part => {} }",
     ] {
         assert_eq!(what(body), Vec::<String>::new(), "{body}");
     }
     let tests = "#[cfg(test)] mod tests { fn f() { fault.message.to_string().contains(\"x\"); } } #[test] fn t() { a.message.find('x'); }";
-    assert_eq!(readings(&syn::parse_file(tests).unwrap(), &fields), []);
+    assert_eq!(readings(&syn::parse_file(tests).unwrap(), &fields, &texts), []);
 }
