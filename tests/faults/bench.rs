@@ -17,7 +17,7 @@ use socrates_model::{
 };
 use socrates_orchestrator::{Answer, Effect, Event, Policy, State, step};
 use socrates_prompts::Question;
-use socrates_scoring::{Evidence, REFERENCE};
+use socrates_scoring::Evidence;
 
 /// Turns after which a scenario that does not end is a mistake of this test.
 const MOST_TURNS: usize = 2_000;
@@ -27,12 +27,33 @@ const PAUSE_MS: u64 = 1_000;
 /// What was decided, one line each.
 pub(crate) type Decisions = Vec<String>;
 
-/// The facts of faults: all but their messages.
+/// The facts of faults: every member but their messages.
 pub(crate) fn facts(faults: &[Fault]) -> Vec<String> {
-    faults
-        .iter()
-        .map(|fault| format!("{} at {} {:?} {:?}", fault.code, fault.at, fault.quotes, fault.payload))
-        .collect()
+    let bare = |fault: &Fault| {
+        let mut value = json!(fault);
+        value.as_object_mut().unwrap().remove("message").unwrap();
+        value.to_string()
+    };
+    faults.iter().map(bare).collect()
+}
+
+/// What a report decides, without its sentences: the standing and margins of its clauses, every metric.
+fn judged_facts(report: &impl Serialize) -> Digest {
+    const SENTENCES: [&str; 9] =
+        ["verdict_text", "robot_text", "story", "text", "evidence", "note", "message", "remark", "notes"];
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(members) => {
+                members.retain(|name, _| !SENTENCES.contains(&name.as_str()));
+                members.values_mut().for_each(strip);
+            }
+            Value::Array(items) => items.iter_mut().for_each(strip),
+            Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {}
+        }
+    }
+    let mut value = json!(report);
+    strip(&mut value);
+    Digest::of(&serde_json::to_vec(&value).unwrap())
 }
 
 /// What was read, without notes and messages.
@@ -168,6 +189,8 @@ impl Bench {
             Stage::Scoring => self.score(grant),
             Stage::Review => panic!("nobody looks"),
         };
+        let job = self.state.jobs.get(&spec.key);
+        self.decisions.push(format!("state {:?}", job.map(|job| (job.state, job.attempts.len()))));
         if let Outcome::Failed { class, faults, retry_after_ms } = &report.outcome {
             self.decisions.push(format!("failed {class:?} wait {retry_after_ms:?} {:?}", facts(faults)));
         }
@@ -223,7 +246,7 @@ impl Bench {
         let (name, seed): (RunId, u64) = (run.id(&grant.spec.key.scenario), run.seed);
         let recording = if found.is_empty() {
             let setup = socrates_simulation::setup(location, proposal, paths, behaviors, Some(&request), name, seed);
-            socrates_simulation::simulate(setup, REFERENCE)
+            socrates_simulation::simulate(setup, &PlannerName::reference())
         } else {
             Err(found)
         };
@@ -256,7 +279,9 @@ impl Bench {
             ..Evidence::of(recording)
         });
         let asked = judged.repair.as_ref().map(|repair| (repair.stage, facts(&repair.faults)));
-        self.decisions.push(format!("verdict {} score {} repair {asked:?}", judged.verdict, judged.score));
+        let facts = judged_facts(&judged);
+        self.decisions
+            .push(format!("verdict {} score {} report {facts} repair {asked:?}", judged.verdict, judged.score));
         let artifact = self.artifact(Role::Report, &json!(judged));
         let (verdict, repair) = (Some(judged.verdict), judged.repair);
         Report { verdict, repair, ..report(grant, Outcome::Ok, vec![artifact]) }

@@ -84,6 +84,12 @@ async fn found() -> Decisions {
         right.extend(answers(&Offline, &Question::first(request, reading, location, 1)).await);
     }
     let table = confusion(&right).await;
+    let put_in = |kind: FaultKind| {
+        table.rows.iter().filter(|((_, other), _)| *other == kind).map(|(_, row)| row.put_in).sum::<usize>()
+    };
+    for kind in FaultKind::ALL {
+        assert!(put_in(*kind) > 0, "{} has no place in any answer", kind.word());
+    }
     all.extend(table.rows.iter().map(|(key, row)| format!("{key:?} {row:?}")));
     all.extend(table.clean.iter().map(|(stage, alarms)| format!("{stage} {alarms:?}")));
     all

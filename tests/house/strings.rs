@@ -97,6 +97,14 @@ const EXCEPTIONS: &[(&str, &str, &str)] = &[
         "text .contains",
         "asks whether an error names its file, which is what people are to read there",
     ),
+    ("bus/link/src/envelope.rs", "kind ==", "the door itself: of which kind the message is that its bytes hold"),
+    ("orchestrator/app/src/fuzz/doors.rs", "name ==", "the name of a door is a constant of that file"),
+    ("prompts/llm/src/wire/anthropic.rs", "kind ==", "the door itself: of which kind a block of a server's answer is"),
+    (
+        "workers/scoring/src/fidelity/setting.rs",
+        "role ==",
+        "the role that the engine gives to people who walk as recorded",
+    ),
     ("prompts/offline/src/story.rs", "notes .contains", "says a note once; the reader of requests is to be replaced"),
     ("workers/simulation/hunav/src/run/prepare.rs", "file .rsplit", "the name of a file becomes that of a run"),
 ];

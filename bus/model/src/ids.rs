@@ -232,6 +232,18 @@ impl PlannerName {
         Self(Self::NO_ROBOT.to_owned())
     }
 
+    /// The robot of a `HuNavSim` agents file, which goes from way point to way point.
+    #[must_use]
+    pub fn waypoints() -> Self {
+        Self("waypoints".to_owned())
+    }
+
+    /// The robot of somebody's tracks: nobody knows what drove it.
+    #[must_use]
+    pub fn tracks() -> Self {
+        Self("tracks".to_owned())
+    }
+
     /// Whether it plays the robot script.
     #[must_use]
     pub fn is_reference(&self) -> bool {

@@ -34,6 +34,7 @@ pub mod request;
 pub mod rule;
 
 pub mod drive;
+mod leaf;
 pub mod recording;
 pub mod report;
 mod telling;
@@ -66,7 +67,7 @@ pub use polyline::Polyline;
 pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
-pub use report::{ClauseResult, MetricValue, Missing, Report, Verdict};
+pub use report::{ClauseResult, MetricValue, Missing, Report, Unit, Verdict};
 pub use request::{AuthorSpec, BadRequest, Moment, Request, Seeds};
 pub use role::Role;
 pub use rule::{Action, RobotRule, Rule, Trigger};

@@ -141,6 +141,15 @@ pub struct Proposal {
 }
 
 impl Proposal {
+    /// What [`Proposal::pattern`] is where no card is played.
+    pub const FREE: &'static str = "free";
+
+    /// Id of the card that is played; `None` for a scenario of its own.
+    #[must_use]
+    pub fn card(&self) -> Option<&str> {
+        Some(self.pattern.as_str()).filter(|pattern| *pattern != Self::FREE)
+    }
+
     /// The human of this id.
     #[must_use]
     pub fn human(&self, id: HumanId) -> Option<&HumanProposal> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
 use crate::hash::{Digest, DigestWriter};
-use crate::ids::{AgentId, HumanId, NodeId, RunId};
+use crate::ids::{AgentId, HumanId, NodeId, PlannerName, RunId};
 use crate::time::SimTime;
 
 /// State of one agent at one tick: exactly 64 bytes on every wire, little endian.
@@ -228,7 +228,7 @@ pub struct RecordingHeader {
     /// The run.
     pub run: RunId,
     /// Planner name.
-    pub planner: String,
+    pub planner: PlannerName,
     /// Simulation seed.
     pub seed: u64,
     /// Semantics profile: `native`, …
@@ -360,7 +360,7 @@ mod tests {
         let header = |leaves: &[&str]| RecordingHeader {
             format: 1,
             run: RunId::new("test").unwrap(),
-            planner: "none".into(),
+            planner: PlannerName::no_robot(),
             seed: 1,
             profile: "native".into(),
             step_s: 0.01,

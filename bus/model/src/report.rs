@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::clause::ClauseRole;
 use crate::fault::Fault;
 use crate::hash::Digest;
-use crate::ids::RunId;
+use crate::ids::{PlannerName, RunId};
 use crate::job::Stage;
 
 /// Whether the scenario that was asked for happened.
@@ -112,8 +112,8 @@ pub enum Standing {
 pub struct MetricValue {
     /// Metric id, such as `human_distance_min`.
     pub id: String,
-    /// Unit: `m`, `s`, `count`, `%`, …
-    pub unit: String,
+    /// Unit.
+    pub unit: Unit,
     /// The value; `None` with a reason in `note`.
     pub value: Option<f64>,
     /// Whether larger is better (1), worse (-1), or neither (0).
@@ -127,6 +127,53 @@ pub struct MetricValue {
     /// Why there is no value, or the convention used.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
+}
+
+/// Unit of a metric: `m`, `s`, `m/s`, …, and three that are none of physics: `count`, `share` (0 to 1) and `0/1` (no or yes).
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Unit(String);
+
+impl Unit {
+    const YES_OR_NO: &'static str = "0/1";
+    const COUNT: &'static str = "count";
+    const SHARE: &'static str = "share";
+
+    /// The unit of this spelling.
+    #[must_use]
+    pub fn new(text: impl Into<String>) -> Self {
+        Self(text.into())
+    }
+
+    /// As it is spelled.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+
+    /// Whether the value is 0 for no or 1 for yes.
+    #[must_use]
+    pub fn is_yes_or_no(&self) -> bool {
+        self.0 == Self::YES_OR_NO
+    }
+
+    /// Whether the value counts something.
+    #[must_use]
+    pub fn is_count(&self) -> bool {
+        self.0 == Self::COUNT
+    }
+
+    /// Whether the value is a share from 0 to 1, which is printed without a unit.
+    #[must_use]
+    pub fn is_share(&self) -> bool {
+        self.0 == Self::SHARE
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
 }
 
 const fn first() -> u32 {
@@ -167,7 +214,7 @@ pub struct Report {
     /// The run.
     pub run: RunId,
     /// Planner.
-    pub planner: String,
+    pub planner: PlannerName,
     /// Simulation seed.
     pub seed: u64,
     /// Hash of the recording that was judged.
@@ -199,4 +246,12 @@ pub struct Report {
     /// What should be done again, if the verdict asks for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub repair: Option<Repair>,
+}
+
+impl Report {
+    /// The metric of this id; `None` where the catalog has none or the report was made before there was one.
+    #[must_use]
+    pub fn metric(&self, id: &str) -> Option<&MetricValue> {
+        self.metrics.iter().find(|metric| metric.id == id)
+    }
 }

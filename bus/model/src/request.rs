@@ -198,10 +198,7 @@ pub struct BadRequest {
 
 impl fmt::Display for BadRequest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.key.as_str() {
-            "" => f.write_str(&self.found),
-            key => write!(f, "`{key}`: {}", self.found),
-        }
+        if self.key.is_empty() { f.write_str(&self.found) } else { write!(f, "`{}`: {}", self.key, self.found) }
     }
 }
 

@@ -2,17 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::{AgentId, Event, EventKind, HumanId, NodeId, Recording, ordinal};
+use crate::{Action, AgentId, Event, EventKind, HumanId, NodeId, Recording, ordinal};
 
 /// Who has come no farther than this has kept its place, m.
 const PLACE_M: f64 = 0.5;
 /// From so far apart nobody has come to anybody, m; who runs from the robot is gone from nearer already.
 const APART_M: f64 = 3.2;
 const GONE_M: f64 = 1.5;
-/// Letters of the leaf of somebody who follows the robot, whatever the dialect of its tree.
-const FOLLOWS: [&str; 2] = ["followrobot", "followingrobot"];
-/// The same of somebody who runs away from it.
-const FLEES: [&str; 3] = ["runaway", "scared", "flee"];
 
 impl Recording {
     /// An encounter in words, without its time. `None` for other events, and where there is nothing to tell: whoever
@@ -21,11 +17,10 @@ impl Recording {
     pub fn encounter_words(&self, event: &Event) -> Option<String> {
         let EventKind::Encounter { human, node, gap_s, nth } = &event.kind else { return None };
         let leaf = self.last_leaf(*human, event);
-        let does = |words: &[&str]| words.iter().any(|word| leaf.contains(word));
-        if does(&FOLLOWS) {
+        if Action::FollowRobot.is_leaf(leaf) {
             return None;
         }
-        let most_m = if does(&FLEES) { GONE_M } else { APART_M };
+        let most_m = if Action::RunAway.is_leaf(leaf) { GONE_M } else { APART_M };
         let which = if self.meets_again(*human) { format!(" for the {} time", ordinal(*nth)) } else { String::new() };
         if let Some(apart_m) = self.apart_m(*human, event).filter(|apart_m| *apart_m > most_m) {
             return Some(off(*human, node, &which, apart_m));
@@ -52,13 +47,11 @@ impl Recording {
     }
 
     /// Letters of the last leaf that somebody began by then; empty where it began none.
-    fn last_leaf(&self, who: HumanId, until: &Event) -> String {
-        let of = |kind: &EventKind| {
-            if let EventKind::Leaf { human, leaf } = kind { (*human == who).then(|| leaf.clone()) } else { None }
-        };
+    fn last_leaf(&self, who: HumanId, until: &Event) -> &str {
+        let of = |event: &'_ Event| matches!(&event.kind, EventKind::Leaf { human, .. } if *human == who);
         let begun = self.events.iter().take_while(|event| event.time <= until.time);
-        let leaf = begun.filter_map(|event| of(&event.kind)).last().unwrap_or_default();
-        leaf.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase()).collect()
+        let last = begun.filter(|event| of(event)).last();
+        if let Some(EventKind::Leaf { leaf, .. }) = last.map(|event| &event.kind) { leaf } else { "" }
     }
 
     /// Whether somebody has kept its place since the run began.
@@ -112,7 +105,7 @@ mod tests {
             header: RecordingHeader {
                 format: FORMAT,
                 run: RunId::new("test").unwrap(),
-                planner: "reference".into(),
+                planner: "reference".parse().unwrap(),
                 seed: 1,
                 profile: "native".into(),
                 step_s: 0.01,

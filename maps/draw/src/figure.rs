@@ -412,7 +412,6 @@ mod tests {
     #[test]
     fn nobody_a_crowd_and_hostile_words_have_a_figure_too() {
         let mut evil = walk(1);
-        evil.header.planner = EVIL.to_owned();
         evil.header.agents[1].role = EVIL.to_owned();
         for run in [walk(0), walk(300), evil] {
             let svg = figure(&hall("hall"), None, &[&run], &[&run], 84.0).unwrap();

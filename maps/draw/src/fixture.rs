@@ -3,7 +3,8 @@
 use serde_json::json;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{
-    AgentId, AgentState, Location, Paths, Proposal, Reading, Recording, RecordingHeader, Report, Request, RunId,
+    AgentId, AgentState, Location, Paths, PlannerName, Proposal, Reading, Recording, RecordingHeader, Report, Request,
+    RunId,
 };
 
 /// Text that would become markup, script or a place of a template where it is not made safe.
@@ -31,7 +32,7 @@ pub(crate) fn recording(ticks: &[&[AgentState]]) -> Recording {
     let header = RecordingHeader {
         format: 1,
         run: RunId::new("test.reference-1").unwrap(),
-        planner: "reference".to_owned(),
+        planner: PlannerName::reference(),
         seed: 1,
         profile: "native".to_owned(),
         step_s: 0.01,

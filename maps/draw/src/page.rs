@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use socrates_model::job::Stage;
 use socrates_model::{JobState, Location, Paths, Proposal, Reading, Recording, Report, Request};
 
 use crate::page_data::page_data;
@@ -15,8 +16,12 @@ const SCRIPT: &str = include_str!("web/page.js");
 /// One line of the stage table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageRow {
-    /// Stage name, with planner and seed where there are several.
-    pub stage: String,
+    /// Stage; `None` where the provenance does not say.
+    pub stage: Option<Stage>,
+    /// Planner and seed where there are several; empty otherwise.
+    pub item: String,
+    /// Revision, 0 for the first.
+    pub revision: u64,
     /// Where the job stands; `None` where the provenance does not say.
     pub state: Option<JobState>,
     /// Attempts.
@@ -25,6 +30,15 @@ pub struct StageRow {
     pub wall_ms: u64,
     /// What happened: remark and faults.
     pub remark: String,
+}
+
+impl StageRow {
+    /// `simulation reference-1 (revision 2)`
+    fn name(&self) -> String {
+        let revision = if self.revision == 0 { String::new() } else { format!("(revision {})", self.revision) };
+        let stage = self.stage.map_or("", Stage::name);
+        [stage, &self.item, &revision].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ")
+    }
 }
 
 /// One line of the provenance table.
@@ -67,10 +81,8 @@ impl Page<'_> {
     pub fn html(&self) -> String {
         let way = self.location.graph.polyline(&self.paths.robot);
         let data = page_data(self.location, &way, self.reading, self.runs);
-        let location = match self.location.description.as_str() {
-            "" => escape(&self.location.name),
-            about => format!("<abbr title=\"{}\">{}</abbr>", escape(about), escape(&self.location.name)),
-        };
+        let (name, about) = (escape(&self.location.name), escape(&self.location.description));
+        let location = if about.is_empty() { name } else { format!("<abbr title=\"{about}\">{name}</abbr>") };
         let own = vec![
             ("author", escape(&self.proposal.author.to_string())),
             ("location", location),
@@ -136,7 +148,7 @@ impl Page<'_> {
             .map(|row| {
                 format!(
                     "<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{} ms</td><td>{}</td></tr>",
-                    escape(&row.stage),
+                    escape(&row.name()),
                     row.state.map_or("", JobState::name),
                     row.attempts,
                     row.wall_ms,
@@ -163,7 +175,9 @@ mod tests {
         let (request, reading, proposal, paths) = papers(text);
         let row = |text: &str| text.to_owned();
         let stages = [StageRow {
-            stage: row(text),
+            stage: Some(Stage::Proposal),
+            item: row(text),
+            revision: 2,
             state: Some(JobState::Succeeded),
             attempts: 1,
             wall_ms: 2,

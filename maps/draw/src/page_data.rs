@@ -105,29 +105,14 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
     }
 }
 
-/// What the published leaf of this tag does, in the words of the story.
-fn known(tag: &str) -> Option<Action> {
-    Some(match tag {
-        "RegularNav" => Action::Navigate,
-        "FollowRobot" => Action::FollowRobot,
-        "RunAwayFromRobot" => Action::RunAway,
-        "GiveWaytoRobot" => Action::GiveWay,
-        "BlockRobot" => Action::Block,
-        "LookAtRobot" => Action::LookAtRobot,
-        "ApproachRobot" => Action::Approach,
-        "StandStill" => Action::StandStill,
-        _ => return None,
-    })
-}
-
 /// Whether whoever runs a leaf of this tag does something about the robot.
 pub(crate) fn reacts(tag: &str) -> bool {
-    known(tag).is_some_and(|action| !matches!(action, Action::Navigate | Action::StandStill))
+    Action::of_tag(tag).is_some_and(|action| !matches!(action, Action::Navigate | Action::StandStill))
 }
 
 /// What somebody does whose tree runs a leaf of this tag: `blocks the robot`; other tags as they are, `runs stand up` for `StandUp`.
 fn spoken(tag: &str) -> String {
-    match known(tag) {
+    match Action::of_tag(tag) {
         Some(action) => action.phrase(),
         // The tag does not say whom.
         None if tag == "FollowHuman" => "follows another human".to_owned(),

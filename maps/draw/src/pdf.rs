@@ -77,7 +77,6 @@ mod tests {
     #[test]
     fn hostile_words_and_a_broken_drawing_are_no_panic() {
         let mut run = walk(1);
-        run.header.planner = EVIL.to_owned();
         run.header.agents[1].role = "一 😀 \u{202e}".to_owned();
         let svg = crate::figure(&hall("hall"), None, &[&run], &[&run], 84.0).unwrap();
         assert!(pdf_from_svg(&svg, EVIL).is_ok());

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 use socrates_draw::Figures;
-use socrates_scoring::metrics::KEY_FIGURES;
+use socrates_scoring::metrics::{Aggregation, KEY_FIGURES, sheet};
 use socrates_scoring::{Cell, Pool, PooledRun, Ranking, pool};
 
 use crate::exit::Complaint;
@@ -24,14 +24,16 @@ pub(crate) fn of(reports: &[(String, Vec<socrates_model::Report>)]) -> Result<Po
 
 /// Robots among the planners: a run without one has no figures of its own.
 fn planners(pool: &Pool) -> Vec<&str> {
-    let all = pool.cells.iter().filter(|cell| cell.metric.id == "robot_speed_mean" && cell.scenario.is_empty());
+    let all =
+        pool.cells.iter().filter(|cell| Some(cell.metric) == sheet("robot_speed_mean") && cell.scenario.is_empty());
     all.filter(|cell| cell.values > 0).map(|cell| cell.planner.as_str()).collect()
 }
 
 /// `0.43 [0.40, 0.47] m`, and of how many runs where not all have a value.
 fn told(cell: &Cell) -> String {
     let Some(estimate) = cell.estimate else { return "n/a".to_owned() };
-    let unit = if cell.metric.unit == "0/1" { String::new() } else { format!(" {}", cell.metric.unit) };
+    let unit =
+        if cell.metric.aggregation() == Aggregation::Share { String::new() } else { format!(" {}", cell.metric.unit) };
     let interval = cell.interval.map_or_else(String::new, |(low, high)| format!(" [{low:.2}, {high:.2}]"));
     let of = if cell.values < cell.runs { format!(" · {} of {}", cell.values, cell.runs) } else { String::new() };
     format!("{estimate:.2}{interval}{unit}{of}")
@@ -119,7 +121,7 @@ pub(crate) fn result(pool: &Pool) -> serde_json::Value {
 mod tests {
     use std::collections::BTreeMap;
 
-    use socrates_model::{Digest, MetricValue, Report, RunId, Verdict};
+    use socrates_model::{Digest, MetricValue, Report, RunId, Unit, Verdict};
 
     use super::*;
 
@@ -127,7 +129,7 @@ mod tests {
     fn report(planner: &str, seed: u64, values: [(&str, &str, Option<f64>); 3]) -> Report {
         let value = |(id, unit, value): (&str, &str, Option<f64>)| MetricValue {
             id: id.to_owned(),
-            unit: unit.to_owned(),
+            unit: Unit::new(unit),
             value,
             direction: 1,
             version: 1,
@@ -137,7 +139,7 @@ mod tests {
         Report {
             format: socrates_model::FORMAT,
             run: RunId::new("a.run").unwrap(),
-            planner: planner.to_owned(),
+            planner: planner.parse().unwrap(),
             seed,
             recording: Digest::of(b"run"),
             verdict: Verdict::Realised,
@@ -205,11 +207,11 @@ mod tests {
     #[test]
     fn planners_that_ran_other_scenarios_are_not_put_in_an_order() {
         let mut reports = batch();
-        reports[0].1.retain(|report| report.planner != "near");
+        reports[0].1.retain(|report| report.planner.as_str() != "near");
         let some = of(&reports).unwrap();
         let row = |pool: &Pool| table(pool).rows.iter().find(|row| row[0] == "human distance min").unwrap()[3].clone();
         assert!(row(&some).contains("over the 1 of 2 scenarios that all ran"), "{}", row(&some));
-        reports[1].1.retain(|report| report.planner == "near");
+        reports[1].1.retain(|report| report.planner.as_str() == "near");
         assert_eq!(row(&of(&reports).unwrap()), NOT_COMPARED);
     }
 }

@@ -322,13 +322,14 @@ pub(crate) fn metrics<'a>(reports: impl IntoIterator<Item = &'a Report>) -> Stri
 /// Stage lines of what was tried, in pipeline order.
 pub(crate) fn stage_rows(past: &[PastJob]) -> Vec<StageRow> {
     let row = |job: &PastJob| {
-        let item = if job.key.item == Item::Whole { String::new() } else { format!(" {}", job.key.item) };
-        let revision = if job.key.revision == 0 { String::new() } else { format!(" (revision {})", job.key.revision) };
+        let item = if job.key.item == Item::Whole { String::new() } else { job.key.item.to_string() };
         let faults: Vec<String> =
             job.attempts.iter().flat_map(|attempt| &attempt.faults).map(ToString::to_string).collect();
         let remark = [job.remark.clone(), faults.join("; ")];
         StageRow {
-            stage: format!("{}{item}{revision}", job.key.stage),
+            stage: Some(job.key.stage),
+            item,
+            revision: u64::from(job.key.revision),
             state: Some(job.state),
             attempts: u32::try_from(job.attempts.len()).unwrap_or(u32::MAX),
             wall_ms: job.attempts.iter().map(|attempt| attempt.wall_ms).sum(),

@@ -6,6 +6,7 @@ use std::path::Path;
 use serde_json::json;
 use socrates_model::report::Standing;
 use socrates_model::{AgentId, Clause, ClauseRole, PlannerName, Verdict};
+use socrates_orchestrator::pipeline;
 
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
@@ -18,11 +19,8 @@ const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub fn cite(talk: &Printer, dir: &Path) -> Result<(), Complaint> {
     let bundle = bundle::read(dir)?;
     let (stages, _) = past(dir);
-    let asked: u32 = stages
-        .iter()
-        .filter(|row| ["proposal", "paths", "behaviors"].iter().any(|stage| row.stage.starts_with(stage)))
-        .map(|row| row.attempts)
-        .sum();
+    let asked: u32 =
+        stages.iter().filter(|row| row.stage.is_some_and(pipeline::is_authored)).map(|row| row.attempts).sum();
     let program = program(dir);
     let methods = paragraph(&bundle, asked, program.as_deref());
     let hashes = hashes(&bundle);
@@ -98,20 +96,22 @@ fn groups(bundle: &Bundle) -> String {
 
 fn simulated(bundle: &Bundle) -> String {
     let request = &bundle.request;
-    let mut seeds: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    let mut seeds: BTreeMap<&PlannerName, Vec<String>> = BTreeMap::new();
     for run in &bundle.manifest.runs {
-        seeds.entry(run.planner.as_str()).or_default().push(run.seed.to_string());
+        seeds.entry(&run.planner).or_default().push(run.seed.to_string());
     }
     let planners: Vec<String> = seeds
         .iter()
         .map(|(planner, seeds)| {
-            let what = match *planner {
-                "reference" => "`reference` (plays the robot script along the intended path)".to_owned(),
-                "none" => "`none` (the same people without a robot)".to_owned(),
-                other => format!("`{other}`"),
+            let what = if planner.is_reference() {
+                " (plays the robot script along the intended path)"
+            } else if planner.is_no_robot() {
+                " (the same people without a robot)"
+            } else {
+                ""
             };
             let word = if seeds.len() == 1 { "seed" } else { "seeds" };
-            format!("{what} with {word} {}", seeds.join(", "))
+            format!("`{planner}`{what} with {word} {}", seeds.join(", "))
         })
         .collect();
     let lengths: Vec<f64> = bundle.runs.iter().map(|(_, report)| report.simulated_s).collect();
@@ -183,7 +183,7 @@ fn judged(bundle: &Bundle) -> String {
     let setup = report.clauses.iter().filter(|clause| clause.role == ClauseRole::Setup);
     let needed = setup.clone().filter(|clause| clause.must && clause.standing != Standing::NotApplicable).count();
     let outcome = report.clauses.iter().filter(|clause| clause.role == ClauseRole::Outcome).count();
-    let robots: Vec<_> = bundle.runs.iter().filter(|(_, report)| report.planner != PlannerName::NO_ROBOT).collect();
+    let robots: Vec<_> = bundle.runs.iter().filter(|(_, report)| !report.planner.is_no_robot()).collect();
     let realised = robots.iter().filter(|(_, report)| report.verdict == Verdict::Realised).count();
     let succeeded = robots.iter().filter(|(_, report)| report.success).count();
     let limits = limits(&bundle.proposal.expected_events);

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde_json::{Value, json};
-use socrates_model::{AuthorSpec, Signature};
+use socrates_model::{AuthorSpec, FaultCode, Signature};
 use socrates_orchestrator::{pipeline, price_of};
 
 use crate::config::Config;
@@ -255,8 +255,8 @@ fn is_authored(job: &Value) -> bool {
 fn ended_from_outside(attempt: &Value) -> bool {
     let is_empty = |key: &str| attempt.get(key).and_then(Value::as_array).is_none_or(Vec::is_empty);
     let faults = attempt.get("faults").and_then(Value::as_array).into_iter().flatten();
-    let mut codes = faults.filter_map(|fault| fault.get("code")?.as_str());
-    is_empty("exchanges") && codes.any(|code| matches!(code, "J-DEADLINE" | "J-LOST"))
+    let mut codes = faults.filter_map(|fault| FaultCode::deserialize(fault.get("code")?).ok());
+    is_empty("exchanges") && codes.any(|code| matches!(code, FaultCode::JDeadline | FaultCode::JLost))
 }
 
 fn tokens(exchange: &Value) -> Option<[u64; 2]> {

@@ -95,7 +95,7 @@ pub(crate) fn simulate(
 ) -> Result<Recording, Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate(setup, run.planner.as_str())
+    socrates_simulation::simulate(setup, &run.planner)
 }
 
 /// The same; `onlooker` gets everything as it comes, and nothing of it is kept.
@@ -111,7 +111,7 @@ pub(crate) fn simulate_into(
 ) -> Result<(), Vec<Fault>> {
     let Made { proposal, paths, behaviors } = made;
     let setup = socrates_simulation::setup(location.clone(), proposal, paths, behaviors, Some(request), id, run.seed);
-    socrates_simulation::simulate_into(setup, run.planner.as_str(), onlooker)
+    socrates_simulation::simulate_into(setup, &run.planner, onlooker)
 }
 
 /// All that the judge may look at in a run of the reference robot.

@@ -37,8 +37,10 @@ impl Rows {
     /// A row per run.
     pub(crate) fn of(scenario: Scenario<'_>, reports: &[Report]) -> Self {
         let rows = reports.iter().map(|report| {
-            let mut row =
-                row(scenario, [&report.planner, &report.seed.to_string(), report.verdict.name(), &report.verdict_text]);
+            let mut row = row(
+                scenario,
+                [report.planner.as_str(), &report.seed.to_string(), report.verdict.name(), &report.verdict_text],
+            );
             row.extend(KEY_FIGURES.iter().map(|id| {
                 let value = key_figures(report).find(|metric| metric.id == *id).and_then(|metric| metric.value);
                 value.map_or_else(String::new, |value| value.to_string())

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_draw::LabelPage;
-use socrates_model::{PlannerName, Recording, ScenarioId};
+use socrates_model::{Recording, ScenarioId};
 
 use crate::batch;
 use crate::bundle;
@@ -29,7 +29,7 @@ pub fn page(talk: &Printer, bundles: &[PathBuf], out: &Path, first: bool, title:
         let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
         for (recording, report) in &bundle.runs {
             // Without the robot there is nothing to label: the twin run only serves comparison.
-            if report.planner == PlannerName::NO_ROBOT {
+            if report.planner.is_no_robot() {
                 continue;
             }
             let run = report.run.to_string();

@@ -181,7 +181,7 @@ pub(crate) fn finish(
         "distinct": library.distinct().count(), "index": root.join(crate::index::FILE).display().to_string(),
         "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
     }));
-    Ok(if options.require == "any" || whole { Code::Ok } else { Code::NotRealised })
+    Ok(if options.require.is_met(whole) { Code::Ok } else { Code::NotRealised })
 }
 
 #[cfg(test)]

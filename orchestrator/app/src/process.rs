@@ -6,7 +6,8 @@ use std::sync::Arc;
 use socrates_kit::{BlobError, Blobs, FaultPlan, KitError, LocalBlobs, Stop, WorkerConfig};
 use socrates_link::{Bus, Mode, ZenohConfig};
 use socrates_model::job::Stage;
-use socrates_store::{Durability, StoreError};
+pub use socrates_store::Durability;
+use socrates_store::StoreError;
 use socrates_stream::{ShmConfig, ShmHost};
 use tokio::sync::watch;
 
@@ -49,8 +50,8 @@ pub struct OrchestratorOptions {
     pub connect: Option<String>,
     /// Namespace.
     pub namespace: String,
-    /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
-    pub durable: String,
+    /// What a commit outlives.
+    pub durable: Durability,
     /// Leave when standard input closes.
     pub tied: bool,
     /// No worker of before is alive: what they held is handed out again at once.
@@ -198,7 +199,7 @@ pub async fn orchestrator(talk: &Printer, config: &Config, options: &Orchestrato
         ),
         cents_per_scenario: config.number("orchestrator.cents_per_scenario"),
         prices: crate::cost::prices_of(config)?,
-        durability: if options.durable == "process" { Durability::Process } else { Durability::Disk },
+        durability: options.durable,
         code_version: CODE_VERSION.to_owned(),
         alone: options.alone,
         waits: !options.tied,

@@ -7,6 +7,7 @@ use serde::Deserialize as _;
 use serde_json::json;
 use socrates_draw::{Page, ProvenanceRow, StageRow};
 use socrates_model::JobState;
+use socrates_model::job::Stage;
 
 use crate::batch;
 use crate::batch_stats;
@@ -101,17 +102,12 @@ pub(crate) fn past(dir: &Path) -> (Vec<StageRow>, String) {
         let key = job.get("job").cloned().unwrap_or_default();
         let attempts: Vec<&serde_json::Value> =
             job.get("attempts").and_then(serde_json::Value::as_array).into_iter().flatten().collect();
-        let revision = key.get("revision").and_then(serde_json::Value::as_u64).unwrap_or(0);
-        let item = word(&key, "item");
         let remarks: Vec<String> =
             attempts.iter().map(|attempt| word(attempt, "remark")).filter(|remark| !remark.is_empty()).collect();
         StageRow {
-            stage: format!(
-                "{}{}{}",
-                word(&key, "stage"),
-                if item.is_empty() { String::new() } else { format!(" {item}") },
-                if revision == 0 { String::new() } else { format!(" (revision {revision})") }
-            ),
+            stage: key.get("stage").and_then(|stage| Stage::deserialize(stage).ok()),
+            item: word(&key, "item"),
+            revision: key.get("revision").and_then(serde_json::Value::as_u64).unwrap_or(0),
             state: job.get("state").and_then(|state| JobState::deserialize(state).ok()),
             attempts: u32::try_from(attempts.len()).unwrap_or(u32::MAX),
             wall_ms: attempts.iter().filter_map(|attempt| attempt.get("wall_ms")?.as_u64()).sum(),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::{JobState, PlannerName, Verdict};
+use socrates_model::{JobState, Verdict};
 use socrates_store::Reader;
 
 use crate::bundle::{self, Bundle, Past};
@@ -237,7 +237,7 @@ fn finish(
     talk.line(&format!("{:<10} {}", report.verdict.name(), report.verdict_text));
     for (_, report) in &bundle.runs {
         let seed = if bundle.runs.len() > 1 { format!(" seed {}", report.seed) } else { String::new() };
-        if report.planner == PlannerName::NO_ROBOT {
+        if report.planner.is_no_robot() {
             talk.line(&format!("twin       without the robot{seed}: {:.1} s", report.simulated_s));
             continue;
         }
@@ -245,7 +245,7 @@ fn finish(
         talk.line(&format!("robot      {}{seed}: {}{verdict}", report.planner, report.robot_text));
     }
     // The first line is that of the first run; of several, this one says how often it happened.
-    let played = || bundle.runs.iter().filter(|(_, report)| report.planner != PlannerName::NO_ROBOT);
+    let played = || bundle.runs.iter().filter(|(_, report)| !report.planner.is_no_robot());
     if played().count() > 1 {
         let count = |wanted: Verdict| played().filter(|(_, report)| report.verdict == wanted).count();
         let (realised, late) = (count(Verdict::Realised), count(Verdict::RealisedLate));
@@ -263,7 +263,7 @@ fn finish(
         "author": bundle.proposal.author,
         "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
     }));
-    if options.require == "any" || report.verdict == Verdict::Realised { Code::Ok } else { Code::NotRealised }
+    if options.require.is_met(report.verdict == Verdict::Realised) { Code::Ok } else { Code::NotRealised }
 }
 
 /// Prints how a request is read.

@@ -4,6 +4,26 @@ use std::path::PathBuf;
 
 use socrates_model::{AuthorSpec, PlannerName, Seeds};
 
+/// What a run has to be for its exit code to be 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Require {
+    /// Made, with any verdict.
+    Any,
+    /// Realised.
+    Realised,
+}
+
+impl Require {
+    /// Whether a run is as required, when it is known whether everything was realised.
+    #[must_use]
+    pub const fn is_met(self, realised: bool) -> bool {
+        match self {
+            Self::Any => true,
+            Self::Realised => realised,
+        }
+    }
+}
+
 /// Options of a run; what they name wins over the request.
 #[derive(Debug, Clone)]
 pub struct RunOptions {
@@ -21,8 +41,8 @@ pub struct RunOptions {
     pub author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
     pub pace: String,
-    /// `realised` where any other verdict counts as not made, else `any`.
-    pub require: String,
+    /// Verdict that the exit code asks for.
+    pub require: Require,
     /// Worker processes of the simulation stage.
     pub workers: Option<u32>,
     /// Faults put into the author's answers: `gdisc=0.3,bxml=0.1`.
@@ -42,7 +62,7 @@ impl RunOptions {
             variants: None,
             author: None,
             pace: "max".to_owned(),
-            require: "any".to_owned(),
+            require: Require::Any,
             workers: None,
             inject: String::new(),
             ask: false,

@@ -4,11 +4,11 @@ use socrates_author::offline::Offline;
 use socrates_author::{Written, attempt};
 use socrates_model::job::Stage;
 use socrates_model::{
-    AgentId, Event, EventKind, Family, FaultCode, HumanId, Location, Paths, Proposal, Reading, Recording, Request,
-    RunId, SimTime,
+    AgentId, Event, EventKind, Family, FaultCode, HumanId, Location, Paths, PlannerName, Proposal, Reading, Recording,
+    Request, RunId, SimTime,
 };
 use socrates_prompts::Question;
-use socrates_scoring::{Evidence, REFERENCE};
+use socrates_scoring::Evidence;
 
 use super::{Examples, keep, proposed, question, shipped};
 
@@ -39,7 +39,7 @@ pub(super) async fn examples() -> Examples {
             run,
             1,
         );
-        let Ok(mut recording) = socrates_simulation::simulate(setup, REFERENCE) else { continue };
+        let Ok(mut recording) = socrates_simulation::simulate(setup, &PlannerName::reference()) else { continue };
         let made = (&location, &request, &reading, &proposal, &paths);
         for mutant in socrates_scoring::mutants::spoiled(&evidence(made, &recording)) {
             let report = socrates_scoring::score(&evidence(made, &mutant.recording));

@@ -24,7 +24,7 @@ pub const WALK: &str = "Walk";
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NodeSpec {
     /// Tag of the node as the catalog spells it, or [`WALK`]; letters and digits.
-    pub tag: String,
+    tag: String,
     /// Name in the XML, which explains and changes nothing; not in the JSON.
     pub name: Option<String>,
     /// Ports with their values; letters, digits and `_` in the names.

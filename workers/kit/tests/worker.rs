@@ -371,6 +371,15 @@ async fn a_panic_is_poison_a_missing_input_is_passing_and_a_hang_ends_at_its_dea
         ];
         expected.sort_unstable();
         assert_eq!(ends, expected);
+        // The pages of the two that no other test provokes show what was found here.
+        for report in &office.reports {
+            if let Outcome::Failed { faults, .. } = &report.outcome
+                && matches!(faults[0].code, FaultCode::JPanic | FaultCode::JBlob)
+            {
+                let (page, shown) = (faults[0].code.page(), faults[0].to_string());
+                assert!(page.contains(&format!("```text\n{shown}\n```")), "its page does not show\n{shown}");
+            }
+        }
     })
     .await;
 }

@@ -13,7 +13,8 @@ use std::hint::black_box;
 use machine::cpu_s;
 use socrates_model::recording::AgentInfo;
 use socrates_model::{
-    AgentId, AgentState, Encounter, HumanId, Location, NodeId, Paths, Point, Recording, RecordingHeader, RunId,
+    AgentId, AgentState, Encounter, HumanId, Location, NodeId, Paths, PlannerName, Point, Recording, RecordingHeader,
+    RunId,
 };
 use socrates_scoring::{Evidence, score};
 
@@ -77,7 +78,7 @@ fn scene(location: &Location, humans: u32) -> (Recording, Paths) {
     let header = RecordingHeader {
         format: 1,
         run: RunId::new("bench.reference-1").unwrap(),
-        planner: "reference".into(),
+        planner: PlannerName::reference(),
         seed: 1,
         profile: "native".into(),
         step_s: STEP_S,

@@ -310,7 +310,7 @@ fn a_planner_that_prevents_a_scenario_does_so_also_where_a_wish_is_not_played() 
     let yields = || Walk::human_through(1, &[(0., 0., -0.3), (9.2, 0., -0.3), (10., 0., 0.6), (40., 0., 0.6)]);
     let reference = recording(&[asks(9.0), yields().leaf(0.0, 1).leaf(9.0, 6).leaf(12.0, 1)], 34.0, 0.01);
     let mut other = recording(&[asks(90.0), yields().leaf(0.0, 1)], 34.0, 0.01);
-    other.header.planner = "reactive".into();
+    other.header.planner = "reactive".parse().unwrap();
     let report = crate::score(&crate::Evidence { reference: Some(&reference), ..case.evidence(&other) });
     assert_eq!(report.verdict, Verdict::RobotPrevented, "{}", report.verdict_text);
 }

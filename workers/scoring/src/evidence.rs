@@ -52,6 +52,3 @@ impl<'a> Evidence<'a> {
         }
     }
 }
-
-/// Name of the planner that plays the robot script along the intended path.
-pub const REFERENCE: &str = "reference";

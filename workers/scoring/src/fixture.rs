@@ -3,7 +3,7 @@
 use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::{
     AgentId, AgentState, Cell, Encounter, Event, EventKind, Gesture, GraphEdge, GraphNode, Grid, HumanId, Location,
-    NodeId, Paths, Point, Pose, Recording, RecordingHeader, RunId, SceneGraph, SimTime,
+    NodeId, Paths, PlannerName, Point, Pose, Recording, RecordingHeader, RunId, SceneGraph, SimTime,
 };
 
 /// A small generator, so that a property runs over the same cases each time.
@@ -117,7 +117,7 @@ pub(crate) fn recording(walks: &[Walk], seconds: f64, step_s: f64) -> Recording 
     let header = RecordingHeader {
         format: 1,
         run: RunId::new("test.reference-1").unwrap(),
-        planner: "reference".into(),
+        planner: PlannerName::reference(),
         seed: 1,
         profile: "native".into(),
         step_s,

@@ -50,7 +50,7 @@ mod reasons;
 mod scenarios;
 
 pub use doubts::doubts;
-pub use evidence::{Evidence, REFERENCE};
+pub use evidence::Evidence;
 pub use pool::{Cell, Pool, PoolFault, PooledRun, Ranking, pool};
 pub use score::score;
 pub use series::{Series, Span};

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use socrates_model::report::Standing;
 use socrates_model::{Action, AgentId, ClauseRole, Event, EventKind, HumanId};
 
-use crate::fidelity::{Judged, Signals, does};
+use crate::fidelity::{Judged, Signals};
 use crate::metrics::Scene;
 use crate::tracks::MOVING_MPS;
 
@@ -26,7 +26,7 @@ pub(crate) fn story(signals: &Signals<'_>) -> Vec<String> {
         let t = event.time.secs();
         if let EventKind::Leaf { human, leaf } = &event.kind {
             let first = led.insert(*human);
-            if does(leaf, &Action::Navigate) {
+            if Action::Navigate.is_leaf(leaf) {
                 // Who is sent on its way and held back for a while goes when it goes.
                 let next = events.iter().skip(index + 1).find(|later| is_leaf_of(&later.kind, *human));
                 if let Some(goes) = goes_at(signals, *human, t, next.map_or(f64::INFINITY, |next| next.time.secs())) {
@@ -84,7 +84,7 @@ fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
         EventKind::Gesture { agent, gesture: Some(gesture) } => format!("{agent} says {gesture}"),
         EventKind::Leaf { human, leaf } => match phrase(leaf) {
             Some(words) => format!("{human} {words}"),
-            None if does(leaf, &Action::FollowHuman(*human)) => format!("{human} follows {}", leader(signals, *human)),
+            None if Action::FollowHuman(*human).is_leaf(leaf) => format!("{human} follows {}", leader(signals, *human)),
             None => format!("{human} runs {leaf}"),
         },
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
@@ -120,7 +120,7 @@ fn phrase(leaf: &str) -> Option<String> {
     if leaf.is_empty() {
         return None;
     }
-    plain.iter().find(|action| does(leaf, action)).map(Action::phrase)
+    plain.iter().find(|action| action.is_leaf(leaf)).map(Action::phrase)
 }
 
 /// Stops of the robot before it is at its goal, with who is nearest ahead.

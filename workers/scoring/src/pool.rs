@@ -11,7 +11,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use socrates_model::Report;
+use socrates_model::{PlannerName, Report};
 use socrates_stats::{Bootstrap, Interval, Z_95, bootstrap_mean, bootstrap_median, kendall_tau, wilson};
 
 use crate::metrics::{Aggregation, Direction, Sheet, sheet};
@@ -32,7 +32,7 @@ pub struct Cell {
     /// all runs of the planner.
     pub scenario: String,
     /// Planner.
-    pub planner: String,
+    pub planner: PlannerName,
     /// Metric.
     pub metric: &'static Sheet,
     /// Runs.
@@ -176,7 +176,7 @@ fn values<'r>(runs: impl Iterator<Item = &'r PooledRun<'r>>, id: &str) -> Vec<f6
 pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
     let thresholds = alike(runs)?;
     let scenarios: BTreeSet<&str> = runs.iter().map(|run| run.scenario).collect();
-    let planners: BTreeSet<&str> = runs.iter().map(|run| run.report.planner.as_str()).collect();
+    let planners: BTreeSet<&PlannerName> = runs.iter().map(|run| &run.report.planner).collect();
     let (mut cells, mut rankings) = (Vec::new(), Vec::new());
     for metric in crate::metrics::sheets() {
         let shared = Shared::of(metric, runs, &planners);
@@ -185,7 +185,8 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
         for part in parts {
             for planner in &planners {
                 let own = |run: &&PooledRun<'_>| {
-                    run.report.planner == *planner && part.map_or_else(|| shared.counts(run), |one| run.scenario == one)
+                    run.report.planner == **planner
+                        && part.map_or_else(|| shared.counts(run), |one| run.scenario == one)
                 };
                 let count = runs.iter().filter(own).count();
                 if count == 0 {
@@ -195,7 +196,7 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
                 let (estimate, interval) = figure(metric, &values);
                 cells.push(Cell {
                     scenario: part.unwrap_or_default().to_owned(),
-                    planner: (*planner).to_owned(),
+                    planner: (*planner).clone(),
                     metric,
                     runs: count,
                     values: values.len(),
@@ -212,14 +213,14 @@ pub fn pool(runs: &[PooledRun<'_>]) -> Result<Pool, PoolFault> {
 /// The runs over which planners are compared by one metric.
 struct Shared<'r> {
     /// Planners that have a value at all: who never has one, such as the run without a robot, is not compared.
-    planners: BTreeSet<&'r str>,
+    planners: BTreeSet<&'r PlannerName>,
     /// Scenario and seed of the runs that all of them have.
     keys: BTreeSet<(&'r str, u64)>,
 }
 
 impl<'r> Shared<'r> {
-    fn of(metric: &Sheet, runs: &'r [PooledRun<'r>], planners: &BTreeSet<&'r str>) -> Self {
-        let planners: BTreeSet<&str> = planners
+    fn of(metric: &Sheet, runs: &'r [PooledRun<'r>], planners: &BTreeSet<&'r PlannerName>) -> Self {
+        let planners: BTreeSet<&PlannerName> = planners
             .iter()
             .copied()
             .filter(|planner| !values(of_planner(runs, planner), metric.id).is_empty())
@@ -231,14 +232,14 @@ impl<'r> Shared<'r> {
 
     /// Whether a run counts where all scenarios are taken together.
     fn counts(&self, run: &PooledRun<'_>) -> bool {
-        let compared = self.planners.contains(run.report.planner.as_str()) && !self.keys.is_empty();
+        let compared = self.planners.contains(&run.report.planner) && !self.keys.is_empty();
         !compared || self.keys.contains(&key(run))
     }
 }
 
 /// The runs of a planner.
-fn of_planner<'r>(runs: &'r [PooledRun<'r>], planner: &'r str) -> impl Iterator<Item = &'r PooledRun<'r>> {
-    runs.iter().filter(move |run| run.report.planner == planner)
+fn of_planner<'r>(runs: &'r [PooledRun<'r>], planner: &'r PlannerName) -> impl Iterator<Item = &'r PooledRun<'r>> {
+    runs.iter().filter(move |run| run.report.planner == *planner)
 }
 
 /// What two planners have in common where they ran the same.
@@ -247,8 +248,8 @@ fn key<'r>(run: &PooledRun<'r>) -> (&'r str, u64) {
 }
 
 /// Scores of the planners by one metric, larger is better; `None` unless everybody has one.
-fn scores(metric: &Sheet, runs: &[&PooledRun<'_>], planners: &BTreeSet<&str>) -> Option<Vec<f64>> {
-    let one = |planner: &&str| {
+fn scores(metric: &Sheet, runs: &[&PooledRun<'_>], planners: &BTreeSet<&PlannerName>) -> Option<Vec<f64>> {
+    let one = |planner: &&PlannerName| {
         let own = runs.iter().copied().filter(|run| run.report.planner == **planner);
         let (estimate, _) = figure(metric, &values(own, metric.id));
         estimate.map(|estimate| estimate * f64::from(metric.direction.sign()))
@@ -262,7 +263,7 @@ fn ranking(metric: &'static Sheet, runs: &[PooledRun<'_>], shared: &Shared<'_>) 
     }
     let all: Vec<&PooledRun<'_>> = runs.iter().filter(|run| shared.keys.contains(&key(run))).collect();
     let whole = scores(metric, &all, &shared.planners)?;
-    let mut order: Vec<(&str, f64)> = shared.planners.iter().copied().zip(whole.iter().copied()).collect();
+    let mut order: Vec<(&PlannerName, f64)> = shared.planners.iter().copied().zip(whole.iter().copied()).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(b.0)));
     let scenarios = all.iter().map(|run| run.scenario).collect::<BTreeSet<_>>().len();
     let mut parts: BTreeMap<(&str, u64), Vec<&PooledRun<'_>>> = BTreeMap::new();
@@ -274,7 +275,7 @@ fn ranking(metric: &'static Sheet, runs: &[PooledRun<'_>], shared: &Shared<'_>) 
         parts.values().filter_map(|part| kendall_tau(&whole, &scores(metric, part, &shared.planners)?).ok()).collect();
     #[expect(clippy::cast_precision_loss, reason = "parts of a batch are far below 2^53")]
     let tau = (taus.len() > 1).then(|| taus.iter().sum::<f64>() / taus.len() as f64);
-    let planners = order.into_iter().map(|(planner, _)| planner.to_owned()).collect();
+    let planners = order.into_iter().map(|(planner, _)| planner.to_string()).collect();
     Some(Ranking { metric, planners, scenarios, tau, parts: taus.len() })
 }
 
@@ -296,7 +297,7 @@ impl Pool {
             };
             let cells = [
                 cell.scenario.clone(),
-                cell.planner.clone(),
+                cell.planner.to_string(),
                 cell.metric.id.to_owned(),
                 cell.metric.unit.to_owned(),
                 cell.metric.direction.sign().to_string(),
@@ -318,7 +319,9 @@ impl Pool {
     /// The figure of a planner over all scenarios.
     #[must_use]
     pub fn overall(&self, planner: &str, metric: &str) -> Option<&Cell> {
-        self.cells.iter().find(|cell| cell.scenario.is_empty() && cell.planner == planner && cell.metric.id == metric)
+        self.cells
+            .iter()
+            .find(|cell| cell.scenario.is_empty() && cell.planner.as_str() == planner && cell.metric.id == metric)
     }
 
     /// The ranking by a metric.
@@ -337,7 +340,7 @@ mod tests {
     /// A report of a robot of some speed that passes somebody.
     fn report(planner: &str, seed: u64, mps: f64, aside_m: f64) -> Report {
         let mut run = recording(&[Walk::robot(-4., 0., mps, 0.), Walk::human(1, 0., aside_m, 0., 0.)], 10.0, 0.1);
-        run.header.planner = planner.to_owned();
+        run.header.planner = planner.parse().unwrap();
         run.header.seed = seed;
         crate::score(&Evidence::of(&run))
     }
@@ -365,7 +368,7 @@ mod tests {
         let found = pooled(&batch()).unwrap();
         let cell = |scenario: &str, planner: &str| {
             let mut cells = found.cells.iter();
-            let wanted = |cell: &&Cell| cell.scenario == scenario && cell.planner == planner;
+            let wanted = |cell: &&Cell| cell.scenario == scenario && cell.planner.as_str() == planner;
             cells.find(|cell| wanted(cell) && cell.metric.id == "human_distance_min").unwrap()
         };
         let near = cell("a", "near");
@@ -391,7 +394,7 @@ mod tests {
         assert_eq!((ranking.tau, ranking.parts), (Some(1.0), 3));
         let mut turned = batch();
         for (_, report) in turned.iter_mut().filter(|(scenario, _)| scenario == "c") {
-            report.planner = if report.planner == "near" { "wide".into() } else { "near".into() };
+            report.planner = if report.planner.as_str() == "near" { "wide" } else { "near" }.parse().unwrap();
         }
         let found = pooled(&turned).unwrap();
         let tau = found.ranking("human_distance_min").unwrap().tau.unwrap();

@@ -4,7 +4,7 @@ use socrates_model::job::Stage;
 use socrates_model::report::{Repair, Standing};
 use socrates_model::{Clause, Fault, FaultCode, Predicate, Verdict, Where};
 
-use crate::evidence::{Evidence, REFERENCE};
+use crate::evidence::Evidence;
 use crate::fidelity::{Finding, Judged};
 use crate::score::is_meeting;
 use crate::tracks::TrackFault;
@@ -12,7 +12,7 @@ use crate::tracks::TrackFault;
 /// The repair a verdict asks for, if it is the scenario's fault. Only the run with the reference
 /// robot can tell; what another planner prevented is its own result.
 pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> Option<Repair> {
-    if evidence.recording.header.planner != REFERENCE {
+    if !evidence.recording.header.planner.is_reference() {
         return None;
     }
     let mut faults: Vec<(Stage, Fault)> = Vec::new();
@@ -49,7 +49,7 @@ pub(crate) fn of(evidence: &Evidence<'_>, verdict: Verdict, judged: &Judged) -> 
 /// The repair for a recording that cannot be read: only states that are not finite are the scenario's fault.
 pub(crate) fn of_broken(evidence: &Evidence<'_>, fault: &TrackFault) -> Option<Repair> {
     let TrackFault::NotFinite { agent, .. } = fault else { return None };
-    (evidence.paths.is_some() && evidence.recording.header.planner == REFERENCE)
+    (evidence.paths.is_some() && evidence.recording.header.planner.is_reference())
         .then(|| Repair { stage: Stage::Paths, faults: vec![Fault::new(FaultCode::DPen, *agent, fault.to_string())] })
 }
 

@@ -170,7 +170,7 @@ fn an_overlap_or_a_jump_proves_nothing() {
 fn what_only_another_planner_misses_was_prevented_by_the_robot() {
     let reference = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
     let mut run = recording(&[Walk::robot(-8., -0.5, 0., 0.), Walk::human(1, 8., 0.5, -0.2, 0.)], 20.0, 0.01);
-    run.header.planner = "mppi".into();
+    run.header.planner = "mppi".parse().unwrap();
     let case = frontal();
     let evidence = Evidence {
         location: Some(&case.place),

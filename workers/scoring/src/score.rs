@@ -50,8 +50,7 @@ pub fn score(evidence: &Evidence<'_>) -> Report {
     let ruling = rule(evidence, &judged, &gaps, reference);
     let scene = Scene::new(&signals);
     report.metrics = metrics::measure(&scene);
-    report.success =
-        report.metrics.iter().any(|metric| metric.id == "success" && metric.value.is_some_and(|v| v > 0.5));
+    report.success = report.metric("success").and_then(|metric| metric.value).is_some_and(|yes| yes > 0.5);
     report.robot_text = narrative::robot_text(&scene, &judged);
     report.story = narrative::story(&signals);
     report.repair = repair::of(evidence, ruling.verdict, &judged);

@@ -173,7 +173,7 @@ fn on_every_shipped_map_the_reference_arrives_and_meets_who_it_should() {
                 // One behind the other they pass the node one after the other.
                 let loose = if relation == "ahead" || relation == "behind" { 4.0 } else { 1.5 };
                 let start = std::time::Instant::now();
-                let recording = simulate(made, "reference").unwrap();
+                let recording = simulate(made, &"reference".parse().unwrap()).unwrap();
                 spent += start.elapsed();
                 simulated += recording.ticks() as f64 * 0.01;
                 runs += 1;
@@ -257,7 +257,7 @@ fn in_the_hospital_two_leave_the_car_one_stays_and_the_robot_enters_last() {
         ];
         let wait = RobotRule { when: RobotWhen::Start, act: RobotDo::WaitForLeavers };
         let made = scenario(&location, far, cast, &[lobby.clone(), lobby, entry], vec![wait], false);
-        let recording = simulate(made, "reference").unwrap();
+        let recording = simulate(made, &"reference".parse().unwrap()).unwrap();
         for event in &recording.events {
             println!("{} {:?}", event.time, event.kind);
         }
@@ -299,11 +299,11 @@ fn the_same_setup_gives_the_same_hash_and_an_unknown_planner_the_list() {
         let (_, cast, node) = relations(&location, &way).remove(0);
         scenario(&location, way.clone(), cast, &[node], vec![], false)
     };
-    let hash = simulate(make(), "reference").unwrap().hash();
-    assert_eq!(hash, simulate(make(), "reference").unwrap().hash());
-    assert_ne!(hash, simulate(make(), "reactive").unwrap().hash());
-    assert_eq!(simulate(make(), "none").unwrap().header.agents.len(), 1);
-    let faults = simulate(make(), "nav9").unwrap_err();
+    let hash = simulate(make(), &"reference".parse().unwrap()).unwrap().hash();
+    assert_eq!(hash, simulate(make(), &"reference".parse().unwrap()).unwrap().hash());
+    assert_ne!(hash, simulate(make(), &"reactive".parse().unwrap()).unwrap().hash());
+    assert_eq!(simulate(make(), &"none".parse().unwrap()).unwrap().header.agents.len(), 1);
+    let faults = simulate(make(), &"nav9".parse().unwrap()).unwrap_err();
     assert!(faults[0].message.to_string().contains("reference, reactive, none"));
 }
 
@@ -319,7 +319,7 @@ fn a_group_of_four_is_passed_without_going_through_it() {
         let cast = (0..4).map(|_| Cast(Relation::Static, vec![node.clone()], vec![])).collect();
         let meet = vec![node.clone(); 4];
         let made = scenario(&location, way.clone(), cast, &meet, vec![], true);
-        let recording = simulate(made, "reference").unwrap();
+        let recording = simulate(made, &"reference".parse().unwrap()).unwrap();
         let found: Vec<String> = troubles(&recording, 4, 1.5)
             .into_iter()
             .filter(|trouble| !trouble.contains("gap") && !trouble.contains("met"))

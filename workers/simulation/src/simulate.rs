@@ -3,7 +3,7 @@
 use socrates_engine::{Engine, Keeper, Onlooker, Setup};
 use socrates_model::request::Waypoints;
 use socrates_model::{
-    Behaviors, Fault, FaultCode, Location, NodeId, Paths, Point, Proposal, Recording, Request, RunId,
+    Behaviors, Fault, FaultCode, Location, NodeId, Paths, PlannerName, Point, Proposal, Recording, Request, RunId,
 };
 use socrates_planners::{Mission, make};
 
@@ -27,14 +27,25 @@ pub fn setup(
             proposal.robot.script.push(line);
         }
     }
-    Setup { location, proposal, paths, behaviors, planner: String::new(), seed, run, duration_s, robot, waypoints }
+    Setup {
+        location,
+        proposal,
+        paths,
+        behaviors,
+        planner: PlannerName::reference(),
+        seed,
+        run,
+        duration_s,
+        robot,
+        waypoints,
+    }
 }
 
 /// Runs a setup with a planner.
 ///
 /// # Errors
 /// `J-PLANNER` with the list of planners; what [`Engine::new`] finds.
-pub fn simulate(setup: Setup, planner: &str) -> Result<Recording, Vec<Fault>> {
+pub fn simulate(setup: Setup, planner: &PlannerName) -> Result<Recording, Vec<Fault>> {
     let mut keeper = Keeper::default();
     simulate_into(setup, planner, &mut keeper)?;
     let nothing = || vec![Fault::new(FaultCode::JPanic, "the engine", "it ended before the first tick")];
@@ -45,11 +56,11 @@ pub fn simulate(setup: Setup, planner: &str) -> Result<Recording, Vec<Fault>> {
 ///
 /// # Errors
 /// As [`simulate`].
-pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooker) -> Result<(), Vec<Fault>> {
-    if !socrates_planners::names().contains(&planner) {
-        return Err(vec![socrates_planners::catalog::unknown(planner)]);
+pub fn simulate_into(mut setup: Setup, planner: &PlannerName, onlooker: &mut dyn Onlooker) -> Result<(), Vec<Fault>> {
+    if !socrates_planners::names().contains(&planner.as_str()) {
+        return Err(vec![socrates_planners::catalog::unknown(planner.as_str())]);
     }
-    planner.clone_into(&mut setup.planner);
+    setup.planner = planner.clone();
     let given = waypoints(&setup);
     let (robot, grid, doors) = (setup.robot, setup.location.grid.clone(), setup.location.doors.clone());
     let route = setup.location.graph.polyline(&setup.paths.robot);
@@ -61,7 +72,7 @@ pub fn simulate_into(mut setup: Setup, planner: &str, onlooker: &mut dyn Onlooke
     let engine = Engine::new(setup)?;
     let field = engine.floor().field().clone();
     let mission = Mission { robot, grid, field, doors, route, waypoints: given, script, encounters };
-    let mut driver = make(planner, &mission).map_err(|fault| vec![fault])?;
+    let mut driver = make(planner.as_str(), &mission).map_err(|fault| vec![fault])?;
     match driver.as_mut() {
         Some(driver) => engine.play(Some(driver.as_mut()), onlooker),
         None => engine.play(None, onlooker),

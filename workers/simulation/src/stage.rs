@@ -181,7 +181,7 @@ impl Stage for Simulation {
         let mut viewers = viewers(job, &run, location, self).await?;
         let named = run.clone();
         let work = tokio::task::spawn_blocking(move || {
-            simulate_into(setup, planner.as_str(), &mut viewers)?;
+            simulate_into(setup, &planner, &mut viewers)?;
             let Viewers { scribe, mut sinks, .. } = viewers;
             let done = scribe.outputs(&named)?;
             // The recording is whole before the run is over for its viewers: what they ask for from now on is in it.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use socrates_model::{Digest, Event, EventKind, HumanId, Recording, RecordingHeader, RunId};
+use socrates_model::{Digest, Event, EventKind, HumanId, PlannerName, Recording, RecordingHeader, RunId};
 
 /// Summary of one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -13,7 +13,7 @@ pub struct Summary {
     /// The run.
     pub run: RunId,
     /// Planner.
-    pub planner: String,
+    pub planner: PlannerName,
     /// Simulation seed.
     pub seed: u64,
     /// Recording hash: over decoded frames and events.

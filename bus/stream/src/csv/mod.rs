@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 
 use socrates_model::recording::{ABSENT_LEAF, AgentInfo, AgentState, Recording, RecordingHeader};
 use socrates_model::time::{STEP_SECS, SimTime};
-use socrates_model::{AgentId, FORMAT, Gesture, RunId};
+use socrates_model::{AgentId, FORMAT, Gesture, PlannerName, RunId};
 
 use crate::error::StreamError;
 
@@ -90,7 +90,7 @@ impl AgentTable {
     /// The table of the run with this header.
     #[must_use]
     pub fn of(header: &RecordingHeader) -> Self {
-        let run = format!("{},{}", quoted(&header.planner), header.seed);
+        let run = format!("{},{}", quoted(header.planner.as_str()), header.seed);
         Self { run, leaves: header.leaves.iter().map(|leaf| quoted(leaf)).collect() }
     }
 
@@ -214,7 +214,7 @@ pub fn read_table(table: &Table) -> Result<Recording, StreamError> {
     let header = RecordingHeader {
         format: FORMAT,
         run,
-        planner: "tracks".to_owned(),
+        planner: PlannerName::tracks(),
         seed: 0,
         profile: "tracks".to_owned(),
         step_s: STEP_SECS,

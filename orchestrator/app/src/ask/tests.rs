@@ -162,6 +162,8 @@ fn one_stage_is_made_again_and_the_others_are_kept() {
     assert_eq!(decision.anew.len(), 1);
     assert_eq!(decision.anew[0].stage, Stage::Paths);
     assert_eq!(decision.anew[0].faults, [Fault::new(FaultCode::PPerson, Stage::Paths, "from the other side")]);
+    let (page, shown) = (FaultCode::PPerson.page(), decision.anew[0].faults[0].to_string());
+    assert!(page.contains(&format!("```text\n{shown}\n```")), "its page does not show\n{shown}");
     let (decision, _) = talk(&look, &mut Script::of(&["again"]));
     let stages: Vec<Stage> = decision.unwrap().anew.iter().map(|wish| wish.stage).collect();
     assert_eq!(stages, [Stage::Paths, Stage::Behaviors], "what the look is about");

@@ -58,7 +58,7 @@ impl Version {
     /// The proposal, a name and a text each.
     pub(super) fn proposal_entries(&self) -> Vec<Entry> {
         let proposal = &self.proposal;
-        let pattern = if proposal.pattern == "free" { String::new() } else { format!(" · {}", proposal.pattern) };
+        let pattern = proposal.card().map_or_else(String::new, |card| format!(" · {card}"));
         let mut entries = vec![
             Entry::new("title", &proposal.title),
             Entry::new(STORY, &proposal.description),
@@ -112,8 +112,9 @@ impl Version {
 
     /// Everything in which two versions can differ, the story left out: it tells the rest again.
     pub(super) fn entries(&self, location: &Location) -> Vec<Entry> {
+        let story = Entry::new(STORY, &self.proposal.description);
         let mut entries = self.proposal_entries();
-        entries.retain(|entry| entry.name != STORY);
+        entries.retain(|entry| *entry != story);
         entries.extend(self.draft_entries(location));
         entries
     }

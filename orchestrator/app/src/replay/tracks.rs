@@ -88,7 +88,7 @@ pub(crate) fn score(name: &str, bytes: &[u8], known: &Known) -> Result<Scored, C
     }
     let evidence = Evidence { location: known.location.as_ref(), goal, groups: &groups, ..Evidence::of(&recording) };
     let report = socrates_scoring::score(&evidence);
-    let arrives = report.metrics.iter().any(|metric| metric.id == "arrived" && metric.value.is_some());
+    let arrives = report.metric("arrived").is_some_and(|metric| metric.value.is_some());
     if tracks.robot.is_some() && !arrives {
         told.push(
             "the robot's goal is not known: success, SPL and whatever asks for it have no value, and standing at the end is not counted as freezing; --goal X,Y tells it"

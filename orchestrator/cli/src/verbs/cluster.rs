@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use socrates_app::config::Config;
 use socrates_app::output::Printer;
-use socrates_app::process::{self, OrchestratorOptions, WorkerOptions};
+use socrates_app::process::{self, Durability, OrchestratorOptions, WorkerOptions};
 
 use super::{Outcome, done};
 
@@ -86,6 +86,15 @@ impl Worker {
     }
 }
 
+/// What a commit of the job store outlives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Durable {
+    /// A power cut.
+    Disk,
+    /// Any signal; for workers on this machine alone.
+    Process,
+}
+
 /// Arguments of the orchestrator process.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Up {
@@ -107,8 +116,8 @@ pub(crate) struct Up {
     #[arg(long, default_value = "main")]
     namespace: String,
     /// What a commit outlives: `disk` (a power cut) or `process` (any signal; for workers on this machine alone).
-    #[arg(long, default_value = "disk", value_parser = ["disk", "process"])]
-    durable: String,
+    #[arg(long, value_enum, default_value_t = Durable::Disk)]
+    durable: Durable,
     /// Leave when standard input closes.
     #[arg(long, hide = true)]
     pub(super) tied: bool,
@@ -120,6 +129,10 @@ pub(crate) struct Up {
 impl Up {
     pub(super) async fn act(&self, talk: &Printer, config: &Config) -> Outcome {
         let Self { dir, listen, insecure, connect, namespace, durable, tied, alone } = self.clone();
+        let durable = match durable {
+            Durable::Disk => Durability::Disk,
+            Durable::Process => Durability::Process,
+        };
         let options = OrchestratorOptions { dir, listen, insecure, connect, namespace, durable, tied, alone };
         done(process::orchestrator(talk, config, &options).await)
     }

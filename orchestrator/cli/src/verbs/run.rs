@@ -2,15 +2,24 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use socrates_app::config::Config;
 use socrates_app::output::Printer;
 use socrates_app::run;
-use socrates_app::run_options::RunOptions;
+use socrates_app::run_options::{self, RunOptions};
 use socrates_model::request::MAX_VARIANTS;
 use socrates_model::{AuthorSpec, PlannerName, Seeds};
 
 use super::Outcome;
+
+/// What a run has to be for the exit code 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Require {
+    /// Realised.
+    Realised,
+    /// Made, with any verdict.
+    Any,
+}
 
 /// Arguments of `run`.
 #[derive(Debug, Args)]
@@ -55,8 +64,8 @@ pub(crate) struct Options {
     #[arg(long, default_value = "max")]
     pace: String,
     /// Exit with 3 unless the verdict is at least this.
-    #[arg(long, value_parser = ["realised", "any"], default_value = "realised")]
-    require: String,
+    #[arg(long, value_enum, default_value_t = Require::Realised)]
+    require: Require,
     /// Worker processes of the simulation stage.
     #[arg(long)]
     workers: Option<u32>,
@@ -76,6 +85,10 @@ impl Options {
 
     fn values(&self) -> RunOptions {
         let Self { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask } = self.clone();
+        let require = match require {
+            Require::Any => run_options::Require::Any,
+            Require::Realised => run_options::Require::Realised,
+        };
         RunOptions { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask }
     }
 }

@@ -5,7 +5,7 @@ use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
 use crate::fidelity::company::follow_marks;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::gaps;
-use crate::fidelity::leaves::{LeafSpan, does};
+use crate::fidelity::leaves::LeafSpan;
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
 use crate::fidelity::reactions::said_after;
 use crate::fidelity::signals::{Moment, Signals};
@@ -97,7 +97,7 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
     let seen_s = signals.of(human).iter().find(|moment| moment.sight != Some(false)).map_or(f64::INFINITY, |m| m.t);
     let runs = |t: f64| {
         let spans = signals.leaves_of(human).iter();
-        let caused = spans.filter(|span| does(&span.name, &Action::LookAtRobot) && span.from_s >= seen_s - EARLY_SECS);
+        let caused = spans.filter(|span| Action::LookAtRobot.is_leaf(&span.name) && span.from_s >= seen_s - EARLY_SECS);
         caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
     let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
@@ -116,7 +116,7 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
     };
     // Who stands at the end of their path, or waits to set off, walks as far as their tree is concerned.
     let walking: Vec<&LeafSpan> =
-        signals.leaves_of(human).iter().filter(|span| does(&span.name, &Action::Navigate)).collect();
+        signals.leaves_of(human).iter().filter(|span| Action::Navigate.is_leaf(&span.name)).collect();
     let walks = |t: f64| from.is_reaction() && walking.iter().any(|span| t > span.from_s && t < span.to_s);
     let mark = |sample: &Sample| {
         let margin = MOVING_MPS - sample.speed();
@@ -365,7 +365,7 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
         let fits = |(from, to): &&(f64, f64)| *from <= latest_s && *to >= span.from_s + kept_s.min(0.3);
         shown.iter().rfind(fits).map(|(_, to)| (span.from_s, to.min(latest_s)))
     };
-    leaves.iter().filter(|span| does(&span.name, action)).filter_map(seen).collect()
+    leaves.iter().filter(|span| action.is_leaf(&span.name)).filter_map(seen).collect()
 }
 
 /// Without leaves, walking away after passing looks like fleeing: only a change of velocity away from

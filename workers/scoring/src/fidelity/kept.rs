@@ -5,7 +5,6 @@ use socrates_model::report::Standing;
 use socrates_model::{Action, FactKind, HumanId, Trigger};
 
 use crate::fidelity::finding::Finding;
-use crate::fidelity::leaves::does;
 use crate::fidelity::reactions::{has_onset, holds};
 use crate::fidelity::signals::{MOMENT_SECS, Moment, Signals};
 use crate::tracks::MOVING_MPS;
@@ -46,7 +45,7 @@ pub(super) fn kept(signals: &Signals<'_>, human: HumanId, when: &[Trigger], act:
         let mut spans = signals.leaves_of(human).iter().filter(|span| moment.t >= span.from_s && moment.t <= span.to_s);
         spans.any(|span| {
             let mut earlier =
-                rules.iter().take_while(|rule| rule.act != *act).filter(|rule| does(&span.name, &rule.act));
+                rules.iter().take_while(|rule| rule.act != *act).filter(|rule| rule.act.is_leaf(&span.name));
             earlier.any(|rule| has_onset(&rule.act) || holds(signals, human, &rule.when, moment))
         })
     };

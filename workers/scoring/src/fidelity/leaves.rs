@@ -1,6 +1,6 @@
 //! Leaves of behavior trees as the recording tells them: who ran what, from when to when.
 
-use socrates_model::{Action, EventKind, Recording};
+use socrates_model::{EventKind, Recording};
 
 use crate::tracks::Track;
 
@@ -45,40 +45,4 @@ pub(super) fn leaf_spans(recording: &Recording, track: &Track) -> Vec<LeafSpan> 
         .filter(|((_, name), _)| !name.is_empty())
         .map(|((from_s, name), to_s)| LeafSpan { from_s, to_s, name })
         .collect()
-}
-
-/// Whether a leaf of this name does the action. Names are compared by their letters alone, so the
-/// dialects of trees (`RunAwayFromRobot`, `run_away`) mean the same.
-#[must_use]
-pub(crate) fn does(name: &str, action: &Action) -> bool {
-    let letters: String = name.chars().filter(char::is_ascii_alphabetic).map(|c| c.to_ascii_lowercase()).collect();
-    if letters.starts_with("is") {
-        return false;
-    }
-    let words: &[&str] = match action {
-        Action::Navigate => &["regularnav", "navigate", "gotogoal", "updategoal"],
-        Action::FollowRobot => &["followrobot", "followingrobot"],
-        Action::FollowHuman(_) => &["followhuman", "followagent"],
-        Action::RunAway => &["runaway", "scared", "flee"],
-        Action::GiveWay => &["giveway"],
-        Action::Block => &["blockrobot", "block"],
-        Action::LookAtRobot => &["lookatrobot", "lookat", "surprised"],
-        Action::Approach => &["approach", "curious"],
-        Action::StandStill => &["standstill", "stand", "stop", "wait"],
-    };
-    words.iter().any(|word| letters.contains(word))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn leaf_names_of_several_dialects_mean_the_same_action() {
-        assert!(does("RunAwayFromRobot", &Action::RunAway));
-        assert!(does("run_away", &Action::RunAway));
-        assert!(does("GiveWaytoRobot", &Action::GiveWay));
-        assert!(!does("IsRobotBlocking", &Action::Block));
-        assert!(!does("FollowRobot", &Action::Navigate));
-    }
 }

@@ -39,6 +39,5 @@ pub use verdict::{Ruling, rule};
 
 pub use gaps::Gaps;
 pub(crate) use gaps::{by_name, encounter_gaps};
-pub(crate) use leaves::does;
 pub(crate) use since::since;
 pub(crate) use verdict::ruling_of_played;

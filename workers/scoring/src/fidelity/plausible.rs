@@ -2,7 +2,6 @@
 
 use socrates_model::{AgentId, EventKind};
 
-use crate::evidence::REFERENCE;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
 use crate::skips::{arcs, next};
@@ -60,7 +59,7 @@ pub(super) fn flaws(signals: &Signals<'_>) -> Vec<Flaw> {
         }
     }
     // A robot under test that gets stuck is a result; the reference robot, or a person, is a fault of the scenario.
-    let reference = signals.evidence.recording.header.planner == REFERENCE;
+    let reference = signals.evidence.recording.header.planner.is_reference();
     for event in &signals.evidence.recording.events {
         if let EventKind::Stuck { agent } = &event.kind
             && (*agent != AgentId::Robot || reference)

@@ -7,7 +7,6 @@ use socrates_model::{Action, AgentId, Gesture, HumanId, Rule, Trigger};
 use crate::fidelity::acts::{spans, timely};
 use crate::fidelity::finding::Finding;
 use crate::fidelity::kept::kept;
-use crate::fidelity::leaves::does;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::windows::{Mark, best, first};
@@ -245,7 +244,7 @@ fn busy_until(signals: &Signals<'_>, human: HumanId, act: &Action, trigger_s: f6
     let mut start = trigger_s;
     for span in signals.leaves_of(human) {
         let covers = span.from_s <= start + EARLY_SECS && span.to_s > start;
-        if covers && earlier.iter().any(|other| does(&span.name, other)) {
+        if covers && earlier.iter().any(|other| other.is_leaf(&span.name)) {
             start = span.to_s;
         }
     }

@@ -3,7 +3,7 @@
 use socrates_model::report::Standing;
 use socrates_model::{Predicate, Verdict};
 
-use crate::evidence::{Evidence, REFERENCE};
+use crate::evidence::Evidence;
 use crate::fidelity::clauses::Judged;
 use crate::fidelity::gaps::Gaps;
 
@@ -87,7 +87,7 @@ pub(crate) fn ruling_of_played(
     };
     let lost = matches!(own, Verdict::NotTriggered | Verdict::Contradicted);
     let by_reference = matches!(reference, Some(Verdict::Realised | Verdict::RealisedLate));
-    let prevented = lost && by_reference && evidence.recording.header.planner != REFERENCE;
+    let prevented = lost && by_reference && !evidence.recording.header.planner.is_reference();
     let mut text = tally;
     // Whoever stands there all the time is met at no time of its own.
     let timed = gaps.iter().filter(|((human, _), _)| !evidence.stands(*human)).map(|(_, gap)| gap.abs());

@@ -29,20 +29,21 @@ pub fn key_figures(report: &Report) -> impl Iterator<Item = &MetricValue> {
 pub fn in_words(metric: &MetricValue) -> String {
     let Some(value) = metric.value else { return "n/a".to_owned() };
     let size = value.abs();
-    match metric.unit.as_str() {
-        "0/1" if size < 0.5 => "no".to_owned(),
-        "0/1" => "yes".to_owned(),
-        "count" => value.to_string(),
-        unit => {
-            let number = if size >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") };
-            let unit = if unit == "share" { "" } else { unit };
-            format!("{number} {unit}").trim_end().to_owned()
-        }
+    let unit = &metric.unit;
+    if unit.is_yes_or_no() {
+        return if size < 0.5 { "no" } else { "yes" }.to_owned();
     }
+    if unit.is_count() {
+        return value.to_string();
+    }
+    let number = if size >= 100.0 { format!("{value:.0}") } else { format!("{value:.2}") };
+    if unit.is_share() { number } else { format!("{number} {unit}") }
 }
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::Unit;
+
     use std::collections::BTreeSet;
 
     use super::*;
@@ -67,7 +68,7 @@ mod tests {
         let told = |unit: &str, value: Option<f64>| {
             in_words(&MetricValue {
                 id: "any".into(),
-                unit: unit.into(),
+                unit: Unit::new(unit),
                 value,
                 direction: 1,
                 version: 1,

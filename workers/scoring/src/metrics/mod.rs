@@ -45,7 +45,7 @@ mod unrecorded;
 mod yielding;
 mod zones;
 
-use socrates_model::{MetricValue, Missing};
+use socrates_model::{MetricValue, Missing, Unit};
 
 pub use key::{KEY_FIGURES, in_words, key_figures};
 pub use online::{Online, Setting};
@@ -359,7 +359,7 @@ fn valued(sheet: &Sheet, value: Measured, missing: Missing) -> MetricValue {
     };
     MetricValue {
         id: sheet.id.to_owned(),
-        unit: sheet.unit.to_owned(),
+        unit: Unit::new(sheet.unit),
         value,
         direction: sheet.direction.sign(),
         version: sheet.version(),

@@ -16,11 +16,11 @@ pub fn csv(report: &Report) -> String {
         };
         let cells = [
             report.run.as_str(),
-            &report.planner,
+            report.planner.as_str(),
             &report.seed.to_string(),
             &metric.id,
             &value,
-            &metric.unit,
+            metric.unit.as_str(),
             &metric.direction.to_string(),
             &metric.version.to_string(),
             missing,

@@ -7,7 +7,7 @@ use socrates_model::{
 
 use super::edit::{Stood, ahead_of_time, delayed, gestures_from, reacts_first, stands_at, states, ticks_of};
 use crate::evidence::Evidence;
-use crate::fidelity::{Signals, does, since};
+use crate::fidelity::{Signals, since};
 use crate::tracks::{MOVING_MPS, Tracks};
 
 /// From so far the robot sees somebody who should come up suddenly, m.
@@ -92,7 +92,7 @@ fn before_reason(evidence: &Evidence<'_>, add: &mut Add<'_>) {
 
 /// When somebody stands for an act that they do from a time on; nothing where they do not stand, or do it more than once.
 fn stands(run: &Recording, signals: &Signals<'_>, id: HumanId, act: &Action, from_s: f64) -> Option<Stood> {
-    let mut spans = signals.leaves_of(id).iter().filter(|span| does(&span.name, act));
+    let mut spans = signals.leaves_of(id).iter().filter(|span| act.is_leaf(&span.name));
     let (span, other) = (spans.next()?, spans.next());
     if other.is_some() || span.from_s < from_s - STANDS_SECS {
         return None;
@@ -119,7 +119,7 @@ fn says_early(run: &Recording, agent: AgentId, gesture: Gesture, reason_s: f64) 
 fn startled(run: &Recording, id: HumanId, add: &mut Add<'_>) {
     let opens = run.events.iter().find(|event| matches!(event.kind, EventKind::Door { open: true, .. }));
     let looks = run.events.iter().find(
-        |event| matches!(&event.kind, EventKind::Leaf { human, leaf } if *human == id && does(leaf, &Action::LookAtRobot)),
+        |event| matches!(&event.kind, EventKind::Leaf { human, leaf } if *human == id && Action::LookAtRobot.is_leaf(leaf)),
     );
     let (Some(opens), Some(looks)) = (opens.map(|event| event.time.secs()), looks.map(|event| event.time.secs()))
     else {

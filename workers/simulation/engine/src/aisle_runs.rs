@@ -24,7 +24,9 @@ const THERE: &[&str] = &["a", "b", "c", "d", "e"];
 const BACK: &[&str] = &["e", "d", "c", "b", "a"];
 
 fn alone(made: Setup) -> Recording {
-    Engine::new(Setup { planner: "none".into(), duration_s: Some(70.0), ..made }).unwrap().run(None, &mut |_, _| {})
+    Engine::new(Setup { planner: "none".parse().unwrap(), duration_s: Some(70.0), ..made })
+        .unwrap()
+        .run(None, &mut |_, _| {})
 }
 
 fn ends(recording: &Recording) -> Vec<f64> {

@@ -118,7 +118,7 @@ pub(crate) fn setup(location: Location, robot: &[&str], cast: &[Cast<'_>], meet:
             author: "test".into(),
         },
         behaviors: Behaviors { format: 1, humans: trees, author: "test".into() },
-        planner: "line".into(),
+        planner: "line".parse().unwrap(),
         seed: 1,
         run: RunId::new("test").unwrap(),
         duration_s: None,

@@ -69,7 +69,7 @@ fn a_group_of_four_walks_as_fast_as_its_members_want_to() {
     for human in &mut made.proposal.humans {
         human.speed_mps = Some(1.7);
     }
-    let still = Setup { planner: "none".into(), duration_s: Some(30.0), ..made };
+    let still = Setup { planner: "none".parse().unwrap(), duration_s: Some(30.0), ..made };
     let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
     for number in 1..=4 {
         let track = human(&recording, number);
@@ -87,7 +87,7 @@ fn a_group_falls_into_line_before_a_doorway_and_gets_through() {
     for seed in 1..=6 {
         let cast: Vec<Cast<'_>> = (0..3).map(|_| Cast(Relation::Frontal, BACK, vec![])).collect();
         let made = grouped(setup(corridor(2.6, true), &["a", "b"], &cast, &[]));
-        let still = Setup { seed, planner: "none".into(), duration_s: Some(60.0), ..made };
+        let still = Setup { seed, planner: "none".parse().unwrap(), duration_s: Some(60.0), ..made };
         let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
         // From 2 m before the doorway to 2 m behind it in less than 8 s: nobody is wedged in.
         for number in 1..=3 {
@@ -163,7 +163,7 @@ fn a_group_that_has_no_room_side_by_side_where_it_ends_gets_there_all_the_same()
     for seed in 1..=6 {
         let cast: Vec<Cast<'_>> = (0..4).map(|_| Cast(Relation::Frontal, &BACK[..3], vec![])).collect();
         let made = grouped(setup(corridor(1.6, false), &["a", "b"], &cast, &[]));
-        let still = Setup { seed, planner: "none".into(), duration_s: Some(60.0), ..made };
+        let still = Setup { seed, planner: "none".parse().unwrap(), duration_s: Some(60.0), ..made };
         let recording = Engine::new(still).unwrap().run(None, &mut |_, _| {});
         let stuck = |event: &&socrates_model::Event| matches!(event.kind, EventKind::Stuck { agent } if agent != AgentId::Robot);
         let stuck: Vec<_> = recording.events.iter().filter(stuck).collect();

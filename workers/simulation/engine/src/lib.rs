@@ -66,5 +66,5 @@ pub use floor::Floor;
 pub use lidar::{BEAMS, BadScan, Disc, scan, scan_shapes};
 pub use models::HumanModel;
 pub use recorder::{Keeper, Onlooker, Recorder};
-pub use run::{Engine, NO_ROBOT};
+pub use run::Engine;
 pub use setup::{MAX_AUTO_S, PERSON_RADIUS_M, Setup};

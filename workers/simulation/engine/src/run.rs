@@ -21,9 +21,6 @@ use crate::setup::{self, Setup};
 use crate::view::{RobotSeen, View};
 use crate::{meetings, start, walk};
 
-/// The name of the planner that means: no robot (the twin run).
-pub const NO_ROBOT: &str = "none";
-
 /// Keeps a run and hands it on.
 struct Kept<'a> {
     recording: Recording,
@@ -68,7 +65,7 @@ impl Engine {
         let mut floor = Floor::new(&setup.location.grid);
         let doors = Doors::new(&setup.location);
         floor.close(doors.closed());
-        let robot = (setup.planner != NO_ROBOT).then(|| start::robot(&setup, &floor));
+        let robot = (!setup.planner.is_no_robot()).then(|| start::robot(&setup, &floor));
         let mut humans = start::humans(&setup, trees, &floor, robot.as_ref());
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
         rendezvous::let_out(&mut humans, &robot_doors);

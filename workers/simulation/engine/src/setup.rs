@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use socrates_bt::Tree;
 use socrates_model::request::Waypoints;
 use socrates_model::{
-    AgentId, Behaviors, Fault, FaultCode, HumanId, Location, Paths, Proposal, RobotModel, RunId, Where,
+    AgentId, Behaviors, Fault, FaultCode, HumanId, Location, Paths, PlannerName, Proposal, RobotModel, RunId, Where,
 };
 
 /// Input of one run.
@@ -19,8 +19,8 @@ pub struct Setup {
     pub paths: Paths,
     /// Trees.
     pub behaviors: Behaviors,
-    /// Planner name, for the header.
-    pub planner: String,
+    /// Planner, for the header; with [`PlannerName::no_robot`] there is no robot.
+    pub planner: PlannerName,
     /// Simulation seed: speeds and small differences between people are drawn from it.
     pub seed: u64,
     /// Name of the run.

@@ -306,7 +306,7 @@ fn a_blocker_stands_in_the_robots_line() {
 
 #[test]
 fn without_a_robot_people_walk_to_their_goals() {
-    let made = Setup { planner: "none".into(), ..frontal() };
+    let made = Setup { planner: "none".parse().unwrap(), ..frontal() };
     let recording = Engine::new(made).unwrap().run(None, &mut |_, _| {});
     assert_eq!(recording.header.agents.len(), 1);
     let last = recording.track(AgentId::from_number(1)).last().unwrap();

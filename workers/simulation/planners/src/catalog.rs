@@ -1,13 +1,10 @@
 //! Every planner by name.
 
-use socrates_model::{Fault, FaultCode, RobotDriver};
+use socrates_model::{Fault, FaultCode, PlannerName, RobotDriver};
 
 use crate::mission::Mission;
 use crate::reactive::Reactive;
 use crate::reference::Reference;
-
-/// The name of the planner that means: no robot (the twin run).
-pub const NO_ROBOT: &str = "none";
 
 /// Makes a planner.
 type Maker = fn(&Mission) -> Box<dyn RobotDriver>;
@@ -25,7 +22,7 @@ pub struct PlannerSheet {
 /// Every planner, `reference` first.
 pub const CATALOG: &[PlannerSheet] = &[
     PlannerSheet {
-        name: "reference",
+        name: PlannerName::REFERENCE,
         about: "keeps to the intended way, plays the robot script, steps round people and waits for them",
         make: Some(|mission| Box::new(Reference::new(mission))),
     },
@@ -34,7 +31,7 @@ pub const CATALOG: &[PlannerSheet] = &[
         about: "dynamic window over lidar and moving people on the shortest way between the waypoints; no script",
         make: Some(|mission| Box::new(Reactive::new(mission))),
     },
-    PlannerSheet { name: NO_ROBOT, about: "no robot at all: the twin run", make: None },
+    PlannerSheet { name: PlannerName::NO_ROBOT, about: "no robot at all: the twin run", make: None },
 ];
 
 /// Names in catalog order.

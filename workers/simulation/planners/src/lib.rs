@@ -25,5 +25,5 @@ mod waiting;
 #[cfg(test)]
 mod tests;
 
-pub use catalog::{CATALOG, NO_ROBOT, PlannerSheet, make, names};
+pub use catalog::{CATALOG, PlannerSheet, make, names};
 pub use mission::Mission;

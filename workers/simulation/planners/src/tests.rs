@@ -6,11 +6,11 @@ use std::sync::Arc;
 use socrates_maps::DistanceField;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    Cell, Command, Cues, Gesture, Grid, HumanId, Observation, Point, Pose, RobotDriver, RobotModel, SeenDoor,
-    SeenPerson, SimTime, Vector,
+    Cell, Command, Cues, Gesture, Grid, HumanId, Observation, PlannerName, Point, Pose, RobotDriver, RobotModel,
+    SeenDoor, SeenPerson, SimTime, Vector,
 };
 
-use crate::{Mission, NO_ROBOT, make, names};
+use crate::{Mission, make, names};
 
 fn mission(script: Vec<RobotRule>) -> Mission {
     let (width, height) = (200, 60);
@@ -95,7 +95,7 @@ fn an_unknown_planner_is_refused_with_the_list_of_names() {
 
 #[test]
 fn every_planner_reaches_the_goal_on_an_empty_floor() {
-    for name in names().into_iter().filter(|name| *name != NO_ROBOT) {
+    for name in names().into_iter().filter(|name| *name != PlannerName::NO_ROBOT) {
         let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
         let way = drive(driver.as_mut(), &|_| vec![], 40.0);
         let (end, command) = way.last().unwrap();
@@ -106,7 +106,7 @@ fn every_planner_reaches_the_goal_on_an_empty_floor() {
 
 #[test]
 fn every_planner_goes_round_somebody_who_stands_in_the_way() {
-    for name in names().into_iter().filter(|name| *name != NO_ROBOT) {
+    for name in names().into_iter().filter(|name| *name != PlannerName::NO_ROBOT) {
         let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
         let way = drive(driver.as_mut(), &|_| vec![person(9.0, 3.05, 0.0, 0.0)], 50.0);
         let least =

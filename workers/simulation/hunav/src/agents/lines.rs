@@ -51,6 +51,17 @@ impl Lines {
         Self { known }
     }
 
+    /// The same with the places inside a section known without its name, as its readers call them.
+    pub(crate) fn inside(mut self, section: &str) -> Self {
+        let inner = |(place, number): (&String, &usize)| {
+            let place = place.strip_prefix(section)?.strip_prefix('.')?;
+            Some((place.to_owned(), *number))
+        };
+        let inner: Vec<(String, usize)> = self.known.iter().filter_map(inner).collect();
+        self.known.extend(inner);
+        self
+    }
+
     /// Line of a place, or of the nearest section around it.
     pub(crate) fn line(&self, place: &str) -> Option<usize> {
         let mut place = place;

@@ -36,14 +36,11 @@ impl AgentsFile {
         let read = document(&root, &mut found);
         let mut problems = found.problems;
         if !problems.is_empty() {
-            let lines = Lines::of(text);
+            let lines = Lines::of(text).inside(&ROOT.join("."));
             for problem in &mut problems {
-                let place = match problem.place.as_str() {
-                    "hunav_loader" | "hunav_loader.ros__parameters" => problem.place.clone(),
-                    "" => continue,
-                    inner => format!("hunav_loader.ros__parameters.{inner}"),
-                };
-                problem.line = lines.line(&place);
+                if !problem.place.is_empty() {
+                    problem.line = lines.line(&problem.place);
+                }
             }
         }
         match read {

@@ -23,7 +23,9 @@ use socrates_crowd::tracks::{Track, Tracks};
 use socrates_engine::{Keeper, Onlooker, Recorder, Touch};
 use socrates_model::recording::AgentInfo;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{AgentId, AgentState, EventKind, Gesture, Grid, Recording, RecordingHeader, RunId, SimTime};
+use socrates_model::{
+    AgentId, AgentState, EventKind, Gesture, Grid, PlannerName, Recording, RecordingHeader, RunId, SimTime,
+};
 
 pub use agent::HumanModel;
 pub use obstacle::Bounds;
@@ -374,7 +376,7 @@ fn header(inputs: &Inputs<'_>, scene: &Scene, run: RunId) -> RecordingHeader {
     RecordingHeader {
         format: socrates_model::FORMAT,
         run,
-        planner: if scene.robot.is_some() { "waypoints" } else { socrates_engine::NO_ROBOT }.to_owned(),
+        planner: if scene.robot.is_some() { PlannerName::waypoints() } else { PlannerName::no_robot() },
         seed: inputs.seed,
         profile: inputs.profile.name().to_owned(),
         step_s: STEP_SECS,

@@ -122,7 +122,7 @@ pub fn crowd(n: u32, secs: f64) -> Setup {
             author: "test".into(),
         },
         behaviors: Behaviors { format: 1, humans: trees, author: "test".into() },
-        planner: "line".into(),
+        planner: "line".parse().unwrap(),
         seed: 1,
         run: RunId::new("cross").unwrap(),
         duration_s: Some(secs),

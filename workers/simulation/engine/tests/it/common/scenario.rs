@@ -75,7 +75,7 @@ pub fn scenario(
         proposal,
         paths: Paths { format: 1, robot, humans: ways, encounters, reasoning: String::new(), author: "test".into() },
         behaviors: Behaviors { format: 1, humans: trees, author: "test".into() },
-        planner: String::new(),
+        planner: "reference".parse().unwrap(),
         seed: 1,
         run: RunId::new("test").unwrap(),
         duration_s: None,
@@ -86,7 +86,7 @@ pub fn scenario(
 
 /// Runs a setup with a planner of the catalog.
 pub fn run(mut setup: Setup, planner: &str) -> Recording {
-    planner.clone_into(&mut setup.planner);
+    setup.planner = planner.parse().unwrap();
     let graph = &setup.location.graph;
     let spot = |node: &NodeId| graph.node(node).map(|node| node.at);
     let mut mission = Mission {
