@@ -21,6 +21,7 @@ use socrates_model::wire::ScenarioStatus;
 use socrates_model::{
     Behaviors, Digest, Location, Paths, PlannerName, Proposal, Reading, Recording, Report, Request, Role, Run, Verdict,
 };
+use socrates_stream::csv::joined;
 
 use self::beside::Beside;
 use self::collect::{Judged, Made, MadeRun, string};
@@ -299,21 +300,16 @@ pub(crate) const METRIC_COLUMNS: [&str; 9] =
 
 /// Every metric of these runs as a table.
 pub(crate) fn metrics<'a>(reports: impl IntoIterator<Item = &'a Report>) -> String {
-    let mut text = METRIC_COLUMNS.join(",") + "\n";
+    let mut text = joined(METRIC_COLUMNS) + "\n";
     for report in reports {
         for metric in &report.metrics {
             let value = metric.value.map_or_else(|| "n/a".to_owned(), |value| value.to_string());
+            let (seed, direction) = (report.seed.to_string(), metric.direction.to_string());
+            let cells = joined([report.planner.as_str(), &seed, &metric.id, &value, metric.unit.as_str(), &direction]);
+            // The note stands in quotes in every row.
             let note = metric.note.replace('"', "'");
-            text.push_str(&format!(
-                "{},{},{},{value},{},{},\"{note}\",{},{}\n",
-                report.planner,
-                report.seed,
-                metric.id,
-                metric.unit,
-                metric.direction,
-                metric.version,
-                report.thresholds
-            ));
+            let last = joined([&metric.version.to_string(), &report.thresholds]);
+            text.push_str(&format!("{cells},\"{note}\",{last}\n"));
         }
     }
     text

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use socrates_model::{Report, ScenarioEnd};
 use socrates_scoring::metrics::{KEY_FIGURES, key_figures};
-use socrates_stream::csv::quoted;
+use socrates_stream::csv::joined;
 
 use crate::exit::Complaint;
 use crate::files;
@@ -77,10 +77,10 @@ impl Index {
 
     /// The table. A figure without a value is an empty cell.
     pub(crate) fn csv(&self) -> String {
-        let head: Vec<&str> = COLUMNS.into_iter().chain(KEY_FIGURES).collect();
-        let mut text = head.join(",") + "\n";
+        let head = COLUMNS.into_iter().chain(KEY_FIGURES);
+        let mut text = joined(head) + "\n";
         for row in &self.rows {
-            text.push_str(&row.iter().map(|cell| quoted(cell)).collect::<Vec<_>>().join(","));
+            text.push_str(&joined(row));
             text.push('\n');
         }
         text

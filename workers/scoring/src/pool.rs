@@ -310,7 +310,7 @@ impl Pool {
                 cell.metric.version().to_string(),
                 self.thresholds.clone(),
             ];
-            text.push_str(&cells.each_ref().map(|cell| socrates_stream::csv::quoted(cell)).join(","));
+            text.push_str(&socrates_stream::csv::joined(&cells));
             text.push('\n');
         }
         text

@@ -82,7 +82,9 @@ pub fn write_agents_at(recordings: &[&Recording], rate: Rate) -> String {
 /// The table of agents of one run while it goes, ten times a second.
 #[derive(Debug, Clone)]
 pub struct AgentTable {
+    /// The first two cells.
     run: String,
+    /// The last cell by the index of its leaf, with the comma before it.
     leaves: Vec<String>,
 }
 
@@ -90,8 +92,9 @@ impl AgentTable {
     /// The table of the run with this header.
     #[must_use]
     pub fn of(header: &RecordingHeader) -> Self {
-        let run = format!("{},{}", quoted(header.planner.as_str()), header.seed);
-        Self { run, leaves: header.leaves.iter().map(|leaf| quoted(leaf)).collect() }
+        let run = joined([header.planner.as_str(), &header.seed.to_string()]);
+        // A cell that is empty and alone would be in quotes, hence the one before it.
+        Self { run, leaves: header.leaves.iter().map(|leaf| joined(["", leaf.as_str()])).collect() }
     }
 
     /// The line that names the columns.
@@ -113,11 +116,11 @@ impl AgentTable {
 
     fn append(&self, text: &mut String, states: &[AgentState]) {
         for state in states {
-            let leaf = self.leaves.get(usize::from(state.leaf())).map_or("", String::as_str);
+            let leaf = self.leaves.get(usize::from(state.leaf())).map_or(",", String::as_str);
             // Writing to a string cannot fail.
             let _infallible = writeln!(
                 text,
-                "{},{:.2},{},{:.4},{:.4},{:.4},{:.4},{},{leaf}",
+                "{},{:.2},{},{:.4},{:.4},{:.4},{:.4},{}{leaf}",
                 self.run,
                 SimTime::at_tick(state.tick).secs(),
                 state.agent_id(),
@@ -131,10 +134,18 @@ impl AgentTable {
     }
 }
 
-/// A cell as RFC 4180 has it: in quotes only where it needs them.
+/// A line of a table as RFC 4180 has it, without its end: a cell is in quotes only where it needs them. A cell that is
+/// empty and alone is in quotes, so that it is no empty line.
 #[must_use]
-pub fn quoted(text: &str) -> String {
-    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
+pub fn joined<C: AsRef<[u8]>>(cells: impl IntoIterator<Item = C>) -> String {
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    // Writing to memory cannot fail, and text stays text.
+    let _infallible = writer.write_record(cells);
+    let mut line = String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default();
+    if line.ends_with('\n') {
+        line.pop();
+    }
+    line
 }
 
 /// One line of a track file.
@@ -374,8 +385,8 @@ mod tests {
 
     #[test]
     fn a_cell_with_a_comma_is_quoted() {
-        assert_eq!(quoted("a, \"b\""), "\"a, \"\"b\"\"\"");
-        assert_eq!(quoted("plain"), "plain");
+        assert_eq!(joined(["a, \"b\"", "plain", "", " two\nlines"]), "\"a, \"\"b\"\"\",plain,,\" two\nlines\"");
+        assert_eq!((joined([""]), joined(["plain"])), ("\"\"".to_owned(), "plain".to_owned()));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use socrates_model::job::{Artifact, Stage};
 use socrates_model::wire::ScenarioStatus;
 use socrates_model::{Digest, FailureClass, Family, Fault, JobState, Role, ScenarioEnd, Verdict};
 use socrates_orchestrator::{Attempt, AttemptEnd};
-use socrates_stream::csv::quoted;
+use socrates_stream::csv::joined;
 
 use super::spec::Case;
 use crate::history::PastJob;
@@ -129,10 +129,10 @@ impl Outcome {
         };
         let bit = |value: bool| u8::from(value).to_string();
         let cells = [
-            quoted(arm),
+            arm.to_owned(),
             case.request.clone(),
             bit(case.guided),
-            quoted(&case.location),
+            case.location.clone(),
             case.repeat.to_string(),
             case.seed.to_string(),
             self.result.map_or_else(String::new, |end| end.to_string()),
@@ -149,7 +149,7 @@ impl Outcome {
             codes(&mut self.injected.iter().map(|(key, (count, _))| (key, *count))),
             codes(&mut self.found.iter().map(|(key, count)| (key, *count))),
         ];
-        cells.join(",")
+        joined(&cells)
     }
 }
 

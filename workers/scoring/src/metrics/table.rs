@@ -1,7 +1,7 @@
 //! Metrics as a table for spreadsheets and scripts.
 
 use socrates_model::{Missing, Report};
-use socrates_stream::csv::quoted;
+use socrates_stream::csv::joined;
 
 /// One line per metric: `run,planner,seed,id,value,unit,direction,version,missing,note,thresholds`. An absent value is an empty cell.
 #[must_use]
@@ -27,7 +27,7 @@ pub fn csv(report: &Report) -> String {
             &metric.note,
             &report.thresholds,
         ];
-        text.push_str(&cells.map(quoted).join(","));
+        text.push_str(&joined(cells));
         text.push('\n');
     }
     text

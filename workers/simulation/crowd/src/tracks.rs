@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use csv::StringRecord;
 use nalgebra::{Point2, Vector2};
 
 use crate::model::{CrowdModel, Room, View};
@@ -140,21 +141,22 @@ const COLUMNS: [&str; 7] = ["t", "id", "x", "y", "yaw", "vx", "vy"];
 const NEEDED: usize = 4;
 
 impl Tracks {
-    /// Reads a CSV table `t,id,x,y[,yaw][,vx,vy]` (s, m, rad, m/s; any order of columns, named in the
-    /// first line). Rows of one id in the order of time; those of several may be mixed. Empty lines are
+    /// Reads a CSV table (RFC 4180) `t,id,x,y[,yaw][,vx,vy]` (s, m, rad, m/s; any order of columns, named in
+    /// the first line). Rows of one id in the order of time; those of several may be mixed. Empty lines are
     /// passed over.
     ///
     /// # Errors
     /// [`TracksError`] with everything that is wrong: columns, cells, times that do not grow, no row.
     pub fn read(text: &str) -> Result<Self, TracksError> {
         let mut problems = Vec::new();
-        let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-        let header: Vec<&str> = lines.next().map_or(Vec::new(), |(_, line)| line.split(',').map(str::trim).collect());
+        let mut lines = lines(text, &mut problems).into_iter();
+        let header = lines.next().map_or_else(StringRecord::new, |(_, cells)| cells);
+        let header: Vec<&str> = header.iter().collect();
         check_header(&header, &mut problems);
         let mut tracks: BTreeMap<u32, Track> = BTreeMap::new();
         if problems.is_empty() {
-            for (line, text) in lines {
-                if let Some((id, sample)) = row(&header, line, text, &mut problems) {
+            for (line, cells) in lines {
+                if let Some((id, sample)) = row(&header, line, &cells, &mut problems) {
                     let samples = &mut tracks.entry(id).or_insert(Track { samples: Vec::new() }).samples;
                     match samples.last() {
                         Some(last) if sample.t_s <= last.t_s => {
@@ -190,6 +192,33 @@ fn problem(line: usize, column: &str, found: &str, allowed: &str) -> TrackProble
     TrackProblem { line, column: column.to_owned(), found, allowed: allowed.to_owned() }
 }
 
+/// The lines that hold anything, each with its number from 1: cells without the blanks around them; in quotes
+/// a comma is text.
+fn lines(text: &str, problems: &mut Vec<TrackProblem>) -> Vec<(usize, StringRecord)> {
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).trim(csv::Trim::All).from_reader(text.as_bytes());
+    let mut lines = Vec::new();
+    for record in reader.records() {
+        match record {
+            Ok(cells) if cells.len() == 1 && cells.get(0) == Some("") => {}
+            Ok(cells) => lines.push((line_of(text, cells.position()), cells)),
+            Err(why) => {
+                problems.push(problem(line_of(text, why.position()), "line", &why.to_string(), "text in UTF-8"));
+            }
+        }
+    }
+    lines
+}
+
+/// The line on which a record stands; its position is that of the empty lines before it.
+fn line_of(text: &str, position: Option<&csv::Position>) -> usize {
+    let Some(position) = position else { return 1 };
+    let number = |of: u64| usize::try_from(of).unwrap_or(usize::MAX);
+    let rest = text.as_bytes().get(number(position.byte())..).unwrap_or_default();
+    let empty = rest.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).filter(|byte| **byte == b'\n').count();
+    number(position.line()).saturating_add(empty)
+}
+
 fn check_header(header: &[&str], problems: &mut Vec<TrackProblem>) {
     for (place, name) in header.iter().enumerate() {
         if !COLUMNS.contains(name) {
@@ -207,8 +236,7 @@ fn check_header(header: &[&str], problems: &mut Vec<TrackProblem>) {
 }
 
 /// One row; `None` when something is wrong with it.
-fn row(header: &[&str], line: usize, text: &str, problems: &mut Vec<TrackProblem>) -> Option<(u32, Sample)> {
-    let cells: Vec<&str> = text.split(',').map(str::trim).collect();
+fn row(header: &[&str], line: usize, cells: &StringRecord, problems: &mut Vec<TrackProblem>) -> Option<(u32, Sample)> {
     if cells.len() != header.len() {
         let found = format!("{} cells", cells.len());
         problems.push(problem(line, "line", &found, &format!("{} cells, as in the first line", header.len())));
@@ -225,7 +253,7 @@ fn row(header: &[&str], line: usize, text: &str, problems: &mut Vec<TrackProblem
     };
     let (t_s, x, y, yaw) = (number("t"), number("x"), number("y"), number("yaw").map(wrap));
     let velocity = number("vx").zip(number("vy")).map(|(vx, vy)| Vector2::new(vx, vy));
-    let cell = header.iter().position(|column| *column == "id").and_then(|place| cells.get(place)).unwrap_or(&"");
+    let cell = header.iter().position(|column| *column == "id").and_then(|place| cells.get(place)).unwrap_or_default();
     let id = cell.parse::<u32>();
     if id.is_err() {
         problems.push(problem(line, "id", cell, &format!("a whole number from 0 to {}", u32::MAX)));

@@ -266,6 +266,8 @@ fn a_bad_file_of_tracks_is_refused_with_every_line() {
         ("t,id,x,y\n0,1,2\n", "line 2, `line` is `3 cells`"),
         ("t,id,x,y\n0,-1,2,3\n", "line 2, `id` is `-1`"),
         ("t,id,x,y\n0,1,NaN,3\n", "line 2, `x` is `NaN`"),
+        ("t,id,x,y\n0,1,\"1,5\",3\n", "line 2, `x` is `1,5`"),
+        ("\nt,id,x,y\n\n \n0,1,\"2\n\",3\n0,1,2\n", "line 7, `line` is `3 cells`"),
         ("t,id,x,y\n1,1,2,3\n1,1,2,3\n", "line 3, `t` is `1`; allowed: later than 1 s"),
     ];
     for (text, wanted) in cases {
@@ -274,6 +276,12 @@ fn a_bad_file_of_tracks_is_refused_with_every_line() {
     }
     let error = Tracks::read("t,id,x,y\na,1,2,3\n0,b,c,3\n").unwrap_err();
     assert_eq!(error.problems.len(), 3);
+}
+
+#[test]
+fn cells_in_quotes_and_blanks_around_cells_are_read_as_what_they_hold() {
+    let plain = Tracks::read("t,id,x,y\n0,7,1.5,2\n1,7,2.5,2\n").unwrap();
+    assert_eq!(Tracks::read("\"t\",\"id\" ,\"x\", y\r\n\r\n\"0\",7, 1.5,\"2\"\r\n1,\" 7\",2.5,2").unwrap(), plain);
 }
 
 #[test]
