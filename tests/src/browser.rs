@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+
 use crate::program::run;
 use crate::skip;
 
@@ -48,35 +50,11 @@ pub fn ask(browser: &Path, folder: &Path, html: &str, width: u32, script: &str) 
     let wrong = |what: &str| std::io::Error::other(format!("{what}\n{}", finished.err));
     let (_, rest) = finished.out.split_once("<pre id=\"answer\">").ok_or_else(|| wrong("the page did not answer"))?;
     let coded = rest.split('<').next().unwrap_or_default();
-    let found: serde_json::Value = serde_json::from_slice(&decoded(coded))?;
+    let bytes =
+        BASE64_STANDARD.decode(coded.trim()).map_err(|why| wrong(&format!("the answer is no base 64: {why}")))?;
+    let found: serde_json::Value = serde_json::from_slice(&bytes)?;
     match found.get("failed") {
         Some(why) => Err(wrong(&format!("the script failed: {why}"))),
         None => Ok(found),
-    }
-}
-
-/// The bytes of a text in base 64.
-fn decoded(text: &str) -> Vec<u8> {
-    const SIGNS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let (mut bytes, mut held, mut bits) = (Vec::new(), 0_u32, 0);
-    for sign in text.bytes().filter_map(|byte| SIGNS.iter().position(|sign| *sign == byte)) {
-        held = (held << 6) | u32::try_from(sign).unwrap_or(0);
-        bits += 6;
-        if bits >= 8 {
-            bits -= 8;
-            bytes.push(u8::try_from((held >> bits) & 0xff).unwrap_or(0));
-        }
-    }
-    bytes
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn base_64_is_read_as_it_is_written() {
-        assert_eq!(decoded("aGVsbG8="), b"hello");
-        assert_eq!(decoded("eyJhIjoiw6QifQ=="), "{\"a\":\"ä\"}".as_bytes());
     }
 }
