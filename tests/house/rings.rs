@@ -66,6 +66,78 @@ fn ci_runs_both_rings_and_nothing_else() {
 }
 
 #[test]
+fn tests_build_what_is_shipped_with_overflow_checks_and_claims() {
+    let manifest: toml::Table = std::fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let ci = &manifest["profile"]["ci"];
+    assert_eq!(ci["inherits"].as_str(), Some("release"));
+    assert_eq!((ci["overflow-checks"].as_bool(), ci["debug-assertions"].as_bool()), (Some(true), Some(true)));
+    for (package, own) in ci["package"].as_table().unwrap() {
+        assert_eq!(package, "*", "only the crates of others are left unchecked: {own}");
+    }
+}
+
+#[test]
+fn functions_of_more_than_a_hundred_lines_are_told() {
+    let clippy: toml::Table = std::fs::read_to_string(root().join("clippy.toml")).unwrap().parse().unwrap();
+    assert_eq!(clippy["too-many-lines-threshold"].as_integer(), Some(100));
+    let manifest: toml::Table = std::fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    assert_eq!(manifest["workspace"]["lints"]["clippy"]["too_many_lines"].as_str(), Some("warn"));
+    for (member, manifest) in members() {
+        assert_eq!(manifest["lints"]["workspace"].as_bool(), Some(true), "{member} has lints of its own");
+    }
+}
+
+/// What a line of a script asks cargo for, where it calls it.
+fn asked_of_cargo(line: &str) -> Option<&str> {
+    let line = line.trim();
+    let (before, asked) = line.split_once("cargo ")?;
+    let called = before.is_empty() || before.starts_with("step ");
+    (called && !line.starts_with('#')).then_some(asked)
+}
+
+#[test]
+fn the_gate_builds_everything_in_the_profile_of_tests() {
+    let gate = std::fs::read_to_string(root().join("gate")).unwrap();
+    let settings = gate.lines().find(|line| line.starts_with("build=(")).unwrap();
+    assert!(settings.contains("--profile ci ") && settings.contains("--workspace"), "{settings}");
+    let asked: Vec<&str> = gate.lines().filter_map(asked_of_cargo).collect();
+    assert!(asked.len() >= 6, "{asked:?}");
+    for words in asked {
+        let format = words == "fmt --all --check";
+        let profile = words.contains("\"${build[@]}\"") || words.contains("--profile ci ");
+        assert!(format || profile, "`cargo {words}` builds in another profile");
+    }
+}
+
+/// How the second ring ends when cargo says this, with nothing to install and nothing to build.
+fn second_ring_ends_with(said: &str) -> (Option<i32>, String) {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["cargo", "cc", "chromium", "ffprobe", "node", "npm", "python3", "script", "setpriv"] {
+        let program = folder.path().join(name);
+        std::fs::write(&program, format!("#!/bin/sh\n[ {name} = cargo ] && echo '{said}'\nexit 0\n")).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let path = format!("{}:{}", folder.path().display(), std::env::var("PATH").unwrap());
+    let ended = std::process::Command::new(root().join("gate"))
+        .arg("--foreign")
+        .env("PATH", path)
+        .env("CARGO_TARGET_DIR", folder.path().join("target"))
+        .output()
+        .unwrap();
+    (ended.status.code(), String::from_utf8_lossy(&[ended.stdout, ended.stderr].concat()).into_owned())
+}
+
+#[test]
+fn a_second_ring_in_which_no_test_runs_fails() {
+    let (code, told) = second_ring_ends_with("running 0 tests");
+    assert_eq!(code, Some(1), "{told}");
+    assert!(told.contains("no test of the ring ran"), "{told}");
+    let (code, told) = second_ring_ends_with("test foreign::looks::a_page ... ok");
+    assert_eq!(code, Some(0), "{told}");
+}
+
+#[test]
 fn every_document_says_itself_what_it_rests_on() {
     // A page that is not here explains nothing to whoever reads the code.
     let absent = ["`spec/", "(spec/"];
