@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
 use socrates_tests::root;
+use syn::punctuated::Punctuated;
 use syn::visit::{self, Visit};
-use syn::{Attribute, File, Item, ItemUse, Macro, UseTree};
+use syn::{Attribute, File, Item, ItemUse, Macro, Meta, Token, UseTree};
 
 use super::{members, shown};
 
@@ -66,12 +67,19 @@ fn for_tests(attributes: &[Attribute]) -> bool {
         if path.segments.last().is_some_and(|last| last.ident == "test") {
             return true;
         }
-        path.is_ident("cfg")
-            && attribute.meta.require_list().is_ok_and(|list| {
-                let text = list.tokens.to_string().replace(' ', "");
-                text == "test" || text.starts_with("all(test,") || text.contains(",test,") || text.ends_with(",test)")
-            })
+        path.is_ident("cfg") && attribute.parse_args::<Meta>().is_ok_and(|condition| in_tests_alone(&condition))
     })
+}
+
+/// Whether a condition holds in tests alone: `test`, or `all` of several of which one does.
+fn in_tests_alone(condition: &Meta) -> bool {
+    match condition {
+        Meta::Path(path) => path.is_ident("test"),
+        Meta::List(list) if list.path.is_ident("all") => list
+            .parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated)
+            .is_ok_and(|conditions| conditions.iter().any(in_tests_alone)),
+        Meta::List(_) | Meta::NameValue(_) => false,
+    }
 }
 
 #[expect(clippy::wildcard_enum_match_arm, reason = "the list of items is open; the others are read as they are")]
@@ -248,6 +256,10 @@ fn a_forbidden_name_after_a_test_module_is_found() {
     );
     assert_eq!(in_text("fn a() { let b = vec![std::env::var(\"C\")]; }"), ["std::env"]);
     assert_eq!(in_text("#[cfg(not(test))]\nfn a() { std::thread::sleep(b()); }"), ["thread::sleep"]);
+    for condition in ["any(unix, test)", "any(test, unix)", "not(all(unix, test))", "all(unix, any(unix, test))"] {
+        let text = format!("#[cfg({condition})] fn a() {{ Instant::now(); }}");
+        assert_eq!(in_text(&text), ["Instant"], "{condition}");
+    }
     assert_eq!(in_text("struct S;\nimpl S { fn a(map: &HashSet<u8>) {} }"), ["HashSet"]);
 }
 
@@ -256,6 +268,7 @@ fn what_stands_in_tests_in_words_or_in_longer_names_is_not_found() {
     for text in [
         "#[cfg(test)]\nmod tests { use std::collections::HashMap; fn a() { std::fs::read(\"b\"); } }\nfn c() {}",
         "#[cfg(all(test, unix))]\nfn a() { std::env::var(\"B\"); }",
+        "#[cfg(all(unix, all(feature = \"b\", test)))]\nfn a() { std::env::var(\"B\"); }",
         "struct S;\nimpl S { #[cfg(test)]\nfn a() { std::process::exit(1); } }",
         "#[test]\nfn a() { let _ = std::time::Instant::now(); }",
         "/// A HashMap of Instant, by std::fs.\nfn a() { b(\"std::env::var HashMap\"); }",
