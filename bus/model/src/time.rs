@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize, JsonSchema)]
 pub struct SimTime(u64);
 
-/// Length of one engine tick, s (`DESIGN` §6: fixed step).
+/// Length of one engine tick, s (fixed: the same steps on every machine).
 pub const STEP_SECS: f64 = 0.01;
 /// Length of one engine tick, ns.
 pub const STEP_NANOS: u64 = 10_000_000;

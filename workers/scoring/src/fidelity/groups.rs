@@ -13,8 +13,8 @@ use crate::tracks::{Sample, Track};
 const NEAR_M: f64 = 3.0;
 /// People settle into their places in the first moments, s.
 const SETTLE_SECS: f64 = 0.5;
-/// Share of member-time that must face the center of a group that talks, the o-space of Kendon's F-formations, and of time
-/// together (clause text).
+/// Share of member-time that must face the center of a group that talks (the o-space of Kendon's F-formations), and share
+/// of the time in which a group must be together.
 const SHARE: f64 = 0.8;
 /// Somebody farther from the line of a queue does not stand in it, m.
 const OFF_LINE_M: f64 = 0.6;
