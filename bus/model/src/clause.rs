@@ -407,15 +407,51 @@ impl Predicate {
     /// The group the clause is about, if it is about one.
     #[must_use]
     pub const fn group(&self) -> Option<GroupId> {
-        if let Self::Formation { group, .. }
-        | Self::WalksTogether { group, .. }
-        | Self::Queues { group, .. }
-        | Self::RobotJoins { group }
-        | Self::RobotLeavesGroup { group } = self
-        {
-            Some(*group)
-        } else {
-            None
+        match self {
+            Self::Formation { group, .. }
+            | Self::WalksTogether { group, .. }
+            | Self::Queues { group, .. }
+            | Self::RobotJoins { group }
+            | Self::RobotLeavesGroup { group } => Some(*group),
+            Self::Humans { .. }
+            | Self::Meets { .. }
+            | Self::MeetsAgain { .. }
+            | Self::HeadOn { .. }
+            | Self::Crosses { .. }
+            | Self::Ahead { .. }
+            | Self::Overtakes { .. }
+            | Self::RobotPasses { .. }
+            | Self::Follows { .. }
+            | Self::Abreast { .. }
+            | Self::Parallel { .. }
+            | Self::Flow { .. }
+            | Self::Density { .. }
+            | Self::Surrounds { .. }
+            | Self::Converges { .. }
+            | Self::Blocks { .. }
+            | Self::Looks { .. }
+            | Self::StandsStill { .. }
+            | Self::RunsAway { .. }
+            | Self::GivesWay { .. }
+            | Self::Reacts { .. }
+            | Self::Gestures { .. }
+            | Self::Leaves { .. }
+            | Self::StaysInside { .. }
+            | Self::Enters { .. }
+            | Self::DoorOpens { .. }
+            | Self::HiddenUntil { .. }
+            | Self::Order { .. }
+            | Self::Before { .. }
+            | Self::EncounterAt { .. }
+            | Self::Reaches { .. }
+            | Self::StartsAt { .. }
+            | Self::OnTime { .. }
+            | Self::Plausible
+            | Self::RobotArrives
+            | Self::RobotKeeps { .. }
+            | Self::RobotEntersLast
+            | Self::RobotLeavesFirst
+            | Self::RobotObeys { .. } => None,
         }
     }
 

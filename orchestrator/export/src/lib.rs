@@ -11,6 +11,3 @@ pub mod chat_jsonl;
 pub mod socrates_json;
 
 pub use socrates_json::{Imported, SocratesJsonError};
-
-/// Names of the formats that can be written, in order.
-pub const FORMATS: &[&str] = &["socrates-json"];

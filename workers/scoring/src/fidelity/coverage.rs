@@ -76,35 +76,85 @@ const fn asks(kind: &FactKind) -> bool {
     }
 }
 
-/// Whether a clause verifies a fact: it names it as its source and speaks of the same human or
-/// group, or it tests the same thing outright.
+/// Whether a clause verifies a fact: it tests the same thing outright, or it names the fact as its source and speaks of the
+/// same human or group.
 fn covers(clause: &Clause, fact: &Fact) -> bool {
     let named = clause.source == fact.id;
-    match &fact.kind {
-        FactKind::Reacts { human, rule } => {
-            let same = matches!(&clause.predicate, Predicate::Reacts { human: who, act, .. } if who == human && *act == rule.act);
-            same || named && about(clause, *human, None, u32::MAX)
+    let shows = match &fact.kind {
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => {
+            named && about(clause, *human, None, u32::MAX)
         }
-        FactKind::Gestures { human, gesture } => {
-            let asked = Predicate::Gestures { agent: AgentId::Human(*human), gesture: *gesture };
-            clause.predicate == asked || named && about(clause, *human, None, u32::MAX)
-        }
-        FactKind::MeetsTimes { human, times, .. } => {
-            matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times)
-        }
-        FactKind::Before { first, then } => clause.predicate == Predicate::Before { first: *first, then: *then },
+        FactKind::MeetsTimes { .. } | FactKind::Before { .. } => false,
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
-        FactKind::Place(place) => {
-            named || matches!(clause.predicate, Predicate::EncounterAt { place: at, .. } if at == *place)
-        }
-        FactKind::Humans(_)
+        FactKind::Place(_)
+        | FactKind::Humans(_)
         | FactKind::Relates { .. }
         | FactKind::RobotTask(_)
         | FactKind::RobotSays(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
         | FactKind::Pattern(_) => named,
+    };
+    shows || says(&clause.predicate, &fact.kind)
+}
+
+/// Whether a predicate claims the very thing that a fact says; a predicate that does is named here with its fact.
+fn says(predicate: &Predicate, fact: &FactKind) -> bool {
+    match predicate {
+        Predicate::Reacts { human, act, .. } => {
+            matches!(fact, FactKind::Reacts { human: who, rule } if who == human && rule.act == *act)
+        }
+        Predicate::Gestures { agent, gesture } => {
+            matches!(fact, FactKind::Gestures { human, gesture: asked }
+                if *agent == AgentId::Human(*human) && asked == gesture)
+        }
+        Predicate::MeetsAgain { human, nth, .. } => {
+            matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
+        }
+        Predicate::Before { first, then } => {
+            matches!(fact, FactKind::Before { first: one, then: other } if one == first && other == then)
+        }
+        Predicate::EncounterAt { place, .. } => matches!(fact, FactKind::Place(asked) if asked == place),
+        Predicate::Humans { .. }
+        | Predicate::Meets { .. }
+        | Predicate::HeadOn { .. }
+        | Predicate::Crosses { .. }
+        | Predicate::Ahead { .. }
+        | Predicate::Overtakes { .. }
+        | Predicate::RobotPasses { .. }
+        | Predicate::Follows { .. }
+        | Predicate::Abreast { .. }
+        | Predicate::Parallel { .. }
+        | Predicate::Flow { .. }
+        | Predicate::Density { .. }
+        | Predicate::Surrounds { .. }
+        | Predicate::Converges { .. }
+        | Predicate::Blocks { .. }
+        | Predicate::Looks { .. }
+        | Predicate::StandsStill { .. }
+        | Predicate::RunsAway { .. }
+        | Predicate::GivesWay { .. }
+        | Predicate::Leaves { .. }
+        | Predicate::StaysInside { .. }
+        | Predicate::Enters { .. }
+        | Predicate::DoorOpens { .. }
+        | Predicate::HiddenUntil { .. }
+        | Predicate::Formation { .. }
+        | Predicate::WalksTogether { .. }
+        | Predicate::Queues { .. }
+        | Predicate::Order { .. }
+        | Predicate::Reaches { .. }
+        | Predicate::StartsAt { .. }
+        | Predicate::OnTime { .. }
+        | Predicate::Plausible
+        | Predicate::RobotArrives
+        | Predicate::RobotKeeps { .. }
+        | Predicate::RobotEntersLast
+        | Predicate::RobotLeavesFirst
+        | Predicate::RobotJoins { .. }
+        | Predicate::RobotLeavesGroup { .. }
+        | Predicate::RobotObeys { .. } => false,
     }
 }
