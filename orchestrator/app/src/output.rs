@@ -47,6 +47,9 @@ pub trait Terminal: Debug + Sync {
     /// A bar, in the place of what stood there.
     fn bar(&self, bar: Bar<'_>);
 
+    /// Letters that fit into a line; none where standard output is no terminal.
+    fn columns(&self) -> Option<usize>;
+
     /// Whether a person types into standard input.
     fn is_typed_to(&self) -> bool;
 
@@ -134,6 +137,11 @@ impl Printer {
         self.terminal.clear();
     }
 
+    /// Letters that fit into a line; none where nobody sees the lines on a terminal.
+    pub(crate) fn columns(&self) -> Option<usize> {
+        self.terminal.columns().filter(|_| self.live)
+    }
+
     /// Whether a person types into standard input.
     pub(crate) fn is_typed_to(&self) -> bool {
         self.terminal.is_typed_to()
@@ -160,6 +168,9 @@ impl Terminal for Nobody {
         false
     }
     fn bar(&self, _: Bar<'_>) {}
+    fn columns(&self) -> Option<usize> {
+        None
+    }
     fn is_typed_to(&self) -> bool {
         false
     }

@@ -35,10 +35,15 @@ fn show(bar: &ProgressBar, template: &str, total: Option<u64>) {
     }
 }
 
-/// What reads lines, with those of before.
-fn editor() -> &'static Mutex<Option<DefaultEditor>> {
+/// Does something with what reads lines and holds those of before; it is made where it is first needed.
+fn with_editor<T>(what: impl FnOnce(&mut DefaultEditor) -> T) -> std::io::Result<T> {
     static EDITOR: Mutex<Option<DefaultEditor>> = Mutex::new(None);
-    &EDITOR
+    let mut editor = EDITOR.lock().unwrap_or_else(PoisonError::into_inner);
+    let lines = match &mut *editor {
+        Some(lines) => lines,
+        empty => empty.insert(DefaultEditor::new().map_err(std::io::Error::other)?),
+    };
+    Ok(what(lines))
 }
 
 impl Terminal for Screen {
@@ -51,7 +56,8 @@ impl Terminal for Screen {
     }
 
     fn passing(&self, text: &str) {
-        show(bar(), "{msg}", None);
+        // What is wider than the terminal is cut: a line that wraps cannot be replaced.
+        show(bar(), "{wide_msg}", None);
         bar().set_message(text.to_owned());
     }
 
@@ -75,13 +81,13 @@ impl Terminal for Screen {
         std::io::stdin().is_terminal()
     }
 
+    fn columns(&self) -> Option<usize> {
+        let (columns, _) = with_editor(DefaultEditor::dimensions).ok()??;
+        Some(usize::from(columns)).filter(|columns| *columns > 0)
+    }
+
     fn ask(&self, prompt: &str) -> std::io::Result<Option<String>> {
-        let mut editor = editor().lock().unwrap_or_else(PoisonError::into_inner);
-        let lines = match &mut *editor {
-            Some(lines) => lines,
-            empty => empty.insert(DefaultEditor::new().map_err(std::io::Error::other)?),
-        };
-        match lines.readline(prompt) {
+        with_editor(|lines| match lines.readline(prompt) {
             Ok(line) => {
                 // A line that cannot be remembered can still be followed.
                 drop(lines.add_history_entry(line.as_str()));
@@ -89,7 +95,7 @@ impl Terminal for Screen {
             }
             Err(ReadlineError::Eof | ReadlineError::Interrupted) => Ok(None),
             Err(why) => Err(std::io::Error::other(why)),
-        }
+        })?
     }
 }
 

@@ -15,7 +15,7 @@ use socrates_prompts::Question;
 use super::command::{Command, stage as stage_named};
 use super::keep::kept;
 use super::log::{Log, MADE, MADE_AGAIN};
-use super::version::{Version, lines, named};
+use super::version::{Version, broken, lines, named};
 use crate::exit::Complaint;
 
 /// How a line is meant.
@@ -37,6 +37,8 @@ pub(super) enum Tone {
 pub(super) trait Person {
     /// Shows a line.
     fn say(&mut self, tone: Tone, line: &str);
+    /// Letters that fit into a line.
+    fn columns(&self) -> usize;
     /// Shows the map with the ways of a version.
     fn picture(&mut self, look: &Look, version: &Version);
     /// Asks for a line; `None` when the person has gone.
@@ -156,12 +158,20 @@ impl Conversation<'_> {
     }
 
     fn say(&mut self, tone: Tone, line: &str) {
-        self.person.say(tone, line);
+        let columns = self.person.columns();
+        if line.chars().count() <= columns {
+            self.person.say(tone, line);
+            return;
+        }
+        for part in broken(line, columns.max(1)) {
+            self.person.say(tone, &part);
+        }
     }
 
-    fn all(&mut self, tone: Tone, lines: &[String]) {
-        for line in lines {
-            self.person.say(tone, line);
+    /// Says a text under a name.
+    fn named(&mut self, tone: Tone, name: &str, text: &str) {
+        for line in named(name, text, self.person.columns()) {
+            self.person.say(tone, &line);
         }
     }
 
@@ -175,7 +185,7 @@ impl Conversation<'_> {
         self.say(Tone::Head, &format!("look {number} of 2  {about}, by {}", self.look.author));
         for reason in &self.look.reasons.clone() {
             let words = if reason.code == FaultCode::PPerson { reason.message.to_string() } else { reason.to_string() };
-            self.all(Tone::Quiet, &named("because", &words));
+            self.named(Tone::Quiet, "because", &words);
         }
         self.show();
         self.list();
@@ -195,7 +205,7 @@ impl Conversation<'_> {
             let shown = Proposal { author: now.proposal.author.clone(), ..other.clone() } == now.proposal;
             let humans = crate::prepare::plural(other.humans.len(), "human");
             let words = format!("{} · {humans} · {}{}", other.title, other.place, if shown { " (shown)" } else { "" });
-            self.all(Tone::Plain, &named(&format!("take {number}"), &words));
+            self.named(Tone::Plain, &format!("take {number}"), &words);
         }
     }
 
@@ -224,7 +234,10 @@ impl Conversation<'_> {
             About::Proposal => now.proposal_entries(),
             About::Draft => now.draft_entries(location),
         };
-        self.all(Tone::Plain, &lines(&entries));
+        let shown = lines(&entries, self.person.columns());
+        for line in shown {
+            self.say(Tone::Plain, &line);
+        }
         if self.page == About::Draft {
             self.person.picture(self.look, &now);
         }
@@ -237,10 +250,10 @@ impl Conversation<'_> {
         let all: Vec<Fault> = found.into_values().flatten().collect();
         let refusing = hard(&all);
         for fault in &refusing {
-            self.all(Tone::Bad, &named("wrong", &fault.to_string()));
+            self.named(Tone::Bad, "wrong", &fault.to_string());
         }
         for fault in all.iter().filter(|fault| fault.is_soft()) {
-            self.all(Tone::Quiet, &named("mind", &fault.to_string()));
+            self.named(Tone::Quiet, "mind", &fault.to_string());
         }
         if refusing.is_empty() {
             self.say(Tone::Quiet, &format!("{:<11}nothing found against it", "checks"));
@@ -259,7 +272,8 @@ impl Conversation<'_> {
                 ChangeTag::Insert => (Tone::Good, '+'),
             };
             same = false;
-            for line in change.value().lines() {
+            // Two columns are the sign's.
+            for line in change.value().lines(self.person.columns().saturating_sub(2)) {
                 self.person.say(tone, &format!("{sign} {line}"));
             }
         }
@@ -292,7 +306,7 @@ impl Conversation<'_> {
             ("quit", "leaves; the same command comes back to this look"),
         ];
         for (name, words) in HELP {
-            self.all(Tone::Plain, &named(name, words));
+            self.named(Tone::Plain, name, words);
         }
     }
 
@@ -381,13 +395,13 @@ impl Conversation<'_> {
         };
         let edited = edit(&question, &draft, words);
         for done in &edited.done {
-            self.all(Tone::Good, &named("done", done));
+            self.named(Tone::Good, "done", done);
         }
         for words in &edited.left_out {
-            self.all(Tone::Bad, &named("left out", &format!("`{words}` was not understood; the rest was done")));
+            self.named(Tone::Bad, "left out", &format!("`{words}` was not understood; the rest was done"));
         }
         for fault in &edited.not_done {
-            self.all(Tone::Bad, &named("not done", &fault.message.to_string()));
+            self.named(Tone::Bad, "not done", &fault.message.to_string());
         }
         if edited.done.is_empty() && edited.draft == draft {
             if self.look.author != AuthorSpec::Offline {
@@ -440,7 +454,7 @@ impl Conversation<'_> {
         }
         let stuck = found.keys().find(|stage| **stage == Stage::Proposal || self.look.pinned.contains(stage)).copied();
         for fault in found.values().flatten() {
-            self.all(Tone::Bad, &named("wrong", &fault.to_string()));
+            self.named(Tone::Bad, "wrong", &fault.to_string());
         }
         if let Some(stage) = stuck {
             let hint = format!("not accepted: say what should change, `edit {stage}`, `undo`, or `again {stage}`");

@@ -117,6 +117,10 @@ impl Person for Terminal {
         }
     }
 
+    fn columns(&self) -> usize {
+        self.talk.columns().unwrap_or(usize::MAX)
+    }
+
     fn picture(&mut self, look: &Look, version: &Version) {
         let location = &look.question.location;
         let svg = match &version.paths {

@@ -34,6 +34,8 @@ struct Script {
     heard: Vec<(Tone, String)>,
     pictures: usize,
     kept: usize,
+    /// Letters in a line; none for a wide one.
+    columns: Option<usize>,
 }
 
 impl Script {
@@ -53,6 +55,9 @@ impl Script {
 impl Person for Script {
     fn say(&mut self, tone: Tone, line: &str) {
         self.heard.push((tone, line.to_owned()));
+    }
+    fn columns(&self) -> usize {
+        self.columns.unwrap_or(usize::MAX)
     }
     fn picture(&mut self, _: &Look, _: &Version) {
         self.pictures += 1;
@@ -113,6 +118,26 @@ fn what_is_accepted_is_what_came() {
         assert!(person.heard("nothing found against it"), "{}", person.text());
         assert_eq!(person.pictures, usize::from(about == About::Draft), "ways are drawn once there are some");
     }
+}
+
+#[test]
+fn every_line_fits_a_terminal_of_forty_columns_and_nothing_is_lost() {
+    let look = look(About::Draft);
+    let lines = ["?", "make the robot's path longer", "the moon is green", "diff", "accept"];
+    let (mut wide, mut narrow) = (Script::of(&lines), Script { columns: Some(40), ..Script::of(&lines) });
+    talk(&look, &mut wide);
+    talk(&look, &mut narrow);
+    for (_, line) in &narrow.heard {
+        let words = line.split_whitespace().count();
+        assert!(line.chars().count() <= 40 || words == 1, "`{line}` is wider than 40 columns");
+    }
+    assert!(wide.heard.len() < narrow.heard.len() && wide.heard.iter().any(|(_, line)| line.chars().count() > 80));
+    // Signs and names of the differences are written once more where a line is broken, hence the plain lines alone.
+    let words = |script: &Script| -> Vec<String> {
+        let plain = script.heard.iter().filter(|(tone, _)| matches!(tone, Tone::Plain | Tone::Quiet | Tone::Head));
+        plain.flat_map(|(_, line)| line.split_whitespace()).map(str::to_owned).collect()
+    };
+    assert_eq!(words(&wide), words(&narrow));
 }
 
 #[test]

@@ -7,8 +7,10 @@ use socrates_checks::{check_behaviors, check_paths, check_proposal};
 use socrates_model::job::Stage;
 use socrates_model::{AgentId, Behaviors, Fault, HumanProposal, Location, Paths, Proposal, Reading, Signature};
 
-/// Letters in a line of text.
+/// Most letters in a line of text behind its name.
 const WIDTH: usize = 96;
+/// Fewest letters in a line of text behind its name, however narrow the terminal is.
+const NARROWEST: usize = 16;
 /// Name of the entry that tells the whole proposal in sentences.
 const STORY: &str = "story";
 /// Letters of the name before a line.
@@ -132,19 +134,19 @@ impl Entry {
         Self { name: name.to_owned(), text: text.into() }
     }
 
-    /// The entry in lines.
-    pub(super) fn lines(&self) -> Vec<String> {
-        named(&self.name, &self.text)
+    /// The entry in lines of at most so many columns.
+    pub(super) fn lines(&self, columns: usize) -> Vec<String> {
+        named(&self.name, &self.text, columns)
     }
 }
 
-/// Entries in lines; a name that comes again is not written again.
-pub(super) fn lines(entries: &[Entry]) -> Vec<String> {
+/// Entries in lines of at most so many columns; a name that comes again is not written again.
+pub(super) fn lines(entries: &[Entry], columns: usize) -> Vec<String> {
     let mut before = "";
     let mut lines = Vec::new();
     for entry in entries {
         let name = if entry.name == before { "" } else { &entry.name };
-        lines.extend(named(name, &entry.text));
+        lines.extend(named(name, &entry.text, columns));
         before = &entry.name;
     }
     lines
@@ -165,12 +167,18 @@ fn human_entries(human: &HumanProposal) -> Vec<Entry> {
     std::iter::once(who).chain(rules).collect()
 }
 
-/// A name and its text, broken into lines under each other.
-pub(super) fn named(name: &str, text: &str) -> Vec<String> {
+/// A name and its text, broken into lines under each other of at most so many columns; a word that is longer stays whole.
+pub(super) fn named(name: &str, text: &str, columns: usize) -> Vec<String> {
+    let lines = broken(text, columns.saturating_sub(NAME).clamp(NARROWEST, WIDTH));
+    (0..).zip(lines).map(|(index, line)| format!("{:<NAME$}{line}", if index == 0 { name } else { "" })).collect()
+}
+
+/// The words of a text in lines of at most so many letters; a word that is longer stays whole.
+pub(super) fn broken(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let mut line = String::new();
     for word in text.split_whitespace() {
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > width {
             lines.push(std::mem::take(&mut line));
         }
         if !line.is_empty() {
@@ -179,5 +187,5 @@ pub(super) fn named(name: &str, text: &str) -> Vec<String> {
         line.push_str(word);
     }
     lines.push(line);
-    (0..).zip(lines).map(|(index, line)| format!("{:<NAME$}{line}", if index == 0 { name } else { "" })).collect()
+    lines
 }
