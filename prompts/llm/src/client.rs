@@ -7,7 +7,7 @@ use reqwest::{RequestBuilder, Response, Url};
 
 use crate::chat::{ChatAnswer, ChatRequest};
 use crate::dialect::{Dialect, Learned, Rung};
-use crate::error::ChatError;
+use crate::error::{ChatError, Objection};
 use crate::key::ApiKey;
 use crate::limits;
 use crate::wire::{self, Call};
@@ -167,24 +167,16 @@ impl ChatClient {
     /// Whether the server would have taken the question in a simpler form. Vendors name what they refuse; other servers
     /// answer anything, up to 500, to a form that they do not know.
     fn refuses_form(&self, error: &ChatError, request: &ChatRequest) -> bool {
-        const WORDS: [&str; 9] = [
-            "schema",
-            "response_format",
-            "json",
-            "grammar",
-            "output_config",
-            "structured",
-            "generationconfig",
-            "tool",
-            "response format",
-        ];
         let local = !matches!(self.config.dialect, Dialect::OpenAi | Dialect::Anthropic | Dialect::Gemini)
             || !self.base.domain().is_some_and(|host| host.contains('.'));
         match error {
-            ChatError::Rejected { status: 400 | 422 | 501, why } => {
-                let why = why.to_lowercase();
-                let of_model = why.contains("model") && why.contains(&self.config.model.to_lowercase());
-                request.schema.is_some() && (WORDS.iter().any(|word| why.contains(word)) || local && !of_model)
+            ChatError::Rejected { status: 400 | 422 | 501, to, .. } => {
+                request.schema.is_some()
+                    && match to {
+                        Objection::Form => true,
+                        Objection::Model => false,
+                        Objection::Unsaid => local,
+                    }
             }
             ChatError::Server { status: 500 | 501, retry_after_ms: None, .. } => request.schema.is_some() && local,
             ChatError::Rejected { .. }

@@ -1,5 +1,16 @@
 //! Why there is no answer.
 
+/// What a server objects to when it rejects a request, as far as the body of its answer tells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Objection {
+    /// The form that the answer was to have: a schema, a grammar or a tool. The same question in a simpler form may be taken.
+    Form,
+    /// The model that was asked.
+    Model,
+    /// It does not say.
+    Unsaid,
+}
+
 /// Why a request got no answer. Messages hold no address and no key.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ChatError {
@@ -48,6 +59,8 @@ pub enum ChatError {
     Rejected {
         /// HTTP status.
         status: u16,
+        /// What it objects to.
+        to: Objection,
         /// Its words.
         why: String,
     },

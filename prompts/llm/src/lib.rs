@@ -37,6 +37,6 @@ pub use cassette::{Cassette, CassetteError};
 pub use chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 pub use client::{ChatClient, ClientConfig};
 pub use dialect::{Dialect, Learned, Rung, UnknownName, Wire};
-pub use error::ChatError;
+pub use error::{ChatError, Objection};
 pub use key::ApiKey;
 pub use limits::{Limits, Rate};

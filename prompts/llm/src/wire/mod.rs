@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::chat::{ChatAnswer, ChatRequest, Speaker};
 use crate::client::ClientConfig;
 use crate::dialect::{Rung, Wire};
-use crate::error::ChatError;
+use crate::error::{ChatError, Objection};
 use crate::{estimate, waits};
 
 /// Longest piece of a server's own words that is passed on, characters.
@@ -141,6 +141,36 @@ pub(crate) fn complaint(status: u16, bytes: &[u8], headers: &HeaderMap, config: 
             ChatError::Server { status, retry_after_ms, why }
         }
         _ if should_retry == Some("true") => ChatError::Server { status, retry_after_ms, why },
-        _ => ChatError::Rejected { status, why },
+        _ => ChatError::Rejected { status, to: objection(&error, &why, &config.model), why },
+    }
+}
+
+/// Words by which servers name the form of an answer, in small letters.
+const FORM: [&str; 9] = [
+    "schema",
+    "response_format",
+    "json",
+    "grammar",
+    "output_config",
+    "structured",
+    "generationconfig",
+    "tool",
+    "response format",
+];
+
+/// What an error in a body objects to: its code and its parameter where it has them, else the server's sentence, which is
+/// all that most servers give.
+fn objection(error: &Value, why: &str, model: &str) -> Objection {
+    let word = |key: &str| error.get(key).and_then(Value::as_str).unwrap_or_default().to_lowercase();
+    let of_form = |text: &str| FORM.iter().any(|word| text.contains(word));
+    let why = why.to_lowercase();
+    if word("code") == "model_not_found" {
+        Objection::Model
+    } else if of_form(&word("param")) || of_form(&why) {
+        Objection::Form
+    } else if why.contains("model") && why.contains(&model.to_lowercase()) {
+        Objection::Model
+    } else {
+        Objection::Unsaid
     }
 }
