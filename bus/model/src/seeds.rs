@@ -24,7 +24,7 @@
 //! | pause of a worker | digest of its instance, `pause`, count | when it asks or reports again |
 //! | intervals of a table | fixed in `Bootstrap` | which runs are drawn again |
 //! | cases of a tree's conditions | fixed | which truths are tried where there are too many |
-//! | `dev fuzz` | number of the input, and the door as its stream | which bytes are damaged |
+//! | `dev fuzz` | number of the input, and the door as its stream ([`stream_seed`]) | which bytes are damaged |
 //!
 //! The names: a *seed revision* is the last revision in which this very stage was sent back, a *reseed* a rung of the
 //! ladder on which the author is asked with other luck, a *simulation seed* the seed of a run.
@@ -84,6 +84,9 @@ pub fn below(bits: u64, n: usize) -> usize {
 }
 
 /// SplitMix64 (Steele, Lea and Flood 2014): 64 bits of state, every seed good. For short fixed sequences and tests.
+///
+/// `workers/simulation/crowd` names no other room, so that others can take it alone, and has the same generator once more for
+/// its published workload and its tests.
 #[derive(Debug, Clone)]
 pub struct SplitMix64(u64);
 

@@ -2,6 +2,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng as _, SeedableRng as _};
+use socrates_model::seeds::stream_seed;
 
 /// Numbers at which readers break.
 const NUMBERS: &[&str] = &[
@@ -91,7 +92,7 @@ impl Chance {
     /// The same seed and stream give the same damage.
     pub(super) fn of(seed: u64, stream: &str) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        rng.set_stream(stream.bytes().fold(0, |sum: u64, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte))));
+        rng.set_stream(stream_seed(0, stream));
         Self(rng)
     }
 

@@ -21,7 +21,8 @@ const RADIUS_M: f64 = 0.35;
 const GOAL_RADIUS_M: f64 = 0.3;
 const SEED: u64 = 0x5EED_0000;
 
-/// SplitMix64 (Steele, Lea and Flood 2014): 64 bits of state, every seed good.
+/// SplitMix64 (Steele, Lea and Flood 2014): 64 bits of state, every seed good. For this workload and for tests; no crowd
+/// draws anything.
 #[derive(Debug, Clone)]
 pub struct SplitMix64(u64);
 
