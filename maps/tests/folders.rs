@@ -29,6 +29,44 @@ mod folders {
     }
 
     #[test]
+    fn a_location_off_the_center_is_read_with_its_extra_key_as_a_warning() {
+        let location =
+            load(&socrates_tests::root().join(socrates_tests::ANNEX)).unwrap_or_else(|faults| panic!("{faults:#?}"));
+        assert_eq!((location.graph.nodes().len(), location.graph.edges().len()), (20, 21));
+        assert_eq!((location.name.as_str(), location.grid.width, location.grid.height), ("annex", 120, 80));
+        assert_eq!(location.warnings.len(), 1, "{:?}", location.warnings);
+        assert!(location.warnings[0].contains("`type`"), "{:?}", location.warnings);
+        // 0.2 m a pixel from (-3, -12.4): `a1` is at pixel (13, 68) of 80 rows, `c7` at pixel (107, 31).
+        for (id, x, y, class) in [("a1", -0.4, -10.0, Some(PlaceClass::BlindCorner)), ("c7", 18.4, -2.6, None)] {
+            let node = location.graph.node(&NodeId::new(id).unwrap()).unwrap();
+            assert!((node.at.x - x).abs() < 1e-9 && (node.at.y - y).abs() < 1e-9, "{id}: {}", node.at);
+            assert!(class.is_none_or(|class| PlaceClass::of_type(&node.kind) == class), "{id}");
+        }
+        // The nearest wall of `a1` is 2.0 m below it; `b4` stands between racks, 1.6 m from either.
+        let field = DistanceField::new(&location.grid);
+        for (id, clearance_m) in [("a1", 2.0), ("b4", 1.6)] {
+            let at = location.graph.node(&NodeId::new(id).unwrap()).unwrap().at;
+            assert!((field.clearance(&at) - clearance_m).abs() < 0.3, "{id}: {}", field.clearance(&at));
+        }
+    }
+
+    #[test]
+    fn a_map_without_its_graph_or_its_image_misses_just_that() {
+        let dir = socrates_tests::root().join(socrates_tests::ANNEX);
+        let read = |names: &[&str]| -> BTreeMap<String, Vec<u8>> {
+            names.iter().map(|name| ((*name).to_owned(), std::fs::read(dir.join(name)).unwrap())).collect()
+        };
+        let found = |names: &[&str]| {
+            let mut found = codes(&parse(&read(names), "annex").unwrap_err());
+            found.sort();
+            found
+        };
+        assert_eq!(found(&["map.yaml", "map.pgm"]), [FaultCode::MRead]);
+        assert_eq!(found(&["map.yaml"]), [FaultCode::MRead, FaultCode::MImage]);
+        assert_eq!(found(&["map.yaml", "scene_graph.json"]), [FaultCode::MImage]);
+    }
+
+    #[test]
     fn foreign_map_images_are_read_and_only_the_missing_graph_is_missed() {
         for (folder, maps) in [
             ("hunav_sim_v1_1/maps", ["cafe", "map_cafe2", "small_house", "small_warehouse"].as_slice()),

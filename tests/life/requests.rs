@@ -53,6 +53,20 @@ fn seeds_that_a_request_writes_are_kept_and_those_it_does_not_write_are_that_of_
 }
 
 #[test]
+fn a_location_in_the_style_of_others_is_realised_guided_and_unguided() {
+    let folder = tempfile::tempdir().unwrap();
+    let location = socrates_tests::root().join(socrates_tests::ANNEX).display().to_string();
+    let base = format!(
+        "location = {location:?}\nsocial_context = \"A storage hall with racks\"\ntask = \"Bring a box from one corner to another\"\n"
+    );
+    let guided = format!("{base}rough_scenario = \"A worker comes towards the robot in the aisle and gives way.\"\n");
+    for (name, text) in [("guided", &guided), ("unguided", &base)] {
+        let (finished, json) = make(folder.path(), name, text, &[]);
+        assert_eq!(json["verdict"], "realised", "{name}: {}\n{}", finished.err, finished.out);
+    }
+}
+
+#[test]
 fn a_foreign_location_is_realised_with_its_own_request_and_without_any() {
     let Some(data) = shared("socrates_hunav/socrates") else { return };
     let folder = tempfile::tempdir().unwrap();

@@ -18,6 +18,9 @@ pub use tempfile;
 
 use std::path::PathBuf;
 
+/// A location in the style of those that others publish: an extra key, an origin off the center.
+pub const ANNEX: &str = "maps/tests/data/annex";
+
 /// The root of the repository.
 #[must_use]
 pub fn root() -> PathBuf {

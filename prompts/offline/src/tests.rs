@@ -37,6 +37,12 @@ pub(crate) fn map(name: &str) -> Location {
     socrates_maps::shipped::load(name).unwrap()
 }
 
+/// A location in the style of those that others publish, of our own.
+fn annex() -> Location {
+    socrates_maps::load(&socrates_tests::root().join(socrates_tests::ANNEX)).unwrap()
+}
+
+#[track_caller]
 fn small_warehouse() -> Option<Location> {
     let folder = socrates_tests::skip::shared("socrates_hunav/socrates/locations/small_warehouse")?;
     Some(socrates_maps::load(&folder).unwrap())
@@ -347,6 +353,7 @@ fn sound(name: &str, ask: &Question, proposal: &Proposal, paths: &Paths) {
 fn every_sample_and_every_text_is_answered_on_every_map() {
     let mut all = samples();
     let mut maps: Vec<Location> = socrates_maps::shipped::names().iter().map(|name| map(name)).collect();
+    maps.push(annex());
     maps.extend(small_warehouse());
     for location in &maps {
         for (_, rough, _) in READINGS {

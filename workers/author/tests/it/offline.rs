@@ -1,6 +1,8 @@
 //! The offline author meets the checks: every shipped request gets a proposal, paths and behaviors within the ladder of attempts.
 #![expect(clippy::print_stdout, reason = "a long ladder says so")]
 
+use std::path::Path;
+
 use socrates_author::{Asking, AuthorContext, JobAnswer, Question, Written};
 use socrates_model::job::Stage;
 use socrates_model::seeds::derive_seed;
@@ -97,15 +99,14 @@ async fn every_shipped_request_is_answered_within_the_ladder() {
     assert!(broken.is_empty(), "{} of {asked} failed:\n{}", broken.len(), broken.join("\n"));
 }
 
-#[tokio::test]
-async fn the_small_warehouse_is_answered_guided_and_unguided() {
-    let Some(folder) = shared("socrates_hunav/socrates/locations/small_warehouse") else { return };
-    let location = socrates_maps::load(&folder).expect("the location loads");
-    let rough = "there are 2 humans in the scenario, they are in a group, one person runs away from the robot upon seeing it, the other one follows the robot";
+/// Asks for a location of others with people described, and without.
+async fn answered_guided_and_unguided(folder: &Path) {
+    let location = socrates_maps::load(folder).expect("the location loads");
+    let rough = "Two people walk together through the aisles; one of them runs away when they see the robot, the other one follows it";
     let mut broken = Vec::new();
     for (rough, seed) in [(Some(rough), 1), (Some(rough), 2), (None, 1), (None, 2), (None, 3), (None, 4)] {
         let request: Request = serde_json::from_value(serde_json::json!({
-            "location": "small_warehouse",
+            "location": location.name,
             "social_context": "A busy warehouse with racks and a packaging area",
             "task": "Deliver coffee from one corner of the warehouse to another",
             "rough_scenario": rough,
@@ -116,6 +117,17 @@ async fn the_small_warehouse_is_answered_guided_and_unguided() {
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[tokio::test]
+async fn a_location_in_the_style_of_others_is_answered_guided_and_unguided() {
+    answered_guided_and_unguided(&socrates_tests::root().join(socrates_tests::ANNEX)).await;
+}
+
+#[tokio::test]
+async fn the_small_warehouse_is_answered_guided_and_unguided() {
+    let Some(folder) = shared("socrates_hunav/socrates/locations/small_warehouse") else { return };
+    answered_guided_and_unguided(&folder).await;
 }
 
 #[tokio::test]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 
 use socrates_bt::{CheckContext, Library, Options, Tree, check};
 use socrates_model::{Action, Fault, FaultCode, Gesture, HumanId, Rule, Trigger};
@@ -247,12 +248,41 @@ fn an_attribute_of_version_4_is_refused_in_version_3() {
     assert_eq!(refused(&xml)[0].code, FaultCode::BPort);
 }
 
-/// Reads a shipped tree of another simulator; its includes are found beside it.
-fn shipped(path: &str, library: Library, declared: bool) -> Option<Result<Tree, Vec<Fault>>> {
-    let file = shared(&format!("socrates_hunav/{path}"))?;
-    let text = fs::read_to_string(&file).unwrap();
+/// Reads a tree; its includes are found beside it.
+fn beside(file: &Path, library: Library, declared: bool) -> Result<Tree, Vec<Fault>> {
+    let text = fs::read_to_string(file).unwrap();
     let find = |name: &str| fs::read_to_string(file.parent()?.join(name)).ok();
-    Some(Tree::parse_with(&text, &Options { includes: Some(&find), library, declared, ..Options::default() }))
+    Tree::parse_with(&text, &Options { includes: Some(&find), library, declared, ..Options::default() })
+}
+
+/// Reads a shipped tree of another simulator.
+#[track_caller]
+fn shipped(path: &str, library: Library, declared: bool) -> Option<Result<Tree, Vec<Fault>>> {
+    shared(&format!("socrates_hunav/{path}")).map(|file| beside(&file, library, declared))
+}
+
+/// Reads a tree of our own in the style of another simulator.
+fn own(path: &str, library: Library) -> Result<Tree, Vec<Fault>> {
+    beside(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/simulators").join(path), library, false)
+}
+
+#[test]
+fn trees_of_our_own_in_the_style_of_other_simulators_load_or_are_refused() {
+    for (path, library) in [
+        ("fork/polite.xml", Library::SocratesFork),
+        ("fork/waves.xml", Library::SocratesFork),
+        ("hunav_1_0/startled.xml", Library::HunavSim1_0),
+        ("hunav_1_1/inquisitive.xml", Library::HunavSim1_1),
+        ("hunav_2/stroll.xml", Library::HunavSim2),
+    ] {
+        if let Err(faults) = own(path, library) {
+            panic!("{path}: {faults:#?}");
+        }
+    }
+    for (path, code) in [("fork/absent_node.xml", FaultCode::BNode), ("fork/absent_port.xml", FaultCode::BPort)] {
+        let faults = own(path, Library::SocratesFork).map(|_| ()).unwrap_err();
+        assert!(faults.iter().all(|fault| fault.code == code), "{path}: {faults:#?}");
+    }
 }
 
 #[test]

@@ -40,6 +40,7 @@ fn difference(case: &Path) -> Option<String> {
     None
 }
 
+#[track_caller]
 fn every_recorded_case_of(version: &str) {
     let Some(folder) = shared(&format!("bt_reference/{version}")) else { return };
     every_case_of(&folder);

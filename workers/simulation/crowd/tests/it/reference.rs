@@ -18,6 +18,7 @@ use socrates_tests::skip::shared;
 
 const TOLERANCE: f64 = 1e-12;
 
+#[track_caller]
 fn folder() -> Option<PathBuf> {
     shared("sfm_reference")
 }

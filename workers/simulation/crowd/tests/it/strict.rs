@@ -11,6 +11,7 @@ use socrates_crowd::strict::{Crowd, Model};
 use socrates_crowd::trace::{Scene, forces_table, trajectory};
 use socrates_tests::skip::shared;
 
+#[track_caller]
 fn folder() -> Option<PathBuf> {
     shared("sfm_reference")
 }

@@ -1,6 +1,6 @@
 //! Agents files: what is read, what is refused and how, and that every dialect goes out as it came in.
 
-use crate::common::{Walker, data, file, read, section, shown};
+use crate::common::{Walker, data, file, own, read, section, shown};
 use socrates_hunav::{AgentsFile, Dialect, Inputs, Problem, Profile, Reaction, check_on_map, simulate};
 
 fn two() -> String {
@@ -191,6 +191,21 @@ fn every_dialect_goes_out_as_it_came_in() {
     }
 }
 
+/// Writes a file that was read and reads it again.
+fn goes_out_as_it_came_in(file: &std::path::Path) {
+    let mut first = read(&std::fs::read_to_string(file).unwrap());
+    let again = read(&first.to_yaml());
+    first.warnings.clear();
+    assert_eq!(AgentsFile { warnings: Vec::new(), ..again }, first, "{}", file.display());
+}
+
+#[test]
+fn our_files_of_every_dialect_go_out_as_they_came_in() {
+    for folder in ["v1_0", "v1_1", "v2_0"] {
+        goes_out_as_it_came_in(&own(folder).join("agents.yaml"));
+    }
+}
+
 #[test]
 fn shipped_files_go_out_as_they_came_in() {
     let names = [
@@ -205,11 +220,7 @@ fn shipped_files_go_out_as_they_came_in() {
     ];
     for (folder, name) in names {
         let Some(folder) = data(folder) else { return };
-        let text = std::fs::read_to_string(folder.join(name)).unwrap();
-        let mut first = read(&text);
-        let again = read(&first.to_yaml());
-        first.warnings.clear();
-        assert_eq!(AgentsFile { warnings: Vec::new(), ..again }, first, "{name}");
+        goes_out_as_it_came_in(&folder.join(name));
     }
 }
 

@@ -1,12 +1,12 @@
-//! Every agents file and every tree of the reference data runs to the end in its profile, or is refused for the reason
-//! that its notes give.
+//! Every agents file and every tree of the reference data, and of our own in its style, runs to the end in its profile, or is refused
+//! for the reason that its notes give.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use crate::common::{Walker, data, read, shown};
-use socrates_hunav::{AgentsFile, Dialect, Inputs, Profile, RobotSpec, simulate};
+use crate::common::{Walker, data, own, read, shown};
+use socrates_hunav::{AgentsFile, Dialect, Inputs, Profile, Reaction, RobotSpec, simulate};
 use socrates_model::{Cell, Grid, Point, Pose, Recording};
 
 /// All files of a folder by name.
@@ -41,6 +41,28 @@ fn ended(recording: &Recording) {
     let start: Vec<_> = recording.tick(0).iter().map(socrates_model::AgentState::point).collect();
     let end: Vec<_> = recording.tick(6000).iter().map(socrates_model::AgentState::point).collect();
     assert!(start.iter().zip(&end).any(|(a, b)| (a - b).norm() > 0.5), "nobody moved");
+}
+
+#[test]
+fn our_agents_files_of_every_dialect_run_in_their_profile_and_natively() {
+    for (name, dialect, profile) in [
+        ("v1_0", Dialect::V1_0, Profile::Hunav10),
+        ("v1_1", Dialect::V1_1, Profile::Hunav11),
+        ("v2_0", Dialect::V2_0, Profile::Hunav20),
+    ] {
+        let folder = own(name);
+        let file = read(&fs::read_to_string(folder.join("agents.yaml")).unwrap());
+        assert_eq!(file.dialect, dialect, "{name}");
+        assert!(file.warnings.is_empty(), "{name}: {}", shown(&file.warnings));
+        let who: Vec<(i64, Reaction, usize)> =
+            file.agents.iter().map(|agent| (agent.id, agent.behavior.reaction, agent.goals.len())).collect();
+        assert_eq!(who, [(1, Reaction::Regular, 2), (2, Reaction::Surprised, 2), (3, Reaction::Curious, 2)], "{name}");
+        let trees = files(&folder, "xml");
+        assert!(trees.len() >= 2, "{name}");
+        ended(&run(&file, profile, &trees, None));
+        ended(&run(&file, Profile::Native, &trees, None));
+        ended(&run(&file, Profile::Native, &BTreeMap::new(), None));
+    }
 }
 
 #[test]

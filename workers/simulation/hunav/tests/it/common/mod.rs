@@ -12,6 +12,11 @@ pub(crate) fn data(folder: &str) -> Option<PathBuf> {
     socrates_tests::skip::shared(&format!("socrates_hunav/{folder}"))
 }
 
+/// A folder of agents files and trees of our own.
+pub(crate) fn own(folder: &str) -> PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(folder)
+}
+
 /// Reads an agents file, or shows its problems.
 pub(crate) fn read(text: &str) -> AgentsFile {
     AgentsFile::read(text, "agents.yaml").unwrap_or_else(|problems| panic!("{}", shown(&problems)))
