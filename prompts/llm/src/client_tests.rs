@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::chat::{ChatAnswer, ChatRequest, Detail, Finish, Speaker, Turn};
 use crate::client::{ChatClient, ClientConfig};
 use crate::dialect::{Dialect, Rung};
-use crate::error::ChatError;
+use crate::error::{ChatError, Objection};
 use crate::key::ApiKey;
 use crate::server::{Reply, Served};
 
@@ -161,6 +161,21 @@ async fn every_status_has_its_error_and_its_wait() {
     assert!(matches!(told(404, &[], &error("model_not_found")).await, ChatError::Rejected { status: 404, .. }));
     let key = told(401, &[], &error("")).await.to_string();
     assert!(key.contains("no ***") && !key.contains("secret"), "{key}");
+}
+
+#[tokio::test]
+async fn what_a_server_objects_to_is_read_from_code_parameter_and_sentence_in_this_order() {
+    for (error, objection) in [
+        (json!({"message": "no `schema-small` here", "code": "model_not_found"}), Objection::Model),
+        (json!({"message": "this value is not known", "param": "response_format"}), Objection::Form),
+        (json!({"message": "Grammar cannot be compiled"}), Objection::Form),
+        (json!({"message": "this value is not known", "param": "temperature"}), Objection::Unsaid),
+        (json!({"message": ""}), Objection::Unsaid),
+    ] {
+        let served = Served::once(400, &[], &json!({ "error": error }).to_string()).await;
+        let told = ask(&served, |config| config.rung = Some(Rung::Schema)).await.unwrap_err();
+        assert!(matches!(&told, ChatError::Rejected { to, .. } if *to == objection), "{error}: {told:?}");
+    }
 }
 
 #[tokio::test]
