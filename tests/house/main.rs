@@ -1,8 +1,11 @@
 //! The house rules, each as a test.
 #![cfg(test)]
 
+mod circles;
 mod documents;
 mod features;
+mod layout;
+mod modules;
 mod purity;
 mod rings;
 mod sources;

@@ -11,8 +11,9 @@ use socrates_model::{Location, Point, Pose};
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
-use crate::prepare::{load_location, plural, slug};
+use crate::prepare::{load_location, slug};
 use crate::scribe::Scribe;
+use crate::words::plural;
 
 /// How an agents file is run.
 #[derive(Debug, Clone)]

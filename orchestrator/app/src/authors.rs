@@ -74,7 +74,7 @@ pub(crate) fn consequences(config: &Config) -> Result<Vec<String>, Complaint> {
         ),
         format!(
             "# Without an answer in time it is put {} at most (orchestrator.asks_again); each counts in `socrates cost`.",
-            crate::prepare::plural(usize::try_from(again + 1).unwrap_or(1), "time")
+            crate::words::plural(usize::try_from(again + 1).unwrap_or(1), "time")
         ),
         format!(
             "# A simulation ends after {} s, scoring after {} s (orchestrator.simulation_s, scoring_s). A worker that is silent for \

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
+use serde_json::json;
 use socrates_checks::Likeness;
 use socrates_draw::{BatchEntry, BatchPage, BatchRow};
 use socrates_model::{Location, Report, ScenarioId, Verdict};
@@ -13,6 +14,7 @@ use crate::batch_stats;
 use crate::bundle::{self, Bundle};
 use crate::exit::Complaint;
 use crate::index::{self, Index, Scenario};
+use crate::layout;
 use crate::library_index;
 use crate::output::Printer;
 use crate::progress::Progress;
@@ -40,7 +42,7 @@ pub(crate) fn bundles(root: &Path) -> Result<Vec<String>, Complaint> {
     })?;
     let names: BTreeSet<String> = entries
         .filter_map(Result::ok)
-        .filter(|entry| entry.path().join(crate::layout::MANIFEST.path).is_file())
+        .filter(|entry| entry.path().join(layout::MANIFEST.path).is_file())
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     Ok(names.into_iter().collect())
@@ -173,8 +175,35 @@ pub(crate) fn write(talk: &Printer, root: &Path, mut cards: BTreeMap<String, Car
     index.write(root)?;
     let title = root.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let html = page.html(&title.unwrap_or_else(|| "Scenarios".to_owned()));
-    crate::files::write(&root.join("report.html"), html.as_bytes())?;
+    crate::files::write(&root.join(layout::PAGE.path), html.as_bytes())?;
     Ok(Found { rows: page.len(), distinct: page.distinct(), left_out, figures })
+}
+
+/// Writes page and tables of a folder of bundles and tells what is in it.
+pub(crate) fn report(talk: &Printer, root: &Path) -> Result<(), Complaint> {
+    let found = write(talk, root, BTreeMap::new())?;
+    let page = root.join(layout::PAGE.path);
+    let repeats = found.rows - found.distinct;
+    let of_them = if repeats > 0 {
+        format!(" · {} distinct, {repeats} repeat one of them", found.distinct)
+    } else {
+        String::new()
+    };
+    talk.line(&format!("scenarios  {}{of_them}", found.rows));
+    for (name, why) in &found.left_out {
+        talk.line(&format!("left out   {name}: {why}"));
+    }
+    if let Ok(pool) = &found.figures {
+        batch_stats::print(talk, pool);
+    }
+    talk.line(&format!("table      {}", root.join(index::FILE).display()));
+    talk.line(&format!("look       {}", page.display()));
+    let left_out: Vec<_> = found.left_out.iter().map(|(name, why)| json!({ "name": name, "why": why })).collect();
+    let figures = found.figures.as_ref().ok().map(batch_stats::result);
+    talk.result(&json!({
+        "page": page.display().to_string(), "scenarios": found.rows, "distinct": found.distinct, "left_out": left_out, "figures": figures,
+    }));
+    found.figures.map(|_| ())
 }
 
 /// Adds a bundle to page and table and hands back its reports; none where it repeats an earlier one.

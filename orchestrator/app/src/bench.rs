@@ -13,7 +13,8 @@ use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::prepare::{prepare_text, scenario_id};
 use crate::run_options::RunOptions;
-use crate::session::{Making, Wanted};
+use crate::session::Making;
+use crate::wanted::Wanted;
 
 /// The request that is made again and again: one that is realised, so that the whole way is measured.
 const REQUEST: &str = include_str!("../../../maps/warehouse/scenarios/group.toml");

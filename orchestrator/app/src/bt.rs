@@ -9,7 +9,7 @@ use socrates_model::Fault;
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
-use crate::prepare::plural;
+use crate::words::plural;
 
 /// Largest tree that is read, bytes.
 const MAX_BYTES: u64 = 32 * 1024 * 1024;

@@ -6,8 +6,10 @@
 
 mod beside;
 mod collect;
+mod page;
 mod read;
 
+pub(crate) use page::page;
 pub(crate) use read::{changed, is_bundle, manifest, read, read_some, reports, reports_in};
 
 use std::collections::BTreeMap;
@@ -175,7 +177,7 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
         out.put(&layout::TREES, id, human.tree.as_bytes())?;
     }
     let (runs, entries) = put_runs(&mut out, runs)?;
-    let broke = || Err(ours("the thread that painted `run.png` broke"));
+    let broke = || Err(ours(&format!("the thread that painted `{}` broke", layout::PICTURE.path)));
     let painted = painted.or_else(|| painting?.join().ok()).unwrap_or_else(broke)?;
     out.put(&layout::PICTURE, &"", &painted)?;
     let provenance = provenance(prepared, seed, past);
@@ -194,7 +196,7 @@ fn written(beside: &Path, dir: &Path, prepared: &Prepared, seed: u64, past: &Pas
     let dir = dir.to_path_buf();
     let bundle = Bundle { dir, manifest, request, location, reading, proposal, paths, behaviors, runs };
     // The page shows working times, so it stands outside the bundle's digest, like the provenance.
-    let page = crate::report::page(&bundle, &stage_rows(past.jobs), &prepared.author.to_string());
+    let page = page(&bundle, &stage_rows(past.jobs), &prepared.author.to_string());
     out.put(&layout::PAGE, &"", page.as_bytes())?;
     out.put(&layout::MANIFEST, &"", pretty(&bundle.manifest)?.as_bytes())?;
     Ok(bundle)
@@ -254,8 +256,8 @@ impl Writer {
 }
 
 fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "this is our fault; `details/provenance.json` holds what is needed to find it")
-        .with_code(crate::exit::Code::Ours)
+    let hint = format!("this is our fault; `{}` holds what is needed to find it", layout::PROVENANCE.path);
+    Complaint::input(what, hint).with_code(crate::exit::Code::Ours)
 }
 
 fn missing(role: Role) -> Complaint {
@@ -269,18 +271,18 @@ fn pretty<T: Serialize>(value: &T) -> Result<String, Complaint> {
 /// The request as the bundle keeps it: its location lies beside it, so it can be moved.
 fn portable(prepared: &Prepared) -> Request {
     // What a person looked at was perhaps changed by hand: the same again is what they left, not what an author writes.
-    let keep = |slot: &mut Option<String>, role: Role| {
+    let keep = |slot: &mut Option<String>, sheet: &Sheet| {
         if slot.is_some() || prepared.looked_at {
-            *slot = Some(format!("details/{role}.json"));
+            *slot = Some(sheet.path.to_owned());
         }
     };
     let mut request = prepared.request.clone();
     if socrates_maps::shipped::files(&request.location).is_none() {
-        request.location = "details/location".to_owned();
+        request.location = layout::LOCATION_FILES.folder().to_owned();
     }
-    keep(&mut request.proposal, Role::Proposal);
-    keep(&mut request.paths, Role::Paths);
-    keep(&mut request.behaviors, Role::Behaviors);
+    keep(&mut request.proposal, &layout::PROPOSAL);
+    keep(&mut request.paths, &layout::PATHS);
+    keep(&mut request.behaviors, &layout::BEHAVIORS);
     request
 }
 

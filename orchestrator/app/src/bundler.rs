@@ -14,19 +14,20 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use socrates_model::{Digest, Location, Report, ScenarioId};
+use socrates_model::{Location, Report, ScenarioId};
 use socrates_store::Reader;
 use tokio::sync::Notify;
 
 use crate::batch::Card;
-use crate::bundle::{self, Bundle, Past};
-use crate::exit::{Code, Complaint};
-use crate::history::History;
+use crate::bundle;
+use crate::conclude::bundled;
+use crate::exit::Complaint;
 use crate::output::Printer;
 use crate::prepare::Prepared;
 use crate::progress::Progress;
-use crate::run::conclude;
-use crate::session::{self, Signals, Wanted};
+use crate::signals::Signals;
+use crate::wanted::Wanted;
+use crate::work;
 
 /// Scenarios of the store that are looked at in one look: those before the first that is not done are not looked at again.
 const WINDOW: u64 = 4096;
@@ -102,7 +103,7 @@ impl Bundler {
                 std::thread::spawn(move || shared.work())
             })
             .collect();
-        Self { shared, threads, store: session::store(work), reader: None, first_open: 0, handed_on: BTreeSet::new() }
+        Self { shared, threads, store: work::store(work), reader: None, first_open: 0, handed_on: BTreeSet::new() }
     }
 
     /// Hands on what is done since the last look.
@@ -111,9 +112,9 @@ impl Bundler {
             Some(reader) => reader,
             // Until the orchestrator has made it, there is no store, and nothing is done.
             None if !self.store.is_file() => return Ok(()),
-            None => Reader::open(&self.store).map_err(session::unread)?,
+            None => Reader::open(&self.store).map_err(work::unread)?,
         };
-        let standings = reader.standings(self.first_open, WINDOW).map_err(session::unread)?;
+        let standings = reader.standings(self.first_open, WINDOW).map_err(work::unread)?;
         let open = standings.iter().find(|one| one.result.is_none()).or_else(|| standings.last());
         self.first_open = open.map_or(self.first_open, |one| one.place);
         let done = standings.into_iter().filter(|one| one.result.is_some()).map(|one| one.scenario);
@@ -200,7 +201,7 @@ impl Shared {
 
     /// The bundle of one scenario, written unless it lies there.
     fn bundle(&self, id: &ScenarioId, reader: &mut Option<Reader>) -> Bundled {
-        let stranger = || ours(&format!("the job store holds `{id}`, which nobody asked for"));
+        let stranger = || Complaint::resumes(format!("the job store holds `{id}`, which nobody asked for"));
         let Order { seed, prepared, location } = self.orders.get(id).ok_or_else(stranger)?;
         let dir = self.root.join(id.as_str());
         let known = bundle::manifest(&dir).filter(|manifest| manifest.wish == bundle::wish(prepared, *seed));
@@ -208,34 +209,11 @@ impl Shared {
             return Card::read(&self.root, id.as_str());
         }
         if reader.is_none() {
-            *reader = Some(Reader::open(&session::store(&self.work)).map_err(session::unread)?);
+            *reader = Some(Reader::open(&work::store(&self.work)).map_err(work::unread)?);
         }
-        let gone = || ours(&format!("the job store has lost `{id}`"));
+        let gone = || Complaint::resumes(format!("the job store has lost `{id}`"));
         let bundle = bundled(&dir, &self.work, id, prepared, *seed, reader.as_ref().ok_or_else(gone)?, false)?;
         let reports: Vec<Report> = bundle.runs.iter().map(|(_, report)| report.clone()).collect();
         Card::of(&bundle, Arc::clone(location), id.as_str(), &reports)
     }
-}
-
-/// The bundle of one finished scenario, written from what the job store and the artifacts of a work folder tell of it. `alone`: no
-/// other is written meanwhile.
-pub(crate) fn bundled(
-    dir: &Path,
-    work: &Path,
-    id: &ScenarioId,
-    prepared: &Prepared,
-    seed: u64,
-    reader: &Reader,
-    alone: bool,
-) -> Result<Bundle, Complaint> {
-    let gone = || ours(&format!("the job store has lost `{id}`"));
-    let rows = reader.scenario(id).map_err(session::unread)?;
-    let status = socrates_orchestrator::standing(rows.clone()).pop().ok_or_else(gone)?;
-    let (history, blobs) = (History::of_rows(rows), session::blobs(work));
-    let fetch = |digest: &Digest| session::fetch(&blobs, digest);
-    conclude(dir, prepared, seed, &Past { status: &status, jobs: history.of(id), fetch: &fetch, work, alone })
-}
-
-fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "run the same command again; it resumes").with_code(Code::Ours)
 }

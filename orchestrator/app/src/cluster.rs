@@ -7,13 +7,14 @@ use serde_json::json;
 use socrates_kit::LocalBlobs;
 use socrates_link::{Mode, ZenohConfig};
 
+use crate::calls;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
-use crate::many::wanted;
 use crate::output::Printer;
-use crate::prepare::{plural, prepare, request_files};
+use crate::prepare::{prepare, request_files};
 use crate::run_options::RunOptions;
-use crate::session::{specs, submit as send};
+use crate::wanted::{specs, wanted};
+use crate::words::plural;
 
 /// Submits requests and returns; `socrates status ENDPOINT` shows how they stand.
 pub async fn submit(
@@ -52,7 +53,7 @@ pub async fn submit(
             .map_err(|why| ours(format!("an artifact could not be handed over: {why}")))?;
     }
     let count = specs.len();
-    send(bus.as_ref(), "cluster", specs).await?;
+    calls::submit(bus.as_ref(), "cluster", specs).await?;
     bus.close().await;
     drop(std::fs::remove_dir_all(&folder));
     talk.line(&format!("submitted  {} from {}", plural(count, "scenario"), plural(prepared.len(), "request")));

@@ -100,7 +100,7 @@ pub fn cost(talk: &Printer, config: &Config, what: &[PathBuf], prices: Option<&P
         ));
     }
     for (model, sum) in total.iter().filter(|(_, sum)| sum.unanswered > 0) {
-        let calls = crate::prepare::plural(usize::try_from(sum.unanswered).unwrap_or(usize::MAX), "call");
+        let calls = crate::words::plural(usize::try_from(sum.unanswered).unwrap_or(usize::MAX), "call");
         talk.line(&format!("{calls} of {model} got no answer; what they cost is not known and not in the sum"));
     }
     talk.line(&format!("{} bundles; `~` marks figures that hold estimates (bytes / 4)", bundles.len()));

@@ -45,6 +45,11 @@ impl Complaint {
         Self { code: Code::Input, what: what.into(), causes: Vec::new(), hint: hint.into(), result: None }
     }
 
+    /// A fault of ours in what is being made: nothing is lost, and the same command goes on from there.
+    pub fn resumes(what: impl Into<String>) -> Self {
+        Self::input(what, "run the same command again; it resumes").with_code(Code::Ours)
+    }
+
     /// Bad input with several problems.
     pub fn faults(what: impl Into<String>, faults: &[Fault], hint: impl Into<String>) -> Self {
         let causes = faults.iter().map(ToString::to_string).collect();

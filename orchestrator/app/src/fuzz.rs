@@ -23,7 +23,7 @@ use crate::files;
 use crate::fuzz::doors::{ALARM, DOORS, Door, Kit, Sample, damage};
 use crate::fuzz::mutate::Chance;
 use crate::output::Printer;
-use crate::prepare::plural;
+use crate::words::plural;
 
 /// Options of `dev fuzz`.
 #[derive(Debug, Clone)]

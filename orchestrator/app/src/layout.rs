@@ -3,6 +3,7 @@
 //! A name with `*` stands for several files; what takes its place is said by [`When`].
 
 use std::fmt::Display;
+use std::path::Path;
 
 /// When a file is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,12 +61,33 @@ impl Sheet {
         self.path.replacen('*', &name.to_string(), 1)
     }
 
+    /// The folder that it lies in, as a path in the bundle; empty for the bundle itself.
+    #[must_use]
+    pub fn folder(&self) -> &'static str {
+        self.path.rsplit_once('/').map_or("", |(folder, _)| folder)
+    }
+
+    /// Its name without the folder.
+    #[must_use]
+    pub fn file_name(&self) -> &'static str {
+        self.path.rsplit_once('/').map_or(self.path, |(_, name)| name)
+    }
+
     /// Whether a path in a bundle is one of these.
     #[must_use]
     pub fn is(&self, path: &str) -> bool {
         let Some((before, after)) = self.path.split_once('*') else { return path == self.path };
         path.strip_prefix(before).and_then(|rest| rest.strip_suffix(after)).is_some_and(|name| !name.is_empty())
     }
+}
+
+/// Folder of a bundle that holds all but what a person opens first. It holds the manifest, so it makes a folder a bundle.
+pub const DETAILS: &str = "details";
+
+/// Whether a path in a bundle is one of [`DETAILS`].
+#[must_use]
+pub fn in_details(path: &str) -> bool {
+    Path::new(path).starts_with(DETAILS)
 }
 
 /// The page.
@@ -156,6 +178,9 @@ mod tests {
             assert_eq!(kinds, [sheet.path], "{path}");
             assert_eq!(sheet.path.contains('*'), sheet.when != When::Always);
         }
+        assert!(in_details(MANIFEST.path) && !in_details(PAGE.path) && !in_details("details.txt"));
+        assert_eq!((LOCATION_FILES.folder(), PAGE.folder()), ("details/location", ""));
+        assert_eq!((LOCATION.file_name(), PAGE.file_name()), ("location.json", PAGE.path));
         assert!(!TREES.is("details/behaviors/.xml") && !PAGE.is("report.html.bak"));
     }
 }

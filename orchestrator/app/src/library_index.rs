@@ -4,20 +4,16 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use socrates_checks::{Likeness, Signature, check_repeats};
-use socrates_model::{Digest, Reading, ScenarioEnd, ScenarioId, Verdict};
+use socrates_model::{Digest, Reading, ScenarioEnd, ScenarioId};
 
 use crate::exit::{Code, Complaint};
-use crate::output::Printer;
-use crate::run::Refused;
-use crate::run_options::RunOptions;
 
 /// A scenario is compared with at most so many different ones of its kind, the newest: a library of a hundred thousand is no reason
 /// for ten thousand million comparisons.
 const COMPARED: usize = 500;
 /// File that lists a library.
-const FILE: &str = "library.json";
+pub(crate) const FILE: &str = "library.json";
 
 /// One scenario of a library.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -143,7 +139,7 @@ impl Library {
     }
 
     /// What is in it, in lines: how many were made, and how many different ones those are.
-    fn told(&self) -> Vec<String> {
+    pub(crate) fn told(&self) -> Vec<String> {
         let mut lines =
             vec![format!("made       {} of {} · {}", self.scenarios.len(), self.count, counted(self.scenarios.iter()))];
         let repeats = self.scenarios.iter().filter(|row| row.repeats.is_some()).count();
@@ -157,35 +153,10 @@ impl Library {
     }
 }
 
-/// Prints what a library holds.
-pub(crate) fn finish(
-    talk: &Printer,
-    options: &RunOptions,
-    root: &Path,
-    refused: &[Refused],
-) -> Result<Code, Complaint> {
-    let library = read(root)
-        .ok_or_else(|| Complaint::input(format!("`{}` has no {FILE}", root.display()), "run the same command again"))?;
-    let mut verdicts = BTreeMap::<ScenarioEnd, u64>::new();
-    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict).or_default() += 1);
-    for line in library.told() {
-        talk.line(&line);
-    }
-    talk.line(&format!("table      {}", root.join(crate::index::FILE).display()));
-    talk.line(&format!("look       {}", root.join("report.html").display()));
-    talk.line(&format!("next       {}", crate::next::after_batch(root, &library)));
-    let whole = verdicts.get(&ScenarioEnd::Judged(Verdict::Realised)).copied().unwrap_or(0) == library.count;
-    talk.result(&json!({
-        "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
-        "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
-        "distinct": library.distinct().count(), "index": root.join(crate::index::FILE).display().to_string(),
-        "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
-    }));
-    Ok(if options.require.is_met(whole) { Code::Ok } else { Code::NotRealised })
-}
-
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]

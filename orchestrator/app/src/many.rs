@@ -1,11 +1,11 @@
 //! Several scenarios in one folder: made in one go, each written when it is done, and listed and counted together.
 
-use std::borrow::Borrow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use socrates_model::{ScenarioEnd, ScenarioId};
+use serde_json::json;
+use socrates_model::{ScenarioEnd, ScenarioId, Verdict};
 
 use crate::batch::Card;
 use crate::bundler::{Bundled, Bundler};
@@ -13,11 +13,13 @@ use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::place::{self, Place};
-use crate::prepare::{Prepared, scenario_id};
-use crate::run::{Refused, print_reading};
+use crate::prepare::Prepared;
+use crate::reading::print_reading;
+use crate::refused::Refused;
 use crate::run_options::RunOptions;
-use crate::session::{Making, Wanted};
-use crate::{bundle, library_index};
+use crate::session::Making;
+use crate::wanted::{Wanted, wanted};
+use crate::{bundle, index, layout, library_index, next};
 
 /// Makes every scenario of these requests in one folder, whose list and page are written at the end.
 pub(crate) async fn batch(
@@ -37,7 +39,7 @@ pub(crate) async fn batch(
     let root = match place::place(&base, wish) {
         Place::Finished(root) => {
             talk.line(&format!("known      {} was made from these requests; nothing to do", root.display()));
-            return library_index::finish(talk, options, &root, refused);
+            return finish(talk, options, &root, refused);
         }
         Place::New(root) => place::told(talk, &base, root),
     };
@@ -60,7 +62,7 @@ pub(crate) async fn batch(
     }
     // The work folder is only needed to resume.
     drop(std::fs::remove_dir_all(&work));
-    library_index::finish(talk, options, &root, refused)
+    finish(talk, options, &root, refused)
 }
 
 /// The names, of which those that an earlier one has already get a number.
@@ -78,19 +80,6 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
         found.push(free);
     }
     found
-}
-
-/// Every scenario of these requests, with its id and seed.
-pub(crate) fn wanted<P: Borrow<Prepared>>(prepared: &[P], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
-    let mut wanted = Vec::new();
-    for one in prepared {
-        let one: &Prepared = one.borrow();
-        for index in 0..one.request.run.variants {
-            let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
-            wanted.push(Wanted { id, seed: seed + u64::from(index), prepared: one });
-        }
-    }
-    Ok(wanted)
 }
 
 /// The list of all scenarios, in order of submission, and the cards of those that have a bundle.
@@ -127,6 +116,29 @@ fn rows(
         rows.push(library_index::Row { scenario: want.id.clone(), request, bundle, verdict, reason, repeats });
     }
     (rows, cards)
+}
+
+/// Prints what a library holds.
+fn finish(talk: &Printer, options: &RunOptions, root: &Path, refused: &[Refused]) -> Result<Code, Complaint> {
+    let library = library_index::read(root).ok_or_else(|| {
+        Complaint::input(format!("`{}` has no {}", root.display(), library_index::FILE), "run the same command again")
+    })?;
+    let mut verdicts = BTreeMap::<ScenarioEnd, u64>::new();
+    library.scenarios.iter().for_each(|row| *verdicts.entry(row.verdict).or_default() += 1);
+    for line in library.told() {
+        talk.line(&line);
+    }
+    talk.line(&format!("table      {}", root.join(index::FILE).display()));
+    talk.line(&format!("look       {}", root.join(layout::PAGE.path).display()));
+    talk.line(&format!("next       {}", next::after_batch(root, &library)));
+    let whole = verdicts.get(&ScenarioEnd::Judged(Verdict::Realised)).copied().unwrap_or(0) == library.count;
+    talk.result(&json!({
+        "bundle": root.display().to_string(), "verdict": if whole { "realised" } else { "mixed" }, "stages": [], "metrics": {},
+        "reading": library.readings, "scenarios": library.scenarios, "verdicts": verdicts,
+        "distinct": library.distinct().count(), "index": root.join(index::FILE).display().to_string(),
+        "refused": refused.iter().map(Refused::object).collect::<Vec<_>>(),
+    }));
+    Ok(if options.require.is_met(whole) { Code::Ok } else { Code::NotRealised })
 }
 
 #[cfg(test)]

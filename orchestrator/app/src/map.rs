@@ -8,7 +8,8 @@ use serde_json::json;
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
-use crate::prepare::{load_location, plural};
+use crate::prepare::load_location;
+use crate::words::plural;
 
 /// Largest floor plan that is read, bytes.
 const MAX_PLAN_BYTES: u64 = 4 * 1024 * 1024;

@@ -6,6 +6,7 @@ use socrates_model::{PlannerName, ScenarioEnd, Verdict};
 
 use crate::bundle::Bundle;
 use crate::files::shell;
+use crate::layout;
 use crate::library_index::Library;
 use crate::run_options::RunOptions;
 
@@ -49,7 +50,7 @@ pub(crate) fn after_run(options: &RunOptions, bundle: &Bundle, file: Option<&Pat
     command(&After {
         // What a person left is pinned in the bundle's own request.
         request: shell(
-            &file.filter(|_| !options.ask).map_or_else(|| bundle.dir.join("request.toml"), Path::to_path_buf),
+            &file.filter(|_| !options.ask).map_or_else(|| bundle.dir.join(layout::REQUEST.path), Path::to_path_buf),
         ),
         bundle: shell(&bundle.dir),
         author: options

@@ -12,7 +12,9 @@ use socrates_model::{AuthorSpec, Fault, Location, PlannerName, Reading, Request,
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
+use crate::layout;
 use crate::run_options::RunOptions;
+use crate::words::plural;
 
 /// A request file larger than this is not read.
 const MAX_REQUEST_BYTES: u64 = 256 * 1024;
@@ -87,7 +89,7 @@ pub(crate) fn request_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Complaint
 pub(crate) fn prepare(file: &Path, options: Option<&RunOptions>, config: &Config) -> Result<Prepared, Complaint> {
     let text = files::text(file, MAX_REQUEST_BYTES, "`socrates new my.toml` writes a request to start from")?;
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
-    let of_bundle = file.ends_with("request.toml") && crate::bundle::manifest(folder).is_some();
+    let of_bundle = file.ends_with(layout::REQUEST.path) && folder.join(layout::MANIFEST.path).is_file();
     let named = if of_bundle { folder.canonicalize().unwrap_or_default() } else { file.with_extension("") };
     let name = named.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let shown = file.display().to_string();
@@ -343,11 +345,6 @@ pub(crate) fn slug(text: &str) -> String {
         out = "scenario".to_owned();
     }
     out
-}
-
-/// `1 problem`, `2 problems`.
-pub(crate) fn plural(count: usize, word: &str) -> String {
-    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }
 
 /// The scenario id of variant `index` of `count`.

@@ -4,21 +4,24 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_model::{JobState, Verdict};
+use socrates_model::Verdict;
 use socrates_store::Reader;
 
-use crate::bundle::{self, Bundle, Past};
-use crate::bundler::bundled;
+use crate::bundle::{self, Bundle};
+use crate::conclude::bundled;
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::history::PastJob;
 use crate::output::Printer;
 use crate::place::{self, Place};
 use crate::prepare::{Prepared, prepare, prepare_text, request_files, scenario_id};
+use crate::reading::print_reading;
+use crate::refused::Refused;
 use crate::replay::values;
 use crate::run_options::RunOptions;
-use crate::session::{self, Making, Wanted};
-use crate::{many, next, stages};
+use crate::session::Making;
+use crate::wanted::Wanted;
+use crate::{layout, many, next, stages, work};
 
 /// The shipped request of `demo`.
 const DEMO: (&str, &str) = ("hospital", "elevator");
@@ -73,31 +76,6 @@ pub async fn run(
     many::batch(talk, config, options, prepared, &refused).await?;
     talk.warn(&format!("error: {what}\n\nhint: the others were run; correct these and run them alone"));
     Ok(Code::Input)
-}
-
-/// A request file that cannot be run, beside others that can.
-#[derive(Debug)]
-pub(crate) struct Refused {
-    file: PathBuf,
-    why: Complaint,
-}
-
-impl Refused {
-    /// The reason, which names the file, then causes and hint, a line each.
-    fn lines(&self) -> Vec<String> {
-        let first = self.why.what.clone();
-        let hint = Some(&self.why.hint).filter(|hint| !hint.is_empty()).map(|hint| format!("hint: {hint}"));
-        std::iter::once(first).chain(self.why.causes.iter().cloned()).chain(hint).collect()
-    }
-
-    /// The same for programs.
-    pub(crate) fn object(&self) -> serde_json::Value {
-        let mut object = self.why.object();
-        if let Some(members) = object.as_object_mut() {
-            members.insert("request".to_owned(), self.file.display().to_string().into());
-        }
-        object
-    }
 }
 
 async fn single_or_batch(
@@ -161,7 +139,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
         let (dir, work, id, prepared, seed) =
             (dir.clone(), work.clone(), id.clone(), Arc::clone(&prepared), options.seed);
         move || -> Result<Bundle, Complaint> {
-            let reader = Reader::open(&session::store(&work)).map_err(session::unread)?;
+            let reader = Reader::open(&work::store(&work)).map_err(work::unread)?;
             bundled(&dir, &work, &id, &prepared, seed, &reader, true)
         }
     };
@@ -196,35 +174,6 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
     Ok(result)
 }
 
-/// Writes the bundle, or says why there is none.
-pub(crate) fn conclude(dir: &Path, prepared: &Prepared, seed: u64, past: &Past<'_>) -> Result<Bundle, Complaint> {
-    let status = past.status;
-    let scored = status
-        .jobs
-        .iter()
-        .any(|job| job.key.stage == socrates_model::job::Stage::Scoring && job.state == JobState::Succeeded);
-    if scored {
-        return bundle::write(dir, prepared, seed, past);
-    }
-    let faults: Vec<socrates_model::Fault> =
-        status.jobs.iter().filter(|job| job.state != JobState::Succeeded).flat_map(|job| job.faults.clone()).collect();
-    let author = faults.iter().any(|fault| fault.code.family() == socrates_model::Family::Transport);
-    let mut complaint = Complaint::faults(
-        match status.result {
-            Some(end) => format!("the scenario ended as `{end}` before it could be simulated"),
-            None => "the scenario has not ended and was not simulated".to_owned(),
-        },
-        &faults,
-        if author {
-            "`socrates config author` shows which author is asked; `--author offline` needs none"
-        } else {
-            "`socrates explain CODE` says what each fault means; say it in other words, or look at it with --ask"
-        },
-    );
-    complaint.code = if author { Code::Author } else { Code::NotRealised };
-    Err(complaint)
-}
-
 /// Prints verdict, robot, where to look, what to try next, and the result object.
 fn finish(
     talk: &Printer,
@@ -256,7 +205,7 @@ fn finish(
         talk.line("author     offline: written by rules, not by a language model");
     }
     let dir = bundle.dir.display().to_string();
-    talk.line(&format!("look       {dir}/report.html"));
+    talk.line(&format!("look       {dir}/{}", layout::PAGE.path));
     talk.line(&format!("next       {}", next::after_run(options, bundle, prepared.file.as_deref())));
     talk.result(&json!({
         "bundle": dir, "verdict": report.verdict, "stages": past.map(told), "metrics": values(report), "reading": bundle.reading,
@@ -264,25 +213,6 @@ fn finish(
         "runs": bundle.manifest.runs.iter().map(|run| json!({ "planner": run.planner, "seed": run.seed, "verdict": run.verdict, "recording_hash": run.recording_hash })).collect::<Vec<_>>(),
     }));
     if options.require.is_met(report.verdict == Verdict::Realised) { Code::Ok } else { Code::NotRealised }
-}
-
-/// Prints how a request is read.
-pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
-    talk.line(&format!("reading    {}", socrates_offline::summary(&prepared.reading)));
-    talk.line(&format!(
-        "planners   {}",
-        prepared.request.robot.planners.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-    ));
-    for problem in &prepared.reading.problems {
-        talk.line(&format!("problem    {problem}"));
-    }
-    if !prepared.reading.ignored.is_empty() {
-        let words: Vec<String> = prepared.reading.ignored.iter().map(|word| format!("\"{word}\"")).collect();
-        talk.line(&format!("ignored    {}", words.join(" ")));
-    }
-    for note in &prepared.reading.notes {
-        talk.line(&format!("note       {note}"));
-    }
 }
 
 /// Stages for the result object.

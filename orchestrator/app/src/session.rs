@@ -1,40 +1,31 @@
-//! One making: store the inputs, start the system, submit, follow, hand on what is done.
+//! One making: start the system, submit, follow, hand on what is done.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Duration;
 
 use socrates_kit::LocalBlobs;
-use socrates_link::{Bus, LinkError, Overflow, call, keys};
-use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus, StatusAsk, StatusReply, Submit, Submitted};
+use socrates_link::{Overflow, keys};
+use socrates_model::wire::{Notice, ScenarioSpec, ScenarioStatus};
 use socrates_model::{Digest, ScenarioEnd, ScenarioId};
-use socrates_store::{Reader, StoreError};
-use tokio::signal::unix::{Signal, SignalKind, signal};
+use socrates_store::Reader;
 use tokio::time::Instant;
 
 use crate::ask::Asking;
 use crate::bundler::Bundler;
+use crate::calls::{AWAY, status, submit};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::folder::Hold;
 use crate::history::History;
 use crate::output::Printer;
-use crate::prepare::Prepared;
 use crate::progress::Progress;
 use crate::run_options::RunOptions;
+use crate::signals::{Signals, stopped};
 use crate::stages;
 use crate::supervise::Supervisor;
-
-/// One scenario to be made.
-#[derive(Debug, Clone)]
-pub(crate) struct Wanted<'a> {
-    /// Its id.
-    pub(crate) id: ScenarioId,
-    /// Its seed.
-    pub(crate) seed: u64,
-    /// What it is made from.
-    pub(crate) prepared: &'a Prepared,
-}
+use crate::wanted::{Wanted, specs};
+use crate::work::{self, blobs, fetch, store};
 
 /// What was made.
 #[derive(Debug)]
@@ -55,42 +46,12 @@ impl Made {
     }
 }
 
-/// Where the artifacts of a work folder lie.
-pub(crate) fn blobs(work: &Path) -> LocalBlobs {
-    LocalBlobs::new(work.join("blobs"), false)
-}
-
-/// The job store of a work folder.
-pub(crate) fn store(work: &Path) -> PathBuf {
-    work.join("jobs.sqlite")
-}
-
-/// An artifact of a work folder.
-pub(crate) fn fetch(blobs: &LocalBlobs, digest: &Digest) -> Result<Vec<u8>, Complaint> {
-    blobs.get(digest).map_err(|why| ours(&format!("artifact {} cannot be read: {why}", digest.short())))
-}
-
-/// What is said of a store that cannot be read.
-pub(crate) fn unread(why: StoreError) -> Complaint {
-    ours(&format!("the job store cannot be read: {why}"))
-}
-
-fn ours(what: &str) -> Complaint {
-    Complaint::input(what, "run the same command again; it resumes").with_code(Code::Ours)
-}
-
 /// Name of the batch of a run.
 const BATCH: &str = "run";
-/// Limit of one call.
-const CALL: Duration = Duration::from_secs(2);
-/// How long the orchestrator may be away before the run is given up.
-const AWAY: Duration = Duration::from_secs(60);
-/// Scenarios in one submit message; keeps it under 64 KiB.
-const SUBMIT_AT_ONCE: usize = 40;
 
 /// What the store holds once its orchestrator has left.
 fn made(work: &Path, wanted: &[Wanted<'_>], hold: Hold) -> Result<Made, Complaint> {
-    let rows = Reader::open(&store(work)).and_then(|reader| reader.all()).map_err(unread)?;
+    let rows = Reader::open(&store(work)).and_then(|reader| reader.all()).map_err(work::unread)?;
     let mut found: BTreeMap<ScenarioId, ScenarioStatus> =
         socrates_orchestrator::standing(rows.clone()).into_iter().map(|status| (status.id.clone(), status)).collect();
     let statuses = wanted.iter().filter_map(|want| found.remove(&want.id)).collect();
@@ -181,90 +142,6 @@ impl Making<'_> {
     }
 }
 
-/// Stores the inputs of scenarios and names them. Those that are made from one request differ by name and seed alone.
-pub(crate) fn specs<'a>(
-    wanted: &[Wanted<'a>],
-    config: &Config,
-    options: &RunOptions,
-    blobs: &LocalBlobs,
-) -> Result<Vec<ScenarioSpec>, Complaint> {
-    let mut known: Vec<(&'a Prepared, ScenarioSpec)> = Vec::new();
-    let mut of = |want: &Wanted<'a>| {
-        if let Some((_, alike)) = known.iter().find(|(prepared, _)| std::ptr::eq(*prepared, want.prepared)) {
-            return Ok(ScenarioSpec { id: want.id.clone(), seed: want.seed, ..alike.clone() });
-        }
-        let spec = spec(want, config, options, blobs)?;
-        known.push((want.prepared, spec.clone()));
-        Ok(spec)
-    };
-    wanted.iter().map(&mut of).collect()
-}
-
-/// Stores the inputs of a scenario and names them.
-fn spec(
-    want: &Wanted<'_>,
-    config: &Config,
-    options: &RunOptions,
-    blobs: &LocalBlobs,
-) -> Result<ScenarioSpec, Complaint> {
-    let prepared = want.prepared;
-    let put = |text: String| {
-        blobs
-            .put(text.as_bytes())
-            .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
-    };
-    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| ours(&why.to_string()));
-    let mut settings =
-        BTreeMap::from([("author".to_owned(), prepared.author.to_string()), ("pace".to_owned(), options.pace.clone())]);
-    settings.extend(prepared.injected.clone());
-    settings.extend(prepared.style.clone());
-    if config.text("stream.live") != "off" {
-        settings.insert("live".to_owned(), "on".to_owned());
-    }
-    let mut pinned = BTreeMap::new();
-    for (role, text) in &prepared.pins {
-        pinned.insert(*role, put(text.clone())?);
-    }
-    Ok(ScenarioSpec {
-        id: want.id.clone(),
-        request: put(json(serde_json::to_string(&prepared.request))?)?,
-        location: put(json(serde_json::to_string(&prepared.location))?)?,
-        reading: put(json(serde_json::to_string(&prepared.reading))?)?,
-        seed: want.seed,
-        planners: prepared.request.robot.planners.clone(),
-        run_seeds: prepared.request.run.seeds().to_vec(),
-        pinned,
-        settings,
-        review: prepared.looked_at,
-    })
-}
-
-/// Submits scenarios, in several messages if need be.
-pub(crate) async fn submit(bus: &dyn Bus, batch: &str, specs: Vec<ScenarioSpec>) -> Result<(), Complaint> {
-    let mut specs = specs.into_iter().peekable();
-    while specs.peek().is_some() {
-        let scenarios: Vec<ScenarioSpec> = specs.by_ref().take(SUBMIT_AT_ONCE).collect();
-        let wish = Submit { batch: batch.to_owned(), scenarios };
-        let started = Instant::now();
-        loop {
-            match call::<Submit, Submitted>(bus, keys::SUBMIT, "submit", &wish, CALL).await {
-                Ok(Submitted::Accepted { .. }) => break,
-                Ok(Submitted::Refused { why }) => {
-                    return Err(Complaint::input(format!("the orchestrator refuses: {why}"), ""));
-                }
-                Ok(Submitted::Busy { retry_after_ms }) => {
-                    tokio::time::sleep(Duration::from_millis(retry_after_ms.clamp(50, 5_000))).await
-                }
-                Err(LinkError::NoReply { .. } | LinkError::Timeout { .. }) if started.elapsed() < AWAY => {
-                    tokio::time::sleep(Duration::from_millis(50)).await;
-                }
-                Err(why) => return Err(ours(&why.to_string())),
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Submits and waits until everything is done, besides the `before` that were done earlier.
 async fn follow(
     talk: &Printer,
@@ -277,8 +154,10 @@ async fn follow(
 ) -> Result<(), Complaint> {
     let ids: Vec<ScenarioId> = specs.iter().map(|spec| spec.id.clone()).collect();
     let bus = supervisor.bus.clone();
-    let mut notices =
-        bus.subscribe(keys::EVENTS, 4096, Overflow::DropOldest).await.map_err(|why| ours(&why.to_string()))?;
+    let mut notices = bus
+        .subscribe(keys::EVENTS, 4096, Overflow::DropOldest)
+        .await
+        .map_err(|why| Complaint::resumes(why.to_string()))?;
     submit(bus.as_ref(), BATCH, specs).await?;
     // Listened to all the time: a signal between two rounds must not get lost.
     let mut signals = Signals::listen()?;
@@ -332,7 +211,7 @@ async fn follow(
                 }
             }
             Err(why) if last_heard.elapsed() > AWAY => {
-                return Err(ours(&format!("the orchestrator does not answer: {why}")));
+                return Err(Complaint::resumes(format!("the orchestrator does not answer: {why}")));
             }
             Err(_) => {}
         }
@@ -360,37 +239,4 @@ async fn left(asking: &mut Option<&mut Asking>) -> Complaint {
         Some(asking) => asking.left().await,
         None => std::future::pending().await,
     }
-}
-
-/// The signals that end a run, from the moment on at which they are listened to: from then on nobody else hears them.
-#[derive(Debug)]
-pub(crate) struct Signals {
-    interrupt: Signal,
-    terminate: Signal,
-}
-
-impl Signals {
-    /// Begins to listen.
-    pub(crate) fn listen() -> Result<Self, Complaint> {
-        let on = |kind| signal(kind).map_err(|why| ours(&why.to_string()));
-        Ok(Self { interrupt: on(SignalKind::interrupt())?, terminate: on(SignalKind::terminate())? })
-    }
-
-    /// Waits for one of them and says what it means.
-    pub(crate) async fn come(&mut self) -> Complaint {
-        tokio::select! {
-            _ = self.interrupt.recv() => {}
-            _ = self.terminate.recv() => {}
-        }
-        stopped()
-    }
-}
-
-fn stopped() -> Complaint {
-    Complaint::input("stopped before the end; nothing is lost", "the same command again resumes").with_code(Code::Waits)
-}
-
-/// One page of statuses.
-pub(crate) async fn status(bus: &dyn Bus, from: u32) -> Result<StatusReply, LinkError> {
-    call(bus, keys::STATUS, "status", &StatusAsk { batch: String::new(), from }, CALL).await
 }

@@ -9,7 +9,7 @@ use socrates_model::wire::{JobStatus, ScenarioStatus};
 use socrates_model::{Fault, JobState, ScenarioEnd, Verdict};
 
 use crate::history::PastJob;
-use crate::prepare::plural;
+use crate::words::plural;
 
 /// What is known of one job: all of it out of the store, or the newest revision out of an answer on the bus.
 #[derive(Debug, Clone, PartialEq)]

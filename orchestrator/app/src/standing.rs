@@ -20,7 +20,7 @@ use crate::history::History;
 use crate::output::Printer;
 use crate::progress::{Speed, span};
 use crate::supervise::endpoint;
-use crate::{batch, bundle, library_index, place, process, session, stages};
+use crate::{batch, bundle, calls, library_index, place, process, stages, work};
 
 /// How long an orchestrator may take to answer before the folder counts as one where nobody works.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -194,12 +194,12 @@ async fn of_endpoint(what: &str, listed: Listed) -> Result<Standing, Complaint> 
         Complaint::input(format!("the orchestrator does not answer: {why}"), "try again in a moment")
             .with_code(Code::Ours)
     };
-    let first = session::status(bus.as_ref(), 0).await.map_err(silent)?;
+    let first = calls::status(bus.as_ref(), 0).await.map_err(silent)?;
     let mut rows = Vec::new();
     let mut from = 0;
     // One scenario is told with the counts; more are asked for page by page.
     while listed != Listed::None || (from == 0 && first.total == 1) {
-        let page = session::status(bus.as_ref(), from).await.map_err(silent)?.scenarios;
+        let page = calls::status(bus.as_ref(), from).await.map_err(silent)?.scenarios;
         if page.is_empty() {
             break;
         }
@@ -272,7 +272,7 @@ async fn being_made(what: &str, folder: &Path, listed: Listed) -> Result<Standin
     let Some((address, namespace)) = endpoint else { return Ok(standing) };
     let answer = tokio::time::timeout(ANSWER, async {
         let bus = process::client(&address, &namespace, "watch").await.ok()?;
-        let reply = session::status(bus.as_ref(), 0).await.ok();
+        let reply = calls::status(bus.as_ref(), 0).await.ok();
         bus.close().await;
         reply
     });
@@ -284,7 +284,7 @@ async fn being_made(what: &str, folder: &Path, listed: Listed) -> Result<Standin
 
 /// The scenarios of the job store of a folder, with what they did where that is wanted or there is only one.
 fn from_store(folder: &Path, told: bool) -> Result<Vec<Row>, Complaint> {
-    let store = folder.join(place::WORK).join("jobs.sqlite");
+    let store = work::store(&folder.join(place::WORK));
     if !store.is_file() {
         return Ok(Vec::new());
     }

@@ -9,10 +9,10 @@ use socrates_link::{Bus, Overflow, keys};
 use socrates_model::{AgentState, EventKind, JobState, RunId, SimTime};
 use socrates_stream::{Sight, TickRange, Watch};
 
+use crate::calls;
 use crate::exit::{Code, Complaint};
 use crate::output::{Format, Printer};
 use crate::process::client;
-use crate::session;
 use crate::supervise::endpoint;
 
 /// Messages of up to ten ticks that may wait unread; a minute of a run.
@@ -201,7 +201,7 @@ async fn announced(bus: &dyn Bus) -> Result<RunId, Complaint> {
 }
 
 async fn going_on(bus: &dyn Bus) -> Option<RunId> {
-    let reply = session::status(bus, 0).await.ok()?;
+    let reply = calls::status(bus, 0).await.ok()?;
     let jobs = reply.scenarios.iter().flat_map(|scenario| &scenario.jobs);
     let mut leased =
         jobs.filter(|job| job.key.stage == socrates_model::job::Stage::Simulation && job.state == JobState::Leased);

@@ -203,7 +203,7 @@ impl Conversation<'_> {
         for (number, other) in (1..).zip(&self.look.others) {
             // Whoever wrote it, what is proposed is the same.
             let shown = Proposal { author: now.proposal.author.clone(), ..other.clone() } == now.proposal;
-            let humans = crate::prepare::plural(other.humans.len(), "human");
+            let humans = crate::words::plural(other.humans.len(), "human");
             let words = format!("{} · {humans} · {}{}", other.title, other.place, if shown { " (shown)" } else { "" });
             self.named(Tone::Plain, &format!("take {number}"), &words);
         }

@@ -12,7 +12,7 @@ use super::machine::{self, Used};
 use crate::config::Config;
 use crate::exit::{Code, Complaint};
 use crate::output::Printer;
-use crate::{place, session};
+use crate::{place, work};
 
 /// Scenarios of a block.
 const BLOCK: usize = 100;
@@ -108,8 +108,7 @@ async fn watched(mut child: Child, out: &Path, cost: &mut Cost) -> Result<std::p
             return Ok(status);
         }
         let family = machine::family(id);
-        let made =
-            Reader::open(&session::store(&out.join(place::WORK))).and_then(|reader| reader.standings(0, u64::MAX));
+        let made = Reader::open(&work::store(&out.join(place::WORK))).and_then(|reader| reader.standings(0, u64::MAX));
         let made = made.map_or(0, |all| all.iter().filter(|one| one.result.is_some()).count());
         let bundles = std::fs::read_dir(out).map_or(0, |entries| {
             let names = entries.filter_map(Result::ok).map(|entry| entry.file_name());

@@ -3,11 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::exit::Complaint;
+use crate::layout;
 
 /// Folder of the work folder in which bundles are written.
 const WRITING: &str = "writing";
-/// The part of a bundle that makes it one; moved last.
-const LAST: &str = "details";
 
 /// A folder in which files are written that do not count yet; it goes when this does.
 #[derive(Debug)]
@@ -37,14 +36,14 @@ impl Beside {
             }
             return std::fs::rename(&self.0, dir).map_err(cannot);
         }
-        let last = dir.join(LAST);
+        let last = dir.join(layout::DETAILS);
         if last.exists() {
             std::fs::remove_dir_all(&last).map_err(cannot)?;
         }
         let mut names = std::fs::read_dir(&self.0)
             .and_then(|entries| entries.map(|entry| Ok(entry?.file_name())).collect::<Result<Vec<_>, _>>())
             .map_err(cannot)?;
-        names.sort_by_key(|name| (name == LAST, name.clone()));
+        names.sort_by_key(|name| (name == layout::DETAILS, name.clone()));
         names.iter().try_for_each(|name| std::fs::rename(self.0.join(name), dir.join(name))).map_err(cannot)
     }
 }
@@ -72,8 +71,8 @@ mod tests {
     }
 
     fn fill(beside: &Beside, text: &str) {
-        std::fs::create_dir_all(beside.0.join(LAST)).unwrap();
-        std::fs::write(beside.0.join(LAST).join("manifest.json"), text).unwrap();
+        std::fs::create_dir_all(beside.0.join(layout::DETAILS)).unwrap();
+        std::fs::write(beside.0.join(layout::DETAILS).join("manifest.json"), text).unwrap();
         std::fs::write(beside.0.join("run.svg"), text).unwrap();
     }
 
@@ -91,7 +90,7 @@ mod tests {
         fill(&beside, "two");
         beside.appear(&dir).unwrap();
         drop(beside);
-        assert_eq!(files(&dir), [LAST, "run.svg"]);
+        assert_eq!(files(&dir), [layout::DETAILS, "run.svg"]);
         assert_eq!(std::fs::read_to_string(dir.join("run.svg")).unwrap(), "two");
         assert!(files(&work.join(WRITING)).is_empty());
     }
@@ -100,13 +99,13 @@ mod tests {
     fn what_else_lies_in_a_folder_stays() {
         let root = tempfile::tempdir().unwrap();
         let (dir, work) = (root.path().join("hall"), root.path().join("hall/.socrates"));
-        std::fs::create_dir_all(dir.join(LAST)).unwrap();
-        std::fs::write(dir.join(LAST).join("old.json"), "of an unfinished one").unwrap();
+        std::fs::create_dir_all(dir.join(layout::DETAILS)).unwrap();
+        std::fs::write(dir.join(layout::DETAILS).join("old.json"), "of an unfinished one").unwrap();
         std::fs::write(dir.join("notes.txt"), "mine").unwrap();
         let beside = Beside::new(&work, "hall").unwrap();
         fill(&beside, "one");
         beside.appear(&dir).unwrap();
-        assert_eq!(files(&dir), [".socrates", LAST, "notes.txt", "run.svg"]);
-        assert_eq!(files(&dir.join(LAST)), ["manifest.json"]);
+        assert_eq!(files(&dir), [".socrates", layout::DETAILS, "notes.txt", "run.svg"]);
+        assert_eq!(files(&dir.join(layout::DETAILS)), ["manifest.json"]);
     }
 }

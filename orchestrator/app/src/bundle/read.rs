@@ -75,7 +75,7 @@ pub(crate) fn changed(bundle: &Bundle) -> Vec<String> {
         std::fs::read(bundle.dir.join(name)).is_ok_and(|bytes| Digest::of(&bytes) == *digest)
     };
     let files =
-        bundle.manifest.files.iter().filter(|(name, _)| name.starts_with("details/") || *name == layout::REQUEST.path);
+        bundle.manifest.files.iter().filter(|(name, _)| layout::in_details(name) || *name == layout::REQUEST.path);
     files.filter(|(name, digest)| !same(name, digest)).map(|(name, _)| name.clone()).collect()
 }
 

@@ -21,9 +21,11 @@ use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
 use crate::output::Printer;
-use crate::prepare::{Prepared, plural, prepare_text, scenario_id};
+use crate::prepare::{Prepared, prepare_text, scenario_id};
 use crate::run_options::RunOptions;
-use crate::session::{Making, Wanted};
+use crate::session::Making;
+use crate::wanted::Wanted;
+use crate::words::plural;
 use outcome::Outcome;
 use spec::{Arm, Case, Spec};
 

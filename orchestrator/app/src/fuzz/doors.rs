@@ -133,8 +133,7 @@ impl Kit {
             std::fs::write(path, sample.bytes)?;
         }
         // What is never damaged has to be there all the same.
-        for name in
-            self.bundle.manifest.files.keys().filter(|name| door.name == "bundles" && name.starts_with("details/"))
+        for name in self.bundle.manifest.files.keys().filter(|name| door.name == "bundles" && layout::in_details(name))
         {
             let path = folder.join(name);
             if let Some(parent) = path.parent() {
@@ -309,11 +308,12 @@ fn read_sample(kit: &Kit, name: &str) -> Option<Sample> {
 }
 
 fn bundle_files(kit: &Kit) -> Vec<Sample> {
-    let parts = ["manifest", "location", "reading", "proposal", "paths", "behaviors"];
-    let parts = parts.iter().map(|part| format!("details/{part}.json"));
+    let parts =
+        [layout::MANIFEST, layout::LOCATION, layout::READING, layout::PROPOSAL, layout::PATHS, layout::BEHAVIORS];
+    let parts = parts.iter().map(|sheet| sheet.path.to_owned());
     let runs = kit.bundle.manifest.runs.iter().map(bundle::RunEntry::run);
     let runs = runs.flat_map(|run| [layout::RECORDINGS.of(&run), layout::REPORTS.of(&run)]);
-    parts.chain(runs).chain(["request.toml".to_owned()]).filter_map(|name| read_sample(kit, &name)).collect()
+    parts.chain(runs).chain([layout::REQUEST.path.to_owned()]).filter_map(|name| read_sample(kit, &name)).collect()
 }
 
 fn open_bundle(
@@ -335,7 +335,7 @@ fn open_bundle(
         drop(crate::replay::written(&bundle, &entry.run(), None));
     }
     // The digests stand in the manifest: with it damaged any file may seem changed.
-    let is_manifest = sample.file.ends_with("manifest.json");
+    let is_manifest = sample.file == layout::MANIFEST.path;
     if is_manifest || bundle::changed(&bundle).iter().all(|name| *name == sample.file) {
         return Ok(());
     }

@@ -1,0 +1,95 @@
+//! Which scenarios are to be made, and what the orchestrator is told of them.
+
+use std::borrow::Borrow;
+use std::collections::BTreeMap;
+
+use socrates_kit::LocalBlobs;
+use socrates_model::ScenarioId;
+use socrates_model::wire::ScenarioSpec;
+
+use crate::config::Config;
+use crate::exit::Complaint;
+use crate::prepare::{Prepared, scenario_id};
+use crate::run_options::RunOptions;
+
+/// One scenario to be made.
+#[derive(Debug, Clone)]
+pub(crate) struct Wanted<'a> {
+    /// Its id.
+    pub(crate) id: ScenarioId,
+    /// Its seed.
+    pub(crate) seed: u64,
+    /// What it is made from.
+    pub(crate) prepared: &'a Prepared,
+}
+
+/// Every scenario of these requests, with its id and seed.
+pub(crate) fn wanted<P: Borrow<Prepared>>(prepared: &[P], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
+    let mut wanted = Vec::new();
+    for one in prepared {
+        let one: &Prepared = one.borrow();
+        for index in 0..one.request.run.variants {
+            let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
+            wanted.push(Wanted { id, seed: seed + u64::from(index), prepared: one });
+        }
+    }
+    Ok(wanted)
+}
+
+/// Stores the inputs of scenarios and names them. Those that are made from one request differ by name and seed alone.
+pub(crate) fn specs<'a>(
+    wanted: &[Wanted<'a>],
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<Vec<ScenarioSpec>, Complaint> {
+    let mut known: Vec<(&'a Prepared, ScenarioSpec)> = Vec::new();
+    let mut of = |want: &Wanted<'a>| {
+        if let Some((_, alike)) = known.iter().find(|(prepared, _)| std::ptr::eq(*prepared, want.prepared)) {
+            return Ok(ScenarioSpec { id: want.id.clone(), seed: want.seed, ..alike.clone() });
+        }
+        let spec = spec(want, config, options, blobs)?;
+        known.push((want.prepared, spec.clone()));
+        Ok(spec)
+    };
+    wanted.iter().map(&mut of).collect()
+}
+
+/// Stores the inputs of a scenario and names them.
+fn spec(
+    want: &Wanted<'_>,
+    config: &Config,
+    options: &RunOptions,
+    blobs: &LocalBlobs,
+) -> Result<ScenarioSpec, Complaint> {
+    let prepared = want.prepared;
+    let put = |text: String| {
+        blobs
+            .put(text.as_bytes())
+            .map_err(|why| Complaint::input(format!("cannot store an artifact: {why}"), "--out chooses another folder"))
+    };
+    let json = |value: Result<String, serde_json::Error>| value.map_err(|why| Complaint::resumes(why.to_string()));
+    let mut settings =
+        BTreeMap::from([("author".to_owned(), prepared.author.to_string()), ("pace".to_owned(), options.pace.clone())]);
+    settings.extend(prepared.injected.clone());
+    settings.extend(prepared.style.clone());
+    if config.text("stream.live") != "off" {
+        settings.insert("live".to_owned(), "on".to_owned());
+    }
+    let mut pinned = BTreeMap::new();
+    for (role, text) in &prepared.pins {
+        pinned.insert(*role, put(text.clone())?);
+    }
+    Ok(ScenarioSpec {
+        id: want.id.clone(),
+        request: put(json(serde_json::to_string(&prepared.request))?)?,
+        location: put(json(serde_json::to_string(&prepared.location))?)?,
+        reading: put(json(serde_json::to_string(&prepared.reading))?)?,
+        seed: want.seed,
+        planners: prepared.request.robot.planners.clone(),
+        run_seeds: prepared.request.run.seeds().to_vec(),
+        pinned,
+        settings,
+        review: prepared.looked_at,
+    })
+}
