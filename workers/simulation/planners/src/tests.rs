@@ -97,16 +97,20 @@ fn an_unknown_planner_is_refused_with_the_list_of_names() {
 fn every_planner_reaches_the_goal_on_an_empty_floor() {
     for name in names().into_iter().filter(|name| *name != PlannerName::NO_ROBOT) {
         let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
-        let way = drive(driver.as_mut(), &|_| vec![], 40.0);
+        let way = drive(driver.as_mut(), &|_| vec![], 80.0);
         let (end, command) = way.last().unwrap();
         assert!((end.x - 18.0).abs() < 0.35 && (end.y - 3.0).abs() < 0.35, "{name} ends at {end:?}");
         assert!(command.v.abs() < 0.05);
     }
 }
 
+/// Planners that by design stay behind somebody who stands in the way; each has a test of its own.
+const STAYS_BEHIND: &[&str] = &[];
+
 #[test]
 fn every_planner_goes_round_somebody_who_stands_in_the_way() {
-    for name in names().into_iter().filter(|name| *name != PlannerName::NO_ROBOT) {
+    let passes = |name: &&str| *name != PlannerName::NO_ROBOT && !STAYS_BEHIND.contains(name);
+    for name in names().into_iter().filter(passes) {
         let mut driver = make(name, &mission(vec![])).unwrap().unwrap();
         let way = drive(driver.as_mut(), &|_| vec![person(9.0, 3.05, 0.0, 0.0)], 50.0);
         let least =
