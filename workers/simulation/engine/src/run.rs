@@ -69,7 +69,7 @@ impl Engine {
         let doors = Doors::new(&setup.location);
         floor.close(doors.closed());
         let robot = (!setup.planner.is_no_robot()).then(|| start::robot(&setup, &floor));
-        let mut humans = start::humans(&setup, trees, &floor, robot.as_ref());
+        let mut humans = start::humans(&setup, trees, &floor, robot.as_ref())?;
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
         rendezvous::let_out(&mut humans, &robot_doors);
         let by_nearness = |door: usize| {
