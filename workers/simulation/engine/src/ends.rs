@@ -18,8 +18,9 @@ const CLEAR_OF_DOOR_M: f64 = 3.0;
 const BESIDE_DOOR_M: f64 = 0.4;
 /// Distance from a wall at which people stand along it, m.
 const BY_WALL_M: f64 = 0.45;
-/// Nobody ends nearer to the robot's goal than this, m, nor two nearer to each other than this, m: their bodies and a hand's breadth.
-pub(crate) const GOAL_APART_M: f64 = 0.9;
+/// Nobody's way ends nearer to the robot's goal than this, m: both bodies, and the half meter before its end where somebody already
+/// stands. Two ends are so far apart, m.
+pub(crate) const GOAL_APART_M: f64 = 1.2;
 const ENDS_APART_M: f64 = 0.75;
 /// Whoever ends short of an end that is taken does so at one of so many steps of this length, m, and walks at least so far, m.
 const SHORT_STEPS: u32 = 24;
