@@ -1,7 +1,9 @@
 //! How everybody moves in the scenarios of the catalog and the shipped requests: where they start and end, how the robot keeps
 //! its way, and that whoever has come to rest stays at rest.
 
-use socrates_model::{Action, AgentId, AgentState, EventKind, Location, Point, Polyline, Recording, Request};
+use socrates_model::{
+    Action, AgentId, AgentState, EventKind, HumanProposal, Location, Point, Polyline, Recording, Request,
+};
 use socrates_offline::catalog;
 
 use crate::config::Config;
@@ -87,7 +89,12 @@ fn shown(about: String, location: &Location, played: &Played) -> Shown {
             found.wrong.push(format!("{} goes {walked_m:.2} m after coming to rest, {flips} flips", state.agent_id()));
         }
         let gap_m = (last[place].point() - goal).norm() - radius(place) - radius(0);
-        if state.agent_id() != AgentId::Robot && gap_m < APART_M {
+        // Who runs away ends where fear leads, not at the end of a path.
+        let flees = |human: &HumanProposal| {
+            AgentId::Human(human.id) == state.agent_id() && human.rules.iter().any(|rule| rule.act == Action::RunAway)
+        };
+        let excused = state.agent_id() == AgentId::Robot || played.proposal.humans.iter().any(flees);
+        if !excused && gap_m < APART_M {
             found.wrong.push(format!("{} ends {gap_m:.2} m from the robot's goal", state.agent_id()));
         }
         if state.agent_id() == AgentId::Robot

@@ -7,7 +7,6 @@ use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{Action, HumanId, Location, NodeId, Point, Polyline, Relation, SceneGraph, Vector};
 
 use crate::block::block;
-use crate::ends::GOAL_APART_M;
 use crate::floor::Floor;
 use crate::human::Human;
 use crate::make_room::make_room;
@@ -527,10 +526,6 @@ fn refuge(human: &Human, scene: &Scene<'_>, robot: &Robot) -> Option<Point> {
         let way = node.at - human.at;
         // Towards the robot is no way out, whatever the graph says.
         if way.norm() < 0.8 || way.dot(&-away) > 0.3 * way.norm() * away.norm() {
-            continue;
-        }
-        // Nor is the place where the robot goes.
-        if robot.route.end().is_some_and(|goal| (node.at - goal).norm() < GOAL_APART_M) {
             continue;
         }
         let far = (node.at - robot.at()).norm();

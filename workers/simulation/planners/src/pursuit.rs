@@ -54,7 +54,8 @@ pub(crate) fn pursue(
     let turn = if way_to.norm() > 0.02 { wrap_angle(libm::atan2(way_to.y, way_to.x) - seen.pose.yaw) } else { 0.0 };
     let straight = if turn.abs() > 1.0 { 0.0 } else { 1.0 - 0.8 * turn.abs() };
     let stops = |left_m: f64| libm::sqrt(1.4 * robot.a_max_mps2 * left_m.max(0.0));
-    let left_m = (way.end().unwrap_or(at) - at).norm() - 0.05;
+    // A way may pass over its own end before it comes there.
+    let left_m = (way.end().unwrap_or(at) - at).norm().max(way.length_m() - s) - 0.05;
     let front_m = ground.front_m(&seen.pose, margin_m, FRONT_M);
     let v = (speed * straight).min(NEAR_PER_S * ahead).min(stops(left_m)).min(stops(front_m));
     let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
