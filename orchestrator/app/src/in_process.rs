@@ -23,6 +23,7 @@ pub(crate) struct Made {
 #[derive(Debug)]
 pub(crate) struct Played {
     pub(crate) proposal: Proposal,
+    pub(crate) paths: Paths,
     pub(crate) report: Report,
     pub(crate) recording: Recording,
 }
@@ -50,7 +51,7 @@ pub(crate) async fn play(request: &Request, location: &Location, seed: u64) -> R
     let made = Made { proposal, paths, behaviors };
     let recording = simulate(request, location, made.clone(), id, &run)?;
     let report = socrates_scoring::score(&evidence(request, &reading, location, &made, &recording));
-    Ok(Played { proposal: made.proposal, report, recording })
+    Ok(Played { proposal: made.proposal, paths: made.paths, report, recording })
 }
 
 /// The proposal alone, of the offline author.

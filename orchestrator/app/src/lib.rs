@@ -47,6 +47,8 @@ pub mod layout;
 mod library_index;
 mod many;
 pub mod map;
+#[cfg(test)]
+mod motion_runs;
 pub mod mutations;
 pub mod new_request;
 mod next;

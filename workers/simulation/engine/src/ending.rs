@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::{AgentId, EventKind, HumanId};
+use socrates_model::{AgentId, EventKind, HumanId, Point};
 
 use crate::recorder::Recorder;
 use crate::setup::MAX_AUTO_S;
@@ -11,6 +11,8 @@ use crate::setup::MAX_AUTO_S;
 const STUCK_S: f64 = 20.0;
 /// Progress that counts, m.
 const PROGRESS_M: f64 = 0.3;
+/// A robot that has come so far from where it was, m, is not stuck either: a planner may go another way than the intended one.
+const ELSEWHERE_M: f64 = 3.0;
 /// A robot stuck for so long ends the run, s.
 const STUCK_END_S: f64 = 45.0;
 /// After the robot's arrival the run goes on for at least so long, s.
@@ -24,8 +26,10 @@ const PEOPLE_S: f64 = 20.0;
 #[derive(Debug, Clone)]
 pub(crate) struct Standing {
     pub(crate) now_s: f64,
-    /// Progress of the robot, whether it waits on purpose, and when it arrived.
+    /// Progress of the robot along its intended way, whether it waits on purpose, and when it arrived.
     pub(crate) robot: Option<(f64, bool, Option<f64>)>,
+    /// Where the robot is.
+    pub(crate) robot_at: Option<Point>,
     pub(crate) arrived: bool,
     pub(crate) people_done: bool,
     pub(crate) met: usize,
@@ -42,12 +46,21 @@ pub(crate) struct Ending {
     met: usize,
     last_met_s: f64,
     since: BTreeMap<AgentId, (f64, f64, bool)>,
+    robot_mark: Option<Point>,
     done_since_s: Option<f64>,
 }
 
 impl Ending {
     pub(crate) const fn new(duration_s: Option<f64>) -> Self {
-        Self { duration_s, arrival_told: false, met: 0, last_met_s: 0.0, since: BTreeMap::new(), done_since_s: None }
+        Self {
+            duration_s,
+            arrival_told: false,
+            met: 0,
+            last_met_s: 0.0,
+            since: BTreeMap::new(),
+            robot_mark: None,
+            done_since_s: None,
+        }
     }
 
     /// The reason why the run ends now, if it does.
@@ -63,7 +76,8 @@ impl Ending {
                 self.arrival_told = true;
                 recorder.tell(EventKind::RobotArrived);
             }
-            stuck_s = self.stuck(AgentId::Robot, s, waiting || arrived.is_some(), now, recorder);
+            let excused = waiting || arrived.is_some() || self.is_elsewhere(standing.robot_at);
+            stuck_s = self.stuck(AgentId::Robot, s, excused, now, recorder);
         }
         for (human, s, slow) in &standing.walkers {
             self.stuck(AgentId::Human(*human), *s, !*slow, now, recorder);
@@ -78,6 +92,15 @@ impl Ending {
             return Some("stuck");
         }
         self.done(standing).then_some("done")
+    }
+
+    /// Whether the robot has come away from where it was when this was last so.
+    fn is_elsewhere(&mut self, at: Option<Point>) -> bool {
+        let elsewhere = at.zip(self.robot_mark).is_none_or(|(at, mark)| (at - mark).norm() > ELSEWHERE_M);
+        if elsewhere {
+            self.robot_mark = at;
+        }
+        elsewhere
     }
 
     fn done(&mut self, standing: &Standing) -> bool {

@@ -18,6 +18,14 @@ const CLEAR_OF_DOOR_M: f64 = 3.0;
 const BESIDE_DOOR_M: f64 = 0.4;
 /// Distance from a wall at which people stand along it, m.
 const BY_WALL_M: f64 = 0.45;
+/// Nobody's way ends nearer to the robot's goal than this, m: both bodies, and the half meter before its end where somebody already
+/// stands. Two ends are so far apart, m.
+pub(crate) const GOAL_APART_M: f64 = 1.2;
+const ENDS_APART_M: f64 = 0.75;
+/// Whoever ends short of an end that is taken does so at one of so many steps of this length, m, and walks at least so far, m.
+const SHORT_STEPS: u32 = 24;
+const SHORT_M: f64 = 0.125;
+const LEAST_WAY_M: f64 = 1.0;
 /// How far from the end of the path a place is looked for, in rings of 0.25 m.
 const RINGS: u32 = 8;
 
@@ -33,17 +41,33 @@ fn turned_off(route: &Polyline, to: Point, short_m: f64, floor: &Floor) -> Polyl
     Polyline::new(&points)
 }
 
-/// Who walks to the robot's own goal ends beside it, so that both can arrive.
-pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) -> Polyline {
+/// A route that ends before the first place on its way back that is free: where there is no room beside its end, whoever walks it
+/// stops short of it.
+fn short_of(route: Polyline, crowded: &dyn Fn(&Point) -> bool) -> Polyline {
+    let length_m = route.length_m();
+    let steps = (1..=SHORT_STEPS).map(|step| length_m - SHORT_M * f64::from(step)).take_while(|s| *s > LEAST_WAY_M);
+    let free = steps.filter(|s| !crowded(&route.point(*s)));
+    let Some(s) = free.max_by(f64::total_cmp) else { return route };
+    let mut points: Vec<Point> =
+        route.points().iter().zip(route.marks_m()).filter(|(_, mark)| **mark < s).map(|(point, _)| *point).collect();
+    points.push(route.point(s));
+    Polyline::new(&points)
+}
+
+/// Who walks to the robot's own goal ends beside it, so that both can arrive; who walks with others, so many meters to both
+/// sides, farther by that.
+pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, flank_m: f64, floor: &Floor) -> Polyline {
     let (Some(end), Some(goal)) = (route.end(), robot_way.end()) else { return route };
-    if (end - goal).norm() > 0.9 {
+    let crowded = |at: &Point| (at - goal).norm() <= GOAL_APART_M + flank_m;
+    if !crowded(&end) {
         return route;
     }
     let mut best: Option<(f64, Point)> = None;
     for ring in 0..=6_u32 {
         for turn in 0..24_u32 {
             let angle = f64::from(turn) / 24.0 * std::f64::consts::TAU;
-            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * (1.3 + 0.2 * f64::from(ring));
+            let far = 1.3 + flank_m + 0.2 * f64::from(ring);
+            let at = goal + Vector::new(libm::cos(angle), libm::sin(angle)) * far;
             let aside = robot_way.project(&at).1;
             let free = floor.wall_clearance_m(&at) >= PERSON_RADIUS_M + 0.05 && floor.straight(&end, &at, 0.2);
             let cost = (at - goal).norm() + 2.0 * (1.1 - aside).max(0.0);
@@ -52,14 +76,18 @@ pub(crate) fn clear_end(route: Polyline, robot_way: &Polyline, floor: &Floor) ->
             }
         }
     }
-    let Some((_, at)) = best else { return route };
+    let Some((_, at)) = best else { return short_of(route, &crowded) };
     turned_off(&route, at, 0.8, floor)
 }
 
-/// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive.
-pub(crate) fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline {
-    let crowded = |at: &Point| taken.iter().any(|other| (other - at).norm() < 0.75);
-    let Some(end) = route.end().filter(|end| route.length_m() > 1.0 && crowded(end)) else { return route };
+/// Who walks to a place where somebody else's path ends too ends beside them, so that both can arrive, and not on the robot's
+/// goal.
+pub(crate) fn apart(route: Polyline, taken: &[Point], goal: Option<Point>, floor: &Floor) -> Polyline {
+    let crowded = |at: &Point| {
+        taken.iter().any(|other| (other - at).norm() < ENDS_APART_M)
+            || goal.is_some_and(|goal| (goal - at).norm() < GOAL_APART_M)
+    };
+    let Some(end) = route.end().filter(|end| route.length_m() > LEAST_WAY_M && crowded(end)) else { return route };
     let mut best: Option<(f64, Point)> = None;
     for ring in 0..=4_u32 {
         for turn in 0..16_u32 {
@@ -73,7 +101,7 @@ pub(crate) fn apart(route: Polyline, taken: &[Point], floor: &Floor) -> Polyline
             }
         }
     }
-    let Some((_, at)) = best else { return route };
+    let Some((_, at)) = best else { return short_of(route, &crowded) };
     turned_off(&route, at, 0.9, floor)
 }
 

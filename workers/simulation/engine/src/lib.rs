@@ -50,6 +50,8 @@ mod aisle_runs;
 #[cfg(test)]
 mod door_runs;
 #[cfg(test)]
+mod end_runs;
+#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 mod group_runs;

@@ -1,6 +1,6 @@
 //! Where everybody stands at tick 0: on free floor, apart from each other, in formation where asked.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::f64::consts::TAU;
 
 use socrates_model::{GroupId, GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
@@ -23,10 +23,17 @@ const NEIGHBOR_M: f64 = 1.1;
 const WAY_ROUND_M: f64 = 0.9;
 /// Smallest distance from which somebody comes from behind, m.
 const BEHIND_M: f64 = 2.2;
-/// Lane distance of people who walk side by side, m.
+/// Lane distance of people who walk side by side, m, and how many do at most.
 const LANE_M: f64 = 0.75;
+const ABREAST: usize = 3;
 
-/// Places everybody. `lines` are standing groups that wait in line; `doors` gives the door line and depth side for humans who start behind a door.
+/// Whoever finds no place in the rings round its node looks on from step to step of this length, m, at most so many steps far.
+const WALK_STEP_M: f64 = 0.3;
+const WALK_STEPS: i32 = 27;
+/// Whoever stands for good keeps so far from the robot's goal, m: both bodies and a hand's breadth.
+const GOAL_FREE_M: f64 = 0.75;
+
+/// Places everybody, and gives back who found no free place. `lines` are standing groups that wait in line; `doors` gives the door line and depth side for humans who start behind a door.
 pub(crate) fn place(
     humans: &mut [Human],
     groups: &[GroupProposal],
@@ -34,7 +41,8 @@ pub(crate) fn place(
     floor: &Floor,
     robot: Option<(Pose, &Polyline)>,
     doors: &BTreeMap<HumanId, Point>,
-) {
+) -> Vec<HumanId> {
+    let mut homeless = Vec::new();
     let mut taken: Vec<(Point, f64)> = robot.iter().map(|(pose, _)| (pose.point(), ROBOT_APART_M)).collect();
     let route = robot.map(|(_, route)| route);
     for group in groups {
@@ -52,7 +60,10 @@ pub(crate) fn place(
         if human.standing {
             continue;
         }
-        let (at, yaw) = spot(human, floor, robot.as_ref(), doors.get(&human.id), &taken);
+        let Some((at, yaw)) = spot(human, floor, robot.as_ref(), doors.get(&human.id), &taken) else {
+            homeless.push(human.id);
+            continue;
+        };
         if let Some(human) = humans.get_mut(place) {
             human.at = at;
             human.yaw = yaw;
@@ -65,16 +76,17 @@ pub(crate) fn place(
         human.trail = Polyline::new(&[human.at]);
         human.home = human.at;
     }
+    homeless
 }
 
-/// A free place near a human's first node, and its heading.
+/// A free place near a human's first node, and its heading; `None` where everything about is taken or too narrow.
 fn spot(
     human: &Human,
     floor: &Floor,
     robot: Option<&(Pose, &Polyline)>,
     door: Option<&Point>,
     taken: &[(Point, f64)],
-) -> (Point, f64) {
+) -> Option<(Point, f64)> {
     let home = human.route.point(0.0);
     let ahead = human.route.direction(0.0);
     let left = Vector::new(-ahead.y, ahead.x);
@@ -85,18 +97,22 @@ fn spot(
     };
     let apart = if human.group.is_some() || door.is_some() { APART_CLOSE_M } else { APART_M };
     let behind = robot.filter(|_| human.relation == Relation::Behind);
+    let stands = matches!(human.relation, Relation::Staying | Relation::Static) && human.doors.is_empty();
+    let goal = robot.and_then(|(_, route)| route.end()).filter(|_| stands && door.is_none() && human.group.is_none());
+    let free = |at: &Point| {
+        let close = |(other, least): &(Point, f64)| {
+            (at - other).norm() < if *least > APART_M { *least } else { least.min(apart) }
+        };
+        !taken.iter().any(close)
+            && goal.is_none_or(|goal| (at - goal).norm() >= GOAL_FREE_M)
+            && floor.clearance_m(at) >= human.radius_m + MARGIN_M
+    };
     let mut best: Option<(f64, Point)> = None;
     for ring in 0..=20_u32 {
         for turn in 0..if ring == 0 { 1 } else { 24 } {
             let angle = f64::from(turn) / 24.0 * TAU;
             let at = wished + Vector::new(libm::cos(angle), libm::sin(angle)) * (0.15 * f64::from(ring));
-            let crowded = taken
-                .iter()
-                .any(|(other, least)| (at - other).norm() < if *least > APART_M { *least } else { least.min(apart) });
-            if crowded
-                || floor.clearance_m(&at) < human.radius_m + MARGIN_M
-                || !reachable(floor, &home, &at, human.radius_m)
-            {
+            if !free(&at) || !reachable(floor, &home, &at, human.radius_m) {
                 continue;
             }
             let mut cost = (at - wished).norm();
@@ -131,8 +147,28 @@ fn spot(
             break;
         }
     }
-    let at = best.map_or(wished, |(_, at)| at);
-    (at, facing(human, &at, door))
+    let at = best.map(|(_, at)| at).or_else(|| farther(floor, &home, human.radius_m, &free))?;
+    Some((at, facing(human, &at, door)))
+}
+
+/// The free place to which fewest steps lead from `home`.
+fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> bool) -> Option<Point> {
+    let point = |(right, up): (i32, i32)| home + Vector::new(f64::from(right), f64::from(up)) * WALK_STEP_M;
+    let mut known = BTreeSet::from([(0, 0)]);
+    let mut open = VecDeque::from([(0, 0)]);
+    while let Some(step) = open.pop_front() {
+        let here = point(step);
+        if free(&here) {
+            return Some(here);
+        }
+        for next in [(1, 0), (0, 1), (-1, 0), (0, -1)].map(|(right, up)| (step.0 + right, step.1 + up)) {
+            let near = next.0.abs() <= WALK_STEPS && next.1.abs() <= WALK_STEPS;
+            if near && reachable(floor, &here, &point(next), radius_m) && known.insert(next) {
+                open.push_back(next);
+            }
+        }
+    }
+    None
 }
 
 fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
@@ -151,18 +187,29 @@ fn reachable(floor: &Floor, from: &Point, to: &Point, radius_m: f64) -> bool {
         && !floor.shut_between(&(from + (to - from) * 0.3), to)
 }
 
+/// From the middle of a group that walks to its outermost member, m; 0 for who walks alone or stands.
+pub(crate) fn flank_m(groups: &[GroupProposal], group: Option<GroupId>) -> f64 {
+    let walks = groups.iter().find(|known| Some(known.id) == group && !known.standing);
+    walks.map_or(0.0, |group| flank_of(group.members.len()))
+}
+
+/// The same for so many: at most three walk abreast.
+fn flank_of(count: usize) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "at most three")]
+    let width = count.clamp(1, ABREAST) as f64;
+    0.5 * (width - 1.0) * LANE_M
+}
+
 /// People who walk together go side by side, or in file where the floor is narrow (the lane is cut there).
 fn lanes(humans: &mut [Human], group: &GroupProposal) {
     let count = group.members.len();
     for (place, id) in group.members.iter().enumerate() {
         if let Some(human) = humans.iter_mut().find(|human| human.id == *id) {
-            // At most three abreast; the others walk in a second row through the spread at the start.
-            let row = place % 3;
-            let width = count.min(3);
-            #[expect(clippy::cast_precision_loss, reason = "a few people")]
-            let (row, flank) = (row as f64, 0.5 * (width as f64 - 1.0));
-            human.lane_m = (row - flank) * LANE_M + human.sway.0;
-            human.flank_m = flank * LANE_M;
+            // The others walk in a second row through the spread at the start.
+            #[expect(clippy::cast_precision_loss, reason = "at most three")]
+            let row = (place % ABREAST) as f64;
+            human.flank_m = flank_of(count);
+            human.lane_m = row * LANE_M - human.flank_m + human.sway.0;
         }
     }
 }
@@ -188,7 +235,9 @@ fn stand(
         let ring = ring_m(members.len());
         gathering::at_end(&home, route).and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
     };
-    let places = places.unwrap_or_else(|| formation(&home, members.len(), body, floor, route, taken));
+    // Where there is no room for them together each finds a place alone.
+    let places = places.or_else(|| formation(&home, members.len(), body, floor, route, taken));
+    let Some(places) = places else { return };
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
             let swayed = at + Vector::new(human.sway.0, human.sway.1);
@@ -212,7 +261,7 @@ fn ring_m(count: usize) -> f64 {
     if count < 2 { 0.0 } else { (NEIGHBOR_M / (2.0 * libm::sin(std::f64::consts::PI / n))).min(1.45) }
 }
 
-/// Places and headings of a circle near `home`.
+/// Places and headings of a circle near `home`, or of people who stand together as they can; `None` where there is no room.
 fn formation(
     home: &Point,
     count: usize,
@@ -220,7 +269,7 @@ fn formation(
     floor: &Floor,
     route: Option<&Polyline>,
     taken: &[(Point, f64)],
-) -> Vec<(Point, f64)> {
+) -> Option<Vec<(Point, f64)>> {
     #[expect(clippy::cast_precision_loss, reason = "a few people")]
     let n = count.max(1) as f64;
     let ring = ring_m(count);
@@ -256,7 +305,7 @@ fn formation(
         }
     }
     let squeezed = || gathering::squeezed(home, count, &Around { floor, route, taken, body });
-    best.map(|(_, places)| places).or_else(squeezed).unwrap_or_else(|| ring_places(home, ring.min(0.6), count, heading))
+    best.map(|(_, places)| places).or_else(squeezed)
 }
 
 /// How free the better of the two half circles round a group is for a robot, 0 to 1.

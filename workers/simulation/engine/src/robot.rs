@@ -9,6 +9,9 @@ use crate::view::MOVING_MPS;
 const ALPHA_MAX: f64 = 4.0;
 /// How long a gesture is held, s.
 const GESTURE_S: f64 = 2.0;
+/// Farther from its intended way than this the robot goes another way, m; nearer than this to any later part of it, m, it is back.
+const OFF_WAY_M: f64 = 3.0;
+const BACK_ON_WAY_M: f64 = 1.0;
 /// Time over which the robot's own pace is averaged, s.
 const PACE_S: f64 = 3.0;
 
@@ -34,7 +37,7 @@ pub(crate) struct Robot {
     /// Pace along the way while it moves, m/s.
     pub(crate) pace_mps: f64,
     pub(crate) arrived_s: Option<f64>,
-    /// Since when it stands near an occupied goal, s.
+    /// For how long it has rested at its goal, or stood near it while it is occupied, s.
     pub(crate) at_full_goal_s: f64,
     pub(crate) trail: Polyline,
 }
@@ -98,9 +101,12 @@ impl Robot {
         self.has_moved |= self.velocity.norm() > MOVING_MPS;
         let before = self.s;
         let (s, aside) = self.route.project_within(&at, self.s - 0.3, self.s + 3.0);
-        // Far off its way the nearest point says little; then only progress counts.
-        if aside < 3.0 {
+        if aside < OFF_WAY_M {
             self.s = s.max(self.s - 0.02);
+        } else {
+            // Far off its way the nearest point says little. A planner that goes another way counts again where it comes back.
+            let (s, aside) = self.route.project_within(&at, self.s, self.route.length_m());
+            self.s = if aside < BACK_ON_WAY_M { s } else { self.s };
         }
         if self.v > 0.15 {
             let share = STEP_SECS / PACE_S;

@@ -21,6 +21,9 @@ use crate::setup::{self, Setup};
 use crate::view::{RobotSeen, View};
 use crate::{meetings, start, walk};
 
+/// Nearer than this to the end of its way the robot is at its goal, m.
+const AT_GOAL_M: f64 = 0.35;
+
 /// Keeps a run and hands it on.
 struct Kept<'a> {
     recording: Recording,
@@ -66,7 +69,7 @@ impl Engine {
         let doors = Doors::new(&setup.location);
         floor.close(doors.closed());
         let robot = (!setup.planner.is_no_robot()).then(|| start::robot(&setup, &floor));
-        let mut humans = start::humans(&setup, trees, &floor, robot.as_ref());
+        let mut humans = start::humans(&setup, trees, &floor, robot.as_ref())?;
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
         rendezvous::let_out(&mut humans, &robot_doors);
         let by_nearness = |door: usize| {
@@ -298,9 +301,11 @@ impl Engine {
             let left = (end - robot.at()).norm();
             let mut there = self.humans.iter().filter(|human| human.present());
             let full = there.any(|human| (human.at - end).norm() < 0.9 && human.velocity.norm() < 0.25);
-            robot.at_full_goal_s =
-                if full && left < 1.4 && robot.velocity.norm() < 0.05 { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
-            let near = left < 0.35 && robot.s > robot.route.length_m() - 1.0;
+            // It may have come there by another way than the intended one; then it says so by resting there.
+            let rests = left < AT_GOAL_M && robot.command.waiting && robot.has_moved;
+            let stands = (rests || full && left < 1.4) && robot.velocity.norm() < 0.05;
+            robot.at_full_goal_s = if stands { robot.at_full_goal_s + STEP_SECS } else { 0.0 };
+            let near = left < AT_GOAL_M && robot.s > robot.route.length_m() - 1.0;
             if robot.arrived_s.is_none() && (near || robot.at_full_goal_s > 2.0) {
                 robot.arrived_s = Some(now_s);
             }
@@ -317,6 +322,7 @@ impl Engine {
         Standing {
             now_s,
             robot: self.robot.as_ref().map(|robot| (robot.s, robot.command.waiting, robot.arrived_s)),
+            robot_at: self.robot.as_ref().map(Robot::at),
             arrived,
             people_done: done,
             met,

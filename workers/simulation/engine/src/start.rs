@@ -10,8 +10,8 @@ use socrates_model::recording::AgentInfo;
 use socrates_model::seeds::{self, derive_seed};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, Clause, Command, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose, Predicate,
-    RecordingHeader, Relation, Trigger, Vector,
+    Action, AgentId, Clause, Command, Fault, FaultCode, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
+    Predicate, RecordingHeader, Relation, Trigger, Vector, Where,
 };
 
 use crate::block::blockers;
@@ -114,12 +114,15 @@ fn free_near(floor: &Floor, home: &Point, radius: f64) -> Point {
 }
 
 /// Everybody, placed.
+///
+/// # Errors
+/// `G-COLL` for each who finds no free place about its first node.
 pub(crate) fn humans(
     setup: &Setup,
     mut trees: BTreeMap<HumanId, Tree>,
     floor: &Floor,
     robot: Option<&Robot>,
-) -> Vec<Human> {
+) -> Result<Vec<Human>, Vec<Fault>> {
     let (robot_way, robot_marks) = way(setup, &setup.paths.robot);
     let mut inside = BTreeMap::new();
     let mut humans = Vec::new();
@@ -133,7 +136,7 @@ pub(crate) fn humans(
             .collect();
         // Who goes in through a door does not end short of the others, in the door.
         if human.relation != Relation::Static || human.doors.is_empty() {
-            human.route = ends::apart(human.route, &taken, floor);
+            human.route = ends::apart(human.route, &taken, robot_way.end(), floor);
         } else if let Some(other) = humans.iter_mut().find(|other: &&mut Human| same_end(other, &human)) {
             other.route = ends::beside(&other.route, SHARED_M, floor);
             human.route = ends::beside(&human.route, -SHARED_M, floor);
@@ -146,8 +149,23 @@ pub(crate) fn humans(
     }
     let robot = robot.map(|robot| (robot.pose, &robot.route));
     let lines = lines(&setup.proposal);
-    placing::place(&mut humans, &setup.proposal.groups, &lines, floor, robot, &inside);
-    humans
+    let homeless = placing::place(&mut humans, &setup.proposal.groups, &lines, floor, robot, &inside);
+    let faults: Vec<Fault> = homeless.into_iter().map(|human| no_place(setup, human)).collect();
+    if faults.is_empty() { Ok(humans) } else { Err(faults) }
+}
+
+/// The fault of somebody for whom there is no room.
+fn no_place(setup: &Setup, human: HumanId) -> Fault {
+    let node = setup.paths.humans.get(&human).and_then(|nodes| nodes.first());
+    let at = node.and_then(|node| setup.location.graph.node(node)).map_or_else(Point::origin, |node| node.at);
+    let node = node.map_or_else(String::new, ToString::to_string);
+    let message = format!(
+        "{human} has no place to start: round `{node}` at ({:.1}, {:.1}) all floor that it can walk to is taken or narrower than {:.2} m; let fewer people start there, or elsewhere",
+        at.x,
+        at.y,
+        2.0 * PERSON_RADIUS_M
+    );
+    Fault::new(FaultCode::GColl, Where::agent(AgentId::Human(human)).step(1), message)
 }
 
 /// Whether two who go in have the same place behind the door.
@@ -190,7 +208,7 @@ fn human(
     let nodes: &[NodeId] = setup.paths.humans.get(&proposal.id).map_or(&[], Vec::as_slice);
     let (mut route, marks) = way(setup, nodes);
     if route.length_m() > 1.0 {
-        route = ends::clear_end(route, robot_way, floor);
+        route = ends::clear_end(route, robot_way, placing::flank_m(&setup.proposal.groups, proposal.group), floor);
         if goes_off(setup, proposal, nodes) {
             route = ends::aside(route, robot_way, &setup.location.doors, floor);
         }

@@ -28,7 +28,7 @@ pub const CATALOG: &[PlannerSheet] = &[
     },
     PlannerSheet {
         name: "reactive",
-        about: "dynamic window over lidar and moving people on the shortest way between the waypoints; no script",
+        about: "a simple baseline: the shortest free way through the waypoints, stops for people ahead, goes round who stands; no script",
         make: Some(|mission| Box::new(Reactive::new(mission))),
     },
     PlannerSheet { name: PlannerName::NO_ROBOT, about: "no robot at all: the twin run", make: None },

@@ -17,10 +17,12 @@ const SIDE: usize = 65;
 const HARD_GAPS_M: [f64; 2] = [0.32, 0.1];
 /// A way with a wide berth that is longer than so many times the straight line, and so much more, m, is taken only where the
 /// narrower berth leads nowhere: it would lead round a whole rack instead of past who stands beside it.
-const FAR: f64 = 1.6;
-const FAR_M: f64 = 1.0;
-/// Nearer than this to a body's surface is dear, m.
+const FAR: f64 = 1.35;
+const FAR_M: f64 = 0.6;
+/// Nearer than this to a body's surface is dear, m: a meter that touches it costs so many more. A higher price would be a wide
+/// berth round whoever stands beside the way, where a small step aside is enough.
 const SOFT_GAP_M: f64 = 0.65;
+const SOFT_PRICE: f64 = 5.0;
 /// How much dearer a meter is on the left of the way, 1 m off it.
 const KEEP_RIGHT: f64 = 0.3;
 /// Nearer than this to a wall is dear, m.
@@ -101,7 +103,7 @@ impl Window<'_> {
             if obstacle.hard && gap < self.hard_gap_m {
                 return None;
             }
-            weight += 9.0 * ((SOFT_GAP_M - gap) / SOFT_GAP_M).clamp(0.0, 1.0);
+            weight += SOFT_PRICE * ((SOFT_GAP_M - gap) / SOFT_GAP_M).clamp(0.0, 1.0);
         }
         Some(weight)
     }

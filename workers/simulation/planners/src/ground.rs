@@ -2,14 +2,19 @@
 
 use std::sync::Arc;
 
-use socrates_maps::{DistanceField, shortest_path};
+use socrates_maps::{DistanceField, nearest_free, shortest_path};
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
-use socrates_model::{Grid, Observation, Point, Polyline, Vector};
+use socrates_model::{Grid, Observation, Point, Polyline, Pose, Vector};
 
 use crate::mission::Mission;
 
 /// Somebody slower than this stands, m/s.
 pub(crate) const STANDING_MPS: f64 = 0.2;
+
+/// Room beside the body that a way is planned with, m.
+const ROOM_M: f64 = 0.03;
+/// A point too near to a wall is taken to a place at most so far away, m.
+const BESIDE_M: f64 = 0.5;
 
 /// Walls of the mission.
 #[derive(Debug, Clone)]
@@ -76,7 +81,39 @@ impl Ground {
         if self.straight(from, to, 0.05) {
             return Some(Polyline::new(&[*from, *to]));
         }
-        shortest_path(&self.grid, &self.field, from, to, self.radius_m + 0.03).map(|points| Polyline::new(&points))
+        shortest_path(&self.grid, &self.field, from, to, self.radius_m + ROOM_M).map(|points| Polyline::new(&points))
+    }
+
+    /// The shortest way through all these points, and whether it leads to the last of them: it ends before the first that cannot
+    /// be reached. Points too near to a wall are passed beside it.
+    pub(crate) fn through(&self, points: &[Point]) -> (Polyline, bool) {
+        let mut route = Polyline::default();
+        for point in points {
+            let Some(to) = nearest_free(&self.field, point, self.radius_m + ROOM_M, BESIDE_M) else {
+                return (route, false);
+            };
+            let Some(from) = route.end() else {
+                route.push(to);
+                continue;
+            };
+            let Some(way) = self.way(&from, &to) else { return (route, false) };
+            way.points().iter().for_each(|point| route.push(*point));
+        }
+        (route, true)
+    }
+
+    /// How far the robot's disc with a margin can go straight ahead, at most `reach_m`, m.
+    pub(crate) fn front_m(&self, pose: &Pose, margin_m: f64, reach_m: f64) -> f64 {
+        let ahead = Vector::new(libm::cos(pose.yaw), libm::sin(pose.yaw));
+        let mut gone = 0.0;
+        while gone < reach_m {
+            let free = self.clearance_m(&(pose.point() + ahead * gone)) - self.radius_m - margin_m;
+            if free < 0.0 {
+                return gone;
+            }
+            gone += free.max(0.02);
+        }
+        reach_m
     }
 }
 

@@ -3,10 +3,18 @@
 use socrates_model::geometry::wrap_angle;
 use socrates_model::{Command, Observation, Point, Polyline, RobotModel};
 
-use crate::ground::STANDING_MPS;
+use crate::ground::{Ground, STANDING_MPS};
 
 /// Length of the way the robot steers at, m.
 const LOOK_AHEAD_M: f64 = 0.55;
+/// The same where a corner must not be cut, longest first, m: the farthest that nothing stands between counts.
+const AHEAD_M: [f64; 6] = [0.7, 0.5, 0.35, 0.25, 0.15, 0.08];
+/// Where it steers at a point so near, it goes so slowly, 1/s.
+const NEAR_PER_S: f64 = 1.4;
+/// It sees walls in front of it so far, m.
+const FRONT_M: f64 = 1.0;
+/// Room to walls that rounding may take, m.
+const ROUNDING_M: f64 = 0.005;
 /// Gap to a person below which the robot goes slowly, m.
 const PERSONAL_M: f64 = 0.45;
 /// Gap to somebody who walks that is kept even at a crawl, m.
@@ -26,6 +34,32 @@ pub(crate) fn steer(seen: &Observation<'_>, way: &Polyline, s: f64, speed: f64, 
     let v = (speed * straight).min(libm::sqrt(2.0 * 0.7 * robot.a_max_mps2 * (left - 0.05).max(0.0)));
     let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
     Command { v, omega: if left < 0.08 { 0.0 } else { omega }, gesture: None, waiting: false }
+}
+
+/// As [`steer`], without cutting a corner: to the farthest point a little ahead that can be reached straight, and never faster
+/// than it can stop before a wall in front of it.
+pub(crate) fn pursue(
+    seen: &Observation<'_>,
+    ground: &Ground,
+    (way, s): (&Polyline, f64),
+    speed: f64,
+    robot: &RobotModel,
+) -> Command {
+    let at = seen.pose.point();
+    // Pushed nearer to a wall than it is wide it needs no more room than it has.
+    let margin_m = (ground.clearance_m(&at) - ROUNDING_M - robot.radius_m).min(0.0);
+    let reached = |ahead: &f64| ground.straight(&at, &way.point(s + ahead), margin_m);
+    let ahead = AHEAD_M.into_iter().find(reached).unwrap_or(ROUNDING_M);
+    let way_to = way.point(s + ahead) - at;
+    let turn = if way_to.norm() > 0.02 { wrap_angle(libm::atan2(way_to.y, way_to.x) - seen.pose.yaw) } else { 0.0 };
+    let straight = if turn.abs() > 1.0 { 0.0 } else { 1.0 - 0.8 * turn.abs() };
+    let stops = |left_m: f64| libm::sqrt(1.4 * robot.a_max_mps2 * left_m.max(0.0));
+    // A way may pass over its own end before it comes there.
+    let left_m = (way.end().unwrap_or(at) - at).norm().max(way.length_m() - s) - 0.05;
+    let front_m = ground.front_m(&seen.pose, margin_m, FRONT_M);
+    let v = (speed * straight).min(NEAR_PER_S * ahead).min(stops(left_m)).min(stops(front_m));
+    let omega = (2.4 * turn).clamp(-robot.omega_max_radps, robot.omega_max_radps);
+    Command { v, omega, gesture: None, waiting: false }
 }
 
 /// Stands and turns to a point: by so much a radian off it, rad/s, and at most this fast, rad/s.

@@ -1,27 +1,32 @@
-//! `reactive`: a small dynamic-window planner. It knows map, waypoints, lidar and the people it sees, and
-//! neither the script nor the intended way between the waypoints.
-//!
-//! Fox, Burgard and Thrun 1997: of the velocities that can be reached within one call, the one with the best
-//! sum of progress, clearance and speed along its arc; people are moved on at their present velocity.
+//! `reactive`: a simple baseline. It goes the shortest free way through its waypoints, slows down and stops for whoever is
+//! ahead, and goes round whoever stands on that way. It knows the map and the people it sees, and neither the script nor the
+//! intended way between the waypoints.
 
-use socrates_model::geometry::wrap_angle;
-use socrates_model::{Command, Observation, Point, Polyline, RobotDriver, RobotModel, Vector};
+use socrates_model::{Command, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
-use crate::ground::{Ground, closed_door_ahead, obstacles};
+use crate::ground::{Ground, Obstacle, STANDING_MPS, closed_door_ahead};
 use crate::mission::Mission;
-use crate::pursuit::{safe_share, steer};
+use crate::pursuit::{pursue, safe_share};
 
 /// Calls per second.
-const RATE_HZ: f64 = 10.0;
-/// How far ahead in time an arc is looked at, s.
-const HORIZON_S: f64 = 3.0;
-/// Steps of an arc.
-const STEPS: u32 = 15;
-/// Gap to bodies and walls below which an arc is not taken, m.
-const LEAST_GAP_M: f64 = 0.08;
-/// Gap from which on more is no better, m.
-const ENOUGH_GAP_M: f64 = 0.5;
+const RATE_HZ: f64 = 20.0;
+/// So near to the end of its way it has arrived, m.
+const ARRIVED_M: f64 = 0.12;
+/// Its place on its way is looked for so far on, m.
+const ON_M: f64 = 1.5;
+/// Gap to whoever stands that it keeps, surface to surface, m; who walks is given what `safe_share` asks for.
+const GAP_M: f64 = 0.06;
+/// Whoever stands within this of its way, surface to surface, m, on so much of it, m, is on it.
+const BLOCKS_M: f64 = 0.1;
+const LOOK_M: f64 = 3.0;
+/// A way round leads back at most so far on, m, to a place that is free by so much more, m.
+const BACK_M: f64 = 4.4;
+const FREE_M: f64 = 0.2;
+/// Steps along a way, m.
+const STEP_M: f64 = 0.2;
+/// It looks so often whether somebody stands on its way, s.
+const LOOK_S: f64 = 0.5;
 
 /// The planner.
 #[derive(Debug)]
@@ -29,80 +34,61 @@ pub(crate) struct Reactive {
     robot: RobotModel,
     ground: Ground,
     route: Polyline,
+    /// Whether the way leads to the goal; where no way does it ends at the last waypoint that can be reached.
+    complete: bool,
     s: f64,
-    /// Seconds without speed, and the way out that was planned for it with its own progress and age.
-    still_s: f64,
-    recovery: Option<(Polyline, f64, f64)>,
+    /// The way round somebody that is being gone, and how far, m.
+    round: Option<(Polyline, f64)>,
+    looked_s: f64,
 }
 
 impl Reactive {
     pub(crate) fn new(mission: &Mission) -> Self {
         let ground = Ground::new(mission);
-        let mut route = Polyline::default();
-        for pair in mission.waypoints.windows(2) {
-            let [from, to] = pair else { continue };
-            match ground.way(from, to) {
-                Some(way) => way.points().iter().for_each(|point| route.push(*point)),
-                None => {
-                    route.push(*from);
-                    route.push(*to);
-                }
-            }
-        }
-        if route.points().is_empty() {
-            mission.waypoints.iter().for_each(|point| route.push(*point));
-        }
-        Self { robot: mission.robot, ground, route, s: 0.0, still_s: 0.0, recovery: None }
+        let (route, complete) = ground.through(&mission.waypoints);
+        Self { robot: mission.robot, ground, route, complete, s: 0.0, round: None, looked_s: f64::NEG_INFINITY }
     }
 
-    /// A point on a way out of a standstill, while there is one: the window alone stays in front of who stands.
-    fn recover(&mut self, seen: &Observation<'_>) -> Option<Point> {
-        let at = seen.pose.point();
-        self.still_s = if seen.v.abs() < 0.05 { self.still_s + 1.0 / RATE_HZ } else { 0.0 };
-        if self.still_s > 1.5 && self.recovery.is_none() {
-            self.still_s = 0.0;
-            let people = obstacles(seen, &self.route.direction(self.s), 5.5);
-            let goal = self.route.point(self.s + 3.5);
-            self.recovery = detour::round(&self.ground, &people, &self.route, &at, &goal).map(|way| (way, 0.0, 0.0));
-        }
-        let (way, s, age) = self.recovery.as_mut()?;
-        *s = way.project_within(&at, *s, *s + 1.0).0;
-        *age += 1.0 / RATE_HZ;
-        let target = way.point(*s + 0.8);
-        if *age > 8.0 || *s > way.length_m() - 0.4 {
-            self.recovery = None;
-        }
-        Some(target)
-    }
-
-    /// Value of driving at (v, omega) for the horizon; `None` where it hits something.
-    fn value(&self, seen: &Observation<'_>, cloud: &[Point], v: f64, omega: f64, target: &Point) -> Option<f64> {
-        let mut pose = (seen.pose.point(), seen.pose.yaw);
-        let dt = HORIZON_S / f64::from(STEPS);
-        let mut least = ENOUGH_GAP_M;
-        let mut late = 0.0_f64;
-        for step in 1..=STEPS {
-            pose.1 += omega * dt;
-            pose.0 += Vector::new(libm::cos(pose.1), libm::sin(pose.1)) * (v * dt);
-            let t = dt * f64::from(step);
-            let people =
-                seen.people.iter().map(|person| (person.at + person.velocity * t - pose.0).norm() - person.radius_m);
-            let scan = cloud.iter().map(|hit| (hit - pose.0).norm());
-            let gap = people.chain(scan).fold(self.ground.clearance_m(&pose.0), f64::min) - self.robot.radius_m;
-            least = least.min(gap);
-            // Beyond the way to stop, an arc may still be left.
-            if gap < LEAST_GAP_M {
-                if t <= v / self.robot.a_max_mps2 + 0.8 {
-                    return None;
-                }
-                late = late.max(1.0 - t / HORIZON_S);
+    /// Goes on with a way round somebody, leaves it at its end, and plans one where somebody stands on the way.
+    fn go_round(&mut self, seen: &Observation<'_>, at: &Point) {
+        if let Some((way, s)) = &mut self.round {
+            *s = way.project_within(at, *s, *s + ON_M).0;
+            if *s > way.length_m() - 2.0 * STEP_M {
+                self.round = None;
             }
         }
-        let way = target - pose.0;
-        let turn = wrap_angle(libm::atan2(way.y, way.x) - pose.1).abs();
-        let progress = (target - seen.pose.point()).norm() - way.norm();
-        Some(1.2 * progress + 0.8 * least.max(0.0) + 0.3 * v - 0.25 * turn - 3.0 * late)
+        let now = seen.time.secs();
+        if now - self.looked_s < LOOK_S {
+            return;
+        }
+        self.looked_s = now;
+        let people: Vec<Obstacle> = standing(seen);
+        let reach = self.robot.radius_m + BLOCKS_M;
+        let blocked = |way: &Polyline, s: f64, more_m: f64| {
+            people.iter().any(|person| person.gap_m(&way.point(s)) < reach + more_m)
+        };
+        let (way, s) = self.round.as_ref().map_or((&self.route, self.s), |(way, s)| (way, *s));
+        let Some(first) = steps(s, LOOK_M).find(|s| blocked(way, *s, 0.0)) else { return };
+        // Back on the way behind whoever stands there first.
+        let from = if self.round.is_some() { self.s } else { first };
+        let back =
+            steps(from, self.s + BACK_M - from).find(|s| *s > self.s + STEP_M && !blocked(&self.route, *s, FREE_M));
+        let way = back.and_then(|back| {
+            detour::round(&self.ground, &people, &self.route, at, &self.route.point(back.min(self.route.length_m())))
+        });
+        self.round = way.map(|way| (way, 0.0));
     }
+}
+
+/// Lengths along a way, from `from` m on for `reach_m`, a step apart.
+fn steps(from: f64, reach_m: f64) -> impl Iterator<Item = f64> {
+    (0..64_u32).map(|step| STEP_M * f64::from(step)).take_while(move |far| *far <= reach_m).map(move |far| from + far)
+}
+
+/// Those who stand, as obstacles.
+fn standing(seen: &Observation<'_>) -> Vec<Obstacle> {
+    let stand = seen.people.iter().filter(|person| person.velocity.norm() < STANDING_MPS);
+    stand.map(|person| Obstacle { from: person.at, to: person.at, radius_m: person.radius_m, hard: true }).collect()
 }
 
 impl RobotDriver for Reactive {
@@ -113,61 +99,18 @@ impl RobotDriver for Reactive {
     fn drive(&mut self, seen: &Observation<'_>) -> Command {
         let at = seen.pose.point();
         self.ground.look(seen);
-        let (s, aside) = self.route.project_within(&at, self.s, self.s + 2.5);
-        if aside < 3.0 {
-            self.s = s.max(self.s);
-        }
-        let end = self.route.end().unwrap_or(at);
-        let left = (end - at).norm();
-        if left < 0.15 {
-            return Command { waiting: true, ..Command::default() };
+        self.s = self.s.max(self.route.project_within(&at, self.s, self.s + ON_M).0);
+        let stand = Command::default();
+        let Some(end) = self.route.end() else { return stand };
+        if (end - at).norm() < ARRIVED_M && self.s > self.route.length_m() - 2.0 * ARRIVED_M {
+            return Command { waiting: self.complete, ..stand };
         }
         if closed_door_ahead(seen, &self.route, self.s, 1.2).is_some_and(|left| left < self.robot.radius_m + 0.7) {
-            return Command { waiting: true, ..Command::default() };
+            return Command { waiting: true, ..stand };
         }
-        if left < 1.0 && self.ground.straight(&at, &end, 0.0) {
-            // The last meter is driven straight: the window looks farther than that.
-            let last = Polyline::new(&[at, end]);
-            let share = safe_share(seen, &last, 0.0, &self.robot, 0.1);
-            return steer(seen, &last, 0.0, share * self.robot.v_max_mps, &self.robot);
-        }
-        let target = self.recover(seen).unwrap_or_else(|| self.route.point(self.s + 1.4));
-        let scan = (seen.lidar)();
-        let cloud: Vec<Point> = scan
-            .iter()
-            .enumerate()
-            .step_by(6)
-            .filter(|(_, range)| **range < 2.5)
-            .map(|(beam, range)| {
-                #[expect(clippy::cast_precision_loss, reason = "360 beams")]
-                let angle = seen.pose.yaw + (beam as f64).to_radians();
-                at + Vector::new(libm::cos(angle), libm::sin(angle)) * *range
-            })
-            // People are judged where they will be, not where the beams met them.
-            .filter(|hit| seen.people.iter().all(|person| (person.at - hit).norm() > person.radius_m + 0.1))
-            .collect();
-        let reach = 2.0 * self.robot.a_max_mps2 / RATE_HZ;
-        let most = self.robot.v_max_mps.min(0.2 + left);
-        let mut best: Option<(f64, f64, f64)> = None;
-        for fast in 0..=5_u32 {
-            let v = (seen.v - reach + 2.0 * reach * f64::from(fast) / 5.0).clamp(0.0, most);
-            for turn in 0..=14_u32 {
-                let omega = self.robot.omega_max_radps * (f64::from(turn) / 7.0 - 1.0);
-                if let Some(value) = self.value(seen, &cloud, v, omega, &target)
-                    && best.is_none_or(|(top, _, _)| value > top + 1e-9)
-                {
-                    best = Some((value, v, omega));
-                }
-            }
-        }
-        match best {
-            Some((_, v, omega)) => Command { v, omega, gesture: None, waiting: false },
-            // Nothing is free: stand and turn towards the way.
-            None => {
-                let way = target - at;
-                let turn = wrap_angle(libm::atan2(way.y, way.x) - seen.pose.yaw);
-                Command { v: 0.0, omega: turn.clamp(-0.6, 0.6), gesture: None, waiting: false }
-            }
-        }
+        self.go_round(seen, &at);
+        let (way, s) = self.round.as_ref().map_or((&self.route, self.s), |(way, s)| (way, *s));
+        let share = safe_share(seen, way, s, &self.robot, GAP_M);
+        pursue(seen, &self.ground, (way, s), share * self.robot.v_max_mps, &self.robot)
     }
 }

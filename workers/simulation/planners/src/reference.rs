@@ -18,8 +18,17 @@ const RATE_HZ: f64 = 20.0;
 const REPLAN_S: f64 = 0.25;
 /// A plan is wanted where somebody is nearer to the way than this (surface to surface), m.
 const WANTED_GAP_M: f64 = 0.45;
-/// A way round people may be so many times as long as the way, and a meter.
-const FARTHEST: f64 = 1.6;
+/// People farther away than this are not planned for, m.
+const PEOPLE_M: f64 = 5.5;
+/// A way round people may be so many times as long as the way, and so much more, m: a longer one is a detour, and it waits.
+const FARTHEST: f64 = 1.35;
+const FARTHEST_M: f64 = 0.8;
+/// A way round stays as long as it leads on so far, m, comes at most so much nearer to people than a new one, m, and is at most
+/// so much longer, m; gaps are taken at steps of this length, m.
+const KEPT_M: f64 = 1.5;
+const KEPT_GAP_M: f64 = 0.05;
+const KEPT_MORE_M: f64 = 0.3;
+const GAP_STEP_M: f64 = 0.2;
 /// Length of the way that is looked at for people, m.
 const LOOK_M: f64 = 4.0;
 /// A plan leads back to the way at most so far on, m, and so far before a door that is shut, m.
@@ -81,7 +90,11 @@ impl Reference {
         let now = seen.time.secs();
         if now - self.planned_s >= REPLAN_S {
             self.planned_s = now;
-            self.plan = self.detour(seen).map(|way| (way, 0.0));
+            let new = self.detour(seen);
+            self.plan = match (self.plan.take(), new) {
+                (Some((old, s)), Some(new)) if self.keeps(seen, (&old, s), &new) => Some((old, s)),
+                (_, new) => new.map(|way| (way, 0.0)),
+            };
         }
         if limit > 0.1
             && let Some(blocker) = self.patience.faces(seen, self.s, &self.route.direction(self.s + 0.3))
@@ -105,7 +118,7 @@ impl Reference {
     fn detour(&self, seen: &Observation<'_>) -> Option<Polyline> {
         let at = seen.pose.point();
         let ahead = self.route.direction(self.s + 0.3);
-        let people = obstacles(seen, &ahead, 5.5);
+        let people = obstacles(seen, &ahead, PEOPLE_M);
         let reach = self.robot.radius_m + WANTED_GAP_M;
         let off = (at - self.route.point(self.s)).norm() > 0.35;
         let near = |s: f64| {
@@ -130,8 +143,31 @@ impl Reference {
         goals.iter().take(4).find_map(|s| {
             let way = detour::round(&self.ground, &people, &self.route, &at, &self.route.point(*s))?;
             // A far longer way is none: it waits before whoever stands there, and asks.
-            (off || way.length_m() <= (s - self.s) * FARTHEST + 1.0).then_some(way)
+            (off || way.length_m() <= (s - self.s) * FARTHEST + FARTHEST_M).then_some(way)
         })
+    }
+
+    /// Whether a way round that is being gone is kept: it leads on for a while, is about as free of people as a new one, and
+    /// hardly longer. Planned anew at every look it would change sides before whoever stands in the middle.
+    fn keeps(&self, seen: &Observation<'_>, (old, s): (&Polyline, f64), new: &Polyline) -> bool {
+        let people = obstacles(seen, &self.route.direction(self.s + 0.3), PEOPLE_M);
+        let gap_m = |way: &Polyline, from: f64| {
+            let steps =
+                (0..64_u32).map(|step| from + GAP_STEP_M * f64::from(step)).take_while(|s| *s <= way.length_m());
+            let gaps = steps.flat_map(|s| {
+                let at = way.point(s);
+                people.iter().filter(|person| person.hard).map(move |person| person.gap_m(&at))
+            });
+            gaps.fold(self.robot.radius_m + WANTED_GAP_M, f64::min)
+        };
+        // How much longer a way is than the stretch of the route that it replaces.
+        let more_m = |way: &Polyline, from: f64| {
+            let back = way.end().map_or(0.0, |end| self.route.project_within(&end, self.s, self.s + 2.0 * WINDOW_M).0);
+            way.length_m() - from - back
+        };
+        old.length_m() - s > KEPT_M
+            && gap_m(old, s) > gap_m(new, 0.0) - KEPT_GAP_M
+            && more_m(old, s) < more_m(new, 0.0) + KEPT_MORE_M
     }
 
     /// Counts the time behind somebody and asks to be let through.
@@ -182,7 +218,7 @@ impl Reference {
         let now = seen.time.secs();
         if now - self.planned_s >= REPLAN_S || self.plan.is_none() {
             self.planned_s = now;
-            let people = obstacles(seen, &(to - at), 5.5);
+            let people = obstacles(seen, &(to - at), PEOPLE_M);
             let straight = Polyline::new(&[at, *to]);
             let way = if people.is_empty() && self.ground.straight(&at, to, 0.04) {
                 Some(straight)

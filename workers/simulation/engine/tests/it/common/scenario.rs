@@ -95,7 +95,10 @@ pub fn run(mut setup: Setup, planner: &str) -> Recording {
         field: std::sync::Arc::new(socrates_maps::DistanceField::new(&setup.location.grid)),
         doors: setup.location.doors.clone(),
         route: graph.polyline(&setup.paths.robot),
-        waypoints: setup.paths.robot.iter().filter_map(spot).collect::<Vec<Point>>(),
+        waypoints: match (setup.waypoints, setup.paths.robot.as_slice()) {
+            (Waypoints::Ends, [first, .., last]) => [first, last].into_iter().filter_map(spot).collect::<Vec<Point>>(),
+            (_, nodes) => nodes.iter().filter_map(spot).collect(),
+        },
         script: setup.proposal.robot.script.clone(),
         encounters: setup
             .paths
