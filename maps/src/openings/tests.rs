@@ -292,6 +292,11 @@ fn an_open_plan_room_says_why_it_has_no_opening() {
     assert_eq!(why("c"), None);
     let text = why("end").map(|why| why.to_string()).unwrap_or_default();
     assert_eq!(text, "no walls bound an opening between `end` and `e`");
+    let mut place = place;
+    place.graph = place.graph.edited(|nodes, _| nodes.retain(|node| node.id != id("far")));
+    let warned: Vec<String> = crate::check(&place).iter().map(ToString::to_string).collect();
+    assert!(warned.iter().all(|line| line.starts_with("M-TYPE")) && warned.len() == 2, "{warned:?}");
+    assert!(warned.iter().any(|line| line.contains(&text)), "{warned:?}");
 }
 
 #[test]
