@@ -64,7 +64,10 @@ fn items(case: &Case<'_>) -> Wrong {
 
 async fn doorless(rough: &str, doorways: bool, kind: DoorKind) {
     let folder = annotated(doorways);
-    let text = format!("location = {:?}\nrough_scenario = \"{rough}\"\n", folder.path().display().to_string());
+    let text = format!(
+        "location = {:?}\nsocial_context = \"A hospital\"\ntask = \"Deliver supplies\"\nrough_scenario = \"{rough}\"\n",
+        folder.path().display().to_string()
+    );
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
     let prepared = prepare_text("doorless", &text, "doorless", Path::new("."), None, &config).unwrap();
     let all = Enclosures::of(&prepared.location);
