@@ -3,19 +3,16 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use socrates_model::{Cell, Door, Grid, Location, Point, SceneGraph};
+use socrates_model::{Cell, Grid, Point};
 
 use crate::field::DistanceField;
 use crate::geodesic::Geodesic;
-use crate::openings::Enclosures;
 use crate::sight::Sight;
 
 /// Grids that are kept at most: a library is made on a few locations.
 const MAX_GRIDS: usize = 4;
 /// Cells of the kept grids together, the newest not counted; what is computed of a cell takes about 40 bytes.
 const MAX_CELLS: usize = 4_000_000;
-/// Scene graphs of one grid whose rooms and cars are kept.
-const MAX_GRAPHS: usize = 4;
 /// Cells of the kept walking distances of one grid together, the newest not counted; 8 bytes each.
 const MAX_WALKED: usize = 500_000;
 
@@ -81,8 +78,6 @@ pub struct Ground {
     sight: OnceLock<Sight>,
     /// Walking distances by goal and radius, the newest last.
     walked: Mutex<VecDeque<([u64; 3], Arc<Geodesic>)>>,
-    /// Rooms and cars by graph and doors, the newest last.
-    enclosed: Mutex<VecDeque<(SceneGraph, Vec<Door>, Arc<Enclosures>)>>,
 }
 
 static GROUNDS: Kept<Ground> = Kept::new();
@@ -97,13 +92,7 @@ impl Ground {
     /// A ground of its own, kept by nobody else.
     #[must_use]
     pub const fn new(grid: Arc<Grid>) -> Self {
-        Self {
-            grid,
-            field: OnceLock::new(),
-            sight: OnceLock::new(),
-            walked: Mutex::new(VecDeque::new()),
-            enclosed: Mutex::new(VecDeque::new()),
-        }
+        Self { grid, field: OnceLock::new(), sight: OnceLock::new(), walked: Mutex::new(VecDeque::new()) }
     }
 
     /// The grid.
@@ -145,28 +134,6 @@ impl Ground {
             shelf.pop_front();
         }
         shelf.push_back(entry);
-        made
-    }
-}
-
-impl Ground {
-    /// Rooms and cars of a location on this grid; those of the last few graphs are kept.
-    #[must_use]
-    pub fn enclosures(&self, location: &Location) -> Arc<Enclosures> {
-        let lock = || self.enclosed.lock().unwrap_or_else(PoisonError::into_inner);
-        let same = |(graph, doors, _): &(SceneGraph, Vec<Door>, Arc<Enclosures>)| {
-            *graph == location.graph && *doors == location.doors
-        };
-        if let Some((.., made)) = lock().iter().find(|kept| same(kept)) {
-            return Arc::clone(made);
-        }
-        // Not under the lock: others have other graphs.
-        let made = Arc::new(Enclosures::new(location, self.field()));
-        let mut shelf = lock();
-        while shelf.len() >= MAX_GRAPHS {
-            shelf.pop_front();
-        }
-        shelf.push_back((location.graph.clone(), location.doors.clone(), Arc::clone(&made)));
         made
     }
 }

@@ -17,13 +17,13 @@ mod flood;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
-use socrates_model::{Door, DoorKind, DoorOpens, Location, NodeId, Point, Vector};
+use socrates_model::{Door, DoorKind, DoorOpens, Location, NodeId, Point, SceneGraph, Vector};
 
-use crate::ground::Ground;
+use crate::ground::{Ground, Kept};
 use crate::layer::{Layer, Raster};
 
 /// What an opening lies on.
@@ -189,6 +189,15 @@ impl fmt::Display for OpenPlan {
     }
 }
 
+/// Scene graphs of one map whose rooms and cars are kept.
+const MAX_GRAPHS: usize = 4;
+
+/// Rooms and cars of a graph and doors.
+type Entry = (SceneGraph, Vec<Door>, Arc<Enclosures>);
+
+/// Those of the last few graphs of each kept map, the newest last.
+static SHELVES: Kept<Mutex<VecDeque<Entry>>> = Kept::new();
+
 /// The rooms and cars of a location.
 #[derive(Debug, Clone)]
 pub struct Enclosures {
@@ -204,7 +213,20 @@ impl Enclosures {
     /// Those of a location; computed once for each location of the same map, graph and doors, as long as it is kept.
     #[must_use]
     pub fn of(location: &Location) -> Arc<Self> {
-        Ground::of(&location.grid).enclosures(location)
+        let shelf = SHELVES.of(&location.grid, |_| Mutex::default());
+        let lock = || shelf.lock().unwrap_or_else(PoisonError::into_inner);
+        let same = |(graph, doors, _): &&Entry| *graph == location.graph && *doors == location.doors;
+        let known = lock().iter().find(same).map(|(.., made)| Arc::clone(made));
+        known.unwrap_or_else(|| {
+            // Not under the lock: others have other graphs.
+            let made = Arc::new(Self::new(location, Ground::of(&location.grid).field()));
+            let mut kept = lock();
+            while kept.len() >= MAX_GRAPHS {
+                kept.pop_front();
+            }
+            kept.push_back((location.graph.clone(), location.doors.clone(), Arc::clone(&made)));
+            made
+        })
     }
 
     /// Every room and car, in the order of their first nodes.

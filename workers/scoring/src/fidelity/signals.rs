@@ -101,7 +101,7 @@ impl<'a> Signals<'a> {
         let way =
             evidence.location.zip(evidence.paths).map(|(place, paths)| Way::new(place.graph.polyline(&paths.robot)));
         let ground = evidence.location.map(|location| Ground::of(&location.grid));
-        let enclosures = ground.as_ref().zip(evidence.location).map(|(ground, place)| ground.enclosures(place));
+        let enclosures = evidence.location.map(Enclosures::of);
         let sight = ground.as_ref().map(|ground| ground.sight());
         let closed: Vec<Vec<(Point, Point)>> = match &tracks.robot {
             Some(robot) if sight.is_some() => robot.samples.iter().map(|sample| doors.closed_at(sample.t)).collect(),
