@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use socrates_model::{Cell, Door, DoorOpens, Fault, FaultCode, Grid, Location, NodeId, Point, Where};
 
 use crate::ground::Ground;
+use crate::openings::Enclosures;
 use crate::read::{EXTRA, GRAPH, edge_at};
 
 /// Longest opening that counts as a door, m.
@@ -36,6 +37,9 @@ pub fn check(location: &Location) -> Vec<Fault> {
     part_problems(location, &mut faults);
     for (index, door) in location.doors.iter().enumerate() {
         door_problems(location, index, door, &mut faults);
+    }
+    if faults.iter().all(Fault::is_soft) {
+        open_plan(location, &mut faults);
     }
     faults
 }
@@ -121,6 +125,20 @@ fn edge_problems(location: &Location, on_wall: &BTreeSet<&NodeId>, faults: &mut 
             );
             faults.push(Fault::new(FaultCode::GFree, at, message));
         }
+    }
+}
+
+/// Rooms and cars without an opening: nobody can be seen to come out of them.
+fn open_plan(location: &Location, faults: &mut Vec<Fault>) {
+    for (nodes, why) in Enclosures::of(location).open_plan() {
+        let Some(first) = nodes.first() else { continue };
+        let kind = location.graph.node(first).map_or("", |node| node.kind.as_str());
+        let message = format!(
+            "the type `{kind}` of {} says that it is inside, but {why}; nobody can come out of it or go in. Give it a doorway node or a \
+             door, or a type such as `OPEN AREA`",
+            names(nodes)
+        );
+        faults.push(Fault::new(FaultCode::MType, Where::file(GRAPH).node(first.clone()), message));
     }
 }
 

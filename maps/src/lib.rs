@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Modules in reading order: files in ([`parse`], [`load`]), what is checked ([`check`]), the grid's
-//! questions (field, geodesic, route, sight; [`Ground`] keeps their answers), places, and the shipped locations with their generator.
+//! questions (field, geodesic, route, sight; [`Ground`] keeps their answers), places, rooms and cars with their openings, and the
+//! shipped locations with their generator.
 //!
 //! *Never here:* pictures with labels (they are drawn next door), moving agents, a clock, a random
 //! number, a rule about scenarios.
@@ -31,6 +32,7 @@ mod route;
 mod sectors;
 mod sight;
 
+pub mod openings;
 pub mod place;
 pub mod shipped;
 

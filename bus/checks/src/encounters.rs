@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use socrates_maps::openings::Enclosures;
 use socrates_model::{
     ClauseRole, Encounter, Fault, FaultCode, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Predicate,
     Proposal, Relation, ordinal,
 };
 
 use crate::list;
-use crate::places::{family, is_inside, nodes_of};
+use crate::places::{family, nodes_of};
 
 /// Longest list of candidates in one message.
 const LISTED: usize = 24;
@@ -142,8 +143,7 @@ fn too_few(paths: &Paths, proposal: &Proposal) -> Vec<Fault> {
 
 /// Whether a node is in the same room or car as the start, or next to it.
 fn near_inside(node: &NodeId, start: &NodeId, location: &Location) -> bool {
-    let same_door = location.door_of(start).is_some_and(|door| door.inside.contains(node));
-    same_door || location.graph.shortest(start, node).is_some_and(|way| way.len() <= 4)
+    Enclosures::of(location).same(start, node) || location.graph.shortest(start, node).is_some_and(|way| way.len() <= 4)
 }
 
 /// G-MEETEND: not at the ends of the robot's path, and the human goes on behind it.
@@ -163,8 +163,9 @@ fn ends(
         path.last() == Some(&encounter.node) && step.is_none_or(|step| step + 1 == path.len())
     };
     let is_start = paths.robot.first() == Some(&encounter.node) && robot_step.is_none();
-    let at_car = is_inside(location, &encounter.node)
-        || location.graph.neighbors(&encounter.node).iter().any(|node| is_inside(location, node));
+    let all = Enclosures::of(location);
+    let at_car = all.is_inside(&encounter.node)
+        || location.graph.neighbors(&encounter.node).iter().any(|node| all.is_inside(node));
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let stands = own.len() == 1;
     let last = is_end(&paths.robot, robot_step);

@@ -36,7 +36,14 @@ pub use proposal::check_proposal;
 pub use repeats::{Likeness, Signature, check_repeats};
 pub use routes::check_paths;
 
-use socrates_model::{Behaviors, Fault, Location, Paths, Proposal, Reading};
+use socrates_maps::openings::Enclosures;
+use socrates_model::{Behaviors, Fault, Location, NodeId, Paths, Proposal, Reading};
+
+/// Whether a node of a location lies inside of a room or an elevator, as all checks see it.
+#[must_use]
+pub fn is_inside(location: &Location, node: &NodeId) -> bool {
+    Enclosures::of(location).is_inside(node)
+}
 
 /// Everything of one scenario against everything else; run before tick 0.
 ///

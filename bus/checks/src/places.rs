@@ -1,6 +1,6 @@
 //! Places of the map by class.
 
-use socrates_model::{Location, NodeId, PlaceClass, SceneGraph};
+use socrates_model::{NodeId, PlaceClass, SceneGraph};
 
 /// Every node of the class, in file order.
 pub(crate) fn nodes_of(graph: &SceneGraph, class: PlaceClass) -> Vec<NodeId> {
@@ -39,10 +39,4 @@ pub(crate) fn family(wanted: PlaceClass) -> &'static [PlaceClass] {
         C::Exit => &[C::Exit],
         C::Plain => &C::ALL,
     }
-}
-
-/// Whether the node is inside a room or car: behind a declared door, or by its own type.
-pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
-    location.door_of(node).is_some()
-        || matches!(location.graph.kind(node), Some(PlaceClass::Elevator | PlaceClass::Room))
 }

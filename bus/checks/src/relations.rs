@@ -1,11 +1,14 @@
 //! Whether the paths make the relation that was proposed: G-REL.
 
+use socrates_maps::openings::Enclosures;
 use socrates_model::{
     Action, Fault, FaultCode, HumanProposal, Location, NodeId, Paths, Proposal, Relation, SceneGraph, Vector,
 };
 
 use crate::list;
-use crate::places::is_inside;
+
+/// So many nodes are listed at most.
+const LISTED: usize = 24;
 
 /// Two ways count as opposite when the cosine between them is below this (135°).
 const OPPOSITE: f64 = -0.7;
@@ -41,23 +44,20 @@ fn wrong(human: &HumanProposal, nodes: &[NodeId], paths: &Paths, location: &Loca
             let start = nodes.first()?;
             if nodes.len() != 1 {
                 Some(format!("their path has {} nodes; who stays inside has one", nodes.len()))
-            } else if !is_inside(location, start) {
-                Some(format!("`{start}` is not inside a room or elevator; inside are {}", list(inside_nodes(location))))
             } else {
-                None
+                let all = Enclosures::of(location);
+                (!all.is_inside(start)).then(|| format!("`{start}` {}", not_inside(start, &all, location)))
             }
         }
         Relation::Leaving => {
             let start = nodes.first()?;
-            if !is_inside(location, start) {
-                Some(format!(
-                    "they start at `{start}`, which is not inside a room or elevator; inside are {}",
-                    list(inside_nodes(location))
-                ))
-            } else if location.door_of(start).is_some_and(|door| nodes.iter().all(|node| door.inside.contains(node))) {
-                Some("their path never leaves through the door".to_owned())
-            } else {
-                None
+            let all = Enclosures::of(location);
+            match all.of_node(start) {
+                None => Some(format!("they start at `{start}`, which {}", not_inside(start, &all, location))),
+                Some(place) if nodes.iter().all(|node| place.holds(node)) => {
+                    Some("their path never leaves through the door".to_owned())
+                }
+                Some(_) => None,
             }
         }
         Relation::Frontal => {
@@ -156,8 +156,13 @@ fn around<'a>(nodes: &'a [NodeId], node: &'a NodeId) -> Vec<&'a NodeId> {
     before.into_iter().chain(std::iter::once(node)).chain(after).collect()
 }
 
-fn inside_nodes(location: &Location) -> Vec<NodeId> {
-    location.graph.nodes().iter().map(|node| node.id.clone()).filter(|id| is_inside(location, id)).take(24).collect()
+/// Why a node is not inside, and which nodes are.
+fn not_inside(node: &NodeId, all: &Enclosures, location: &Location) -> String {
+    let open = all.open_plan().iter().find(|(nodes, _)| nodes.contains(node));
+    let why = open.map_or_else(String::new, |(_, why)| format!(": {why}"));
+    let ids = location.graph.nodes().iter().map(|node| &node.id);
+    let inside = list(ids.filter(|id| all.is_inside(id)).take(LISTED));
+    format!("is not inside a room or elevator{why}; inside are {inside}")
 }
 
 #[cfg(test)]

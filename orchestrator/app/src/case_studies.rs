@@ -3,6 +3,7 @@
 //! wrong is refused.
 
 mod corridor;
+mod doorless;
 mod elevator;
 mod group;
 mod intersection;

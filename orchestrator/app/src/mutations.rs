@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 use socrates_author::Written;
 use socrates_author::offline::Offline;
+use socrates_maps::openings::Enclosures;
 use socrates_model::job::Stage;
 use socrates_model::{
     Action, AgentId, Behaviors, Clause, ClauseRole, Encounter, Fault, GroupId, HumanBehavior, HumanId, NodeId, Paths,
@@ -427,10 +428,11 @@ fn moved(prepared: &Prepared, made: &Made, encounter: &Encounter, group: Option<
     let asked = graph.node(&encounter.node)?.at;
     let way = made.paths.humans.get(&encounter.human)?;
     let inner = made.paths.robot.get(1..made.paths.robot.len().saturating_sub(1))?;
+    let all = Enclosures::of(&prepared.location);
     let node = inner
         .iter()
         .filter_map(|id| Some(((graph.node(id)?.at - asked).norm(), id)))
-        .filter(|(distance, id)| *distance >= MOVED_M && prepared.location.door_of(id).is_none())
+        .filter(|(distance, id)| *distance >= MOVED_M && !all.is_inside(id))
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, id)| id.clone())?;
     let mut other = made.clone();

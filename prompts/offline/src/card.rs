@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 use socrates_model::rule::RobotRule;
 use socrates_model::{
-    Action, ClauseRole, DoorKind, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
+    Action, ClauseRole, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
 };
 
 use crate::draw::Draw;
@@ -205,7 +205,7 @@ impl Card {
         let inside = !self.inside || !crate::place::inside(location, indoors).is_empty();
         // Into a room that somebody leaves there must be room for both.
         let shared = self.goal == Some(PlaceClass::Room) && self.inside;
-        let roomy = !shared || location.doors.iter().any(|door| door.kind == DoorKind::Room && door.inside.len() > 1);
+        let roomy = !shared || crate::place::is_roomy(location);
         let arms = self.arms.is_none_or(|least| crate::place::meets_arms(location, self.start, least));
         inside
             && roomy

@@ -507,14 +507,10 @@ fn leaving(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Wa
     Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
 }
 
+/// Whether two places lie in one room or car.
 pub(crate) fn same_door(net: &Net<'_>, a: usize, b: Option<usize>) -> bool {
-    let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| door.id.as_str());
-    let Some(b) = b else { return false };
-    match (door(a), door(b)) {
-        (Some(one), Some(other)) => one == other,
-        (None, None) => a == b || net.near(a).iter().any(|(node, _)| *node == b),
-        (Some(_), None) | (None, Some(_)) => false,
-    }
+    let both = net.id(a).zip(b.and_then(|b| net.id(b)));
+    both.is_some_and(|(a, b)| net.enclosures.same(a, b))
 }
 
 /// Inside, as far from the door as it goes; met where the robot's way ends, or where it passes.

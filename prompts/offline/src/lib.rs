@@ -124,6 +124,8 @@ mod mention_tests;
 #[cfg(test)]
 mod notes_tests;
 #[cfg(test)]
+mod openings_tests;
+#[cfg(test)]
 mod order_tests;
 #[cfg(test)]
 mod preface_tests;

@@ -1,6 +1,7 @@
 //! What places the map has.
 
-use socrates_model::{Location, NodeId, PlaceClass};
+use socrates_maps::openings::Enclosures;
+use socrates_model::{DoorKind, Location, NodeId, PlaceClass};
 
 /// Whether the map has a place of the class; everything is plain.
 pub(crate) fn has(location: &Location, class: PlaceClass) -> bool {
@@ -29,23 +30,21 @@ pub(crate) fn an(class: PlaceClass) -> String {
     format!("{article} {name}")
 }
 
-/// Whether the node is in a room or an elevator: behind a door, or by its type.
+/// Whether the node is in a room or an elevator.
 pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
-    location.door_of(node).is_some()
-        || matches!(location.graph.kind(node), Some(PlaceClass::Elevator | PlaceClass::Room))
-}
-
-/// Whether the node is in an elevator.
-pub(crate) fn is_car(location: &Location, node: &NodeId) -> bool {
-    let by_door = location.door_of(node).is_some_and(|door| door.kind == socrates_model::DoorKind::Elevator);
-    by_door || location.graph.kind(node) == Some(PlaceClass::Elevator)
+    Enclosures::of(location).is_inside(node)
 }
 
 /// Nodes inside rooms or cars: of cars where an elevator is wanted, of rooms otherwise.
 pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<NodeId> {
-    let car = class == Some(PlaceClass::Elevator);
+    let (car, all) = (class == Some(PlaceClass::Elevator), Enclosures::of(location));
     let ids = location.graph.nodes().iter().map(|node| &node.id);
-    ids.filter(|id| is_inside(location, id) && is_car(location, id) == car).cloned().collect()
+    ids.filter(|id| all.is_inside(id) && all.is_car(id) == car).cloned().collect()
+}
+
+/// Whether a room has places for the robot and for somebody else.
+pub(crate) fn is_roomy(location: &Location) -> bool {
+    Enclosures::of(location).all().iter().any(|place| place.kind == DoorKind::Room && place.nodes.len() > 1)
 }
 
 /// Whether so many ways meet somewhere outside; for somebody who comes out of a place, right outside its door.
@@ -53,7 +52,8 @@ pub(crate) fn meets_arms(location: &Location, from: Option<PlaceClass>, least: u
     let graph = &location.graph;
     let arms = |id: &NodeId| graph.neighbors(id).len();
     let doorway = |id: &NodeId| graph.kind(id) == Some(PlaceClass::Doorway);
-    let outside = |id: &NodeId| !is_inside(location, id) && !doorway(id);
+    let all = Enclosures::of(location);
+    let outside = |id: &NodeId| !all.is_inside(id) && !doorway(id);
     let Some(class) = from else {
         return graph.nodes().iter().any(|node| outside(&node.id) && arms(&node.id) >= least);
     };

@@ -1,10 +1,10 @@
 //! Ways through the scene graph: shortest ones round what is barred, and the robot's ways over a meeting node.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use socrates_maps::openings::Enclosures;
 use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
-
-use crate::place;
 
 /// A way that begins or ends where the task says by name is better than any other; else the nearer the better, per m.
 const CALLED: f64 = 40.0;
@@ -20,6 +20,8 @@ pub(crate) struct Net<'a> {
     at: Vec<Point>,
     near: Vec<Vec<(usize, f64)>>,
     inside: Vec<bool>,
+    /// The rooms and cars.
+    pub(crate) enclosures: Arc<Enclosures>,
     /// How far each node is from the places where the robot's task begins and ends by name, m; empty without such places.
     start_m: Vec<f64>,
     goal_m: Vec<f64>,
@@ -48,13 +50,15 @@ impl<'a> Net<'a> {
                 }
             }
         }
-        let inside = ids.iter().map(|id| place::is_inside(location, id)).collect();
+        let enclosures = Enclosures::of(location);
+        let inside = ids.iter().map(|id| enclosures.is_inside(id)).collect();
         Self {
             location,
             at: graph.nodes().iter().map(|node| node.at).collect(),
             ids,
             near,
             inside,
+            enclosures,
             start_m: Vec::new(),
             goal_m: Vec::new(),
             rooms: BTreeMap::new(),

@@ -16,7 +16,7 @@ use crate::crowd;
 use crate::draw::Draw;
 use crate::edit_paths;
 use crate::fit::{SQUEEZED, hides, layout, overtakes, squeezed, tight};
-use crate::humans::{Taken, Way, led_past, way};
+use crate::humans::{Taken, Way, led_past, same_door, way};
 use crate::place;
 use crate::routes::{Net, Route, Tree, Wish, over, score};
 use crate::spot;
@@ -185,10 +185,7 @@ fn enters(net: &Net<'_>, proposal: &Proposal) -> Option<Vec<usize>> {
     let goes_in = proposal.robot.goal == Some(class) || car;
     let all: Vec<usize> = place::inside(net.location, Some(class)).iter().filter_map(|id| net.index(id)).collect();
     // Into a room that others come out of the robot goes where it has a place besides theirs.
-    let roomy = |node: &usize| {
-        let door = |node: usize| net.id(node).and_then(|id| net.location.door_of(id)).map(|door| &door.id);
-        car || all.iter().any(|other| other != node && door(*other).is_some() && door(*other) == door(*node))
-    };
+    let roomy = |node: &usize| car || all.iter().any(|other| other != node && same_door(net, *other, Some(*node)));
     let cars: Vec<usize> = all.iter().copied().filter(roomy).collect();
     if goes_in && !cars.is_empty() { Some(cars) } else { None }
 }

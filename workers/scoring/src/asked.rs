@@ -125,6 +125,55 @@ fn who_goes_into_a_room_without_a_door_or_stays_in_it_is_judged_there_too() {
     assert_eq!(found(&report, "c1").standing, Standing::Holds, "{}", found(&report, "c1").evidence);
 }
 
+/// A room of its own behind the wall x = 4 with two openings 1.2 m wide, at y = -2 with a doorway node and at y = 2 with an edge.
+fn from_a_room_with_two_doors() -> Case {
+    let place = floor(
+        &[
+            (4., 2.6, 4.2, 4.),
+            (4., -1.4, 4.2, 1.4),
+            (4., -4., 4.2, -2.6),
+            (4., 4., 9., 4.2),
+            (4., -4.2, 9., -4.),
+            (9., -4., 9.2, 4.),
+        ],
+        &[
+            ("r", "WARD", 7., -2.),
+            ("q", "WARD", 7., 2.),
+            ("d", "DOORWAY", 4.1, -2.),
+            ("m", "INTERSECTION", 1., -2.),
+            ("k", "CORRIDOR", 1., 2.),
+            ("s", "CORRIDOR", 1., -8.),
+            ("n", "CORRIDOR", 1., 8.),
+        ],
+        &[("r", "q"), ("r", "d"), ("d", "m"), ("q", "k"), ("s", "m"), ("m", "k"), ("k", "n")],
+    );
+    let mut plan = proposal(1, vec![must("c1", Predicate::Leaves { human: H1, door: String::new() })]);
+    plan.humans[0].relation = Relation::Leaving;
+    Case { place, plan, ways: paths(&["s", "m", "k", "n"], &[(&["r", "d", "m", "s"], "m")]), reading: None }
+}
+
+#[test]
+fn who_comes_out_by_the_other_door_of_the_room_is_out_and_who_comes_in_again_is_not() {
+    let case = from_a_room_with_two_doors();
+    let judge = |human: Walk| {
+        let report = case.judge(&recording(&[Walk::robot(0.2, -8., 0., 0.8), human], 24.0, 0.01));
+        let leaves = found(&report, "c1");
+        (leaves.standing, leaves.evidence.clone())
+    };
+    let (standing, text) =
+        judge(Walk::human_through(1, &[(0., 7., -2.), (5., 7., -2.), (9., 1., -2.), (20., 1., -8.)]));
+    assert!(standing == Standing::Holds && text.starts_with("human_1 leaves through `d` at "), "{text}");
+    let (standing, text) = judge(Walk::human_through(1, &[(0., 7., -2.), (5., 7., 2.), (9., 1., 2.), (20., 1., 8.)]));
+    assert!(standing == Standing::Holds && text.starts_with("human_1 leaves through `q-k` at "), "{text}");
+    let round = [(0., 7., -2.), (5., 7., -2.), (9., 1., -2.), (14., 1., 2.), (20., 7., 2.)];
+    let (standing, text) = judge(Walk::human_through(1, &round));
+    assert_eq!(standing, Standing::Fails, "out by one door and in by the other: {text}");
+    let (standing, text) = judge(Walk::human_through(1, &[(0., 3., 2.), (9., 1., 2.), (20., 1., 8.)]));
+    assert!(standing == Standing::Fails && text.contains("outside the door `d` or `q-k`"), "{text}");
+    let (standing, text) = judge(Walk::human_through(1, &[(0., 7., -2.), (20., 7., 2.)]));
+    assert_eq!(standing, Standing::Fails, "never out: {text}");
+}
+
 #[test]
 fn a_must_that_cannot_be_judged_is_told_and_not_counted_as_seen() {
     let mut case = from_a_room();

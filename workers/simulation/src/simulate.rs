@@ -1,6 +1,7 @@
 //! One run, pure: the same setup gives the same recording.
 
 use socrates_engine::{Engine, Keeper, Onlooker, Setup};
+use socrates_maps::openings::Enclosures;
 use socrates_model::request::Waypoints;
 use socrates_model::{
     Behaviors, Fault, FaultCode, Location, NodeId, Paths, PlannerName, Point, Proposal, Recording, Request, RunId,
@@ -62,7 +63,8 @@ pub fn simulate_into(mut setup: Setup, planner: &PlannerName, onlooker: &mut dyn
     }
     setup.planner = planner.clone();
     let given = waypoints(&setup);
-    let (robot, grid, doors) = (setup.robot, setup.location.grid.clone(), setup.location.doors.clone());
+    let (robot, grid) = (setup.robot, setup.location.grid.clone());
+    let doors = Enclosures::of(&setup.location).doors(&setup.location);
     let route = setup.location.graph.polyline(&setup.paths.robot);
     let script = setup.proposal.robot.script.clone();
     let place = |node: &NodeId| setup.location.graph.node(node).map(|node| node.at);

@@ -73,10 +73,7 @@ fn gap(answer: &mut Value, question: &Question, draw: u64) -> Option<()> {
 /// The robot's path ends where it meets somebody who walks: only at a room, a car or a standing group may it end.
 fn ends_there(answer: &mut Value, question: &Question) -> Option<()> {
     let graph = &question.location.graph;
-    let indoors = |node: &NodeId| {
-        let class = |kind: &str| matches!(PlaceClass::of_type(kind), PlaceClass::Elevator | PlaceClass::Room);
-        question.location.door_of(node).is_some() || graph.node(node).is_some_and(|found| class(&found.kind))
-    };
+    let indoors = |node: &NodeId| socrates_checks::is_inside(&question.location, node);
     let walkers: Vec<String> = answer["humans"]
         .as_object()?
         .iter()

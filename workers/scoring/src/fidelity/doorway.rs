@@ -1,12 +1,12 @@
 //! Monitors of doors and lines of sight: leaves, enters, stays inside, door opens, hidden until, robot enters last,
 //! robot leaves first.
 
-use socrates_model::{AgentId, Door, HumanId, Location, NodeId, Point, Relation};
+use socrates_model::{AgentId, HumanId, Relation};
 
-use crate::fidelity::doors::{crossings, inside_point};
+use crate::fidelity::doors::Crossing;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
-use crate::fidelity::openings::{opening, way_out};
+use crate::fidelity::openings::{destination, from_node, lines_of};
 use crate::fidelity::signals::{Moment, Signals};
 use crate::temporal::{Signal, Within};
 use crate::tracks::{Sample, Track};
@@ -18,54 +18,6 @@ const SIGHT_SLACK_M: f64 = 0.3;
 /// A door lets through a line of sight so long before its opening is told, s.
 const OPENING_SECS: f64 = 0.1;
 
-/// The door a clause means, with a point behind it, or why there is none. A room without a door has an opening.
-fn door_of(signals: &Signals<'_>, door: &str, human: Option<HumanId>) -> Result<(Door, Point), Finding> {
-    let Some(place) = signals.evidence.location else {
-        return Err(Finding::not_applicable("there is no map, so there are no doors"));
-    };
-    if door.is_empty()
-        && let Some(id) = human
-        && guess(signals, place, human).is_none()
-        && let Some(found) = way_out_of(signals, place, id)
-    {
-        let inside = inside_point(&found, place);
-        return inside
-            .map(|inside| (found, inside))
-            .ok_or_else(|| Finding::not_applicable("the opening has no inside"));
-    }
-    if place.doors.is_empty() {
-        return Err(Finding::not_applicable(format!("the map `{}` declares no doors", place.name)));
-    }
-    let found = if door.is_empty() { guess(signals, place, human) } else { place.door(door) };
-    let Some(found) = found else {
-        let names: Vec<&str> = place.doors.iter().map(|door| door.id.as_str()).collect();
-        let what =
-            if door.is_empty() { "no door belongs to the clause".to_owned() } else { format!("no door `{door}`") };
-        return Err(Finding::not_applicable(format!("{what}; the map has {}", names.join(", "))));
-    };
-    inside_point(found, place)
-        .map(|inside| (found.clone(), inside))
-        .ok_or_else(|| Finding::not_applicable(format!("the door `{}` names no node behind it", found.id)))
-}
-
-/// The door of a human's first node; else of an encounter, the robot's last node, or any human's first node.
-fn guess<'a>(signals: &Signals<'a>, place: &'a Location, human: Option<HumanId>) -> Option<&'a Door> {
-    let paths = signals.evidence.paths?;
-    let first = |id: HumanId| paths.humans.get(&id).and_then(|nodes| nodes.first());
-    if let Some(id) = human {
-        return first(id).and_then(|node| place.door_of(node));
-    }
-    let meetings = paths.encounters.iter().map(|encounter| &encounter.node);
-    let starts = paths.humans.values().filter_map(|nodes| nodes.first());
-    meetings.chain(paths.robot.last()).chain(starts).find_map(|node| place.door_of(node))
-}
-
-/// The opening that somebody's way leads out through; for who stays, the nearest way out of its room.
-fn way_out_of(signals: &Signals<'_>, place: &Location, human: HumanId) -> Option<Door> {
-    let (way, field) = (signals.evidence.paths?.humans.get(&human)?, signals.field.as_ref()?);
-    opening(place, field, way).or_else(|| opening(place, field, &way_out(&place.graph, way.first()?)?))
-}
-
 fn person<'a>(signals: &'a Signals<'_>, human: HumanId) -> Result<&'a Track, Finding> {
     signals.tracks.human(human).ok_or_else(|| Finding::fails(-1.0, vec![], format!("{human} is not in the recording")))
 }
@@ -73,29 +25,28 @@ fn person<'a>(signals: &'a Signals<'_>, human: HumanId) -> Result<&'a Track, Fin
 /// The human starts inside and crosses the door line outward exactly once.
 pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
     let track = person(signals, human)?;
-    let (door, inside) = door_of(signals, door, Some(human))?;
+    let lines = lines_of(signals, door, Some(human))?;
     let Some(start) = track.samples.first() else { return Err(Finding::not_applicable("the recording is empty")) };
-    let depth = door.depth_m(&start.at, &inside);
+    let (depth, name) = (lines.depth_m(&start.at), lines.name());
     if depth < THRESHOLD_M {
-        let text = format!("{human} starts {:.1} m outside the door `{}`", -depth, door.id);
+        let text = format!("{human} starts {:.1} m outside the door {name}", -depth);
         return Ok(Finding::fails(depth.min(-0.01), vec![0.0], text));
     }
-    let found = crossings(&door, &inside, &track.samples);
-    let out: Vec<f64> = found.iter().filter(|crossing| crossing.outward).map(|crossing| crossing.t).collect();
-    let end = track.samples.last().map_or(0.0, |sample| -door.depth_m(&sample.at, &inside));
+    let found = lines.crossings(&track.samples);
+    let out: Vec<f64> = found.iter().filter(|(crossing, _)| crossing.outward).map(|(crossing, _)| crossing.t).collect();
+    let end = track.samples.last().map_or(0.0, |sample| -lines.depth_m(&sample.at));
     let list = out.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
-    match (out.as_slice(), found.len()) {
-        ([at], 1) => {
-            let text = format!("{human} leaves through `{}` at {at:.1} s", door.id);
+    match (out.as_slice(), found.as_slice()) {
+        ([at], [(_, line)]) => {
+            let text = format!("{human} leaves through `{line}` at {at:.1} s");
             Ok(Finding::by_margin(end.max(0.05), vec![*at], text))
         }
         ([], _) => {
-            let text = format!("{human} never leaves through `{}`: still {:.1} m inside at the end", door.id, -end);
+            let text = format!("{human} never leaves through {name}: still {:.1} m inside at the end", -end);
             Ok(Finding::fails(end.min(-0.05), vec![], text))
         }
         _ => {
-            let text =
-                format!("{human} crosses the door `{}` {} times (out at {list}); once asked", door.id, found.len());
+            let text = format!("{human} crosses the door {name} {} times (out at {list}); once asked", found.len());
             Ok(Finding::fails(-1.0, out, text))
         }
     }
@@ -104,68 +55,45 @@ pub(super) fn leaves(signals: &Signals<'_>, human: HumanId, door: &str) -> Resul
 /// The human starts outside and crosses the door line inward exactly once.
 pub(super) fn enters(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
     let track = person(signals, human)?;
-    let (door, inside) = if door.is_empty() { destination(signals, human)? } else { door_of(signals, door, None)? };
+    let lines = if door.is_empty() { destination(signals, human)? } else { lines_of(signals, door, None)? };
     let Some(start) = track.samples.first() else { return Err(Finding::not_applicable("the recording is empty")) };
-    let depth = door.depth_m(&start.at, &inside);
-    let found = crossings(&door, &inside, &track.samples);
-    let inward: Vec<f64> = found.iter().filter(|crossing| !crossing.outward).map(|crossing| crossing.t).collect();
-    let end = track.samples.last().map_or(0.0, |sample| door.depth_m(&sample.at, &inside));
+    let (depth, name) = (lines.depth_m(&start.at), lines.name());
+    let found = lines.crossings(&track.samples);
+    let inward: Vec<f64> =
+        found.iter().filter(|(crossing, _)| !crossing.outward).map(|(crossing, _)| crossing.t).collect();
+    let end = track.samples.last().map_or(0.0, |sample| lines.depth_m(&sample.at));
     let list = inward.iter().map(|t| format!("{t:.1} s")).collect::<Vec<_>>().join(", ");
-    match (inward.as_slice(), found.len()) {
-        ([at], 1) => {
-            let text = format!("{human} enters through `{}` at {at:.1} s", door.id);
+    match (inward.as_slice(), found.as_slice()) {
+        ([at], [(_, line)]) => {
+            let text = format!("{human} enters through `{line}` at {at:.1} s");
             Ok(Finding::by_margin(end.max(0.05), vec![*at], text))
         }
-        ([], 0) if depth > 0.0 && end > 0.0 => {
-            let text = format!("{human} starts {depth:.1} m inside the door `{}`", door.id);
+        ([], []) if depth > 0.0 && end > 0.0 => {
+            let text = format!("{human} starts {depth:.1} m inside the door {name}");
             Ok(Finding::fails((-depth).min(-0.01), vec![0.0], text))
         }
         ([], _) => {
-            let text = format!("{human} never enters through `{}`: {:.1} m outside at the end", door.id, -end);
+            let text = format!("{human} never enters through {name}: {:.1} m outside at the end", -end);
             Ok(Finding::fails(end.min(-0.05), vec![], text))
         }
         _ => {
-            let text =
-                format!("{human} crosses the door `{}` {} times (in at {list}); once asked", door.id, found.len());
+            let text = format!("{human} crosses the door {name} {} times (in at {list}); once asked", found.len());
             Ok(Finding::fails(-1.0, inward, text))
         }
     }
 }
 
-/// The door that a human's way leads into: the one of its last node, else the opening of the room of that node, else
-/// the nearest door to it.
-fn destination(signals: &Signals<'_>, human: HumanId) -> Result<(Door, Point), Finding> {
-    let usual = || door_of(signals, "", Some(human));
-    let way = signals.evidence.paths.and_then(|paths| paths.humans.get(&human));
-    let Some((place, way, last)) =
-        signals.evidence.location.zip(way).and_then(|(place, way)| Some((place, way, way.last()?)))
-    else {
-        return usual();
-    };
-    if place.door_of(last).is_none() {
-        let back: Vec<NodeId> = way.iter().rev().cloned().collect();
-        let found = signals.field.as_ref().and_then(|field| opening(place, field, &back));
-        if let Some(found) = found.and_then(|door| Some((inside_point(&door, place)?, door))) {
-            return Ok((found.1, found.0));
-        }
-    }
-    let near = || {
-        let at = signals.node(last)?;
-        place.doors.iter().min_by(|a, b| (a.middle() - at).norm().total_cmp(&(b.middle() - at).norm()))
-    };
-    place.door_of(last).or_else(near).map_or_else(usual, |door| door_of(signals, &door.id, None))
-}
-
 /// The human is behind the door for the whole run.
 pub(super) fn stays_inside(signals: &Signals<'_>, human: HumanId, door: &str) -> Result<Finding, Finding> {
     let track = person(signals, human)?;
-    let (door, inside) = door_of(signals, door, Some(human))?;
-    let out = crossings(&door, &inside, &track.samples).into_iter().find(|crossing| crossing.outward);
-    let least = track.samples.iter().map(|s| (door.depth_m(&s.at, &inside), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let lines = lines_of(signals, door, Some(human))?;
+    let out = lines.crossings(&track.samples).into_iter().map(|(crossing, _)| crossing).find(|found| found.outward);
+    let least = track.samples.iter().map(|s| (lines.depth_m(&s.at), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let (depth, at) = least.unwrap_or((0.0, 0.0));
+    let name = lines.name();
     let text = match out {
-        Some(crossing) => format!("{human} crosses the door `{}` outward at {:.1} s", door.id, crossing.t),
-        None => format!("{human} stays at least {depth:.2} m behind the door `{}` (at {at:.1} s)", door.id),
+        Some(crossing) => format!("{human} crosses the door {name} outward at {:.1} s", crossing.t),
+        None => format!("{human} stays at least {depth:.2} m behind the door {name} (at {at:.1} s)"),
     };
     let margin = if out.is_some() { depth.min(-0.01) } else { depth };
     Ok(Finding::by_margin(margin, vec![out.map_or(0.0, |crossing| crossing.t)], text))
@@ -173,9 +101,14 @@ pub(super) fn stays_inside(signals: &Signals<'_>, human: HumanId, door: &str) ->
 
 /// The door opens while the robot is within a range of distances.
 pub(super) fn door_opens(signals: &Signals<'_>, door: &str, robot_m: [f64; 2]) -> Result<Finding, Finding> {
-    let (door, _) = door_of(signals, door, None)?;
+    let lines = lines_of(signals, door, None)?;
     let Some(robot) = &signals.tracks.robot else {
         return Err(Finding::not_applicable("there is no robot in the recording"));
+    };
+    let declared = signals.evidence.location.map_or_else(Vec::new, |location| lines.declared(location));
+    let opened = lines.first_open(signals).map(|(door, _)| door);
+    let Some(door) = opened.or_else(|| declared.first().copied()) else {
+        return Err(Finding::not_applicable(format!("{} is an opening without a door", lines.name())));
     };
     if signals.doors.stands_open(&door.id) {
         return Err(Finding::not_applicable(format!("the door `{}` stands open for the whole run", door.id)));
@@ -215,10 +148,8 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
             format!("there is never a line of sight between {human} and the robot"),
         ));
     };
-    let opened = door_of(signals, "", Some(human))
-        .ok()
-        .filter(|(door, _)| !signals.doors.stands_open(&door.id))
-        .and_then(|(door, _)| signals.doors.first_open_s(&door.id).map(|t| (door, t)));
+    let lines = lines_of(signals, "", Some(human)).ok();
+    let opened = lines.as_ref().and_then(|lines| lines.first_open(signals));
     // Hidden until seen near by, or through the open door: (not seen) U (seen and (near or open)). Seen or not has no
     // size of its own, so that the margin is that of the distance, or of the time since the door opened.
     let moments = signals.of(human);
@@ -247,20 +178,20 @@ pub(super) fn hidden_until(signals: &Signals<'_>, human: HumanId, within_m: f64)
 
 /// The robot crosses the door line inward only after everybody who leaves is out.
 pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Finding> {
-    let (door, inside) = door_of(signals, "", None)?;
+    let lines = lines_of(signals, "", None)?;
     let Some(robot) = &signals.tracks.robot else {
         return Err(Finding::not_applicable("there is no robot in the recording"));
     };
-    let entry = crossings(&door, &inside, &robot.samples).into_iter().find(|crossing| !crossing.outward);
+    let crossings = |samples: &[Sample]| -> Vec<Crossing> {
+        lines.crossings(samples).into_iter().map(|(crossing, _)| crossing).collect()
+    };
+    let name = lines.name();
+    let entry = crossings(&robot.samples).into_iter().find(|crossing| !crossing.outward);
     let mut last: Option<(f64, AgentId)> = None;
     let mut inside_still = Vec::new();
     for track in &signals.tracks.humans {
         let leaves = track.human().and_then(|id| signals.evidence.proposal?.human(id)).map(|human| human.relation);
-        let out = crossings(&door, &inside, &track.samples)
-            .into_iter()
-            .filter(|crossing| crossing.outward)
-            .map(|c| c.t)
-            .next_back();
+        let out = crossings(&track.samples).into_iter().filter(|crossing| crossing.outward).map(|c| c.t).next_back();
         match out {
             Some(t) if last.is_none_or(|(old, _)| t > old) => last = Some((t, track.agent)),
             None if leaves == Some(Relation::Leaving) => inside_still.push(track.agent.to_string()),
@@ -268,30 +199,28 @@ pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Findin
         }
     }
     let Some(entry) = entry else {
-        return Ok(Finding::never(-1.0, vec![], format!("the robot never enters through `{}`", door.id)));
+        return Ok(Finding::never(-1.0, vec![], format!("the robot never enters through {name}")));
     };
     if !inside_still.is_empty() {
-        let text =
-            format!("the robot enters `{}` at {:.1} s, {} never left", door.id, entry.t, inside_still.join(", "));
+        let text = format!("the robot enters {name} at {:.1} s, {} never left", entry.t, inside_still.join(", "));
         return Ok(Finding::fails(-1.0, vec![entry.t], text));
     }
     Ok(match last {
         Some((t, who)) => {
-            let text = format!("the robot enters `{}` at {:.1} s, {who} left last at {t:.1} s", door.id, entry.t);
+            let text = format!("the robot enters {name} at {:.1} s, {who} left last at {t:.1} s", entry.t);
             Finding::by_margin(entry.t - t, vec![entry.t, t], text)
         }
-        None => Finding::never(-1.0, vec![entry.t], format!("nobody leaves through `{}`", door.id)),
+        None => Finding::never(-1.0, vec![entry.t], format!("nobody leaves through {name}")),
     })
 }
 
 /// The robot is out of the door before the first human goes in.
 pub(super) fn robot_leaves_first(signals: &Signals<'_>) -> Result<Finding, Finding> {
-    let paths = signals.evidence.paths;
-    let own = paths
-        .and_then(|paths| paths.robot.first())
-        .and_then(|node| signals.evidence.location?.door_of(node))
-        .map_or(String::new(), |door| door.id.clone());
-    let (door, inside) = door_of(signals, &own, None)?;
+    let lines = from_node(signals, signals.evidence.paths.and_then(|paths| paths.robot.first()))?;
+    let name = lines.name();
+    let crossings = |samples: &[Sample]| -> Vec<Crossing> {
+        lines.crossings(samples).into_iter().map(|(crossing, _)| crossing).collect()
+    };
     let Some(robot) = &signals.tracks.robot else {
         return Err(Finding::not_applicable("there is no robot in the recording"));
     };
@@ -300,20 +229,20 @@ pub(super) fn robot_leaves_first(signals: &Signals<'_>) -> Result<Finding, Findi
         .humans
         .iter()
         .filter_map(|track| {
-            let entry = crossings(&door, &inside, &track.samples).into_iter().find(|crossing| !crossing.outward)?;
+            let entry = crossings(&track.samples).into_iter().find(|crossing| !crossing.outward)?;
             Some((entry.t, track.agent))
         })
         .min_by(|a, b| a.0.total_cmp(&b.0));
-    let exit = crossings(&door, &inside, &robot.samples).into_iter().find(|crossing| crossing.outward);
+    let exit = crossings(&robot.samples).into_iter().find(|crossing| crossing.outward);
     Ok(match (exit, first) {
         (None, Some((t, who))) => {
-            let text = format!("{who} enters `{}` at {t:.1} s, the robot never leaves", door.id);
+            let text = format!("{who} enters {name} at {t:.1} s, the robot never leaves");
             Finding::fails(-1.0, vec![t], text)
         }
-        (None, None) => Finding::never(-1.0, vec![], format!("the robot never leaves through `{}`", door.id)),
-        (Some(exit), None) => Finding::never(-1.0, vec![exit.t], format!("nobody enters through `{}`", door.id)),
+        (None, None) => Finding::never(-1.0, vec![], format!("the robot never leaves through {name}")),
+        (Some(exit), None) => Finding::never(-1.0, vec![exit.t], format!("nobody enters through {name}")),
         (Some(exit), Some((t, who))) => {
-            let text = format!("the robot leaves `{}` at {:.1} s, {who} enters first at {t:.1} s", door.id, exit.t);
+            let text = format!("the robot leaves {name} at {:.1} s, {who} enters first at {t:.1} s", exit.t);
             Finding::by_margin(t - exit.t, vec![exit.t, t], text)
         }
     })

@@ -1,224 +1,207 @@
-//! Openings of rooms without a door: the line that somebody crosses who comes out, goes in, or stays inside.
+//! The lines that somebody crosses who comes out of a room or car, goes in, or stays inside.
 
-use socrates_maps::DistanceField;
-use socrates_model::{Door, DoorKind, DoorOpens, Location, NodeId, PlaceClass, Point, SceneGraph, Vector};
+use socrates_maps::openings::{Enclosure, Enclosures, Opening};
+use socrates_model::geometry::nearest_on_segment;
+use socrates_model::{Door, HumanId, Location, NodeId, Point};
 
-/// An opening is looked for this near to the doorway node of a way, m.
-const NEAR_M: f64 = 1.2;
-/// Distance between the places along the way that are tried, and between points across it, m.
-const STEP_M: f64 = 0.05;
-/// A wall farther from the way than this bounds no opening, m.
-const REACH_M: f64 = 2.5;
-/// A point with less clearance than this is at the wall, m.
-const WALL_M: f64 = 0.02;
-/// Places that differ in width by less than this are equally narrow, m: what a cell of a map makes of it.
-const EQUAL_M: f64 = 0.1;
-/// Distance of an opening from the nodes on both of its sides, m, or half of the way between them where that is shorter:
-/// somebody who stands at the inside node is inside.
-const CLEAR_M: f64 = 0.5;
+use crate::fidelity::doors::{Crossing, crossings, inside_point};
+use crate::fidelity::finding::Finding;
+use crate::fidelity::signals::Signals;
+use crate::tracks::Sample;
 
-/// Whether somebody at a node of this kind is inside of something.
-const fn is_inside(class: PlaceClass) -> bool {
-    match class {
-        PlaceClass::Room | PlaceClass::Elevator | PlaceClass::OpenArea | PlaceClass::Plain => true,
-        PlaceClass::Corridor
-        | PlaceClass::NarrowPassage
-        | PlaceClass::Intersection
-        | PlaceClass::BlindCorner
-        | PlaceClass::Doorway
-        | PlaceClass::ElevatorLobby
-        | PlaceClass::Exit => false,
+/// The lines of a room or car that a clause is about, or one door of it.
+pub(super) struct Lines<'s> {
+    place: Option<(&'s Enclosures, &'s Enclosure)>,
+    /// Each with a point on its inner side.
+    doors: Vec<(Door, Point)>,
+}
+
+impl<'s> Lines<'s> {
+    /// All ways out of a place.
+    fn of_place(location: &Location, all: &'s Enclosures, place: &'s Enclosure) -> Self {
+        let doors = place.ways_out().into_iter().map(|opening| line(location, place, opening)).collect();
+        Self { place: Some((all, place)), doors }
     }
-}
 
-/// The opening through which a way leads out of the room that it begins in, as a door that always stands open: across
-/// the way at its first doorway node; where it has none, at the narrowest place between the room and what comes next, of
-/// equally narrow ones the outermost. `None` where the way begins in no room, or no walls bound the opening.
-#[must_use]
-pub(super) fn opening(place: &Location, field: &DistanceField, way: &[NodeId]) -> Option<Door> {
-    let class = |id: &NodeId| place.graph.kind(id);
-    let first = way.first()?;
-    if !class(first).is_some_and(is_inside) {
-        return None;
+    /// Those of the place that a node lies in.
+    fn of_node(signals: &'s Signals<'_>, node: &NodeId) -> Option<Self> {
+        let (location, all) = (signals.evidence.location?, signals.enclosures.as_deref()?);
+        Some(Self::of_place(location, all, all.of_node(node)?))
     }
-    let doorway = way.iter().position(|id| class(id) == Some(PlaceClass::Doorway));
-    let outside = way.iter().position(|id| class(id).is_some_and(|class| !is_inside(class)))?;
-    // A doorway farther on belongs to another room.
-    let (door, nodes): (Option<&NodeId>, &[NodeId]) = match doorway.filter(|at| *at == outside) {
-        Some(at) => (way.get(at), way.get(at.checked_sub(1)?..way.len().min(at + 2))?),
-        // Plain nodes say nothing of a room without a doorway.
-        None if class(first) == Some(PlaceClass::Plain) => return None,
-        None => (None, way.get(outside.checked_sub(1)?..=outside)?),
-    };
-    let line = place.graph.polyline(nodes);
-    let (from, to) = match door.and_then(|id| place.graph.node(id)) {
-        Some(node) => narrowest(field, &line, node.at, NEAR_M)?,
-        None => between(field, &line)?,
-    };
-    let id = door.or_else(|| nodes.first()).map(ToString::to_string)?;
-    let kind = if class(first) == Some(PlaceClass::Elevator) { DoorKind::Elevator } else { DoorKind::Room };
-    let inside = nodes.first().cloned().into_iter().collect();
-    Some(Door { id, kind, from, to, opens: DoorOpens::Always, hold_s: 0.0, inside })
-}
 
-/// The way out of the room of a node: to the nearest node that is not inside of anything and, where that is a doorway, one
-/// node on.
-#[must_use]
-pub(super) fn way_out(graph: &SceneGraph, from: &NodeId) -> Option<Vec<NodeId>> {
-    let outside = graph.nodes().iter().enumerate().filter(|(at, _)| !is_inside(graph.kind_at(*at)));
-    let mut way = outside
-        .filter_map(|(_, node)| graph.shortest(from, &node.id))
-        .min_by(|a, b| graph.length_m(a).total_cmp(&graph.length_m(b)))?;
-    let last = way.last()?;
-    let on = graph.neighbors(last).iter().find(|next| !way.contains(next));
-    let on = on.filter(|_| graph.kind(last) == Some(PlaceClass::Doorway)).cloned();
-    way.extend(on);
-    Some(way)
-}
-
-/// Ends of the shortest line across a way from an inside node to an outside node: the narrowest place, of equally narrow ones
-/// the outermost, and at some distance from both nodes. A node may be drawn in the very opening of its room, or a corridor
-/// go on as wide as the car: then the line is moved along the way.
-fn between(field: &DistanceField, way: &[Point]) -> Option<(Point, Point)> {
-    let length_m: f64 = way.windows(2).map(|pair| if let [a, b] = pair { (b - a).norm() } else { 0.0 }).sum();
-    let clear_m = CLEAR_M.min(length_m / 2.0);
-    let outermost = along(way, length_m - clear_m)?;
-    let (left, right) = narrowest(field, way, outermost, f64::INFINITY)?;
-    let first = way.first()?;
-    let middle = left + (right - left) / 2.0;
-    let inside = (middle - first).norm();
-    let moved = if inside < clear_m { along(way, clear_m)? - along(way, inside)? } else { Vector::zeros() };
-    Some((left + moved, right + moved))
-}
-
-/// The point so far along a way.
-fn along(way: &[Point], mut length_m: f64) -> Option<Point> {
-    for pair in way.windows(2) {
-        let [a, b] = pair else { continue };
-        let piece = (b - a).norm();
-        if piece >= length_m && piece > 0.0 {
-            return Some(a + (b - a) * (length_m / piece));
+    /// The line of a door, or of an opening, by its name.
+    fn by_name(signals: &'s Signals<'_>, name: &str) -> Option<Self> {
+        let (location, all) = (signals.evidence.location?, signals.enclosures.as_deref()?);
+        let of = |place: &'s Enclosure| Some((place, place.openings.iter().find(|opening| opening.name() == name)?));
+        if let Some((place, opening)) = all.all().iter().find_map(of) {
+            return Some(Self { place: Some((all, place)), doors: vec![line(location, place, opening)] });
         }
-        length_m -= piece;
+        let door = location.door(name)?;
+        Some(Self { place: None, doors: vec![(door.clone(), inside_point(door, location)?)] })
     }
-    way.last().copied()
-}
 
-/// Ends of the shortest line across a way from wall to wall, of places within a distance of a point; of equally narrow ones
-/// the nearest to it.
-fn narrowest(field: &DistanceField, way: &[Point], near: Point, within_m: f64) -> Option<(Point, Point)> {
-    let mut places: Vec<(f64, f64, (Point, Point))> = Vec::new();
-    for pair in way.windows(2) {
-        let [a, b] = pair else { continue };
-        let length = (b - a).norm();
-        if length <= 0.0 {
-            continue;
-        }
-        let ahead = (b - a) / length;
-        let across = Vector::new(-ahead.y, ahead.x);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a way has few steps")]
-        let steps = (length / STEP_M).floor() as u32;
-        for step in 0..=steps {
-            let at = a + ahead * (f64::from(step) * STEP_M);
-            let off = (at - near).norm();
-            if off > within_m {
-                continue;
+    /// Its name, or their names, for texts.
+    pub(super) fn name(&self) -> String {
+        let names: Vec<String> = self.doors.iter().map(|(door, _)| format!("`{}`", door.id)).collect();
+        names.join(" or ")
+    }
+
+    /// How far a point lies behind the nearest line, m; negative outside.
+    pub(super) fn depth_m(&self, at: &Point) -> f64 {
+        let far = |door: &Door| nearest_on_segment(at, &door.from, &door.to).0;
+        let nearest = self.doors.iter().min_by(|a, b| far(&a.0).total_cmp(&far(&b.0)));
+        let Some((door, inside)) = nearest else { return f64::NEG_INFINITY };
+        let depth_m = door.depth_m(at, inside);
+        match self.place {
+            // A room may run on beside its own door, and a corridor behind it.
+            Some((all, place)) if all.holds(place, at) != (depth_m > 0.0) => {
+                if depth_m > 0.0 {
+                    -far(door)
+                } else {
+                    far(door)
+                }
             }
-            let Some((left, right)) = to_wall(field, &at, &across).zip(to_wall(field, &at, &-across)) else { continue };
-            places.push(((left - right).norm(), off, (left, right)));
+            Some(_) | None => depth_m,
         }
     }
-    let least = places.iter().map(|(width, ..)| *width).min_by(f64::total_cmp)?;
-    let narrow = places.into_iter().filter(|(width, ..)| *width < least + EQUAL_M);
-    narrow.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(_, _, line)| line)
+
+    /// Who goes through when, over all lines, in time order, each with the name of its line.
+    pub(super) fn crossings(&self, samples: &[Sample]) -> Vec<(Crossing, &str)> {
+        let of = |(door, inside): &'_ (Door, Point)| crossings(door, inside, samples);
+        let mut found: Vec<(Crossing, &str)> = self
+            .doors
+            .iter()
+            .flat_map(|line| of(line).into_iter().map(|crossing| (crossing, line.0.id.as_str())))
+            .collect();
+        found.sort_by(|a, b| a.0.t.total_cmp(&b.0.t));
+        found
+    }
+
+    /// When the first of its declared doors opens that does not stand open, s; `None` where none ever does.
+    pub(super) fn first_open(&self, signals: &Signals<'_>) -> Option<(&Door, f64)> {
+        let doors = self.doors.iter().map(|(door, _)| door).filter(|door| !signals.doors.stands_open(&door.id));
+        let opened = doors.filter_map(|door| Some((door, signals.doors.first_open_s(&door.id)?)));
+        opened.min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Its declared doors.
+    pub(super) fn declared(&self, location: &Location) -> Vec<&Door> {
+        self.doors.iter().map(|(door, _)| door).filter(|door| location.door(&door.id).is_some()).collect()
+    }
 }
 
-/// The wall that a line from a point meets, if it does so within reach.
-fn to_wall(field: &DistanceField, from: &Point, along: &Vector) -> Option<Point> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number")]
-    let steps = (REACH_M / STEP_M) as u32;
-    (0..=steps).map(|step| from + along * (f64::from(step) * STEP_M)).find(|at| field.clearance(at) < WALL_M)
+/// An opening as a door, with a point on its inner side.
+fn line(location: &Location, place: &Enclosure, opening: &Opening) -> (Door, Point) {
+    (place.door(opening, location), opening.middle() + opening.inward)
+}
+
+/// The lines that a clause means, or why there are none: those of a door by its name; of the place that a human's way begins in; without a
+/// human, of the first place among the encounters, the robot's last node, and where people begin.
+pub(super) fn lines_of<'s>(signals: &'s Signals<'_>, door: &str, human: Option<HumanId>) -> Result<Lines<'s>, Finding> {
+    let Some(place) = signals.evidence.location else {
+        return Err(Finding::not_applicable("there is no map, so there are no doors"));
+    };
+    if !door.is_empty() {
+        return Lines::by_name(signals, door).ok_or_else(|| Finding::not_applicable(unknown(place, door)));
+    }
+    let Some(paths) = signals.evidence.paths else {
+        return Err(Finding::not_applicable(missing(signals, place, None)));
+    };
+    let first = |id: HumanId| paths.humans.get(&id).and_then(|nodes| nodes.first());
+    if let Some(id) = human {
+        let found = first(id).and_then(|node| Lines::of_node(signals, node));
+        return found.ok_or_else(|| Finding::not_applicable(missing(signals, place, first(id))));
+    }
+    let meetings = paths.encounters.iter().map(|encounter| &encounter.node);
+    let starts = paths.humans.values().filter_map(|nodes| nodes.first());
+    let mut nodes = meetings.chain(paths.robot.last()).chain(starts);
+    let found = nodes.find_map(|node| Lines::of_node(signals, node));
+    found.ok_or_else(|| Finding::not_applicable(missing(signals, place, None)))
+}
+
+/// The lines of the place of a node; where it lies in none, those that a clause without a name means.
+pub(super) fn from_node<'s>(signals: &'s Signals<'_>, node: Option<&NodeId>) -> Result<Lines<'s>, Finding> {
+    node.and_then(|node| Lines::of_node(signals, node)).map_or_else(|| lines_of(signals, "", None), Ok)
+}
+
+/// The lines that a human's way leads in through: those of the place of its last node, else of the nearest declared door.
+pub(super) fn destination<'s>(signals: &'s Signals<'_>, human: HumanId) -> Result<Lines<'s>, Finding> {
+    let way = signals.evidence.paths.and_then(|paths| paths.humans.get(&human));
+    let Some((place, last)) = signals.evidence.location.zip(way.and_then(|way| way.last())) else {
+        return lines_of(signals, "", Some(human));
+    };
+    if let Some(found) = Lines::of_node(signals, last) {
+        return Ok(found);
+    }
+    let near = signals
+        .node(last)
+        .and_then(|at| place.doors.iter().min_by(|a, b| (a.middle() - at).norm().total_cmp(&(b.middle() - at).norm())));
+    near.map_or_else(
+        || Err(Finding::not_applicable(missing(signals, place, Some(last)))),
+        |door| lines_of(signals, &door.id, None),
+    )
+}
+
+fn unknown(place: &Location, door: &str) -> String {
+    if place.doors.is_empty() {
+        return format!("the map `{}` declares no doors", place.name);
+    }
+    match place.door(door) {
+        Some(found) => format!("the door `{}` names no node behind it", found.id),
+        None => format!("no door `{door}`; the map has {}", names(place)),
+    }
+}
+
+/// Why a node lies behind no line.
+fn missing(signals: &Signals<'_>, place: &Location, node: Option<&NodeId>) -> String {
+    let open = signals.enclosures.as_deref().map_or(&[][..], Enclosures::open_plan);
+    let why = node.and_then(|node| Some((node, open.iter().find(|(nodes, _)| nodes.contains(node))?)));
+    match why {
+        Some((node, (_, why))) => format!("`{node}` lies in no room or car: {why}"),
+        None if place.doors.is_empty() => format!("the map `{}` declares no doors", place.name),
+        None => format!("no door belongs to the clause; the map has {}", names(place)),
+    }
+}
+
+fn names(place: &Location) -> String {
+    place.doors.iter().map(|door| door.id.as_str()).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::fixture::{floor, node};
 
-    /// A room behind the wall x = 4 with an opening 1.2 m wide at y = 0, and a corridor before it.
-    fn room(kinds: [&str; 3]) -> Location {
-        let [room, door, corridor] = kinds;
+    /// A room that runs on in front of its own door: an L round the end of the corridor; its opening faces +x.
+    fn bent() -> Location {
         floor(
-            &[(4., 0.6, 4.2, 4.), (4., -4., 4.2, -0.6), (4., 4., 9., 4.2), (4., -4.2, 9., -4.), (9., -4., 9.2, 4.)],
-            &[("r", room, 7., 0.), ("d", door, 4.1, 0.), ("c", corridor, 1., 0.)],
-            &[("r", "d"), ("d", "c")],
-        )
-    }
-
-    fn found(place: &Location, way: &[&str]) -> Option<Door> {
-        let way: Vec<NodeId> = way.iter().map(|id| node(id)).collect();
-        opening(place, &DistanceField::new(&place.grid), &way)
-    }
-
-    #[test]
-    fn an_opening_lies_across_the_way_at_its_doorway_node() {
-        let place = room(["KITCHEN", "DOORWAY", "CORRIDOR"]);
-        let door = found(&place, &["r", "d", "c"]).unwrap();
-        assert_eq!((door.id.as_str(), &door.inside[..]), ("d", &[node("r")][..]));
-        for end in [door.from, door.to] {
-            assert!((end.x - 4.1).abs() < 0.15 && (end.y.abs() - 0.6).abs() < 0.15, "{end}");
-        }
-        assert_eq!(found(&place, &["c", "d", "r"]), None, "who begins in the corridor comes out of nothing");
-        assert_eq!(way_out(&place.graph, &node("r")), Some(vec![node("r"), node("d"), node("c")]));
-    }
-
-    #[test]
-    fn without_a_doorway_node_the_narrowest_place_before_the_corridor_is_the_opening() {
-        let mut place = room(["OFFICE ROOM", "OFFICE ROOM", "CORRIDOR"]);
-        place.graph = place.graph.edited(|nodes, _| nodes[1].at = Point::new(6., 0.));
-        let door = found(&place, &["r", "d", "c"]).unwrap();
-        assert!((door.middle().x - 4.1).abs() < 0.25 && (door.to - door.from).norm() < 1.4, "{door:?}");
-        assert_eq!(found(&room(["NODE", "NODE", "CORRIDOR"]), &["r", "d", "c"]), None, "plain nodes tell of no room");
-    }
-
-    /// A car of constant width behind the wall x = 4, with a node deep inside and one near its opening; the lobby before it.
-    fn car(front_x: f64) -> Location {
-        floor(
-            &[(4., 0.9, 9., 4.), (4., -4., 9., -0.9), (7., -0.9, 9., 0.9)],
             &[
-                ("back", "WITHIN_ELEVATOR_2", 6.4, 0.),
-                ("front", "WITHIN_ELEVATOR_2", front_x, 0.),
-                ("out", "OUTSIDE_ELEVATOR_2", 2.6, 0.),
-                ("hall", "CORRIDOR", 2.6, 6.),
-                ("d", "DOORWAY", 2.6, 7.),
+                (0.0, 1.0, 6.0, 1.2),
+                (6.0, 0.6, 6.2, 1.2),
+                (6.0, -1.2, 6.2, -0.6),
+                (0.0, -1.2, 6.0, -1.0),
+                (-0.2, 1.0, 0.0, 6.0),
+                (-0.2, 6.0, 10.0, 6.2),
+                (10.0, -1.2, 10.2, 6.2),
+                (6.0, -1.4, 10.2, -1.2),
             ],
-            &[("back", "front"), ("front", "out"), ("out", "hall"), ("hall", "d")],
+            &[("r", "ROOM", 8., 0.), ("q", "ROOM", 2., 4.), ("c", "CORRIDOR", 3., 0.), ("e", "CORRIDOR", -8., 0.)],
+            &[("r", "c"), ("c", "e"), ("r", "q")],
         )
     }
 
     #[test]
-    fn a_car_told_by_node_types_alone_has_its_opening_outside_its_nodes() {
-        for front_x in [5.0, 4.3, 4.0] {
-            let place = car(front_x);
-            for way in [&["front", "out", "hall"][..], &["back", "front", "out", "hall"]] {
-                let door = found(&place, way).unwrap();
-                assert_eq!((door.kind, door.id.as_str()), (DoorKind::Elevator, "front"));
-                let x = door.middle().x;
-                assert!(x < front_x - 0.3 && x > 2.9 && x < 4.1, "a node at {front_x}, its opening at {x}");
-                let inside = place.graph.nodes()[1].at;
-                for node in &place.graph.nodes()[..2] {
-                    assert!(door.depth_m(&node.at, &inside) > 0.3, "{}: {door:?}", node.id);
-                }
-                assert!(door.depth_m(&place.graph.nodes()[2].at, &inside) < -0.3, "{door:?}");
-            }
+    fn a_room_is_inside_also_where_it_runs_on_in_front_of_its_door() {
+        let place = bent();
+        let all: Arc<Enclosures> = Enclosures::of(&place);
+        let room = all.of_node(&node("r")).unwrap();
+        let lines = Lines::of_place(&place, &all, room);
+        assert_eq!(lines.doors.len(), 1, "{:?}", room.openings);
+        for (x, y, inside) in [(8.0, 0.0, true), (2.0, 4.0, true), (3.0, 0.0, false), (-8.0, 0.0, false)] {
+            let depth_m = lines.depth_m(&Point::new(x, y));
+            assert_eq!(depth_m > 0.0, inside, "({x}, {y}): {depth_m}");
         }
-    }
-
-    #[test]
-    fn whoever_stays_in_a_car_without_a_door_has_its_own_opening_and_no_other_doorway() {
-        let place = car(5.0);
-        let way = way_out(&place.graph, &node("back")).unwrap();
-        assert_eq!(way, vec![node("back"), node("front"), node("out")]);
-        assert!(opening(&place, &DistanceField::new(&place.grid), &way).is_some());
     }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use socrates_maps::openings::Enclosures;
 use socrates_maps::{DistanceField, Ground, sight_clear};
 use socrates_model::geometry::nearest_on_segment;
 use socrates_model::{AgentId, EventKind, HumanId, NodeId, Point};
@@ -83,6 +84,8 @@ pub struct Signals<'a> {
     pub arrived_s: Option<f64>,
     /// What is computed of the map; `None` without one.
     pub ground: Option<Arc<Ground>>,
+    /// Rooms and cars of the map; `None` without one.
+    pub enclosures: Option<Arc<Enclosures>>,
     /// Distance to walls; `None` without a map.
     pub field: Option<Arc<DistanceField>>,
     /// Encounters of every human who has several, one after the other.
@@ -98,6 +101,7 @@ impl<'a> Signals<'a> {
         let way =
             evidence.location.zip(evidence.paths).map(|(place, paths)| Way::new(place.graph.polyline(&paths.robot)));
         let ground = evidence.location.map(|location| Ground::of(&location.grid));
+        let enclosures = evidence.location.map(Enclosures::of);
         let sight = ground.as_ref().map(|ground| ground.sight());
         let closed: Vec<Vec<(Point, Point)>> = match &tracks.robot {
             Some(robot) if sight.is_some() => robot.samples.iter().map(|sample| doors.closed_at(sample.t)).collect(),
@@ -148,6 +152,7 @@ impl<'a> Signals<'a> {
             moves_s,
             arrived_s,
             ground,
+            enclosures,
             field,
             meetings,
         }

@@ -1,11 +1,11 @@
 //! One tick of motion: paces, wishes, forces, contacts.
 
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, AgentId, GroupId, HumanId, Point, Relation, SimTime};
+use socrates_model::{Action, AgentId, DoorOpens, GroupId, HumanId, Point, Relation, SimTime};
 
 use crate::block::take_places;
 use crate::contacts::{self, Body};
-use crate::human::Human;
+use crate::human::{DoorOnWay, Human};
 use crate::make_room::is_held_up;
 use crate::motion::{self, Scene, Want};
 use crate::near::{Near, Other};
@@ -180,7 +180,9 @@ impl Engine {
         for (human, timing) in self.humans.iter().zip(&mut self.timings) {
             let door = human.doors.iter().find(|on_way| on_way.s > human.s - 0.1);
             let let_out = door.is_none_or(|on_way| !coming_out.contains(&on_way.door));
-            let door = door.and_then(|on_way| Some((on_way.s - human.s, self.doors.doors.get(on_way.door)?.open)));
+            let live = |on_way: &DoorOnWay| self.doors.doors.get(on_way.door);
+            let stands_open = door.and_then(live).is_some_and(|live| live.door.opens == DoorOpens::Always);
+            let door = door.and_then(|on_way| Some((on_way.s - human.s, live(on_way)?.open)));
             // Sight matters to the controller only while a meeting lies ahead.
             let asked = !human.meetings.is_empty() || human.relation == Relation::Leaving;
             let sight = asked
@@ -189,7 +191,7 @@ impl Engine {
                 });
             let first =
                 asked && nearest.is_some_and(|(id, group)| id == human.id || group.is_some() && group == human.group);
-            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, let_out };
+            let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, stands_open, let_out };
             // Other actions have their own speed; the rendezvous waits meanwhile.
             let mut pace = if human.action == Action::Navigate {
                 rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps

@@ -94,6 +94,8 @@ pub(crate) struct Moment {
     pub(crate) first: bool,
     /// State of the first door ahead of the human: how far, and whether it is open.
     pub(crate) door: Option<(f64, bool)>,
+    /// Whether that door stands open for the whole run.
+    pub(crate) stands_open: bool,
     /// Whether nobody is to come out through that door any more.
     pub(crate) let_out: bool,
 }
@@ -189,10 +191,11 @@ fn faces(human: &Human, robot: &Robot) -> bool {
 fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> Pace {
     let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
     let since = match moment.door {
-        Some((_, true)) => true,
+        Some((_, true)) if !moment.stands_open => true,
         // A door that opens for those who come near would wait for who waits for it.
         Some((_, false)) => timing.opens_door && near_along(robot, &human.at, LEAVE_AT_M + DOOR_M),
-        None => {
+        // Nothing opens: the robot's coming tells when to go.
+        Some((_, true)) | None => {
             (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at, LEAVE_AT_M)
         }
     };
@@ -210,7 +213,7 @@ fn go_in(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     let free = Pace { speed_mps: human.speed_mps };
     let near = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
     let opens = match moment.door {
-        Some((_, true)) => true,
+        Some((_, true)) => near || !moment.stands_open || timing.open_since_s.is_some(),
         Some((_, false)) => timing.opens_door && near,
         // Who goes in nowhere is held by its rules alone.
         None => return free,

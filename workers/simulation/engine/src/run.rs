@@ -1,6 +1,7 @@
 //! The engine: one run, tick by tick.
 
 use socrates_crowd::Params;
+use socrates_maps::openings::Enclosures;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
     Action, AgentId, AgentState, Event, EventKind, Fault, Gesture, HumanId, Recording, RecordingHeader, RobotDriver,
@@ -63,13 +64,16 @@ impl Engine {
     ///
     /// # Errors
     /// Every fault at once: ids that do not fit each other, unknown nodes, trees that cannot be read.
-    pub fn new(setup: Setup) -> Result<Self, Vec<Fault>> {
+    pub fn new(mut setup: Setup) -> Result<Self, Vec<Fault>> {
         let trees = setup::trees(&setup)?;
+        // An opening without a door is a door that always stands open.
+        let enclosures = Enclosures::of(&setup.location);
+        setup.location.doors = enclosures.doors(&setup.location);
         let mut floor = Floor::new(&setup.location.grid);
         let doors = Doors::new(&setup.location);
         floor.close(doors.closed());
         let robot = (!setup.planner.is_no_robot()).then(|| start::robot(&setup, &floor));
-        let mut humans = start::humans(&setup, trees, &floor, robot.as_ref())?;
+        let mut humans = start::humans((&setup, &enclosures), trees, &floor, robot.as_ref())?;
         let robot_doors = robot.as_ref().map_or_else(Vec::new, |robot| start::doors_on(&setup, &robot.route));
         rendezvous::let_out(&mut humans, &robot_doors);
         let by_nearness = |door: usize| {

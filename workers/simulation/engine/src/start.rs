@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use socrates_bt::{Tree, TreeState};
+use socrates_maps::openings::Enclosures;
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
 use socrates_model::recording::AgentInfo;
 use socrates_model::seeds::{self, derive_seed};
@@ -118,7 +119,7 @@ fn free_near(floor: &Floor, home: &Point, radius: f64) -> Point {
 /// # Errors
 /// `G-COLL` for each who finds no free place about its first node.
 pub(crate) fn humans(
-    setup: &Setup,
+    (setup, enclosures): (&Setup, &Enclosures),
     mut trees: BTreeMap<HumanId, Tree>,
     floor: &Floor,
     robot: Option<&Robot>,
@@ -128,7 +129,7 @@ pub(crate) fn humans(
     let mut humans = Vec::new();
     for proposal in &setup.proposal.humans {
         let Some(tree) = trees.remove(&proposal.id) else { continue };
-        let mut human = human(setup, proposal, tree, (&robot_way, &robot_marks), floor);
+        let mut human = human((setup, enclosures), proposal, tree, (&robot_way, &robot_marks), floor);
         let taken: Vec<Point> = humans
             .iter()
             .filter(|other: &&Human| other.group.is_none() || other.group != human.group)
@@ -141,9 +142,9 @@ pub(crate) fn humans(
             other.route = ends::beside(&other.route, SHARED_M, floor);
             human.route = ends::beside(&human.route, -SHARED_M, floor);
         }
-        let home = setup.paths.humans.get(&proposal.id).and_then(|nodes| nodes.first());
-        if let Some(door) = home.and_then(|node| setup.location.door_of(node)) {
-            inside.insert(proposal.id, door.middle());
+        let nodes = setup.paths.humans.get(&proposal.id).map_or(&[][..], Vec::as_slice);
+        if let Some((_, opening)) = enclosures.way_out(&setup.location, nodes) {
+            inside.insert(proposal.id, opening.middle());
         }
         humans.push(human);
     }
@@ -176,7 +177,7 @@ fn same_end(one: &Human, other: &Human) -> bool {
 
 /// Whether somebody has nothing more to do at the end of its path and may stand beside it: it came out of a room or went
 /// across, alone, and nothing asks for that very place.
-fn goes_off(setup: &Setup, proposal: &HumanProposal, nodes: &[NodeId]) -> bool {
+fn goes_off((setup, enclosures): (&Setup, &Enclosures), proposal: &HumanProposal, nodes: &[NodeId]) -> bool {
     let Some(last) = nodes.last() else { return false };
     let asked = |clause: &Clause| {
         matches!(&clause.predicate, Predicate::Reaches { agent, .. } if *agent == proposal.id.into())
@@ -184,7 +185,7 @@ fn goes_off(setup: &Setup, proposal: &HumanProposal, nodes: &[NodeId]) -> bool {
     };
     matches!(proposal.relation, Relation::Leaving | Relation::Crossing)
         && proposal.group.is_none()
-        && setup.location.door_of(last).is_none()
+        && !enclosures.is_inside(last)
         && setup.paths.encounters_of(proposal.id).all(|node| node != last)
         && !proposal.rules.iter().any(|rule| rule.when.contains(&Trigger::GoalReached))
         && !setup.proposal.expected_events.iter().any(asked)
@@ -199,7 +200,7 @@ fn lines(proposal: &socrates_model::Proposal) -> Vec<GroupId> {
 }
 
 fn human(
-    setup: &Setup,
+    (setup, enclosures): (&Setup, &Enclosures),
     proposal: &HumanProposal,
     tree: Tree,
     (robot_way, robot_marks): (&Polyline, &Marks),
@@ -209,7 +210,7 @@ fn human(
     let (mut route, marks) = way(setup, nodes);
     if route.length_m() > 1.0 {
         route = ends::clear_end(route, robot_way, placing::flank_m(&setup.proposal.groups, proposal.group), floor);
-        if goes_off(setup, proposal, nodes) {
+        if goes_off((setup, enclosures), proposal, nodes) {
             route = ends::aside(route, robot_way, &setup.location.doors, floor);
         }
     }
