@@ -4,9 +4,7 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 use socrates_model::rule::RobotRule;
-use socrates_model::{
-    Action, ClauseRole, Gesture, GroupId, HumanId, Location, PlaceClass, Predicate, Relation, Rule, Trigger,
-};
+use socrates_model::{Action, ClauseRole, Gesture, GroupId, HumanId, PlaceClass, Predicate, Relation, Rule, Trigger};
 
 use crate::draw::Draw;
 
@@ -196,25 +194,6 @@ pub fn card(id: &str) -> Option<&'static Card> {
     catalog().iter().find(|card| card.id == id)
 }
 
-impl Card {
-    /// Whether the map has the places that the card needs.
-    #[must_use]
-    pub fn fits(&self, location: &Location) -> bool {
-        let there = |class: &PlaceClass| crate::place::has(location, *class);
-        let indoors = self.roles.iter().find_map(|role| role.start).or(self.start);
-        let inside = !self.inside || !crate::place::inside(location, indoors).is_empty();
-        // Into a room that somebody leaves there must be room for both.
-        let shared = self.goal == Some(PlaceClass::Room) && self.inside;
-        let roomy = !shared || crate::place::is_roomy(location);
-        let arms = self.arms.is_none_or(|least| crate::place::meets_arms(location, self.start, least));
-        inside
-            && roomy
-            && arms
-            && self.needs.iter().all(there)
-            && self.places.iter().any(|class| *class == PlaceClass::Plain || there(class))
-    }
-}
-
 impl RoleRule {
     /// The rule with values drawn from its ranges, in steps of 0.1.
     pub(crate) fn drawn(&self, draw: &mut Draw) -> Rule {
@@ -261,6 +240,8 @@ fn fill(value: &mut serde_json::Value, human: &str, group: Option<GroupId>) {
 
 #[cfg(test)]
 mod tests {
+    use socrates_model::Location;
+
     use super::*;
 
     #[test]

@@ -114,6 +114,7 @@ mod solve;
 mod spans;
 mod spot;
 mod twice;
+mod unfit;
 
 #[cfg(test)]
 mod again_tests;
@@ -149,6 +150,7 @@ pub use card::{Card, catalog};
 pub use edit::{Draft, Edited, edit, settled};
 pub use summary::summary;
 pub use understand::CONTEXT_NOTE;
+pub use unfit::Unfit;
 
 /// Name of this author, as artifacts spell it.
 pub const NAME: &str = "offline/1";

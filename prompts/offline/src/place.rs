@@ -30,6 +30,13 @@ pub(crate) fn an(class: PlaceClass) -> String {
     format!("{article} {name}")
 }
 
+/// `corridor, exit or open area`, without articles.
+pub(crate) fn either(classes: &[PlaceClass]) -> String {
+    let mut names: Vec<String> = classes.iter().map(|class| words(*class)).collect();
+    let last = names.pop().unwrap_or_default();
+    if names.is_empty() { last } else { format!("{} or {last}", names.join(", ")) }
+}
+
 /// Whether the node is in a room or an elevator.
 pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
     Enclosures::of(location).is_inside(node)
@@ -42,24 +49,27 @@ pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<Node
     ids.filter(|id| all.is_inside(id) && all.is_car(id) == car).cloned().collect()
 }
 
-/// Whether a room has places for the robot and for somebody else.
-pub(crate) fn is_roomy(location: &Location) -> bool {
-    Enclosures::of(location).all().iter().any(|place| place.kind == DoorKind::Room && place.nodes.len() > 1)
+/// The most places that one room has.
+pub(crate) fn most_places(location: &Location) -> usize {
+    let all = Enclosures::of(location);
+    all.all().iter().filter(|place| place.kind == DoorKind::Room).map(|place| place.nodes.len()).max().unwrap_or(0)
 }
 
-/// Whether so many ways meet somewhere outside; for somebody who comes out of a place, right outside its door.
-pub(crate) fn meets_arms(location: &Location, from: Option<PlaceClass>, least: usize) -> bool {
+/// The most ways that meet in a node outside; for somebody who comes out of a place, right outside its door.
+pub(crate) fn most_arms(location: &Location, from: Option<PlaceClass>) -> usize {
     let graph = &location.graph;
     let arms = |id: &NodeId| graph.neighbors(id).len();
     let doorway = |id: &NodeId| graph.kind(id) == Some(PlaceClass::Doorway);
     let all = Enclosures::of(location);
     let outside = |id: &NodeId| !all.is_inside(id) && !doorway(id);
     let Some(class) = from else {
-        return graph.nodes().iter().any(|node| outside(&node.id) && arms(&node.id) >= least);
+        return graph.nodes().iter().filter(|node| outside(&node.id)).map(|node| arms(&node.id)).max().unwrap_or(0);
     };
-    inside(location, Some(class)).iter().any(|start| {
+    let starts = inside(location, Some(class));
+    let beyond = starts.iter().flat_map(|start| {
         let next = graph.neighbors(start);
-        let beyond = next.iter().filter(|id| doorway(id)).flat_map(|id| graph.neighbors(id));
-        next.iter().chain(beyond).any(|id| outside(id) && arms(id) >= least)
-    })
+        let behind: Vec<&NodeId> = next.iter().filter(|id| doorway(id)).flat_map(|id| graph.neighbors(id)).collect();
+        next.iter().chain(behind).filter(|id| outside(id)).map(arms).collect::<Vec<usize>>()
+    });
+    beyond.max().unwrap_or(0)
 }

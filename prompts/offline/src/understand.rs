@@ -109,20 +109,11 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
 /// A pattern by name that this map cannot hold: a fault that says what is missing.
 fn unfitting(request: &Request, location: &Location, reading: &mut Reading) {
     let Some(card) = request.expect.pattern.as_deref().and_then(crate::card::card) else { return };
-    if card.fits(location) {
-        return;
-    }
-    let needs: Vec<String> = card.needs.iter().chain(&card.places).map(|class| place::words(*class)).collect();
-    let inside = if card.inside { " and a place inside a room or an elevator with room for all" } else { "" };
+    let Err(why) = card.fit(location) else { return };
     reading.problems.push(Fault::new(
         FaultCode::PPlace,
         "expect.pattern",
-        format!(
-            "`{}` needs {}{inside}, which this map does not have; it has: {}",
-            card.id,
-            needs.join(" or "),
-            place::listed(location)
-        ),
+        format!("`{}` does not fit this map: {why}; it has: {}", card.id, place::listed(location)),
     ));
     reading.pattern = None;
 }

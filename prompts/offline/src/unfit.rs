@@ -1,0 +1,290 @@
+//! Which cards fit a map: by its place classes, its widths, what lies behind its doors and how many ways meet, never by trying.
+
+use std::fmt;
+
+use serde::Serialize;
+use socrates_maps::Ground;
+use socrates_model::{Location, NodeId, PlaceClass, Point, Relation, RobotModel};
+
+use crate::card::{Card, Role};
+use crate::place;
+
+/// Places inside one room that somebody who enters and somebody who leaves need.
+const SHARED: usize = 2;
+
+/// Radius of a person, m, as the simulation has it.
+const PERSON_M: f64 = 0.28;
+/// Free floor between the robot, whoever is beside it and the walls, m.
+const GAP_M: f64 = 0.2;
+/// Gaps where people pass the robot side by side: at either wall, and between them and the robot.
+const GAPS: f64 = 3.0;
+/// A largest width from here on is none, m.
+const OPEN_M: f64 = 50.0;
+/// Distance between two looks at the floor along an edge, m.
+const STEP_M: f64 = 0.5;
+
+/// Why a map cannot hold a card, with the number that says by how much.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "reason", rename_all = "snake_case")]
+pub enum Unfit {
+    /// The map has none of the places where the card happens.
+    Place {
+        /// Any of these would do.
+        wanted: Vec<PlaceClass>,
+    },
+    /// The map lacks a place that the card needs besides.
+    Needs {
+        /// The place.
+        class: PlaceClass,
+    },
+    /// The map has no place inside a room or an elevator.
+    Inside {
+        /// The room or the elevator.
+        class: PlaceClass,
+    },
+    /// No room has places enough for somebody who enters and somebody who leaves.
+    Shared {
+        /// Places inside one room, needed.
+        needed: usize,
+        /// The most that a room of the map has.
+        most: usize,
+    },
+    /// Nowhere is the floor wide enough for the robot and those beside it.
+    Narrow {
+        /// People side by side, besides the robot.
+        abreast: u32,
+        /// Free width that they need with the robot, m.
+        needed_m: f64,
+        /// Places where it would be wide enough for the card.
+        places: Vec<PlaceClass>,
+        /// Free width at the widest of them, m.
+        widest_m: f64,
+    },
+    /// No place has the free width of which the card tells.
+    Width {
+        /// Least and largest free width, m.
+        wanted_m: [f64; 2],
+        /// Places of which one should be so wide.
+        places: Vec<PlaceClass>,
+        /// The free width of the map that is nearest to it, m.
+        nearest_m: f64,
+    },
+    /// Nowhere meet ways enough.
+    Arms {
+        /// Ways that must meet in a node.
+        needed: usize,
+        /// The most that meet in a node of the map.
+        most: usize,
+    },
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Place { wanted } => write!(f, "needs {}, the map has none", any_of(wanted)),
+            Self::Needs { class } => write!(f, "needs {}, the map has none", place::an(*class)),
+            Self::Inside { class } => write!(f, "needs a place inside {}, the map has none", place::an(*class)),
+            Self::Shared { needed, most } => {
+                write!(f, "needs a room with {needed} places in it, the largest has {most}")
+            }
+            Self::Narrow { abreast, needed_m, places, widest_m } => {
+                let who = if *abreast == 1 { String::new() } else { format!(" of {abreast} and the robot") };
+                let widest = place::either(places);
+                write!(f, "passing side by side{who} needs {needed_m:.1} m, the widest {widest} has {widest_m:.1} m")
+            }
+            Self::Width { wanted_m: [least, most], places, nearest_m } => {
+                let place = any_of(places);
+                let to = if *most < OPEN_M { format!("to {most:.1} m") } else { "m or more".to_owned() };
+                write!(f, "needs {place} of {least:.1} {to}, the nearest has {nearest_m:.1} m")
+            }
+            Self::Arms { needed, most } => {
+                write!(f, "needs a junction of at least {needed} ways, the largest has {most}")
+            }
+        }
+    }
+}
+
+/// `a corridor, an open area or an exit`.
+fn any_of(classes: &[PlaceClass]) -> String {
+    let mut words: Vec<String> = classes.iter().map(|class| place::an(*class)).collect();
+    let last = words.pop().unwrap_or_default();
+    if words.is_empty() { last } else { format!("{} or {last}", words.join(", ")) }
+}
+
+impl Card {
+    /// Whether the map has what the card needs; [`Card::fit`] says what it lacks.
+    #[must_use]
+    pub fn fits(&self, location: &Location) -> bool {
+        self.fit(location).is_ok()
+    }
+
+    /// Whether the map has what the card needs: its place classes, a place inside, ways that meet.
+    ///
+    /// # Errors
+    /// What the map lacks first, with its number.
+    pub fn fit(&self, location: &Location) -> Result<(), Unfit> {
+        let there = |class: &PlaceClass| place::has(location, *class);
+        if let Some(class) = self.needs.iter().find(|class| !there(class)) {
+            return Err(Unfit::Needs { class: *class });
+        }
+        let indoors = self.roles.iter().find_map(|role| role.start).or(self.start);
+        if self.inside && place::inside(location, indoors).is_empty() {
+            let car = indoors == Some(PlaceClass::Elevator);
+            return Err(Unfit::Inside { class: if car { PlaceClass::Elevator } else { PlaceClass::Room } });
+        }
+        self.shares(location)?;
+        if let Some(needed) = self.arms {
+            let most = place::most_arms(location, self.start);
+            if most < needed {
+                return Err(Unfit::Arms { needed, most });
+            }
+        }
+        if !self.places.iter().any(|class| *class == PlaceClass::Plain || there(class)) {
+            return Err(Unfit::Place { wanted: self.places.clone() });
+        }
+        self.has_width(location)
+    }
+
+    /// Where the card tells of a free width, one place must have it; where people pass the robot, one place must let them.
+    fn has_width(&self, location: &Location) -> Result<(), Unfit> {
+        let wide = widths_m(location, &self.places);
+        // A wall that ends within a cell is drawn at one side of it.
+        let cell_m = location.grid.resolution_m;
+        if let Some([least, most]) = self.width_m {
+            let off = |width: &f64| (least - width).max(width - most).max(0.0);
+            let nearest = wide.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0);
+            let places = self.places.clone();
+            return if off(&nearest) > cell_m {
+                Err(Unfit::Width { wanted_m: [least, most], places, nearest_m: nearest })
+            } else {
+                Ok(())
+            };
+        }
+        let abreast = self.roles.iter().map(|role| self.beside(role)).max().unwrap_or(0);
+        // Through a doorway or an aisle they go one after the other: that is what such a card is about.
+        if abreast == 0 || self.places.iter().any(|class| is_tight(*class) && place::has(location, *class)) {
+            return Ok(());
+        }
+        let needed_m = 2.0 * RobotModel::default().radius_m + f64::from(abreast) * 2.0 * PERSON_M + GAPS * GAP_M;
+        let widest_m = wide.into_iter().fold(0.0, f64::max);
+        if widest_m + cell_m < needed_m {
+            return Err(Unfit::Narrow { abreast, needed_m, places: self.places.clone(), widest_m });
+        }
+        Ok(())
+    }
+
+    /// How many people of a role are beside the robot at a time, at least: those who come towards it, who keep beside it, or who
+    /// overtake or are overtaken as a clause of the card demands. A group goes side by side.
+    fn beside(&self, role: &Role) -> u32 {
+        let overtakes = self.clauses.iter().any(|clause| clause.must && clause.predicate.get("overtakes").is_some());
+        let passes = match role.relation {
+            Relation::Frontal | Relation::Abreast => true,
+            Relation::Behind | Relation::Ahead => overtakes,
+            Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying => false,
+        };
+        match (passes, role.group && !role.line) {
+            (false, _) => 0,
+            (true, false) => 1,
+            (true, true) => role.count[0],
+        }
+    }
+
+    /// Into a room that somebody leaves there must be room for both.
+    fn shares(&self, location: &Location) -> Result<(), Unfit> {
+        if self.goal != Some(PlaceClass::Room) || !self.inside {
+            return Ok(());
+        }
+        let most = place::most_places(location);
+        if most < SHARED { Err(Unfit::Shared { needed: SHARED, most }) } else { Ok(()) }
+    }
+}
+
+/// Whether people go through it one after the other.
+const fn is_tight(class: PlaceClass) -> bool {
+    matches!(class, PlaceClass::Doorway | PlaceClass::NarrowPassage | PlaceClass::Elevator)
+}
+
+/// Free widths of the floor, m, at the nodes of these classes and along the edges between them: twice the way to the nearest
+/// wall, as a node lies in the middle of its floor.
+fn widths_m(location: &Location, classes: &[PlaceClass]) -> Vec<f64> {
+    let graph = &location.graph;
+    let ground = Ground::of(&location.grid);
+    let width_m = |at: &Point| 2.0 * ground.field().clearance(at);
+    let of_class = |id: &NodeId| classes.iter().any(|class| *class == PlaceClass::Plain || graph.node_is(id, *class));
+    let nodes = graph.nodes().iter().filter(|node| of_class(&node.id)).map(|node| width_m(&node.at));
+    let mut found: Vec<f64> = nodes.collect();
+    for edge in graph.edges().iter().filter(|edge| of_class(&edge.from) && of_class(&edge.to)) {
+        for leg in graph.edge_points(&edge.from, &edge.to).unwrap_or_default().windows(2) {
+            let [a, b] = leg else { continue };
+            let steps = libm::ceil((b - a).norm() / STEP_M).max(1.0) as u32;
+            found.extend((1..steps).map(|step| width_m(&(a + (b - a) * (f64::from(step) / f64::from(steps))))));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::card::{card, catalog};
+    use crate::tests::map;
+
+    /// The cards that happen on a shipped map, as the published table has them.
+    const TABLE: &str = include_str!("../../catalog/RATES.md");
+
+    #[test]
+    fn every_card_still_fits_each_map_of_the_published_table() {
+        let mut pairs = 0;
+        for card in catalog() {
+            let row = TABLE.lines().find(|line| line.contains(&format!("| {} |", card.id))).unwrap();
+            let locations = row.split('|').nth(3).unwrap();
+            for name in locations.split(',').map(str::trim) {
+                assert_eq!(card.fit(&map(name)), Ok(()), "{} on {name}", card.id);
+                pairs += 1;
+            }
+        }
+        assert!(pairs > 100, "{pairs}");
+    }
+
+    #[test]
+    fn what_a_map_lacks_is_said_with_its_number() {
+        let why = |id: &str, name: &str| card(id).unwrap().fit(&map(name)).unwrap_err().to_string();
+        assert_eq!(why("exiting_elevator", "office"), "needs an elevator lobby, the map has none");
+        assert_eq!(why("narrow_hallway", "hospital"), "needs a narrow passage, the map has none");
+    }
+
+    /// A plan of one corridor of this width, m.
+    fn corridor(width_m: f64) -> Location {
+        let plan = format!(
+            "description = \"A corridor.\"\nsize_m = [30.0, 6.0]\nresolution_m = 0.05\n\
+             floors = [[0.5, 1.0, 29.5, {}]]\n\
+             nodes = [{}]\nedges = [{{ type = \"CORRIDOR\", along = [\"a\", \"b\", \"c\", \"d\"] }}]\n",
+            1.0 + width_m,
+            [("a", 1.5), ("b", 10.0), ("c", 20.0), ("d", 28.5)]
+                .map(|(id, x)| format!("{{ id = \"{id}\", type = \"CORRIDOR\", at = [{x}, {}] }}", 1.0 + width_m / 2.0))
+                .join(", ")
+        );
+        socrates_maps::parse(&socrates_maps::generate(&plan).unwrap(), "own").unwrap()
+    }
+
+    #[test]
+    fn two_who_pass_each_other_need_the_width_of_both_and_one_who_crosses_does_not() {
+        let frontal = card("frontal_approach").unwrap();
+        assert_eq!(frontal.fit(&corridor(2.0)), Ok(()));
+        let why = frontal.fit(&corridor(1.3)).unwrap_err();
+        assert!(matches!(why, Unfit::Narrow { abreast: 1, widest_m, .. } if (1.1..1.5).contains(&widest_m)), "{why:?}");
+        assert!(
+            why.to_string().starts_with("passing side by side needs 1.7 m, the widest corridor or open area has 1."),
+            "{why}"
+        );
+        assert_eq!(card("follower").unwrap().fit(&corridor(1.3)), Ok(()), "a follower stays behind");
+        let team = card("emergency_team").unwrap().fit(&corridor(1.6)).unwrap_err();
+        assert!(team.to_string().starts_with("needs a corridor of 2.2 m or more, the nearest has 1."), "{team}");
+    }
+
+    #[test]
+    fn a_junction_is_asked_for_by_the_number_of_its_ways() {
+        let why = card("perpendicular_traffic").unwrap().fit(&corridor(3.0)).unwrap_err();
+        assert!(matches!(why, Unfit::Arms { most: 2, .. } | Unfit::Place { .. } | Unfit::Needs { .. }), "{why}");
+    }
+}
