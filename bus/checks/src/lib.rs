@@ -33,7 +33,7 @@ mod testing;
 
 pub use behaviors::check_behaviors;
 pub use proposal::check_proposal;
-pub use repeats::{Likeness, Signature, check_repeats};
+pub use repeats::check_repeats;
 pub use routes::check_paths;
 
 use socrates_maps::openings::Enclosures;

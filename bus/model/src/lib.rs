@@ -27,6 +27,7 @@ pub mod place;
 
 pub mod behaviors;
 pub mod clause;
+pub mod likeness;
 pub mod paths;
 pub mod proposal;
 pub mod reading;
@@ -60,6 +61,7 @@ pub use graph::{GraphEdge, GraphNode, SceneGraph};
 pub use grid::{Cell, Grid};
 pub use hash::{Digest, DigestWriter};
 pub use ids::{AgentId, GroupId, HumanId, NodeId, PlannerName, RunId, ScenarioId};
+pub use likeness::Likeness;
 pub use location::{Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use place::PlaceClass;

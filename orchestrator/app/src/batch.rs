@@ -5,9 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::json;
-use socrates_checks::Likeness;
 use socrates_draw::{BatchEntry, BatchPage, BatchRow};
-use socrates_model::{Location, Report, ScenarioId, Verdict};
+use socrates_model::{Likeness, Location, Report, ScenarioId, Verdict};
 use socrates_scoring::Pool;
 
 use crate::batch_stats;
@@ -88,7 +87,8 @@ impl Card {
             recording: bundle.runs.first().map(|(recording, _)| recording),
         });
         let runs = index::Rows::of(Scenario { request, location: &location.name, path: name }, reports);
-        Ok(Self { verdict: bundle.manifest.verdict, likeness: Likeness::of(&bundle.proposal), id, location, row, runs })
+        let likeness = Likeness::of(&bundle.proposal, &bundle.paths, &location);
+        Ok(Self { verdict: bundle.manifest.verdict, likeness, id, location, row, runs })
     }
 
     /// The card of a bundle that lies in a folder of this name.

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use socrates_checks::{Likeness, Signature, check_repeats};
-use socrates_model::{Digest, Reading, ScenarioEnd, ScenarioId};
+use socrates_checks::check_repeats;
+use socrates_model::likeness::Kind;
+use socrates_model::{Digest, Likeness, Reading, ScenarioEnd, ScenarioId};
 
 use crate::exit::{Code, Complaint};
 
@@ -66,20 +67,20 @@ pub(crate) fn write(root: &Path, library: &Library) -> Result<(), Complaint> {
 /// Finds scenarios that repeat earlier ones.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
-    made: BTreeMap<Signature, VecDeque<(ScenarioId, Likeness)>>,
+    made: BTreeMap<Kind, VecDeque<(ScenarioId, Likeness)>>,
     /// The first that failed, by request and reason.
     failed: BTreeMap<(String, String), ScenarioId>,
 }
 
 impl Repeats {
     /// The earlier scenario that this one repeats; it is remembered itself where it repeats none.
-    pub(crate) fn of(&mut self, id: &ScenarioId, proposal: Likeness) -> Option<ScenarioId> {
-        let alike = self.made.entry(proposal.signature.clone()).or_default();
-        let earlier = alike.iter().find(|(other, earlier)| check_repeats(&proposal, other, earlier).is_some());
+    pub(crate) fn of(&mut self, id: &ScenarioId, scenario: Likeness) -> Option<ScenarioId> {
+        let alike = self.made.entry(scenario.kind.clone()).or_default();
+        let earlier = alike.iter().find(|(other, earlier)| check_repeats(&scenario, other, earlier).is_some());
         if let Some((other, _)) = earlier {
             return Some(other.clone());
         }
-        self.remember(id, proposal);
+        self.remember(id, scenario);
         None
     }
 
@@ -88,27 +89,27 @@ impl Repeats {
     pub(crate) fn of_listed(
         &mut self,
         id: &ScenarioId,
-        proposal: Likeness,
+        scenario: Likeness,
         listed: Option<&ScenarioId>,
         there: impl Fn(&ScenarioId) -> bool,
     ) -> Option<ScenarioId> {
         match listed {
             Some(earlier) if there(earlier) => Some(earlier.clone()),
-            Some(_) => self.of(id, proposal),
+            Some(_) => self.of(id, scenario),
             None => {
-                self.remember(id, proposal);
+                self.remember(id, scenario);
                 None
             }
         }
     }
 
     /// Remembers a scenario that repeats none.
-    fn remember(&mut self, id: &ScenarioId, proposal: Likeness) {
-        let alike = self.made.entry(proposal.signature.clone()).or_default();
+    fn remember(&mut self, id: &ScenarioId, scenario: Likeness) {
+        let alike = self.made.entry(scenario.kind.clone()).or_default();
         if alike.len() == COMPARED {
             alike.pop_front();
         }
-        alike.push_back((id.clone(), proposal));
+        alike.push_back((id.clone(), scenario));
     }
 
     /// The earlier scenario of the same request that failed for the same reason; it is remembered itself where there is none.
@@ -146,7 +147,7 @@ impl Library {
         if repeats > 0 {
             lines.push(format!("distinct   {} · {}", self.distinct().count(), counted(self.distinct())));
             lines.push(format!(
-                "repeats    {repeats} repeat an earlier proposal (P-DUP): a share of the distinct ones is what counts"
+                "repeats    {repeats} repeat an earlier one (P-DUP): a share of the distinct ones is what counts"
             ));
         }
         lines
@@ -172,19 +173,23 @@ mod tests {
     #[test]
     fn what_a_list_says_is_not_compared_again() {
         let id = |name: &str| ScenarioId::new(name).unwrap();
-        let of = |words: &str| {
-            let json = json!({
-                "format": 1, "title": "t", "description": words, "pattern": "p", "place": "corridor", "humans": [],
+        let office = socrates_maps::shipped::load("office").unwrap();
+        let of = |role: &str| {
+            let human = json!({ "id": "human_1", "role": role, "behavior": "b", "relation": "frontal" });
+            let proposal = json!({
+                "format": 1, "title": "t", "description": "d", "pattern": "p", "place": "corridor", "humans": [human],
                 "robot": { "task": "t", "expected_behavior": "e" }, "expected_events": [], "author": "a",
             });
-            Likeness::of(&serde_json::from_value(json).unwrap())
+            let paths = json!({ "format": 1, "robot": [], "humans": {}, "encounters": [], "author": "a" });
+            let paths = serde_json::from_value(paths).unwrap();
+            Likeness::of(&serde_json::from_value(proposal).unwrap(), &paths, &office)
         };
         let mut repeats = Repeats::default();
-        let one = of("a nurse crosses the corridor from the left and stops");
+        let one = of("nurse");
         assert_eq!(repeats.of_listed(&id("a"), one.clone(), None, |_| true), None);
-        // The same words, and yet the list says that it repeats none; other words, and it says that it does.
+        // The same person, and yet the list says that it repeats none; another, and it says that it does.
         assert_eq!(repeats.of_listed(&id("b"), one.clone(), None, |_| true), None);
-        let other = of("two visitors leave the elevator side by side");
+        let other = of("visitor");
         assert_eq!(repeats.of_listed(&id("c"), other.clone(), Some(&id("a")), |_| true), Some(id("a")));
         // What it repeats is gone: it is compared, and is the first of its kind.
         assert_eq!(repeats.of_listed(&id("d"), other.clone(), Some(&id("gone")), |_| false), None);

@@ -1,9 +1,9 @@
 //! `P-`: proposals, and requests that cannot be read.
 
 use socrates_author::FaultKind;
-use socrates_checks::{Likeness, check_proposal, check_repeats};
+use socrates_checks::{check_proposal, check_repeats};
 use socrates_model::job::Stage;
-use socrates_model::{Family, ScenarioId};
+use socrates_model::{FORMAT, Family, Likeness, Paths, ScenarioId};
 
 use super::{Examples, injected, keep, office, proposed};
 
@@ -24,7 +24,15 @@ pub(super) async fn examples() -> Examples {
     }
     let (request, location) = office("Drive to the exit", "A visitor comes towards the robot.");
     let mut proposal = proposed(&request, &location).await;
-    let likeness = Likeness::of(&proposal);
+    let nowhere = Paths {
+        format: FORMAT,
+        robot: Vec::new(),
+        humans: std::collections::BTreeMap::new(),
+        encounters: Vec::new(),
+        reasoning: String::new(),
+        author: proposal.author.clone(),
+    };
+    let likeness = Likeness::of(&proposal, &nowhere, &location);
     keep(&mut all, check_repeats(&likeness, &ScenarioId::new("frontal-1").unwrap(), &likeness));
     let id = location.graph.nodes().iter().map(|node| node.id.clone()).find(|id| {
         let id = id.as_str();

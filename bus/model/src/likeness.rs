@@ -1,0 +1,239 @@
+//! What makes two scenarios different ones: the one definition by which repeats are named, counted and avoided.
+//!
+//! Two scenarios differ where the place of a meeting, the robot's start or its goal lies more than [`ELSEWHERE_M`] elsewhere;
+//! where side, relation, number, roles or the order of what is done are others; or where something is triggered more than
+//! [`LATER_S`] earlier or later. Pace, names, words and seeds make no difference.
+
+use crate::geometry::{Point, Vector};
+use crate::ids::{AgentId, HumanId, NodeId};
+use crate::location::Location;
+use crate::paths::{Paths, Visit};
+use crate::proposal::{HumanProposal, Proposal, Relation};
+use crate::rule::{Action, RobotDo, RobotWhen, Rule, Trigger};
+
+/// Places no farther apart than this are the same place, m.
+pub const ELSEWHERE_M: f64 = 3.0;
+/// Times no farther apart than this are the same time, s.
+pub const LATER_S: f64 = 2.0;
+/// How fast robot and people come nearer to each other, m/s: a robot of 0.8 m/s, and a person of 1.2 m/s who comes towards it.
+/// What is triggered by a distance is triggered at a time by it; not by the pace of this very scenario, which makes no difference.
+const ROBOT_MPS: f64 = 0.8;
+const TOWARDS_MPS: f64 = 2.0;
+/// Sine of the angle between two ways from which on one comes from the side of the other.
+const ASIDE: f64 = 0.5;
+/// A difference of place or time counts for no more than so many of the smallest that makes a difference.
+const MOST: f64 = 5.0;
+
+/// The side of the robot's way that a person comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Side {
+    /// Along the way, or nowhere: they stand.
+    Along,
+    Left,
+    Right,
+}
+
+/// A person's part: what of them makes a difference, without numbers.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Part {
+    relation: Relation,
+    role: String,
+    side: Side,
+    /// People of their group; 0 for somebody alone.
+    together: usize,
+    /// How often they meet the robot.
+    meets: usize,
+    /// What they do and when, earlier rules first.
+    acts: Vec<String>,
+}
+
+/// The kind of a scenario: all that makes a difference without a number. Scenarios of two kinds differ.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Kind {
+    location: String,
+    parts: Vec<Part>,
+    script: Vec<String>,
+    /// Whom the robot meets, one after the other.
+    order: Vec<(Relation, String)>,
+}
+
+/// What of a scenario is compared: taken once, however many it is compared with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Likeness {
+    /// Its kind.
+    pub kind: Kind,
+    /// The robot's start and goal, then each place of a meeting, in their order.
+    places: Vec<Point>,
+    /// When something is triggered, s, as the parts have it.
+    times_s: Vec<f64>,
+}
+
+impl Likeness {
+    /// The likeness of a scenario.
+    #[must_use]
+    pub fn of(proposal: &Proposal, paths: &Paths, location: &Location) -> Self {
+        let at = |node: &NodeId| location.graph.node(node).map(|node| node.at);
+        let mut parts: Vec<(Part, Vec<f64>)> =
+            proposal.humans.iter().map(|human| part(human, proposal, paths, location)).collect();
+        parts.sort_by(|(a, x), (b, y)| a.cmp(b).then_with(|| compared(x, y)));
+        let (parts, times): (Vec<Part>, Vec<Vec<f64>>) = parts.into_iter().unzip();
+        let (script, mut script_s): (Vec<String>, Vec<Option<f64>>) =
+            proposal.robot.script.iter().map(|line| scripted(&line.when, &line.act)).unzip();
+        let mut times_s: Vec<f64> = times.into_iter().flatten().collect();
+        times_s.extend(script_s.drain(..).flatten());
+        let ends = [paths.robot.first(), paths.robot.last()];
+        let mut places: Vec<Point> = ends.into_iter().flatten().filter_map(at).collect();
+        let mut order: Vec<(Relation, String)> = Vec::new();
+        // Who is met at one node is met at one time.
+        for here in paths.encounters.chunk_by(|a, b| a.node == b.node) {
+            let mut met: Vec<(Relation, String)> = here
+                .iter()
+                .filter_map(|encounter| proposal.human(encounter.human))
+                .map(|human| (human.relation, human.role.clone()))
+                .collect();
+            met.sort_unstable();
+            order.extend(met);
+            places.extend(here.iter().filter_map(|encounter| at(&encounter.node)));
+        }
+        let kind = Kind { location: location.name.clone(), parts, script, order };
+        Self { kind, places, times_s }
+    }
+
+    /// Whether nothing makes a difference between the two.
+    #[must_use]
+    pub fn repeats(&self, other: &Self) -> bool {
+        self.kind == other.kind
+            && self.places.len() == other.places.len()
+            && self.places.iter().zip(&other.places).all(|(a, b)| (b - a).norm() <= ELSEWHERE_M)
+            && self.times_s.len() == other.times_s.len()
+            && self.times_s.iter().zip(&other.times_s).all(|(a, b)| (b - a).abs() <= LATER_S)
+    }
+
+    /// How far two scenarios are from each other, in units of the smallest difference: 0 where nothing differs, and every
+    /// difference adds to it.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        let (mine, theirs) = (&self.kind, &other.kind);
+        let unlike = |differs: bool, weight: f64| if differs { weight } else { 0.0 };
+        let relations = |kind: &Kind| kind.parts.iter().map(|part| part.relation).collect::<Vec<_>>();
+        let sorted = |mut all: Vec<String>| {
+            all.sort_unstable();
+            all
+        };
+        let roles = |kind: &Kind| sorted(kind.parts.iter().map(|part| part.role.clone()).collect());
+        let sides = |kind: &Kind| kind.parts.iter().map(|part| part.side).collect::<Vec<_>>();
+        let acts = |kind: &Kind| sorted(kind.parts.iter().flat_map(|part| part.acts.clone()).collect());
+        let said = unlike(mine.location != theirs.location, MOST)
+            + unlike(mine.parts.len() != theirs.parts.len(), 2.0)
+            + unlike(relations(mine) != relations(theirs), 2.0)
+            + unlike(sides(mine) != sides(theirs), 2.0)
+            + unlike(roles(mine) != roles(theirs), 1.0)
+            + unlike(acts(mine) != acts(theirs), 1.0)
+            + unlike(mine.order != theirs.order || mine.script != theirs.script, 1.0);
+        let said = if said > 0.0 { said } else { unlike(mine != theirs, 1.0) };
+        let far = |(a, b): (&Point, &Point)| ((b - a).norm() / ELSEWHERE_M).min(MOST);
+        let ends: f64 = self.places.iter().zip(&other.places).take(2).map(far).sum();
+        let met = self.places.iter().zip(&other.places).skip(2).map(far).fold(0.0, f64::max);
+        let later = |(a, b): (&f64, &f64)| ((b - a).abs() / LATER_S).min(MOST);
+        said + ends + met + self.times_s.iter().zip(&other.times_s).map(later).fold(0.0, f64::max)
+    }
+}
+
+/// Times one after the other.
+fn compared(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
+    let first = a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne());
+    first.unwrap_or_else(|| a.len().cmp(&b.len()))
+}
+
+/// A person's part and when what they do is triggered, s.
+fn part(human: &HumanProposal, proposal: &Proposal, paths: &Paths, location: &Location) -> (Part, Vec<f64>) {
+    let group = proposal.groups.iter().find(|group| group.members.contains(&human.id));
+    let nearing_mps = if human.relation == Relation::Frontal { TOWARDS_MPS } else { ROBOT_MPS };
+    let (acts, times): (Vec<String>, Vec<Vec<f64>>) = human.rules.iter().map(|rule| act(rule, nearing_mps)).unzip();
+    let part = Part {
+        relation: human.relation,
+        role: human.role.clone(),
+        side: side(human.id, paths, location),
+        together: group.map_or(0, |group| group.members.len()),
+        meets: paths.encounters_of(human.id).count(),
+        acts,
+    };
+    (part, times.into_iter().flatten().collect())
+}
+
+/// The side that a person comes from at their first meeting: by the last legs of both ways before it.
+fn side(human: HumanId, paths: &Paths, location: &Location) -> Side {
+    let leg = |nodes: &[NodeId], step: Option<usize>| -> Option<Vector> {
+        let step = step?;
+        let at = |step: usize| location.graph.node(nodes.get(step)?).map(|node| node.at);
+        (at(step)? - at(step.checked_sub(1)?)?).try_normalize(1e-9)
+    };
+    let visits = paths.visits(human);
+    let Some(Visit { robot_step, human_step, .. }) = visits.first() else { return Side::Along };
+    let own = paths.of(AgentId::Human(human)).unwrap_or_default();
+    let Some((robot, person)) = leg(&paths.robot, *robot_step).zip(leg(own, *human_step)) else { return Side::Along };
+    // Whoever walks to the left of the robot's direction comes from its right.
+    match robot.perp(&person) {
+        sine if sine > ASIDE => Side::Right,
+        sine if sine < -ASIDE => Side::Left,
+        _ => Side::Along,
+    }
+}
+
+/// What is done and when, without numbers and ids, and the times of it, s.
+fn act(rule: &Rule, nearing_mps: f64) -> (String, Vec<f64>) {
+    let mut words: Vec<String> = Vec::new();
+    let mut times_s: Vec<f64> = Vec::new();
+    for trigger in &rule.when {
+        match trigger {
+            Trigger::AfterSecs(s) => {
+                words.push("after".to_owned());
+                times_s.push(*s);
+            }
+            // Ids are numbers: who it is, the gesture says.
+            Trigger::HumanSays(_, gesture) => words.push(format!("a human says {gesture}")),
+            Trigger::Always
+            | Trigger::RobotVisible(_)
+            | Trigger::RobotNear(_)
+            | Trigger::RobotBlocking(_)
+            | Trigger::RobotMoving
+            | Trigger::RobotStopped
+            | Trigger::RobotPassed
+            | Trigger::RobotSays(_)
+            | Trigger::GoalReached
+            | Trigger::AtEncounter => {
+                words.push(trigger.clone().at_distance(0.0).phrase());
+                // The nearer, the later.
+                times_s.extend(trigger.distance_m().map(|m| -m / nearing_mps));
+            }
+        }
+    }
+    let whom = matches!(rule.act, Action::FollowHuman(_));
+    let done = if whom { "follow a human".to_owned() } else { rule.act.they() };
+    let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
+    (format!("{}: {done}{gesture}", words.join(" and ")), times_s)
+}
+
+/// The same of a line of the robot's script.
+fn scripted(when: &RobotWhen, act: &RobotDo) -> (String, Option<f64>) {
+    let (word, time_s) = match when {
+        RobotWhen::Start => ("start".to_owned(), None),
+        RobotWhen::Blocked(s) => ("blocked".to_owned(), Some(*s)),
+        RobotWhen::HumanNear(m) => ("near".to_owned(), Some(-m / ROBOT_MPS)),
+        RobotWhen::HumanSays(gesture) => (format!("hears {gesture}"), None),
+        RobotWhen::AtEncounter(_) => ("meets".to_owned(), None),
+        RobotWhen::AfterSecs(s) => ("after".to_owned(), Some(*s)),
+    };
+    let done = match act {
+        RobotDo::Say(gesture) => format!("says {gesture}"),
+        RobotDo::Hold(_) => "holds".to_owned(),
+        RobotDo::WaitForLeavers => "waits for leavers".to_owned(),
+        RobotDo::Follow(_) => "follows".to_owned(),
+        RobotDo::Abreast(_) => "goes beside".to_owned(),
+        RobotDo::Lead(_) => "leads".to_owned(),
+    };
+    (format!("{word}: {done}"), time_s)
+}
+
+#[cfg(test)]
+mod tests;
