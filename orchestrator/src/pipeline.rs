@@ -90,8 +90,14 @@ pub fn authored(spec: &ScenarioSpec) -> Vec<(Stage, Item)> {
 pub fn seed(spec: &ScenarioSpec, stage: Stage, run: Option<&Run>, seed_revision: u32, reseeds: u32) -> u64 {
     match run {
         Some(run) => derive_seed(spec.seed, &[stage.name(), &run.seed.to_string()]),
-        None => derive_seed(spec.seed, &[stage.name(), &seed_revision.to_string(), &reseeds.to_string()]),
+        None => authored_seed(spec.seed, stage, seed_revision, reseeds),
     }
+}
+
+/// Seed of a job that asks an author, in a scenario of this base seed.
+#[must_use]
+pub fn authored_seed(base_seed: u64, stage: Stage, seed_revision: u32, reseeds: u32) -> u64 {
+    derive_seed(base_seed, &[stage.name(), &seed_revision.to_string(), &reseeds.to_string()])
 }
 
 /// The output of this role among artifacts.

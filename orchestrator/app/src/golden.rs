@@ -15,13 +15,13 @@ use socrates_hunav::{AgentsFile, Dialect, Inputs, Profile, RobotSpec};
 use socrates_model::{Fault, Location, Point, Pose, Request};
 use socrates_offline::catalog;
 
+use crate::cards;
 use crate::config::Config;
 use crate::exit::Complaint;
 use crate::files;
 use crate::in_process::play;
 use crate::mutations::shipped;
 use crate::output::Printer;
-use crate::scenarios;
 
 /// Seeds of each run.
 const SEEDS: [u64; 2] = [1, 2];
@@ -95,12 +95,12 @@ fn scenarios(config: &Config) -> Result<Vec<Scenario>, Complaint> {
         }
     }
     for card in catalog().iter().filter(|card| card.letter.is_some()) {
-        let places = scenarios::places(card, None)?;
+        let places = cards::places(card)?;
         for (seed, location) in SEEDS.into_iter().zip(places.iter().cycle()) {
             found.push(Scenario {
                 kind: "card",
                 name: format!("{}-{}", location.name, card.id),
-                request: scenarios::request(card, &location.name)?,
+                request: cards::request(card, &location.name)?,
                 location: location.clone(),
                 seed,
             });

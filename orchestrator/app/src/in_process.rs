@@ -66,6 +66,27 @@ pub(crate) async fn propose(request: &Request, location: &Location, seed: u64) -
     }
 }
 
+/// Proposal and paths as the offline author will write them in a scenario of this base seed: asked with the seeds that its jobs
+/// get.
+///
+/// # Errors
+/// The faults of the last answer that was refused.
+pub(crate) async fn foresee(
+    request: &Request,
+    reading: &Reading,
+    location: &Location,
+    base_seed: u64,
+) -> Result<(Proposal, Paths), Vec<Fault>> {
+    let question = |stage| {
+        let seed = socrates_orchestrator::pipeline::authored_seed(base_seed, stage, 0, 0);
+        Question { stage, ..Question::first(request.clone(), reading.clone(), location.clone(), seed) }
+    };
+    let Written::Proposal(proposal) = ask(question(Stage::Proposal)).await? else { return wrong() };
+    let asked = Question { proposal: Some(proposal.clone()), ..question(Stage::Paths) };
+    let Written::Paths(paths) = ask(asked).await? else { return wrong() };
+    Ok((proposal, paths))
+}
+
 /// One stage, asked again with what was wrong until it is right.
 async fn ask(mut question: Question) -> Result<Written, Vec<Fault>> {
     let context = AuthorContext::default();

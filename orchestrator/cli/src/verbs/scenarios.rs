@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use socrates_app::output::Printer;
+use socrates_app::rates::{self, RateOptions};
 use socrates_app::scenarios;
 
 use super::{Outcome, done};
@@ -30,13 +31,16 @@ enum ScenariosVerb {
     Rate {
         /// Ids or letters; all of them where none is named.
         ids: Vec<String>,
-        /// Seeds 1 to N for each.
+        /// Seeds 1 to N of each scenario, on the locations that it fits in turn.
         #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
         seeds: u64,
-        /// A location for all of them; default: the shipped ones that fit, in turn.
+        /// A shipped name or a folder; again for each further one. Default: the shipped locations.
+        #[arg(long, value_name = "LOCATION")]
+        location: Vec<String>,
+        /// Play every seed on each location that fits instead of on one in turn.
         #[arg(long)]
-        location: Option<String>,
-        /// Markdown file for the table.
+        each: bool,
+        /// Markdown file for the tables.
         #[arg(long, short)]
         out: Option<PathBuf>,
     },
@@ -50,8 +54,9 @@ impl Scenarios {
                 Ok(())
             }
             ScenariosVerb::Show { id } => scenarios::show(talk, id).await,
-            ScenariosVerb::Rate { ids, seeds, location, out } => {
-                scenarios::rate(talk, ids, *seeds, location.as_deref(), out.as_deref()).await
+            ScenariosVerb::Rate { ids, seeds, location, each, out } => {
+                let (ids, locations, out) = (ids.clone(), location.clone(), out.clone());
+                rates::rate(talk, &RateOptions { ids, seeds: *seeds, each: *each, locations, out })
             }
         })
     }

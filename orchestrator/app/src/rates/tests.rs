@@ -1,0 +1,60 @@
+use super::*;
+
+/// Seeds per scenario: as many as a test may take.
+const SEEDS: u64 = 5;
+
+fn quiet(_: usize, _: usize, _: &str) {}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
+fn every_scenario_of_the_catalog_really_happens() {
+    let played = play(&cards(&[]).unwrap(), places(&[]).unwrap(), (SEEDS, false), &mut quiet).unwrap();
+    let mut lines = Vec::new();
+    for (number, card) in played.cards.iter().enumerate() {
+        let tally = played.tally(number);
+        if tally.realised < tally.played {
+            let failures = played.failures(number);
+            lines.push(format!("{}: {} of {} {failures:?}", card.id, tally.realised, tally.played));
+        }
+        // One of five may fail; two of five are another scenario than the card says.
+        assert!(tally.played == 5 && tally.realised + 1 >= tally.played, "{}", lines.join("\n"));
+    }
+    let pooled = played.pooled();
+    println!("{} of {}\n{}", pooled.realised, pooled.played, lines.join("\n"));
+    assert!(pooled.realised * 100 >= pooled.played * 97, "{}", lines.join("\n"));
+}
+
+#[test]
+fn what_does_not_fit_is_left_out_with_its_reason_and_the_rest_is_played() {
+    let cards = cards(&["exiting_elevator".to_owned(), "frontal_approach".to_owned()]).unwrap();
+    let places = places(&["office".to_owned(), "office".to_owned(), "hospital".to_owned()]).unwrap();
+    let columns: Vec<&str> = places.iter().map(|place| place.column.as_str()).collect();
+    assert_eq!(columns, ["office", "office-2", "hospital"]);
+    let played = play(&cards, places, (1, true), &mut quiet).unwrap();
+    assert_eq!(played.unfit.iter().map(|(card, place, _)| (*card, *place)).collect::<Vec<_>>(), [(0, 0), (0, 1)]);
+    let runs: Vec<(usize, usize)> = played.runs.iter().map(|(item, _)| (item.card, item.place)).collect();
+    assert_eq!(runs, [(0, 2), (1, 0), (1, 1), (1, 2)]);
+    let told = table::told(&played).join("\n");
+    assert!(told.contains("-[1]") && told.contains("[1] needs an elevator lobby, the map has none"), "{told}");
+    assert!(told.contains("fits       4 of 6 pairs"), "{told}");
+    // The same map under two names: the same run.
+    assert_eq!(played.runs.get(1).map(|(_, outcome)| outcome), played.runs.get(2).map(|(_, outcome)| outcome));
+}
+
+#[test]
+fn cards_that_fit_no_map_are_refused_with_the_reason_and_the_maps_that_they_fit() {
+    let played =
+        nothing_fits(&cards(&["exiting_elevator".to_owned()]).unwrap(), &places(&["office".to_owned()]).unwrap());
+    assert!(played.hint.contains("hospital"), "{played}");
+    assert!(played.causes.iter().any(|why| why.contains("on office: needs an elevator lobby")), "{played}");
+}
+
+#[test]
+fn a_second_call_says_the_same_whatever_thread_played_what() {
+    let cards = cards(&["f".to_owned(), "k".to_owned()]).unwrap();
+    let once = || {
+        let played = play(&cards, places(&[]).unwrap(), (3, false), &mut quiet).unwrap();
+        (table::told(&played), table::object(&played).to_string())
+    };
+    assert_eq!(once(), once());
+}
