@@ -40,8 +40,21 @@ fn two_hundred_scenarios_survive_the_death_of_every_kind_of_process() {
     std::fs::write(&file, REQUEST).unwrap();
     let (file, library) = (file.display().to_string(), folder.path().join("library"));
     let (out, count) = (library.display().to_string(), COUNT.to_string());
-    let args =
-        ["--format", "json", "run", &file, "--out", &out, "--variants", &count, "--require", "any", "--workers", "2"];
+    let args = [
+        "--format",
+        "json",
+        "run",
+        &file,
+        "--out",
+        &out,
+        "--variants",
+        &count,
+        "--repeats",
+        "--require",
+        "any",
+        "--workers",
+        "2",
+    ];
     let run = start(PROGRAM, &args, folder.path(), "first").unwrap();
     let mut killed = Vec::new();
     let mut seen = 0;

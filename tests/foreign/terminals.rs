@@ -26,7 +26,7 @@ fn what_takes_time_shows_a_bar_on_a_terminal_and_leaves_nothing_of_it() {
     let script = skip::program("script").ok_or_else(|| "there is no program `script` that makes a terminal".to_owned());
     let Some(script) = skip::installed(script) else { return };
     let folder = tempfile::tempdir().unwrap();
-    let (finished, _) = make(folder.path(), "shown", WAREHOUSE, &["--require", "any", "--variants", "2"]);
+    let (finished, _) = make(folder.path(), "shown", WAREHOUSE, &["--require", "any", "--variants", "2", "--repeats"]);
     assert_eq!(finished.code, 0, "{}", finished.err);
     let film = ["video", "bundle-shown/shown-1-00001", "--out", "film.gif", "--size", "320x180"];
     for (words, bar, last) in [

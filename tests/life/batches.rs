@@ -91,7 +91,7 @@ fn a_folder_and_its_scenario_have_one_name_and_labels_take_any_names() {
 fn a_killed_batch_says_where_it_stopped_and_a_finished_one_what_it_holds() {
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("x.toml"), WAREHOUSE);
-    let args = ["run", "x.toml", "--variants", "6", "--pace", "30", "--require", "any", "--out", "lib"];
+    let args = ["run", "x.toml", "--variants", "6", "--repeats", "--pace", "30", "--require", "any", "--out", "lib"];
     let status = |name: &str, more: &[&str]| {
         let args: Vec<&str> = ["--format", "json", "status", "lib"].iter().chain(more).copied().collect();
         let finished = socrates(folder.path(), name, &args);
@@ -188,7 +188,19 @@ fn an_author_who_cannot_be_asked_is_found_before_a_folder_is_made() {
 fn a_log_file_gets_lines_of_progress_and_no_codes_of_a_terminal() {
     let folder = tempfile::tempdir().unwrap();
     write(&folder.path().join("x.toml"), WAREHOUSE);
-    let args = ["run", "x.toml", "--variants", "2", "--pace", "12", "--require", "any", "--set", "log.progress_s=1"];
+    let args = [
+        "run",
+        "x.toml",
+        "--variants",
+        "2",
+        "--repeats",
+        "--pace",
+        "12",
+        "--require",
+        "any",
+        "--set",
+        "log.progress_s=1",
+    ];
     let args: Vec<&str> = args.iter().chain(&["--set", "log.filter=info"]).copied().collect();
     let finished = socrates(folder.path(), "log", &args);
     assert_eq!(finished.code, 0, "{}", finished.err);

@@ -50,7 +50,19 @@ fn a_killed_library_holds_whole_bundles_and_the_same_command_makes_the_rest() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("hall.toml"), WAREHOUSE).unwrap();
     let count = COUNT.to_string();
-    let args = ["--format", "json", "run", "hall.toml", "--variants", &count, "--out", "library", "--require", "any"];
+    let args = [
+        "--format",
+        "json",
+        "run",
+        "hall.toml",
+        "--variants",
+        &count,
+        "--repeats",
+        "--out",
+        "library",
+        "--require",
+        "any",
+    ];
     let root: PathBuf = folder.path().join("library");
     let mut grown = BTreeSet::new();
     // Killed when there is one bundle more than before: others are being made and written at that moment.

@@ -113,7 +113,8 @@ fn a_bundle_gives_a_page_films_a_figure_and_a_paragraph() {
 #[test]
 fn a_folder_of_bundles_has_a_page_even_when_one_is_damaged() {
     let folder = tempfile::tempdir().unwrap();
-    let (finished, json) = make(folder.path(), "many", WAREHOUSE, &["--require", "any", "--variants", "2"]);
+    let (finished, json) =
+        make(folder.path(), "many", WAREHOUSE, &["--require", "any", "--variants", "2", "--repeats"]);
     assert_eq!(finished.code, 0, "{}", finished.err);
     let root = folder.path().join("bundle-many");
     let rows = |page: &Path| data(&text(page))["rows"].as_array().unwrap().clone();

@@ -47,6 +47,7 @@ fn a_batch_writes_one_row_per_run_and_counts_distinct_scenarios() {
         "requests",
         "--variants",
         "3",
+        "--repeats",
         "--seeds",
         "1,2",
         "--out",

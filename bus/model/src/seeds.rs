@@ -8,7 +8,7 @@
 //! | seed | derived from | drives |
 //! |---|---|---|
 //! | base seed: `--seed`, 1 | given | all below |
-//! | seed of scenario `k` of a request: `--variants` | base seed + `k` | everything of that scenario |
+//! | seed of a variant of a request: `--variants` | base seed + number of the chosen draw; 0, 1, 2 … where they may repeat | everything of that scenario |
 //! | simulation seeds: `--seeds`, `run.seeds` | given; without them the base seed | speed and place of people (`Run::seed`) |
 //! | seed of an authored job | base seed, stage, seed revision, reseeds | what the author draws, and a model's own seed |
 //! | seed of a simulation or scoring job | base seed, stage, simulation seed | nothing; it tells jobs apart |

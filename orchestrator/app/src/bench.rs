@@ -97,7 +97,7 @@ async fn hand_overs(talk: &Printer, config: &Config, folder: &Path) -> Result<Ve
     let options = RunOptions { author: Some(socrates_model::AuthorSpec::Offline), ..RunOptions::plain(1) };
     let prepared = prepare_text("bench", REQUEST, "bench", Path::new("."), Some(&options), config)?;
     let wanted = (1..=SERIES)
-        .map(|seed| Ok(Wanted { id: scenario_id("bench", seed, 0, 1)?, seed, prepared: &prepared }))
+        .map(|seed| Ok(Wanted { id: scenario_id("bench", seed, 0, 1)?, index: 0, seed, prepared: &prepared }))
         .collect::<Result<Vec<_>, Complaint>>()?;
     let work = folder.join("series");
     std::fs::create_dir_all(&work).map_err(|why| ours(why.to_string()))?;

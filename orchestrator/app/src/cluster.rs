@@ -13,6 +13,7 @@ use crate::exit::{Code, Complaint};
 use crate::output::Printer;
 use crate::prepare::{prepare, request_files};
 use crate::run_options::RunOptions;
+use crate::variants;
 use crate::wanted::{specs, wanted};
 use crate::words::plural;
 
@@ -37,7 +38,8 @@ pub async fn submit(
     let folder = config.program().temp.join(format!("socrates-submit-{}", std::process::id()));
     let ours = |why: String| Complaint::input(why, "").with_code(Code::Ours);
     let blobs = LocalBlobs::new(&folder, false);
-    let specs = specs(&wanted(&prepared, seed)?, config, &options, &blobs)?;
+    let plans = variants::plans(talk, prepared.iter(), seed, options.repeats)?;
+    let specs = specs(&wanted(&prepared, seed, &plans)?, config, &options, &blobs)?;
     let mut digests: Vec<_> = specs
         .iter()
         .flat_map(|spec| [spec.request, spec.location, spec.reading].into_iter().chain(spec.pinned.values().copied()))

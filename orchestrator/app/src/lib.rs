@@ -78,6 +78,7 @@ pub mod standing;
 mod supervise;
 pub mod tokens;
 pub mod traces;
+mod variants;
 pub mod video;
 mod wanted;
 pub mod watch;

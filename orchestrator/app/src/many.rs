@@ -19,7 +19,7 @@ use crate::refused::Refused;
 use crate::run_options::RunOptions;
 use crate::session::Making;
 use crate::wanted::{Wanted, wanted};
-use crate::{bundle, index, layout, library_index, next};
+use crate::{bundle, index, layout, library_index, next, variants};
 
 /// Makes every scenario of these requests in one folder, whose list and page are written at the end.
 pub(crate) async fn batch(
@@ -31,10 +31,10 @@ pub(crate) async fn batch(
 ) -> Result<Code, Complaint> {
     let names = distinct(prepared.iter().map(|one| one.name.as_str()));
     prepared.iter_mut().zip(names).for_each(|(one, name)| one.name = name);
-    let count: u64 = prepared.iter().map(|one| u64::from(one.request.run.variants)).sum();
     let base = options.out.clone().unwrap_or_else(|| PathBuf::from("runs").join(format!("library-{}", options.seed)));
+    let chosen = if options.repeats { " repeats" } else { "" };
     let wishes: Vec<String> =
-        prepared.iter().map(|one| format!("{} {}", bundle::wish(one, options.seed), one.name)).collect();
+        prepared.iter().map(|one| format!("{} {}{chosen}", bundle::wish(one, options.seed), one.name)).collect();
     let wish = socrates_model::Digest::of(wishes.join("\n").as_bytes());
     let root = match place::place(&base, wish) {
         Place::Finished(root) => {
@@ -50,7 +50,9 @@ pub(crate) async fn batch(
         print_reading(talk, one);
     }
     let prepared: Vec<Arc<Prepared>> = prepared.into_iter().map(Arc::new).collect();
-    let wanted = wanted(&prepared, options.seed)?;
+    let plans = variants::plans(talk, prepared.iter().map(AsRef::as_ref), options.seed, options.repeats)?;
+    let wanted = wanted(&prepared, options.seed, &plans)?;
+    let count = u64::try_from(wanted.len()).unwrap_or(u64::MAX);
     let mut bundler = Bundler::start(&root, &work, &wanted, &prepared);
     // Until the last bundle is written, nobody else makes them.
     let _hold = Making { talk, config, options, work: &work, wanted: &wanted }.bundled(&mut bundler).await?;

@@ -143,7 +143,7 @@ async fn single(talk: &Printer, config: &Config, options: &RunOptions, prepared:
             bundled(&dir, &work, &id, &prepared, seed, &reader, true)
         }
     };
-    let want = Wanted { id, seed: options.seed, prepared: &prepared };
+    let want = Wanted { id, index: 0, seed: options.seed, prepared: &prepared };
     let then = async { tokio::task::spawn_blocking(writing).await };
     let making = Making { talk, config, options, work: &work, wanted: &[want] };
     let (mut made, outcome) = making.and(then).await?;

@@ -37,6 +37,8 @@ pub struct RunOptions {
     pub planner: Vec<PlannerName>,
     /// Scenarios to make from each request, 1 to 100000.
     pub variants: Option<u32>,
+    /// Whether variants may repeat one another: one of each seed in turn.
+    pub repeats: bool,
     /// Author.
     pub author: Option<AuthorSpec>,
     /// Pace of the simulation: `max`, or simulated seconds per second.
@@ -60,6 +62,7 @@ impl RunOptions {
             seeds: None,
             planner: Vec::new(),
             variants: None,
+            repeats: false,
             author: None,
             pace: "max".to_owned(),
             require: Require::Any,

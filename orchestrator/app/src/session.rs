@@ -94,7 +94,7 @@ impl Making<'_> {
         let hold = Hold::take(self.work)?;
         // One of each request, then the next of each: whatever is there when it is stopped is of all kinds.
         let mut wanted = self.wanted.to_vec();
-        wanted.sort_by_key(|want| want.seed);
+        wanted.sort_by_key(|want| want.index);
         let making = Making { wanted: &wanted, ..*self };
         making.carry_out(&hold, wanted.len(), Some(bundler), async {}).await?;
         Ok(hold)

@@ -11,26 +11,33 @@ use crate::config::Config;
 use crate::exit::Complaint;
 use crate::prepare::{Prepared, scenario_id};
 use crate::run_options::RunOptions;
+use crate::variants::Plan;
 
 /// One scenario to be made.
 #[derive(Debug, Clone)]
 pub(crate) struct Wanted<'a> {
     /// Its id.
     pub(crate) id: ScenarioId,
+    /// Which variant of its request it is, 0 the first.
+    pub(crate) index: u32,
     /// Its seed.
     pub(crate) seed: u64,
     /// What it is made from.
     pub(crate) prepared: &'a Prepared,
 }
 
-/// Every scenario of these requests, with its id and seed.
-pub(crate) fn wanted<P: Borrow<Prepared>>(prepared: &[P], seed: u64) -> Result<Vec<Wanted<'_>>, Complaint> {
+/// Every scenario of these requests by its plan, with its id and seed.
+pub(crate) fn wanted<'a, P: Borrow<Prepared>>(
+    prepared: &'a [P],
+    seed: u64,
+    plans: &[Plan],
+) -> Result<Vec<Wanted<'a>>, Complaint> {
     let mut wanted = Vec::new();
-    for one in prepared {
+    for (one, plan) in prepared.iter().zip(plans) {
         let one: &Prepared = one.borrow();
-        for index in 0..one.request.run.variants {
+        for (index, own) in (0..one.request.run.variants).zip(&plan.seeds) {
             let id = scenario_id(&one.name, seed, index, one.request.run.variants)?;
-            wanted.push(Wanted { id, seed: seed + u64::from(index), prepared: one });
+            wanted.push(Wanted { id, index, seed: *own, prepared: one });
         }
     }
     Ok(wanted)

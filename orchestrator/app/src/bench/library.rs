@@ -84,7 +84,10 @@ pub(super) async fn bench(talk: &Printer, config: &Config, scenarios: u32, folde
 async fn made(config: &Config, variants: u32, source: &Path, out: &Path) -> Result<Cost, Complaint> {
     let program = config.executable()?;
     let mut command = Command::new(program);
-    command.args(["run", "--require", "any", "--variants", &variants.to_string(), "--out"]).arg(out).arg(source);
+    command
+        .args(["run", "--require", "any", "--repeats", "--variants", &variants.to_string(), "--out"])
+        .arg(out)
+        .arg(source);
     command.args(config.passed_on());
     let before = machine::ended_children_s();
     let started = Instant::now();

@@ -137,7 +137,7 @@ impl Maker<'_> {
             .zip(cases.iter().zip(&prepared))
             .map(|(index, (case, prepared))| {
                 let id = scenario_id(&prepared.name, case.seed, index, u32::MAX)?;
-                Ok(Wanted { id, seed: case.seed, prepared })
+                Ok(Wanted { id, index: 0, seed: case.seed, prepared })
             })
             .collect::<Result<Vec<_>, Complaint>>()?;
         let options = RunOptions { workers: self.options.workers, ..RunOptions::plain(self.spec.seed) };

@@ -53,9 +53,12 @@ pub(crate) struct Options {
     /// Planners under test, separated by commas; wins over the request.
     #[arg(long, value_delimiter = ',')]
     planner: Vec<PlannerName>,
-    /// Scenarios to make from each request, 1 to 100000; wins over the request.
+    /// Different scenarios to make from each request, 1 to 100000, as many as there are; wins over the request.
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_VARIANTS)))]
     variants: Option<u32>,
+    /// Let variants repeat one another: take the seeds in turn instead of choosing different scenarios.
+    #[arg(long)]
+    repeats: bool,
     /// Author: `auto`, `offline`, `openai:MODEL`, `anthropic:MODEL`, `gemini:MODEL`, `vllm:`, `ollama:`, `llamacpp:` or
     /// `lmstudio:MODEL`, `cassette:FOLDER`, `record:FOLDER=AUTHOR`, `replay:FOLDER=AUTHOR`; wins over the request.
     #[arg(long)]
@@ -84,11 +87,12 @@ impl Options {
     }
 
     fn values(&self) -> RunOptions {
-        let Self { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask } = self.clone();
+        let Self { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, ask } =
+            self.clone();
         let require = match require {
             Require::Any => run_options::Require::Any,
             Require::Realised => run_options::Require::Realised,
         };
-        RunOptions { out, seed, seeds, planner, variants, author, pace, require, workers, inject, ask }
+        RunOptions { out, seed, seeds, planner, variants, repeats, author, pace, require, workers, inject, ask }
     }
 }

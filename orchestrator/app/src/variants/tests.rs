@@ -1,0 +1,73 @@
+use std::collections::BTreeSet;
+
+use super::*;
+use crate::config::Config;
+
+/// Draws of a count that leaves nothing out: as many as a test may take.
+const ALL: usize = 2048;
+
+fn shipped(name: &str, variants: u32) -> Prepared {
+    let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
+    let mut one = all.into_iter().find(|one| one.name == name).unwrap();
+    one.request.run.variants = variants;
+    one
+}
+
+fn likeness(one: &Prepared, seeds: &[u64]) -> Vec<Likeness> {
+    seeds.iter().map(|seed| drawn(one, *seed).unwrap()).collect()
+}
+
+#[test]
+fn no_variant_repeats_another_and_the_same_command_chooses_the_same() {
+    let one = shipped("office-intersection", 20);
+    let first = plan(&one, 1).unwrap();
+    assert_eq!(first, plan(&one, 1).unwrap());
+    assert!(first.seeds.len() <= 20 && first.seeds.first() == Some(&1), "{first:?}");
+    let made = likeness(&one, &first.seeds);
+    for (number, one) in made.iter().enumerate() {
+        assert!(made[..number].iter().all(|earlier| !one.repeats(earlier)), "{number}: {:?}", first.seeds);
+    }
+    // Seed by seed there are repeats, which is what the plan is for.
+    let turn = Plan::in_turn(1, 20);
+    assert_eq!(turn.seeds, (1..=20).collect::<Vec<u64>>());
+}
+
+#[test]
+fn the_count_that_is_said_beforehand_is_most_of_what_a_count_of_all_draws_finds() {
+    let one = shipped("office-corridor", 10_000);
+    let known = plan(&one, 1).unwrap().known.unwrap();
+    let seeds: Vec<u64> = (1..=u64::try_from(ALL).unwrap()).collect();
+    let mut all: Vec<Likeness> = Vec::new();
+    for one in cores::each(ALL, |number| drawn(&one, seeds[number]), &mut |_| ()).into_iter().flatten() {
+        if !all.iter().any(|earlier| earlier.repeats(&one)) {
+            all.push(one);
+        }
+    }
+    assert!(known.different * 100 >= all.len() * 80, "{known:?} of {}", all.len());
+}
+
+#[test]
+fn the_farthest_come_first() {
+    let one = shipped("office-intersection", 2);
+    let (found, _) = different(100, &|number| drawn(&one, 1 + number as u64));
+    let order = spread(&found, found.len());
+    assert_eq!(order.iter().collect::<BTreeSet<_>>().len(), found.len(), "each once");
+    let of = |draw: u64| found.iter().find(|one| one.draw as u64 == draw).map(|one| &one.likeness).unwrap();
+    let first = of(order[0]);
+    if let Some(second) = order.get(1) {
+        let away = first.distance(of(*second));
+        assert!(
+            order.iter().all(|other| first.distance(of(*other)) <= away),
+            "the second is the farthest from the first"
+        );
+    }
+}
+
+#[test]
+fn an_author_that_cannot_be_asked_beforehand_gets_its_seeds_in_turn() {
+    let mut one = shipped("office-intersection", 3);
+    one.author = AuthorSpec::Cassette("answers".to_owned());
+    let plan = plan(&one, 7).unwrap();
+    assert_eq!(plan, Plan::in_turn(7, 3));
+    assert!(plan.told("x", 3).contains("3 by seeds"));
+}
