@@ -20,7 +20,6 @@ pub mod card;
 
 mod aside;
 mod begins;
-mod cannot;
 mod expect;
 mod hands;
 mod lexicon;
@@ -102,18 +101,13 @@ mod edit_wish;
 mod answer;
 mod boards;
 mod chance;
-mod crowd;
 mod draw;
-mod fit;
 mod headings;
-mod humans;
 mod mended;
-mod routes;
 mod rules;
 mod solve;
 mod spans;
 mod spot;
-mod twice;
 
 #[cfg(test)]
 mod again_tests;

@@ -1,34 +1,51 @@
-//! Why no paths could be written: the reason that a person reads.
+//! Why there are no paths: what does not fit, where, and by how much.
 
-use socrates_model::{PlaceClass, Proposal};
-use socrates_prompts::Question;
+use std::fmt;
 
-use crate::place;
-use crate::routes::Net;
-use crate::solve::{SHORTEST_M, solve};
+use socrates_model::PlaceClass;
 
-/// The reason why a map has no paths for a proposal, found by leaving parts of it out.
-pub(crate) fn reason(question: &Question, proposal: &Proposal) -> String {
-    let net = Net::new(&question.location);
-    if let Some(short) = too_short(&net) {
+use crate::candidates::SHORTEST_M;
+use crate::graph::Net;
+use crate::{Problem, inside, search};
+
+/// Why a map has no paths for a problem.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Miss(String);
+
+impl fmt::Display for Miss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Miss {}
+
+/// The reason why a map has no paths for a problem, found by leaving parts of it out.
+pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
+    Miss(reason(problem, net))
+}
+
+fn reason(problem: &Problem<'_>, net: &Net<'_>) -> String {
+    let proposal = problem.proposal;
+    if let Some(short) = too_short(net) {
         return short;
     }
     let alone = |id| {
         let mut one = proposal.clone();
         one.humans.retain(|human| human.id == id);
         one.groups.clear();
-        solve(question, &one).is_some()
+        search::found(&Problem { proposal: &one, ..problem.clone() }, net).is_some()
     };
     let stuck: Vec<String> = proposal
         .humans
         .iter()
         .filter(|human| !alone(human.id))
         .map(|human| {
-            let from = human.start.map_or_else(String::new, |class| format!(" from {}", place::an(class)));
+            let from = human.start.map_or_else(String::new, |class| format!(" from {}", inside::an(class)));
             format!("{} (`{}`{from})", human.id, human.relation.name())
         })
         .collect();
-    let at = place::an(proposal.place);
+    let at = inside::an(proposal.place);
     if stuck.is_empty() {
         return format!(
             "this map has no paths on which all {} humans meet the robot at {at}, though each of them alone could; ask for fewer, \

@@ -1,10 +1,11 @@
-//! Ways through the scene graph: shortest ones round what is barred, and the robot's ways over a meeting node.
+//! The scene graph by index: nodes, what joins them, and shortest ways round what is barred.
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
 
-use crate::place;
+use crate::{Problem, inside};
 
 /// A way that begins or ends where the task says by name is better than any other; else the nearer the better, per m.
 const CALLED: f64 = 40.0;
@@ -35,6 +36,14 @@ pub(crate) struct Tree {
 }
 
 impl<'a> Net<'a> {
+    /// The graph of a problem, with the places that its task names.
+    pub(crate) fn of(problem: &Problem<'a>) -> Self {
+        let net = Self::new(problem.location).with_ends(&problem.starts, &problem.goals);
+        let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
+        let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
+        Self { rooms, ..net }
+    }
+
     pub(crate) fn new(location: &'a Location) -> Self {
         let graph = &location.graph;
         let ids: Vec<NodeId> = graph.nodes().iter().map(|node| node.id.clone()).collect();
@@ -48,7 +57,7 @@ impl<'a> Net<'a> {
                 }
             }
         }
-        let inside = ids.iter().map(|id| place::is_inside(location, id)).collect();
+        let inside = ids.iter().map(|id| inside::is_inside(location, id)).collect();
         Self {
             location,
             at: graph.nodes().iter().map(|node| node.at).collect(),
@@ -62,7 +71,7 @@ impl<'a> Net<'a> {
     }
 
     /// With the places where the robot's task begins and ends by name.
-    pub(crate) fn with_ends(mut self, start: &[NodeId], goal: &[NodeId]) -> Self {
+    fn with_ends(mut self, start: &[NodeId], goal: &[NodeId]) -> Self {
         let far = |net: &Self, ids: &[NodeId]| {
             let trees: Vec<Tree> =
                 ids.iter().filter_map(|id| net.index(id)).map(|node| net.tree(node, &|_| false)).collect();
@@ -70,12 +79,6 @@ impl<'a> Net<'a> {
             if trees.is_empty() { Vec::new() } else { (0..net.len()).map(nearest).collect() }
         };
         (self.start_m, self.goal_m) = (far(&self, start), far(&self, goal));
-        self
-    }
-
-    /// With the rooms that people come out of by name.
-    pub(crate) fn with_rooms(mut self, rooms: BTreeMap<HumanId, Vec<usize>>) -> Self {
-        self.rooms = rooms;
         self
     }
 
@@ -171,21 +174,14 @@ impl<'a> Net<'a> {
     /// Shortest ways from a node over all nodes that are not barred.
     pub(crate) fn tree(&self, from: usize, barred: &dyn Fn(usize) -> bool) -> Tree {
         let n = self.len();
-        let (mut length_m, mut before, mut done) = (vec![f64::INFINITY; n], vec![usize::MAX; n], vec![false; n]);
+        let (mut length_m, mut before) = (vec![f64::INFINITY; n], vec![usize::MAX; n]);
         if let Some(start) = length_m.get_mut(from) {
             *start = 0.0;
         }
-        loop {
-            let open = length_m
-                .iter()
-                .enumerate()
-                .filter(|(i, length)| length.is_finite() && !done.get(*i).copied().unwrap_or(true));
-            let Some((node, length)) = open.min_by(|a, b| a.1.total_cmp(b.1)).map(|(i, length)| (i, *length)) else {
-                break;
-            };
-            if let Some(flag) = done.get_mut(node) {
-                *flag = true;
-            }
+        let mut front = BinaryHeap::from([Reverse((0, from))]);
+        // Of two that are as near the one of the smaller index comes first; bits of floats that are not negative sort as they do.
+        while let Some(Reverse((bits, node))) = front.pop() {
+            let Some(length) = length_m.get(node).copied().filter(|known| known.to_bits() == bits) else { continue };
             for (next, step) in self.near(node) {
                 if barred(*next) {
                     continue;
@@ -194,6 +190,7 @@ impl<'a> Net<'a> {
                     && length + step < *known
                 {
                     (*known, *prev) = (length + step, node);
+                    front.push(Reverse((known.to_bits(), *next)));
                 }
             }
         }
@@ -225,136 +222,4 @@ impl Tree {
         way.reverse();
         way
     }
-}
-
-/// A way of the robot over its meeting node.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Route {
-    pub(crate) nodes: Vec<usize>,
-    /// Index of the meeting node in `nodes`.
-    pub(crate) meet: usize,
-    pub(crate) score: f64,
-}
-
-/// What is wanted of the robot's way.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Wish {
-    pub(crate) start: Option<PlaceClass>,
-    pub(crate) goal: Option<PlaceClass>,
-    pub(crate) place: PlaceClass,
-    /// A class of place that the way should lead past.
-    pub(crate) via: Option<PlaceClass>,
-    /// Whether doorways and aisles are to be kept away from.
-    pub(crate) roomy: bool,
-    /// Whether the way may lead into rooms.
-    pub(crate) indoors: bool,
-    /// 1: straight over the meeting node, -1: round a corner, 0: no matter.
-    pub(crate) straight: f64,
-    /// Ways shorter than this are not good enough, m.
-    pub(crate) least_m: f64,
-    /// Length that is aimed at, m.
-    pub(crate) aim_m: f64,
-}
-
-/// Ends per branch that are tried in earnest.
-const ENDS: usize = 9;
-
-type Ways = Vec<Vec<usize>>;
-
-/// The robot's ways over a node, best first.
-pub(crate) fn over(net: &Net<'_>, meet: usize, wish: &Wish) -> Vec<Route> {
-    let mut arms: Vec<(usize, Ways, Ways)> = Vec::new();
-    for (arm, step) in net.near(meet) {
-        if net.inside(*arm) && !wish.indoors {
-            continue;
-        }
-        // Rooms are where people come from; the robot goes there only when its task says so.
-        let tree = net.tree(*arm, &|node| node == meet);
-        let ends = |class: Option<PlaceClass>, goal: bool| {
-            let mut found: Vec<(f64, usize)> = (0..net.len())
-                .filter(|end| tree.length_m(*end).is_finite() && *end != meet)
-                .map(|end| {
-                    let score = end_score(net, end, tree.length_m(end) + step, class, wish);
-                    (score + net.called(end, goal), end)
-                })
-                .collect();
-            found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            found.into_iter().take(ENDS).map(|(_, end)| tree.way(end)).filter(|way| !way.is_empty()).collect::<Vec<_>>()
-        };
-        arms.push((*arm, ends(wish.start, false), ends(wish.goal, true)));
-    }
-    let mut routes = Vec::new();
-    for (a, starts, _) in &arms {
-        for (b, _, goals) in &arms {
-            if a == b {
-                continue;
-            }
-            for start in starts {
-                for goal in goals.iter().filter(|goal| goal.iter().all(|node| !start.contains(node))) {
-                    let mut nodes: Vec<usize> = start.iter().rev().copied().collect();
-                    let at = nodes.len();
-                    nodes.push(meet);
-                    nodes.extend(goal);
-                    let score = score(net, &nodes, at, wish);
-                    if score.is_finite() {
-                        routes.push(Route { nodes, meet: at, score });
-                    }
-                }
-            }
-        }
-    }
-    routes.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.nodes.cmp(&b.nodes)));
-    routes
-}
-
-fn end_score(net: &Net<'_>, end: usize, length_m: f64, class: Option<PlaceClass>, wish: &Wish) -> f64 {
-    let wanted = class.is_some_and(|class| net.is(end, class));
-    let inside = net.inside(end) && !wanted;
-    let bonus = if wanted { 6.0 } else { 0.0 };
-    bonus - (length_m - wish.aim_m / 2.0).abs() - if inside { 20.0 } else { 0.0 }
-}
-
-/// How good a way is; minus infinity where it is too short.
-pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) -> f64 {
-    let total = net.length_m(nodes);
-    if nodes.len() < 4 || total < wish.least_m {
-        return f64::NEG_INFINITY;
-    }
-    let before = net.length_m(nodes.get(..=meet).unwrap_or_default());
-    let after = total - before;
-    let mut score = -0.3 * (total - wish.aim_m).abs();
-    // Before the meeting the robot needs room to be seen, after it room to get away.
-    score -= 2.0 * (5.0 - before).max(0.0) + 2.0 * (3.0 - after).max(0.0);
-    if let (Some(a), Some(b), Some(c)) =
-        (meet.checked_sub(1).and_then(|i| nodes.get(i)), nodes.get(meet), nodes.get(meet + 1))
-    {
-        score += 3.0 * wish.straight * net.straight(*a, *b, *c);
-        // Nobody turns back on the spot.
-        if net.straight(*a, *b, *c) < -0.8 {
-            score -= 6.0;
-        }
-    }
-    // Nor anywhere else on the way.
-    let back = |triple: &[usize]| matches!(triple, [a, b, c] if net.straight(*a, *b, *c) < -0.5);
-    score -= 4.0 * nodes.windows(3).filter(|triple| back(triple)).count() as f64;
-    let mid = nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default();
-    score -= 5.0 * mid.iter().filter(|node| net.inside(**node)).count() as f64;
-    if wish.via.is_some_and(|class| mid.iter().any(|node| net.is(*node, class))) {
-        score += 3.0;
-    }
-    let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
-    score += 0.3 * of_place as f64;
-    for (end, class, goal) in [(nodes.first(), wish.start, false), (nodes.last(), wish.goal, true)] {
-        let Some(end) = end else { continue };
-        score += net.called(*end, goal);
-        match class {
-            Some(class) if net.is(*end, class) => score += 4.0,
-            Some(_) => {}
-            None if net.inside(*end) => score -= 4.0,
-            // Nobody stays in a doorway, where others have to get through.
-            None if net.kind(*end) == PlaceClass::Doorway => score -= 12.0,
-            None => {}
-        }
-    }
-    score
 }
