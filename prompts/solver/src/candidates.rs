@@ -4,7 +4,7 @@ use socrates_maps::Ground;
 use socrates_model::{HumanProposal, PlaceClass, Proposal, Relation};
 
 use crate::everybody::{Solution, everybody};
-use crate::fit::{SQUEEZED, hides, layout, overtakes, squeezed, tight};
+use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight};
 use crate::graph::{Net, Tree};
 use crate::people::boarding;
 use crate::robot_way::{Route, Wish, over, score};
@@ -15,6 +15,11 @@ pub(crate) const SHORTEST_M: f64 = 6.0;
 /// Meeting nodes that are tried, and ways of the robot over each.
 const NODES: usize = 14;
 const ROUTES: usize = 10;
+/// Length of a way to people who stand, or away from them, that is aimed at, m.
+const AIM_M: f64 = 12.0;
+/// Places at which a way may begin or end that are tried, and other ends for each.
+const PLACES: usize = 60;
+const OTHER_ENDS: usize = 120;
 /// More people than this who come towards the robot come as a stream.
 const STREAM: usize = 8;
 
@@ -24,6 +29,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) net: &'a Net<'a>,
     pub(crate) proposal: &'a Proposal,
     pub(crate) layout: Layout,
+    /// Whether a few may start at one node: where there is no room for all to start apart.
+    pub(crate) crowded: bool,
 }
 
 /// Whether the robot's way ends inside the car or room that people leave, or go into.
@@ -66,15 +73,19 @@ pub(crate) fn candidates(scene: &Scene<'_>, wish: &Wish) -> Vec<Solution> {
     let typed: Vec<usize> =
         socrates_maps::place::nodes_of(net.location, wish.place).iter().filter_map(|id| net.index(id)).collect();
     let nodes: Vec<usize> = if wish.place == PlaceClass::Plain { (0..net.len()).collect() } else { typed };
+    // Those near where the task begins or ends come first: of a very large map the others are not tried.
+    let mut near = nodes.clone();
+    near.sort_by(|a, b| net.astray(*a).total_cmp(&net.astray(*b)));
+    near.truncate(PLACES);
     match scene.layout.ends {
-        Ends::With => return nodes.into_iter().flat_map(|node| to_node(scene, wish, node)).collect(),
+        Ends::With => return near.into_iter().flat_map(|node| to_node(scene, wish, node)).collect(),
         Ends::From => {
-            return nodes.into_iter().flat_map(|node| from_node(scene, wish, node)).collect();
+            return near.into_iter().flat_map(|node| from_node(scene, wish, node)).collect();
         }
         Ends::Past => {}
     }
     // So many come as a stream: two or three from each node.
-    at_nodes(scene, wish, &nodes, walkers > STREAM)
+    at_nodes(&Scene { crowded: scene.crowded || walkers > STREAM, ..*scene }, wish, &nodes)
 }
 
 /// Ways to a place by name: through it, or into it where it is a dead end.
@@ -82,7 +93,7 @@ fn at_meant(scene: &Scene<'_>, wish: &Wish, meant: &[usize]) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let wish = &Wish { indoors: true, ..*wish };
     let moves = |human: &HumanProposal| !matches!(human.relation, Relation::Static | Relation::Staying);
-    let mut found = at_nodes(scene, wish, meant, false);
+    let mut found = at_nodes(scene, wish, meant);
     if proposal.humans.iter().any(|human| !moves(human)) {
         let walkers = proposal.humans.iter().any(moves);
         for goal in meant.iter().filter(|node| net.near(**node).len() < 2 || net.inside(**node)) {
@@ -108,25 +119,17 @@ fn up_to(scene: &Scene<'_>, wish: &Wish, goal: usize, walkers: bool) -> Vec<Solu
         })
         .collect();
     best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route, false)).collect()
+    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
 }
 
-pub(crate) fn anywhere(scene: &Scene<'_>, wish: &Wish, crowded: bool) -> Vec<Solution> {
-    let net = scene.net;
-    let all: Vec<usize> = (0..net.len()).collect();
-    let relaxed = Wish { least_m: SHORTEST_M, ..*wish };
-    at_nodes(scene, &relaxed, &all, crowded)
-}
-
-fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize], crowded: bool) -> Vec<Solution> {
+fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
-    let wide = scene.layout.width_m;
     let overtakers = proposal.humans.iter().filter(|human| overtakes(human)).count();
     let overtaken = overtakers > 0;
     let ground = Ground::of(&net.location.grid);
-    let field = (standing > 0 || wide.is_some() || overtaken).then(|| ground.field());
+    let field = (standing > 0 || overtaken).then(|| ground.field());
     // People who come out are met near the place that they leave.
     let leaver = proposal.humans.iter().find(|human| human.relation == Relation::Leaving);
     let sources: Option<Vec<Tree>> = leaver.map(|human| {
@@ -139,6 +142,7 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize], crowded: bool) -> V
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
         .filter(|node| (!net.inside(**node) || wish.indoors) && net.near(**node).len() >= 2)
+        .filter(|node| suits(&scene.layout, net.near(**node).len(), ground.field().clearance(&net.at(**node))))
         .map(|node| {
             let own = if net.kind(*node) == wish.place { 2.0 } else { 0.0 };
             let arms = net.near(*node).len();
@@ -158,7 +162,7 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize], crowded: bool) -> V
                 let nearest = trees.iter().map(|tree| tree.length_m(*node)).fold(f64::INFINITY, f64::min);
                 if nearest > 12.0 { -20.0 } else { -0.4 * (nearest - 3.0).max(0.0) }
             });
-            (own + cross + room + far + layout(&scene.layout, arms, clear_m) - net.astray(*node), *node)
+            (own + cross + room + far - net.astray(*node), *node)
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -166,7 +170,7 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize], crowded: bool) -> V
     for (rank, meet) in ranked.into_iter().take(NODES) {
         for route in over(net, meet, wish).into_iter().take(ROUTES) {
             let hidden = sight.map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
-            if let Some(mut solution) = everybody(scene, route, crowded) {
+            if let Some(mut solution) = everybody(scene, route) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
                 let squeezed = field
@@ -216,7 +220,7 @@ fn into(scene: &Scene<'_>, wish: &Wish, goal: usize) -> Vec<Solution> {
             if !value.is_finite() {
                 return None;
             }
-            everybody(scene, Route { nodes, meet, score: value + 4.0 }, false)
+            everybody(scene, Route { nodes, meet, score: value + 4.0 })
         })
         .collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -251,13 +255,13 @@ fn out_of(scene: &Scene<'_>, wish: &Wish, start: usize) -> Vec<Solution> {
         })
         .collect();
     best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route, false)).collect()
+    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
 }
 
 /// The robot's ways to people who stand at a node, where it stays.
 fn to_node(scene: &Scene<'_>, wish: &Wish, node: usize) -> Vec<Solution> {
     let net = scene.net;
-    let wish = Wish { aim_m: 12.0, straight: 0.0, goal: None, ..*wish };
+    let wish = Wish { aim_m: AIM_M, straight: 0.0, goal: None, ..*wish };
     at_end(scene, node, |mut nodes| {
         nodes.reverse();
         let meet = nodes.len().checked_sub(1)?;
@@ -269,7 +273,7 @@ fn to_node(scene: &Scene<'_>, wish: &Wish, node: usize) -> Vec<Solution> {
 /// The robot's ways away from people who stand at a node.
 fn from_node(scene: &Scene<'_>, wish: &Wish, node: usize) -> Vec<Solution> {
     let net = scene.net;
-    let wish = Wish { aim_m: 12.0, straight: 0.0, start: None, ..*wish };
+    let wish = Wish { aim_m: AIM_M, straight: 0.0, start: None, ..*wish };
     at_end(scene, node, |nodes| {
         let score = score(net, &nodes, 1, &wish);
         Some(Route { nodes, meet: 0, score })
@@ -283,13 +287,21 @@ fn at_end(scene: &Scene<'_>, node: usize, route: impl Fn(Vec<usize>) -> Option<R
         return Vec::new();
     }
     let tree = net.tree(node, &|_| false);
-    let mut routes: Vec<Route> = outside(net, &tree, node)
+    let mut others: Vec<usize> = outside(net, &tree, node).collect();
+    let rank = |other: usize| {
+        let named = net.called(other, false).max(net.called(other, true));
+        named - (tree.length_m(other) - AIM_M).abs()
+    };
+    others.sort_by(|a, b| rank(*b).total_cmp(&rank(*a)).then(a.cmp(b)));
+    others.truncate(OTHER_ENDS);
+    let mut routes: Vec<Route> = others
+        .into_iter()
         .filter_map(|other| route(tree.way(other)))
         .filter(|route| route.score.is_finite())
         .map(|route| Route { score: route.score + roomy(net, node), ..route })
         .collect();
     best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route, false)).collect()
+    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
 }
 
 fn outside(net: &Net<'_>, tree: &Tree, but: usize) -> impl Iterator<Item = usize> {

@@ -8,7 +8,7 @@ use socrates_model::{Encounter, FORMAT, HumanId, NodeId, Paths, Relation};
 use crate::candidates::Scene;
 use crate::graph::Net;
 use crate::people::{Taken, Way, boarding, led_past, way};
-use crate::robot_way::Route;
+use crate::robot_way::{LEAST_M, Route, times_shortest};
 use crate::{Problem, inside, meant, second_meeting, spread};
 
 /// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
@@ -26,8 +26,8 @@ pub(crate) struct Solution {
 }
 
 /// Everybody's way for one way of the robot.
-pub(crate) fn everybody(scene: &Scene<'_>, route: Route, crowded: bool) -> Option<Solution> {
-    let Scene { net, proposal, layout } = *scene;
+pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
+    let Scene { net, proposal, layout, crowded } = *scene;
     let starts = route.nodes.first().copied().into_iter().collect();
     let goals = route.nodes.last().copied().into_iter().collect();
     let meant = meant::indices(net, proposal);
@@ -151,7 +151,8 @@ pub(crate) fn written(net: &Net<'_>, solution: &Solution, problem: &Problem<'_>)
         }
     }
     let reasoning = format!(
-        "The robot goes {length} m over a meeting place that is {} ({}); {} encounters lie on its way in this order.",
+        "The robot goes {length} m{} over a meeting place that is {} ({}); {} encounters lie on its way in this order.",
+        reason(net, &solution.route, problem),
         inside::an(problem.proposal.place),
         at.join(", "),
         encounters.len()
@@ -164,4 +165,28 @@ pub(crate) fn written(net: &Net<'_>, solution: &Solution, problem: &Problem<'_>)
         reasoning,
         author: problem.author.clone(),
     }
+}
+
+/// A way this much longer than the shortest is told with its reason, as a share.
+const TOLD: f64 = 0.02;
+
+/// Why the robot does not go the shortest way; empty where it does.
+fn reason(net: &Net<'_>, route: &Route, problem: &Problem<'_>) -> String {
+    let more = times_shortest(net, &route.nodes, problem.via) - 1.0;
+    let (Some(first), Some(last)) = (route.nodes.first(), route.nodes.last()) else { return String::new() };
+    if !more.is_finite() || more <= TOLD {
+        return String::new();
+    }
+    let direct = net.ways_from(*first);
+    let shortest_m = direct.length_m(*last);
+    let place = inside::an(problem.proposal.place);
+    let passes = direct.way(*last).iter().any(|node| net.is(*node, problem.proposal.place));
+    let why = if shortest_m < LEAST_M {
+        format!("which is too short for a meeting: it takes {LEAST_M} m")
+    } else if passes {
+        format!("where nobody can do at {place} what they have to")
+    } else {
+        format!("which does not lead over {place}")
+    };
+    format!(" ({:.0} % more than the {shortest_m:.1} m of the shortest way, {why})", more * 100.0)
 }

@@ -1,18 +1,18 @@
 //! The scene graph by index: nodes, what joins them, and shortest ways round what is barred.
 
+use std::cell::RefCell;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
+use std::rc::Rc;
 
 use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
 
-use crate::{Problem, inside};
+use crate::cost::{FARTHEST, WEIGHTS};
+use crate::passable::{Closed, floor_m};
+use crate::{Problem, inside, passable};
 
-/// A way that begins or ends where the task says by name is better than any other; else the nearer the better, per m.
-const CALLED: f64 = 40.0;
-const OFF: f64 = 0.6;
-/// What a meeting costs per m beyond so many from where the task begins and ends.
-const ASTRAY: f64 = 0.3;
-const NEARBY_M: f64 = 12.0;
+/// Half a robot: a way through nodes may bend so much more than one on the floor, m.
+const SLACK_M: f64 = 0.5;
 
 /// The scene graph by index.
 pub(crate) struct Net<'a> {
@@ -24,8 +24,14 @@ pub(crate) struct Net<'a> {
     /// How far each node is from the places where the robot's task begins and ends by name, m; empty without such places.
     start_m: Vec<f64>,
     goal_m: Vec<f64>,
+    /// Length of the shortest way between the two, m; infinite where one of them is left open.
+    between_m: f64,
     /// The rooms that people come out of by name.
     rooms: BTreeMap<HumanId, Vec<usize>>,
+    /// Edges that nobody gets through.
+    closed: Vec<Closed>,
+    /// Shortest ways from nodes, nothing barred, as they were asked for.
+    trees: RefCell<BTreeMap<usize, Rc<Tree>>>,
 }
 
 /// Shortest ways from one node to all others.
@@ -38,7 +44,9 @@ pub(crate) struct Tree {
 impl<'a> Net<'a> {
     /// The graph of a problem, with the places that its task names.
     pub(crate) fn of(problem: &Problem<'a>) -> Self {
-        let net = Self::new(problem.location).with_ends(&problem.starts, &problem.goals);
+        let mut net = Self::new(problem.location);
+        net.close(passable::closed(problem.location, problem.radius_m));
+        let net = net.with_ends(&problem.starts, &problem.goals);
         let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
         let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
         Self { rooms, ..net }
@@ -66,7 +74,60 @@ impl<'a> Net<'a> {
             inside,
             start_m: Vec::new(),
             goal_m: Vec::new(),
+            between_m: f64::INFINITY,
             rooms: BTreeMap::new(),
+            closed: Vec::new(),
+            trees: RefCell::default(),
+        }
+    }
+
+    /// Takes edges out that nobody gets through.
+    fn close(&mut self, closed: Vec<Closed>) {
+        for edge in &closed {
+            let [a, b] = &edge.between;
+            let (Some(a), Some(b)) = (self.index(a), self.index(b)) else { continue };
+            for (one, other) in [(a, b), (b, a)] {
+                if let Some(list) = self.near.get_mut(one) {
+                    list.retain(|(node, _)| *node != other);
+                }
+            }
+        }
+        self.closed = closed;
+    }
+
+    /// Edges that nobody gets through.
+    pub(crate) fn closed(&self) -> &[Closed] {
+        &self.closed
+    }
+
+    /// Whether a way of the graph is at most [`FARTHEST`] times as long as the shortest way of a disc on the floor.
+    pub(crate) fn is_short_on_grid(&self, nodes: &[usize], radius_m: f64) -> bool {
+        let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { return true };
+        let (from, to) = (self.at(*first), self.at(*last));
+        let short = |shortest_m: f64| self.length_m(nodes) <= FARTHEST * shortest_m + SLACK_M;
+        // No way on the floor is shorter than the straight line, which costs nothing to know.
+        short((to - from).norm()) || floor_m(self.location, &from, &to, radius_m).is_none_or(short)
+    }
+
+    /// Shortest ways from a node over all others.
+    pub(crate) fn ways_from(&self, from: usize) -> Rc<Tree> {
+        let known = self.trees.borrow().get(&from).map(Rc::clone);
+        known.unwrap_or_else(|| {
+            let made = Rc::new(self.tree(from, &|_| false));
+            self.trees.borrow_mut().insert(from, Rc::clone(&made));
+            made
+        })
+    }
+
+    /// Length of the shortest way between two nodes, past a node of the class where one is given, m; infinite where there is none.
+    pub(crate) fn shortest_m(&self, from: usize, to: usize, via: Option<PlaceClass>) -> f64 {
+        let (out, back) = (self.ways_from(from), self.ways_from(to));
+        match via {
+            None => out.length_m(to),
+            Some(class) => (0..self.len())
+                .filter(|node| self.is(*node, class))
+                .map(|node| out.length_m(node) + back.length_m(node))
+                .fold(f64::INFINITY, f64::min),
         }
     }
 
@@ -79,6 +140,8 @@ impl<'a> Net<'a> {
             if trees.is_empty() { Vec::new() } else { (0..net.len()).map(nearest).collect() }
         };
         (self.start_m, self.goal_m) = (far(&self, start), far(&self, goal));
+        let between = self.start_m.iter().zip(&self.goal_m).map(|(start_m, goal_m)| start_m + goal_m);
+        self.between_m = between.fold(f64::INFINITY, f64::min);
         self
     }
 
@@ -95,18 +158,22 @@ impl<'a> Net<'a> {
     /// How well a node suits as the end of a way that the robot's task names; 0 where it names none.
     pub(crate) fn called(&self, node: usize, goal: bool) -> f64 {
         match (if goal { &self.goal_m } else { &self.start_m }).get(node) {
-            Some(m) if *m < 1e-9 => CALLED,
-            Some(m) => -OFF * m.min(100.0),
+            Some(m) if *m < 1e-9 => WEIGHTS.named_end,
+            Some(m) => -WEIGHTS.off_end_per_m * m.min(100.0),
             None => 0.0,
         }
     }
 
-    /// What it costs a meeting to lie far from where the task begins and ends by name.
+    /// What it costs a meeting to lie far from where the task begins and ends by name: off the way between them where both are
+    /// named, else far from the one that is.
     pub(crate) fn astray(&self, node: usize) -> f64 {
+        if let (Some(start_m), Some(goal_m)) = (self.start_m.get(node), self.goal_m.get(node)) {
+            return WEIGHTS.off_way_per_m * (start_m + goal_m - self.between_m).clamp(0.0, 100.0);
+        }
         [&self.start_m, &self.goal_m]
             .into_iter()
             .filter_map(|all| all.get(node))
-            .map(|m| ASTRAY * (m.min(100.0) - NEARBY_M).max(0.0))
+            .map(|m| WEIGHTS.astray_per_m * (m.min(100.0) - WEIGHTS.near_end_m).max(0.0))
             .sum()
     }
 

@@ -12,6 +12,7 @@
 //! *Never here:* a word of a request, a file, a clock, a random number of its own (the draw is an argument).
 
 mod candidates;
+mod cost;
 pub mod edit;
 mod everybody;
 mod fit;
@@ -19,16 +20,23 @@ mod graph;
 pub mod inside;
 mod meant;
 mod miss;
+mod passable;
 mod people;
 mod robot_way;
 mod search;
 mod second_meeting;
 mod spread;
+mod told;
+
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use socrates_model::{HumanId, Location, NodeId, Paths, PlaceClass, Proposal, Signature};
+use socrates_model::{HumanId, Location, NodeId, Paths, PlaceClass, Proposal, RobotModel, Signature};
 
 pub use meant::{met_at, of_proposal};
 pub use miss::Miss;
@@ -89,6 +97,8 @@ pub struct Problem<'a> {
     pub starts: Vec<NodeId>,
     /// Nodes where it ends by name; empty where the task leaves it open.
     pub goals: Vec<NodeId>,
+    /// Radius of the disc that covers the robot, m; what is narrower it does not get through.
+    pub radius_m: f64,
     /// A class of place that the task has the way lead past.
     pub via: Option<PlaceClass>,
     /// Nodes of the rooms that people come out of by name.
@@ -103,9 +113,32 @@ pub struct Problem<'a> {
     pub author: Signature,
 }
 
+impl<'a> Problem<'a> {
+    /// The problem of a proposal as it stands: nothing by name, nothing said before, the usual robot.
+    #[must_use]
+    pub fn of(proposal: &'a Proposal, location: &'a Location, author: Signature) -> Self {
+        Self {
+            proposal,
+            location,
+            starts: Vec::new(),
+            goals: Vec::new(),
+            radius_m: RobotModel::default().radius_m,
+            via: None,
+            rooms: BTreeMap::new(),
+            layout: Layout::default(),
+            told: Told::default(),
+            draw: 0,
+            author,
+        }
+    }
+}
+
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
     /// The chosen paths.
     pub paths: Paths,
+    /// Different paths that are as good as the best, the best first, then each time those that play farthest from all before: two
+    /// differ when the meeting, or the robot's start or goal, lies more than 3 m elsewhere. The draw picks among them.
+    pub alternatives: Vec<Paths>,
 }

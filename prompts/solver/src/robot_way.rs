@@ -2,6 +2,7 @@
 
 use socrates_model::PlaceClass;
 
+use crate::cost::WEIGHTS;
 use crate::graph::Net;
 
 /// A way of the robot over its meeting node.
@@ -32,6 +33,9 @@ pub(crate) struct Wish {
     /// Length that is aimed at, m.
     pub(crate) aim_m: f64,
 }
+
+/// Shortest way of the robot over a meeting, m.
+pub(crate) const LEAST_M: f64 = 6.5;
 
 /// Ends per branch that are tried in earnest.
 const ENDS: usize = 9;
@@ -93,45 +97,58 @@ fn end_score(net: &Net<'_>, end: usize, length_m: f64, class: Option<PlaceClass>
 
 /// How good a way is; minus infinity where it is too short.
 pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) -> f64 {
+    let w = &WEIGHTS;
     let total = net.length_m(nodes);
     if nodes.len() < 4 || total < wish.least_m {
         return f64::NEG_INFINITY;
     }
     let before = net.length_m(nodes.get(..=meet).unwrap_or_default());
     let after = total - before;
-    let mut score = -0.3 * (total - wish.aim_m).abs();
+    let mut score = -w.length_per_m * (total - wish.aim_m).abs() - w.detours(times_shortest(net, nodes, wish.via));
     // Before the meeting the robot needs room to be seen, after it room to get away.
-    score -= 2.0 * (5.0 - before).max(0.0) + 2.0 * (3.0 - after).max(0.0);
+    score -= w.room_per_m * ((5.0 - before).max(0.0) + (3.0 - after).max(0.0));
     if let (Some(a), Some(b), Some(c)) =
         (meet.checked_sub(1).and_then(|i| nodes.get(i)), nodes.get(meet), nodes.get(meet + 1))
     {
-        score += 3.0 * wish.straight * net.straight(*a, *b, *c);
+        score += w.straight * wish.straight * net.straight(*a, *b, *c);
         // Nobody turns back on the spot.
         if net.straight(*a, *b, *c) < -0.8 {
-            score -= 6.0;
+            score -= w.turn_back;
         }
     }
     // Nor anywhere else on the way.
     let back = |triple: &[usize]| matches!(triple, [a, b, c] if net.straight(*a, *b, *c) < -0.5);
-    score -= 4.0 * nodes.windows(3).filter(|triple| back(triple)).count() as f64;
+    score -= w.sharp_turn * nodes.windows(3).filter(|triple| back(triple)).count() as f64;
     let mid = nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default();
-    score -= 5.0 * mid.iter().filter(|node| net.inside(**node)).count() as f64;
-    if wish.via.is_some_and(|class| mid.iter().any(|node| net.is(*node, class))) {
-        score += 3.0;
+    score -= w.through_room * mid.iter().filter(|node| net.inside(**node)).count() as f64;
+    if wish.via.is_some_and(|class| passes(net, nodes, class)) {
+        score += w.via;
     }
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
-    score += 0.3 * of_place as f64;
+    score += w.of_place * of_place as f64;
     for (end, class, goal) in [(nodes.first(), wish.start, false), (nodes.last(), wish.goal, true)] {
         let Some(end) = end else { continue };
         score += net.called(*end, goal);
         match class {
-            Some(class) if net.is(*end, class) => score += 4.0,
+            Some(class) if net.is(*end, class) => score += w.end_class,
             Some(_) => {}
-            None if net.inside(*end) => score -= 4.0,
+            None if net.inside(*end) => score -= w.end_inside,
             // Nobody stays in a doorway, where others have to get through.
-            None if net.kind(*end) == PlaceClass::Doorway => score -= 12.0,
+            None if net.kind(*end) == PlaceClass::Doorway => score -= w.end_doorway,
             None => {}
         }
     }
     score
+}
+
+/// Whether a way leads past a class of place between its ends.
+fn passes(net: &Net<'_>, nodes: &[usize], class: PlaceClass) -> bool {
+    nodes.get(1..nodes.len().saturating_sub(1)).unwrap_or_default().iter().any(|node| net.is(*node, class))
+}
+
+/// How many times as long a way is as the shortest from its start to its goal, past what the task names where it leads past that.
+pub(crate) fn times_shortest(net: &Net<'_>, nodes: &[usize], via: Option<PlaceClass>) -> f64 {
+    let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { return 1.0 };
+    let shortest_m = net.shortest_m(*first, *last, via.filter(|class| passes(net, nodes, *class)));
+    if shortest_m > 1e-9 { net.length_m(nodes) / shortest_m } else { f64::INFINITY }
 }

@@ -31,6 +31,9 @@ const APART_M: f64 = 0.8;
 /// So many may start at one node where there is no room for all to start apart.
 const SHARED: usize = 3;
 
+/// Ways that have to meet where somebody crosses the robot's.
+pub(crate) const CROSSED_ARMS: usize = 3;
+
 /// Somebody goes on at least so far after the meeting, m.
 const ONWARD_M: f64 = 4.0;
 
