@@ -110,6 +110,21 @@ pub(crate) fn style(config: &Config) -> Result<BTreeMap<String, String>, Complai
     Style::from_settings(&asked).map(|style| style.settings()).map_err(broken)
 }
 
+/// Who writes paths, as a setting of jobs; empty where the author does.
+pub(crate) fn paths_by(config: &Config, author: &AuthorSpec) -> Result<BTreeMap<String, String>, Complaint> {
+    let word = config.text("author.paths_by");
+    match word.as_str() {
+        "model" => Ok(BTreeMap::new()),
+        // Rules have the solver anyway, and their results stay the same results.
+        "solver" if *author == AuthorSpec::Offline => Ok(BTreeMap::new()),
+        "solver" => Ok(BTreeMap::from([("paths_by".to_owned(), word)])),
+        _ => {
+            let what = format!("`author.paths_by`: `{word}` is unknown; allowed: model, solver");
+            Err(Complaint::input(what, "`socrates config author` prints the manual"))
+        }
+    }
+}
+
 /// Looks whether these authors can be asked, before anything is made.
 pub(crate) async fn check(config: &Config, authors: impl IntoIterator<Item = &AuthorSpec>) -> Result<(), Complaint> {
     let authors: BTreeSet<String> = authors.into_iter().map(AuthorSpec::to_string).collect();
@@ -242,6 +257,9 @@ mod tests {
         let told = |flags: &[&str]| keys(&config(flags)).unwrap_err().to_string();
         assert!(told(&["author.key_variable=", "author.key_file=/no/such/key"]).contains("/no/such/key"));
         assert!(told(&["author.form=strict"]).contains("`author.form`: `strict` is unknown"));
+        let by = |word: &str| paths_by(&config(&[&format!("author.paths_by={word}")]), &AuthorSpec::Auto);
+        assert!(by("model").unwrap().is_empty() && by("solver").unwrap()["paths_by"] == "solver");
+        assert!(by("oracle").unwrap_err().to_string().contains("allowed: model, solver"));
         let why = style(&config(&["author.paths=edges"])).unwrap_err().to_string();
         assert!(why.contains("`author.paths`: `edges` is unknown; allowed: anchors, nodes, walk"), "{why}");
         assert!(style(&config(&[])).unwrap().is_empty());

@@ -165,6 +165,7 @@ pub(crate) fn prepare_text(
         // that were put in matters.
         style.retain(|key, _| key == "prompt.variants" || key == "prompt.feedback" && !injected.is_empty());
     }
+    style.extend(crate::authors::paths_by(config, &author)?);
     Ok(Prepared {
         name: slug(name),
         file: None,

@@ -123,3 +123,15 @@ fn both_paths_lead_to_both_meetings() {
         }
     }
 }
+
+#[test]
+fn many_are_met_one_after_the_other_along_the_way() {
+    let met = |task: &str, rough: &str| {
+        let (_, _, paths) = crate::tests::answers(&crate::tests::request(task, Some(rough)), &map("hospital"), 1);
+        paths.encounters.iter().map(|encounter| encounter.node.clone()).collect::<std::collections::BTreeSet<_>>()
+    };
+    let rough = "Eight people walk along the corridor: four come towards the robot, four walk in the same direction as the robot.";
+    let nodes = met("Drive along the main corridor", rough);
+    assert!(nodes.len() > 1, "{nodes:?}");
+    assert_eq!(met("Drive", "Three people come towards the robot.").len(), 1);
+}

@@ -5,7 +5,7 @@ use socrates_model::Proposal;
 use socrates_model::job::Stage;
 use socrates_prompts::Question;
 
-use crate::{NAME, cannot, mended, proposal, solve};
+use crate::{NAME, mended, proposal, solve};
 
 /// The offline author.
 ///
@@ -26,12 +26,10 @@ impl Offline {
     pub fn answer(question: &Question) -> String {
         match question.stage {
             Stage::Proposal => text(&proposal::propose(question)),
-            Stage::Paths => match with_proposal(question, |known| solve::solve(question, known)) {
-                Some(paths) => text(&paths),
-                None => {
-                    let why = with_proposal(question, |known| Some(cannot::reason(question, known)));
-                    json!({ "cannot": why }).to_string()
-                }
+            Stage::Paths => match with_proposal(question, |known| Some(solve::solve(question, known))) {
+                Some(Ok(paths)) => text(&paths),
+                Some(Err(miss)) => json!({ "cannot": miss.to_string() }).to_string(),
+                None => json!({ "cannot": "there is no proposal" }).to_string(),
             },
             Stage::Behaviors => {
                 with_proposal(question, |known| Some(behaviors(question, known))).unwrap_or_else(|| "{}".to_owned())

@@ -6,6 +6,8 @@ use serde::Deserialize;
 use socrates_model::rule::RobotRule;
 use socrates_model::{Action, ClauseRole, Gesture, GroupId, HumanId, PlaceClass, Predicate, Relation, Rule, Trigger};
 
+pub use socrates_solver::Ends;
+
 use crate::draw::Draw;
 
 /// A canonical scenario.
@@ -66,19 +68,6 @@ pub struct Card {
     /// What should be seen, beyond what every human's own part demands.
     #[serde(default, rename = "clause")]
     pub clauses: Vec<CardClause>,
-}
-
-/// Where on the robot's way people stand who stand.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Ends {
-    /// On the way: the robot gets past them.
-    #[default]
-    Past,
-    /// At its end: the robot comes to them.
-    With,
-    /// At its start: the robot leaves them.
-    From,
 }
 
 /// A part to play.

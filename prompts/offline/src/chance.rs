@@ -179,16 +179,9 @@ pub(crate) fn stops(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
     }
 }
 
-/// Whether somebody stands at first and walks on at something that comes later.
-pub(crate) fn walks_later(human: &HumanProposal) -> bool {
-    let later =
-        |rule: &Rule| rule.act == Action::Navigate && rule.for_s.is_none() && !rule.when.contains(&Trigger::Always);
-    human.relation == Relation::Static && human.group.is_none() && human.goal.is_none() && human.rules.iter().any(later)
-}
-
 /// Until then it stands there.
 pub(crate) fn until_then(human: &mut HumanProposal) {
-    if walks_later(human) {
+    if socrates_solver::walks_later(human) {
         let when = vec![Trigger::Always];
         human.rules.push(Rule { when, act: Action::StandStill, gesture: None, for_s: None, latched: false });
     }

@@ -13,6 +13,11 @@ impl Draw {
         Self(ChaCha8Rng::seed_from_u64(seeds::stream_seed(seed, purpose)))
     }
 
+    /// 64 random bits.
+    pub(crate) fn bits(&mut self) -> u64 {
+        self.0.next_u64()
+    }
+
     /// A number below `n`; 0 where `n` is 0.
     pub(crate) fn below(&mut self, n: usize) -> usize {
         seeds::below(self.0.next_u64(), n)

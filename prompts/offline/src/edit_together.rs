@@ -4,7 +4,6 @@ use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{Action, FactKind, Gesture, HumanId, Rule, Trigger};
 
 use crate::edit::Desk;
-use crate::edit_paths;
 use crate::edit_people::{self, Crowd, Whom};
 use crate::edit_wish::Wish;
 
@@ -103,7 +102,7 @@ pub(crate) fn swap(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
         for encounter in &mut paths.encounters {
             encounter.human = other(encounter.human);
         }
-        edit_paths::sort(paths);
+        socrates_solver::edit::sort(paths);
     }
     desk.done.push(format!("{} and {} change places: each goes the other's way", first.id, second.id));
     for (who, human) in [(a, first), (b, second)] {

@@ -20,7 +20,6 @@ pub mod card;
 
 mod aside;
 mod begins;
-mod cannot;
 mod expect;
 mod hands;
 mod lexicon;
@@ -102,18 +101,13 @@ mod edit_wish;
 mod answer;
 mod boards;
 mod chance;
-mod crowd;
 mod draw;
-mod fit;
 mod headings;
-mod humans;
 mod mended;
-mod routes;
 mod rules;
 mod solve;
 mod spans;
 mod spot;
-mod twice;
 mod unfit;
 
 #[cfg(test)]
@@ -148,6 +142,7 @@ use socrates_model::{Location, Reading, Request};
 pub use answer::Offline;
 pub use card::{Card, catalog};
 pub use edit::{Draft, Edited, edit, settled};
+pub use solve::layout;
 pub use summary::summary;
 pub use understand::CONTEXT_NOTE;
 pub use unfit::Unfit;

@@ -14,7 +14,7 @@ use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::finish::CIRCLE_M;
 use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, pattern, place, prose, solve, spot};
+use crate::{NAME, chance, default_cast, events, pattern, place, prose, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -89,12 +89,12 @@ pub(crate) fn propose(question: &Question) -> Proposal {
 
 /// A place by name where nobody can be met on the way of the robot is given up, and said so: any of its class will do then.
 fn reachable(proposal: &mut Proposal, question: &Question) {
-    let meant = spot::of_proposal(proposal);
+    let meant = socrates_solver::of_proposal(proposal);
     if meant.is_empty() {
         return;
     }
     let ask = Question { stage: Stage::Paths, feedback: Vec::new(), refused: None, ..question.clone() };
-    if solve::solve(&ask, proposal).is_some_and(|paths| spot::met_at(&meant, &paths, proposal)) {
+    if solve::solve(&ask, proposal).is_ok_and(|paths| socrates_solver::met_at(&meant, &paths, proposal)) {
         return;
     }
     for clause in &mut proposal.expected_events {

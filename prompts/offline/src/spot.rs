@@ -2,17 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::{
-    ClauseRole, Encounter, FactKind, HumanId, HumanProposal, Location, NodeId, Paths, PlaceClass, Predicate, Proposal,
-    Reading, Relation,
-};
+use socrates_model::{FactKind, HumanId, HumanProposal, Location, NodeId, PlaceClass, Reading, Relation};
 
 use socrates_prompts::Question;
 
 use crate::clause::{self, Found};
 use crate::cut::{Stretch, sentences};
 use crate::lexicon::lexicon;
-use crate::routes::Net;
 use crate::task::{self, End};
 use crate::{named, place};
 
@@ -176,39 +172,6 @@ pub(crate) fn nodes(location: &Location, quote: &str, class: PlaceClass, humans:
     found
 }
 
-/// The nodes that a proposal names for its place; none where any of the class will do.
-pub(crate) fn of_proposal(proposal: &Proposal) -> Vec<NodeId> {
-    let own = proposal.expected_events.iter().filter(|clause| clause.must && clause.role == ClauseRole::Setup);
-    let named = own.filter_map(|clause| {
-        if let Predicate::EncounterAt { place, nodes } = &clause.predicate {
-            Some(nodes.clone()).filter(|_| *place == proposal.place)
-        } else {
-            None
-        }
-    });
-    named.flatten().collect()
-}
-
-/// The same by index.
-pub(crate) fn indices(net: &Net<'_>, proposal: &Proposal) -> Vec<usize> {
-    of_proposal(proposal).iter().filter_map(|id| net.index(id)).collect()
-}
-
-/// Whether somebody is met at one of these nodes, and everybody else at most next to it; who walks with the robot is met anywhere.
-pub(crate) fn met_at(meant: &[NodeId], paths: &Paths, proposal: &Proposal) -> bool {
-    let along = |encounter: &&Encounter| {
-        let human = proposal.human(encounter.human);
-        human.is_some_and(|human| matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast))
-    };
-    let beside = |encounter: &Encounter| {
-        let at = paths.robot.iter().position(|node| *node == encounter.node);
-        let around = at.map_or(0..0, |at| at.saturating_sub(1)..(at + 2).min(paths.robot.len()));
-        paths.robot.get(around).unwrap_or_default().iter().any(|node| meant.contains(node))
-    };
-    paths.encounters.iter().any(|encounter| meant.contains(&encounter.node))
-        && paths.encounters.iter().filter(|encounter| !along(encounter)).all(beside)
-}
-
 /// Where the robot's way begins or ends, where the story says so by name.
 fn robot_end(location: &Location, reading: &Reading, goal: bool) -> Vec<NodeId> {
     let wanted = |kind: &FactKind| {
@@ -240,7 +203,7 @@ pub(crate) fn ends(question: &Question, named: &[End], class: Option<PlaceClass>
 const OUT_OF: &[&str] = &["out of ", "leave ", "leaves ", "exit ", "exits ", "from ", "leaving ", "exiting "];
 
 /// The rooms that people come out of, where the text names them: `out of the kitchen`.
-pub(crate) fn rooms(net: &Net<'_>, question: &Question) -> BTreeMap<HumanId, Vec<usize>> {
+pub(crate) fn rooms(question: &Question) -> BTreeMap<HumanId, Vec<NodeId>> {
     let mut found = BTreeMap::new();
     for fact in &question.reading.facts {
         let FactKind::Relates { human, relation: Relation::Leaving | Relation::Staying | Relation::Crossing } =
@@ -253,7 +216,7 @@ pub(crate) fn rooms(net: &Net<'_>, question: &Question) -> BTreeMap<HumanId, Vec
         let name = words.join(" ");
         let name = name.split([',', ';', '.']).next().unwrap_or_default();
         if let Some(room) = named::find(&question.location, name) {
-            found.insert(human, room.nodes.iter().filter_map(|id| net.index(id)).collect());
+            found.insert(human, room.nodes);
         }
     }
     found

@@ -13,6 +13,8 @@
 pub mod author;
 pub mod offline;
 
+pub mod paths_by;
+
 pub mod cassette;
 pub mod llm;
 

@@ -19,6 +19,7 @@ use crate::fault_model::FaultRates;
 use crate::faulty::FaultyAuthor;
 use crate::llm::{Llm, MAX_TOKENS, ask_error};
 use crate::offline::Offline;
+use crate::paths_by;
 use crate::variants::BySeed;
 
 /// What a process knows of one kind of server.
@@ -117,6 +118,9 @@ pub fn author_of_job(
     } else {
         Box::new(Told { inner: author, telling: style.feedback })
     };
+    // Rules have the solver anyway.
+    let solver = paths_by::by_solver(settings)? && author.name() != socrates_offline::NAME;
+    let author: Box<dyn Author> = if solver { Box::new(paths_by::BySolver { inner: author }) } else { author };
     // A model writes several in one answer; rules are asked with as many seeds.
     let author: Box<dyn Author> = if style.variants > 1 && author.name() == socrates_offline::NAME {
         Box::new(BySeed { inner: author, count: style.variants })

@@ -5,3 +5,4 @@ mod common;
 mod corpus;
 mod edits;
 mod faults;
+mod ways;

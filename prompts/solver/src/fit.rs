@@ -3,9 +3,10 @@
 use socrates_maps::{DistanceField, Sight};
 use socrates_model::{HumanProposal, PlaceClass, Relation};
 
-use crate::card::Card;
-use crate::humans::follows;
-use crate::routes::{Net, Route};
+use crate::Layout;
+use crate::graph::Net;
+use crate::people::follows;
+use crate::robot_way::Route;
 
 /// Free width on each side of the middle of the floor that lets somebody past a robot there, and several at a time, m, and the
 /// way that takes, m.
@@ -33,13 +34,11 @@ pub(crate) fn tight(net: &Net<'_>, node: usize) -> bool {
     matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
 }
 
-/// How well a node suits the layout that the card asks for: 0 where it does.
-pub(crate) fn layout(card: Option<&Card>, arms: usize, clear_m: f64) -> f64 {
-    let Some(card) = card else { return 0.0 };
-    let few = if card.arms.is_some_and(|least| arms < least) { -8.0 } else { 0.0 };
+/// Whether a node suits the layout that is asked for.
+pub(crate) fn suits(layout: &Layout, arms: usize, clear_m: f64) -> bool {
     // A node lies in the middle of its floor: the free width is twice the way to the nearest wall.
-    let off = card.width_m.is_some_and(|[least, most]| 2.0 * clear_m < least || 2.0 * clear_m > most);
-    few + if off { -8.0 } else { 0.0 }
+    let wide = |[least, most]: [f64; 2]| (least..=most).contains(&(2.0 * clear_m));
+    layout.arms.is_none_or(|least| arms >= least) && layout.width_m.is_none_or(wide)
 }
 
 /// Whether the nodes before and after the meeting cannot see each other.

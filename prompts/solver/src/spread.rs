@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use socrates_model::{HumanId, HumanProposal, PlaceClass, Predicate, Proposal, Relation};
 
 use crate::fit::tight;
-use crate::humans::{Way, follows};
-use crate::routes::{Net, Route};
+use crate::graph::Net;
+use crate::people::{Way, follows};
+use crate::robot_way::Route;
 
 /// So many are met at one node; more are spread along the way.
 const AT_ONE: usize = 5;
@@ -83,23 +84,4 @@ pub(crate) fn squeezes(net: &Net<'_>, proposal: &Proposal, route: &Route, ways: 
     let abreast = proposal.groups.iter().any(|group| !group.standing && group.members.len() > ABREAST);
     let tight = if many || abreast { TIGHT * average } else { 0.0 };
     tight + if many { CORNER * corners } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use crate::tests::{answers, map, request};
-
-    #[test]
-    fn many_are_met_one_after_the_other_along_the_way() {
-        let rough = "Eight people walk along the corridor: four come towards the robot, four walk in the same direction as the robot.";
-        let (_, _, paths) = answers(&request("Drive along the main corridor", Some(rough)), &map("hospital"), 1);
-        let nodes: BTreeSet<_> = paths.encounters.iter().map(|encounter| &encounter.node).collect();
-        assert!(nodes.len() > 1, "{nodes:?}");
-        let (_, _, paths) =
-            answers(&request("Drive", Some("Three people come towards the robot.")), &map("hospital"), 1);
-        let nodes: BTreeSet<_> = paths.encounters.iter().map(|encounter| &encounter.node).collect();
-        assert_eq!(nodes.len(), 1);
-    }
 }

@@ -2,8 +2,10 @@
 
 use socrates_model::{HumanId, PlaceClass, Predicate, Proposal, Relation};
 
-use crate::humans::Way;
-use crate::routes::{Net, Route};
+use crate::fit::tight;
+use crate::graph::Net;
+use crate::people::Way;
+use crate::robot_way::Route;
 
 /// Speed of the robot that timings are planned with, m/s.
 const ROBOT_MPS: f64 = 0.8;
@@ -170,8 +172,4 @@ fn onward(net: &Net<'_>, way: &[usize], robots: Option<usize>) -> Option<Vec<usi
         (before, last) = (last, next);
     }
     (!tail.is_empty()).then_some(tail)
-}
-
-fn tight(net: &Net<'_>, node: usize) -> bool {
-    matches!(net.kind(node), PlaceClass::Doorway | PlaceClass::NarrowPassage)
 }

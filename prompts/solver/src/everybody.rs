@@ -1,0 +1,192 @@
+//! Everybody's way for one way of the robot: one after the other, each with what the others took.
+
+use std::collections::BTreeMap;
+
+use socrates_model::rule::{RobotDo, RobotWhen};
+use socrates_model::{Encounter, FORMAT, HumanId, NodeId, Paths, Relation};
+
+use crate::candidates::Scene;
+use crate::graph::Net;
+use crate::people::{Taken, Way, boarding, led_past, way};
+use crate::robot_way::{LEAST_M, Route, times_shortest};
+use crate::{Problem, inside, meant, second_meeting, spread};
+
+/// Who the robot speaks to as it comes near starts at least so much farther away, m, and what it costs not to.
+const SETS_OFF_M: f64 = 1.5;
+const EARLY: f64 = 8.0;
+
+/// A way of the robot, and everybody's.
+#[derive(Debug, Clone)]
+pub(crate) struct Solution {
+    pub(crate) route: Route,
+    pub(crate) ways: BTreeMap<HumanId, Way>,
+    /// Where somebody meets the robot for the second time.
+    pub(crate) again: BTreeMap<HumanId, usize>,
+    pub(crate) score: f64,
+}
+
+/// Everybody's way for one way of the robot.
+pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
+    let Scene { net, proposal, layout, crowded } = *scene;
+    let starts = route.nodes.first().copied().into_iter().collect();
+    let goals = route.nodes.last().copied().into_iter().collect();
+    let meant = meant::indices(net, proposal);
+    let mut taken = Taken {
+        net,
+        starts,
+        goals,
+        crowded,
+        ends: layout.ends,
+        place: proposal.place,
+        meant: &meant,
+        standing: Vec::new(),
+        boards: boarding::count(proposal),
+    };
+    let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
+    let spread = spread::spread(net, proposal, &route);
+    let beside = |relation: Relation| matches!(relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
+    let along = proposal.humans.iter().any(|human| !beside(human.relation));
+    let mut cost = 0.0;
+    let near = proposal.robot.script.iter().filter(|line| matches!(line.act, RobotDo::Say(_)));
+    let near = near.filter_map(|line| if let RobotWhen::HumanNear(m) = line.when { Some(m) } else { None });
+    let says_m = near.fold(-SETS_OFF_M, f64::max);
+    let twice = second_meeting::asked(proposal);
+    let mut again: BTreeMap<HumanId, usize> = BTreeMap::new();
+    for human in &proposal.humans {
+        // Members of a group go together; people of one room leave it one after the other.
+        let mate = proposal
+            .humans
+            .iter()
+            .filter(|other| other.group.is_some() && other.group == human.group)
+            .find_map(|other| ways.get(&other.id).filter(|_| other.relation == human.relation));
+        let led = human.rules.iter().find_map(|rule| {
+            if let socrates_model::Action::FollowHuman(leader) = rule.act { ways.get(&leader) } else { None }
+        });
+        let led = led.filter(|way| way.nodes.len() > 1);
+        let shared = mate.or_else(|| led.filter(|_| matches!(human.relation, Relation::Frontal | Relation::Ahead)));
+        let own = match shared {
+            Some(way) if mate.is_some() || human.relation == Relation::Ahead => way.clone(),
+            Some(leader) => after(net, leader, &taken)?,
+            None => match spread.iter().find(|(id, _)| *id == human.id) {
+                Some((_, meet)) => way(human, &Route { meet: *meet, ..route.clone() }, &taken, along)?,
+                None => way(human, &route, &taken, along)?,
+            },
+        };
+        let own = match twice.iter().find(|(id, _)| *id == human.id) {
+            // A member of a group goes the way of the one before it, its second meeting included.
+            Some(_) if mate.is_some() => {
+                let of = proposal.humans.iter().filter(|other| other.group == human.group);
+                again.extend(of.filter_map(|other| again.get(&other.id)).next().copied().map(|node| (human.id, node)));
+                own
+            }
+            Some((_, class)) => match second_meeting::second(net, &route, &own, (human.relation, *class)) {
+                Some((own, node)) => {
+                    again.insert(human.id, node);
+                    own
+                }
+                None => Way { cost: own.cost + second_meeting::ONLY_ONCE, ..own },
+            },
+            None => own,
+        };
+        let start_m =
+            own.nodes.first().zip(route.nodes.first()).map(|(own, robot)| (net.at(*own) - net.at(*robot)).norm());
+        // What the robot says to somebody near is said on the way, not before it sets off.
+        if start_m.is_some_and(|m| m < says_m + SETS_OFF_M) && !beside(human.relation) {
+            cost += EARLY;
+        }
+        let followed = proposal.robot.script.iter().any(|line| line.act == RobotDo::Follow(human.id));
+        // Of many who walk ahead nobody ends where the robot does.
+        let ahead = human.relation == Relation::Ahead && spread.iter().any(|(id, _)| *id == human.id);
+        let own = if followed || ahead { led_past(own, &taken) } else { own };
+        cost += own.cost;
+        if !matches!(human.relation, Relation::Leaving | Relation::Staying) && mate.is_none() {
+            taken.starts.extend(own.nodes.first());
+        }
+        if human.relation == Relation::Static {
+            taken.standing.extend(own.nodes.first());
+        }
+        if own.nodes.len() > 1 && mate.is_none() {
+            taken.goals.extend(own.nodes.last());
+        }
+        ways.insert(human.id, own);
+    }
+    let score = route.score - cost;
+    Some(Solution { route, ways, again, score })
+}
+
+/// The way of somebody who follows another human: the same, from the node before or after its start.
+fn after(net: &Net<'_>, leader: &Way, taken: &Taken<'_>) -> Option<Way> {
+    let first = *leader.nodes.first()?;
+    let back = net
+        .near(first)
+        .iter()
+        .map(|(node, _)| *node)
+        .find(|node| !leader.nodes.contains(node) && !taken.starts.contains(node));
+    let mut nodes: Vec<usize> = back.into_iter().collect();
+    nodes.extend(leader.nodes.iter().skip(usize::from(back.is_none())));
+    if nodes.len() < 2 || nodes.first() == Some(&leader.meet) {
+        return None;
+    }
+    Some(Way { nodes, meet: leader.meet, cost: 0.5 })
+}
+
+/// The paths of a solution, as they are written.
+pub(crate) fn written(net: &Net<'_>, solution: &Solution, problem: &Problem<'_>) -> Paths {
+    let order = |node: &usize| solution.route.nodes.iter().position(|other| other == node).unwrap_or(usize::MAX);
+    let mut meetings: Vec<(HumanId, usize)> = solution.ways.iter().map(|(id, way)| (*id, way.meet)).collect();
+    meetings.extend(solution.again.iter().map(|(id, node)| (*id, *node)));
+    meetings.sort_by_key(|(id, node)| (order(node), *id));
+    let encounters: Vec<Encounter> = meetings
+        .into_iter()
+        .filter_map(|(human, node)| net.id(node).map(|node| Encounter { human, node: node.clone() }))
+        .collect();
+    let humans: BTreeMap<HumanId, Vec<NodeId>> =
+        solution.ways.iter().map(|(id, way)| (*id, net.named(&way.nodes))).collect();
+    let length = libm::round(net.length_m(&solution.route.nodes) * 10.0) / 10.0;
+    let mut at: Vec<String> = Vec::new();
+    for encounter in &encounters {
+        let node = format!("`{}`", encounter.node);
+        if !at.contains(&node) {
+            at.push(node);
+        }
+    }
+    let reasoning = format!(
+        "The robot goes {length} m{} over a meeting place that is {} ({}); {} encounters lie on its way in this order.",
+        reason(net, &solution.route, problem),
+        inside::an(problem.proposal.place),
+        at.join(", "),
+        encounters.len()
+    );
+    Paths {
+        format: FORMAT,
+        robot: net.named(&solution.route.nodes),
+        humans,
+        encounters,
+        reasoning,
+        author: problem.author.clone(),
+    }
+}
+
+/// A way this much longer than the shortest is told with its reason, as a share.
+const TOLD: f64 = 0.02;
+
+/// Why the robot does not go the shortest way; empty where it does.
+fn reason(net: &Net<'_>, route: &Route, problem: &Problem<'_>) -> String {
+    let more = times_shortest(net, &route.nodes, problem.via) - 1.0;
+    let (Some(first), Some(last)) = (route.nodes.first(), route.nodes.last()) else { return String::new() };
+    if !more.is_finite() || more <= TOLD {
+        return String::new();
+    }
+    let direct = net.ways_from(*first);
+    let shortest_m = direct.length_m(*last);
+    let place = inside::an(problem.proposal.place);
+    let passes = direct.way(*last).iter().any(|node| net.is(*node, problem.proposal.place));
+    let why = if shortest_m < LEAST_M {
+        format!("which is too short for a meeting: it takes {LEAST_M} m")
+    } else if passes {
+        format!("where nobody can do at {place} what they have to")
+    } else {
+        format!("which does not lead over {place}")
+    };
+    format!(" ({:.0} % more than the {shortest_m:.1} m of the shortest way, {why})", more * 100.0)
+}

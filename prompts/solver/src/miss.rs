@@ -1,0 +1,366 @@
+//! Why there are no paths: what does not fit, where, and by how much.
+
+use std::fmt;
+
+use socrates_maps::Ground;
+use socrates_model::{HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
+
+use crate::candidates::SHORTEST_M;
+use crate::graph::Net;
+use crate::passable::{Closed, Why};
+use crate::{Problem, inside, people, search};
+
+/// Floor that somebody needs who stands in a room with others, m²: a disc of 0.28 m and what keeps it from the next.
+const PERSON_M2: f64 = 0.5;
+/// A room is looked at so far about its node, m.
+const ROOM_M: f64 = 5.0;
+
+/// Why a map has no paths for a problem: the nearest miss, with its place and its numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Miss {
+    /// The robot's start and goal are one place.
+    OnePlace {
+        /// The place.
+        node: NodeId,
+    },
+    /// No way of the graph joins two places.
+    Apart {
+        /// The robot's start.
+        from: NodeId,
+        /// Its goal.
+        to: NodeId,
+    },
+    /// The robot is wider than every way to its goal.
+    Narrow {
+        /// The robot's start.
+        from: NodeId,
+        /// Its goal.
+        to: NodeId,
+        /// The edge that is too narrow.
+        between: [NodeId; 2],
+        /// Its narrowest point.
+        at: Point,
+        /// Width there, m.
+        has_m: f64,
+        /// Width of the robot, m.
+        needs_m: f64,
+    },
+    /// A door on every way to the goal never opens.
+    Shut {
+        /// The robot's start.
+        from: NodeId,
+        /// Its goal.
+        to: NodeId,
+        /// The door.
+        door: String,
+    },
+    /// The longest way of the robot is too short.
+    Short {
+        /// Its ends; none where the map has no node outside of rooms.
+        ends: Option<(NodeId, NodeId)>,
+        /// Its length, m.
+        has_m: f64,
+        /// The least length, m.
+        needs_m: f64,
+    },
+    /// The map has no place of the class.
+    NoPlace(PlaceClass),
+    /// Too few ways meet at every place of the class.
+    Arms {
+        /// The class.
+        class: PlaceClass,
+        /// The place where most ways meet.
+        node: NodeId,
+        /// How many.
+        has: usize,
+        /// How many are needed.
+        needs: usize,
+    },
+    /// No place of the class is as wide as the pattern wants it.
+    Width {
+        /// The class.
+        class: PlaceClass,
+        /// The place whose width comes nearest.
+        node: NodeId,
+        /// Its free width, m.
+        has_m: f64,
+        /// Least and largest width, m.
+        needs_m: [f64; 2],
+    },
+    /// A room or car is too small for those who are in it.
+    Full {
+        /// The place inside that has most room.
+        node: NodeId,
+        /// Floor there, m².
+        has_m2: f64,
+        /// How many people are to be there, the robot counted where it enters.
+        people: usize,
+        /// Floor that they need, m².
+        needs_m2: f64,
+    },
+    /// Somebody cannot be led to the robot's way as they should.
+    People {
+        /// They, how they stand to the robot's way, and where they come from.
+        who: Vec<(HumanId, Relation, Option<PlaceClass>)>,
+        /// The class of the place.
+        class: PlaceClass,
+    },
+    /// Each alone could meet the robot, all together cannot.
+    Together {
+        /// How many.
+        people: usize,
+        /// The class of the place.
+        class: PlaceClass,
+    },
+}
+
+impl fmt::Display for Miss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let an = |class: &PlaceClass| inside::an(*class);
+        match self {
+            Self::OnePlace { node } => {
+                write!(
+                    f,
+                    "the robot's start and goal are one place, `{node}`; name another goal, or leave one of them open"
+                )
+            }
+            Self::Apart { from, to } => {
+                write!(f, "no way leads from `{from}` to `{to}`: they lie in parts of the map that no edge joins")
+            }
+            Self::Narrow { from, to, between: [a, b], at, has_m, needs_m } => write!(
+                f,
+                "the robot needs {needs_m:.2} m, and the way from `{from}` to `{to}` has {has_m:.2} m between `{a}` and `{b}`, at \
+                 ({:.2}, {:.2}); take a smaller robot or another goal",
+                at.x, at.y
+            ),
+            Self::Shut { from, to, door } => {
+                write!(
+                    f,
+                    "the door `{door}` on the way from `{from}` to `{to}` never opens; take another goal, or let it open"
+                )
+            }
+            Self::Short { ends: Some((from, to)), has_m, needs_m } => write!(
+                f,
+                "the longest path of the robot on this map, from `{from}` to `{to}`, is {has_m:.1} m; at least {needs_m} m are needed"
+            ),
+            Self::Short { ends: None, .. } => {
+                f.write_str("this map has no node outside of rooms, where the robot could drive")
+            }
+            Self::NoPlace(class) => write!(f, "this map has no place that is {}", an(class)),
+            Self::Arms { class, node, has, needs } => write!(
+                f,
+                "{needs} ways have to meet at {}; at `{node}`, where most do on this map, {has} meet",
+                an(class)
+            ),
+            Self::Width { class, node, has_m, needs_m: [least_m, most_m] } => write!(
+                f,
+                "{} of {least_m} to {most_m} m is needed; `{node}`, which comes nearest on this map, has {has_m:.1} m",
+                an(class)
+            ),
+            Self::Full { node, has_m2, people, needs_m2 } => write!(
+                f,
+                "{people} at `{node}` need {needs_m2:.1} m² of floor; there are {has_m2:.1} m²; ask for fewer, or for another room"
+            ),
+            Self::People { who, class } => {
+                let names = who.iter().map(|(id, relation, from)| {
+                    let from = from.map_or_else(String::new, |class| format!(" from {}", inside::an(class)));
+                    format!("{id} (`{}`{from})", relation.name())
+                });
+                let names = names.collect::<Vec<_>>().join(" and ");
+                write!(
+                    f,
+                    "this map has no path of the robot on which it meets {names} at {}; ask for another place or another part, or \
+                     add nodes to the map",
+                    an(class)
+                )
+            }
+            Self::Together { people, class } => write!(
+                f,
+                "this map has no paths on which all {people} humans meet the robot at {}, though each of them alone could; ask for \
+                 fewer, or for another place",
+                an(class)
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Miss {}
+
+/// What can be seen before anything is tried.
+pub(crate) fn beforehand(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let [starts, goals] = [&problem.starts, &problem.goals];
+    if let ([start], [goal]) = (starts.as_slice(), goals.as_slice())
+        && start == goal
+    {
+        return Some(Miss::OnePlace { node: start.clone() });
+    }
+    unreachable(problem, net).or_else(|| full(problem, net))
+}
+
+/// The reason why a map has no paths for a problem, found by leaving parts of it out.
+pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
+    let proposal = problem.proposal;
+    let class = proposal.place;
+    if let Some(miss) = too_short(problem, net) {
+        return miss;
+    }
+    let own: Vec<usize> = (0..net.len()).filter(|node| net.is(*node, class)).collect();
+    if class != PlaceClass::Plain && own.is_empty() {
+        return Miss::NoPlace(class);
+    }
+    let open = |node: &usize| !net.inside(*node);
+    let nodes: Vec<usize> = if class == PlaceClass::Plain { (0..net.len()).collect() } else { own };
+    let nodes: Vec<usize> = nodes.into_iter().filter(open).collect();
+    if let Some(miss) = arms(problem, net, &nodes).or_else(|| width(problem, net, &nodes)) {
+        return miss;
+    }
+    let alone = |human: &HumanProposal| {
+        let mut one = proposal.clone();
+        one.humans.retain(|other| other.id == human.id);
+        one.groups.clear();
+        !search::solutions(&Problem { proposal: &one, ..problem.clone() }, net).is_empty()
+    };
+    let stuck = proposal.humans.iter().filter(|human| !alone(human));
+    let who: Vec<_> = stuck.map(|human| (human.id, human.relation, human.start)).collect();
+    if who.is_empty() { Miss::Together { people: proposal.humans.len(), class } } else { Miss::People { who, class } }
+}
+
+/// Two ends by name between which the robot cannot drive, and what stops it.
+fn unreachable(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let known = |ids: &[NodeId]| ids.iter().filter_map(|id| net.index(id)).collect::<Vec<usize>>();
+    let (starts, goals) = (known(&problem.starts), known(&problem.goals));
+    let (start, goal) = (*starts.first()?, *goals.first()?);
+    let joined =
+        |net: &Net<'_>| starts.iter().any(|from| goals.iter().any(|to| net.ways_from(*from).length_m(*to).is_finite()));
+    if joined(net) {
+        return None;
+    }
+    let (from, to) = (net.id(start)?.clone(), net.id(goal)?.clone());
+    let whole = Net::new(problem.location);
+    if !joined(&whole) {
+        return Some(Miss::Apart { from, to });
+    }
+    let way = whole.named(&whole.ways_from(start).way(goal));
+    stopped(problem, net, &way, (from, to))
+}
+
+/// What closes a way of the map to the robot.
+fn stopped(problem: &Problem<'_>, net: &Net<'_>, way: &[NodeId], (from, to): (NodeId, NodeId)) -> Option<Miss> {
+    let on_way = |closed: &&Closed| {
+        let [a, b] = &closed.between;
+        way.windows(2).any(|step| matches!(step, [p, q] if p == a && q == b || p == b && q == a))
+    };
+    let closed = net.closed().iter().find(on_way)?;
+    Some(match &closed.why {
+        Why::Shut(door) => Miss::Shut { from, to, door: door.clone() },
+        Why::Narrow(at, has_m) => Miss::Narrow {
+            from,
+            to,
+            between: closed.between.clone(),
+            at: *at,
+            has_m: *has_m,
+            needs_m: 2.0 * problem.radius_m,
+        },
+    })
+}
+
+/// The longest way of the robot, where it is too short for any scenario; what stops it where the map would have a longer one.
+fn too_short(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let (has_m, ends) = longest(net);
+    if has_m >= SHORTEST_M {
+        return None;
+    }
+    let whole = Net::new(problem.location);
+    if let (more_m, Some((from, to))) = longest(&whole)
+        && more_m >= SHORTEST_M
+        && let (Some(start), Some(goal)) = (whole.index(&from), whole.index(&to))
+    {
+        let way = whole.named(&whole.ways_from(start).way(goal));
+        if let Some(miss) = stopped(problem, net, &way, (from, to)) {
+            return Some(miss);
+        }
+    }
+    Some(Miss::Short { ends, has_m, needs_m: SHORTEST_M })
+}
+
+/// Length and ends of the longest way outside of rooms; as soon as one is long enough, that one.
+fn longest(net: &Net<'_>) -> (f64, Option<(NodeId, NodeId)>) {
+    let open = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
+    let nodes: Vec<usize> = (0..net.len()).filter(open).collect();
+    let mut longest: Option<(f64, usize, usize)> = None;
+    for from in &nodes {
+        let tree = net.ways_from(*from);
+        for to in &nodes {
+            let length_m = tree.length_m(*to);
+            if length_m.is_finite() && longest.is_none_or(|(most, ..)| length_m > most) {
+                longest = Some((length_m, *from, *to));
+            }
+        }
+        if longest.is_some_and(|(most, ..)| most >= SHORTEST_M) {
+            break;
+        }
+    }
+    let Some((length_m, from, to)) = longest else { return (0.0, None) };
+    (length_m, net.id(from).cloned().zip(net.id(to).cloned()))
+}
+
+/// Too few ways that meet, for somebody who crosses or for the pattern.
+fn arms(problem: &Problem<'_>, net: &Net<'_>, nodes: &[usize]) -> Option<Miss> {
+    let crossing = problem.proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
+    let needs = problem.layout.arms.unwrap_or(0).max(if crossing { people::CROSSED_ARMS } else { 2 });
+    let most = nodes.iter().copied().max_by_key(|node| (net.near(*node).len(), usize::MAX - node))?;
+    let has = net.near(most).len();
+    let class = problem.proposal.place;
+    (has < needs).then(|| net.id(most).cloned()).flatten().map(|node| Miss::Arms { class, node, has, needs })
+}
+
+/// No place of the class as wide as the pattern wants it.
+fn width(problem: &Problem<'_>, net: &Net<'_>, nodes: &[usize]) -> Option<Miss> {
+    let [least_m, most_m] = problem.layout.width_m?;
+    let ground = Ground::of(&net.location.grid);
+    let width_m = |node: usize| 2.0 * ground.field().clearance(&net.at(node));
+    let off = |node: usize| (least_m - width_m(node)).max(width_m(node) - most_m).max(0.0);
+    let nearest = nodes.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
+    let (node, has_m) = (net.id(nearest)?.clone(), width_m(nearest));
+    let class = problem.proposal.place;
+    (off(nearest) > 0.0).then_some(Miss::Width { class, node, has_m, needs_m: [least_m, most_m] })
+}
+
+/// A room or car that is too small for those who come out of it or stay in it.
+fn full(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let indoors = |human: &&HumanProposal| matches!(human.relation, Relation::Leaving | Relation::Staying);
+    let mut inside: Vec<&HumanProposal> = problem.proposal.humans.iter().filter(indoors).collect();
+    let first = inside.first()?;
+    let class = first.start;
+    inside.retain(|human| human.start == class);
+    let people = inside.len();
+    let needs_m2 = PERSON_M2 * people as f64;
+    let floor = |node: usize| (floor_m2(net, node), node);
+    let all = net.rooms_of(inside.first()?.id, inside::nodes(net, class));
+    let (has_m2, node) = all.into_iter().map(floor).max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
+    (has_m2 < needs_m2).then(|| net.id(node).cloned()).flatten().map(|node| Miss::Full {
+        node,
+        has_m2,
+        people,
+        needs_m2,
+    })
+}
+
+/// Free floor that is seen from a place, behind its door where it has one, m².
+fn floor_m2(net: &Net<'_>, node: usize) -> f64 {
+    let ground = Ground::of(&net.location.grid);
+    let (grid, at) = (ground.grid(), net.at(node));
+    let door = net.id(node).and_then(|id| net.location.door_of(id));
+    let step_m = grid.resolution_m.max(0.1);
+    let reach = libm::ceil(ROOM_M / step_m) as i32;
+    let mut cells = 0_u32;
+    for row in -reach..=reach {
+        for column in -reach..=reach {
+            let point = Point::new(at.x + f64::from(column) * step_m, at.y + f64::from(row) * step_m);
+            let behind = door.is_none_or(|door| door.depth_m(&point, &at) > 0.0);
+            let free = ground.field().clearance(&point) > 0.0;
+            cells += u32::from(free && behind && ground.sight().clear(&at, &point));
+        }
+    }
+    f64::from(cells) * step_m * step_m
+}

@@ -1,0 +1,61 @@
+//! Out of a room or car, through its door, over the meeting node and on.
+
+use socrates_model::{HumanProposal, PlaceClass};
+
+use super::{Taken, Way, extend, onward, sources};
+use crate::inside::{self, same_door};
+use crate::robot_way::Route;
+
+/// Out of a room or car, through its door, over the meeting node and on.
+pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    let net = taken.net;
+    let meet = *route.nodes.get(route.meet)?;
+    let car = sources(human, net.location) == Some(PlaceClass::Elevator);
+    let before: Vec<usize> = route.nodes.get(..route.meet)?.to_vec();
+    let beyond = route.nodes.get(route.meet + 1).copied();
+    let inside = net.rooms_of(human.id, inside::nodes(net, sources(human, net.location)));
+    // A room with one place only is the robot's when it ends there: nobody else comes out of it.
+    let last = route.nodes.last().copied();
+    let shared = |node: &usize| Some(*node) != last && same_door(net, *node, last);
+    let enters = last.is_some_and(|last| net.inside(last)) && (car || inside.iter().any(shared));
+    // Out of the very room that the robot enters, or of any other near by that is not on its way.
+    let tree = net.tree(meet, &|node| before.contains(&node) || !enters && Some(node) == beyond);
+    let same = |node: usize| !enters || same_door(net, node, route.nodes.last().copied());
+    let start = inside
+        .into_iter()
+        .filter(|node| {
+            same(*node)
+                && tree.length_m(*node) >= 1.0
+                && tree.length_m(*node) <= if car { 8.0 } else { 12.0 }
+                && (car || Some(*node) != last)
+        })
+        .min_by(|a, b| tree.length_m(*a).total_cmp(&tree.length_m(*b)))?;
+    let inward = tree.way(start);
+    let mut nodes: Vec<usize> = inward.iter().rev().copied().collect();
+    let entry = inward.get(1).copied()?;
+    // Away from the robot if there is a way, else past it.
+    let exits: Vec<usize> = net
+        .near(meet)
+        .iter()
+        .map(|(node, _)| *node)
+        .filter(|node| !nodes.contains(node) && !net.inside(*node))
+        .collect();
+    let from = route.meet.checked_sub(1).and_then(|i| route.nodes.get(i)).copied();
+    let rank = |node: &usize| {
+        let own = if Some(*node) == from {
+            2.0
+        } else if Some(*node) == beyond {
+            1.0
+        } else {
+            0.0
+        };
+        let used = if taken.goals.contains(node) { 1.5 } else { 0.0 };
+        net.straight(entry, meet, *node) - own - used
+    };
+    let exit = exits.into_iter().max_by(|a, b| rank(a).total_cmp(&rank(b)));
+    nodes.extend(exit);
+    extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
+    onward(&mut nodes, taken);
+    let length = tree.length_m(start);
+    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
+}

@@ -1,0 +1,200 @@
+//! Ways of people, by how they stand to the robot's way: a file for each relation.
+
+use socrates_model::{Action, HumanProposal, Location, PlaceClass, Relation, Rule, Trigger};
+
+use crate::Ends;
+use crate::graph::Net;
+use crate::inside;
+use crate::robot_way::Route;
+
+mod ahead;
+mod behind;
+pub(crate) mod boarding;
+mod crossing;
+mod frontal;
+mod leaving;
+mod standing;
+mod staying;
+
+/// Speed of the robot that timings are planned with, m/s.
+const ROBOT_MPS: f64 = 0.8;
+
+/// Fastest walk of somebody who is late for the meeting, m/s; what is farther away than that and so much more is too far, m.
+const HURRY_MPS: f64 = 1.5;
+
+/// Desired speed of a human without one of its own, m/s.
+const HUMAN_MPS: f64 = 1.2;
+
+/// People start at least so far from each other and the robot unless they belong together, m.
+const APART_M: f64 = 0.8;
+
+/// So many may start at one node where there is no room for all to start apart.
+const SHARED: usize = 3;
+
+/// Ways that have to meet where somebody crosses the robot's.
+pub(crate) const CROSSED_ARMS: usize = 3;
+
+/// Somebody goes on at least so far after the meeting, m.
+const ONWARD_M: f64 = 4.0;
+
+/// Two who end nearer to each other than this are in each other's way, m.
+const ENDS_APART_M: f64 = 1.5;
+
+/// One human's way and where it meets the robot.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Way {
+    pub(crate) nodes: Vec<usize>,
+    /// The meeting node.
+    pub(crate) meet: usize,
+    /// How well it fits; 0 is best.
+    pub(crate) cost: f64,
+}
+
+/// What is already taken.
+pub(crate) struct Taken<'a> {
+    pub(crate) net: &'a Net<'a>,
+    pub(crate) starts: Vec<usize>,
+    /// Where others end: who ends where somebody stands already does not get there.
+    pub(crate) goals: Vec<usize>,
+    /// There is no room for everybody to start apart: the checks will say so.
+    pub(crate) crowded: bool,
+    /// Where on the robot's way those stand who stand.
+    pub(crate) ends: Ends,
+    /// The class of place where people should meet.
+    pub(crate) place: PlaceClass,
+    /// The nodes of the place by name, if it has one: who stands stands there, together with others.
+    pub(crate) meant: &'a [usize],
+    /// Where those stand who have been placed there.
+    pub(crate) standing: Vec<usize>,
+    /// How many stand before a door at first and go in.
+    pub(crate) boards: usize,
+}
+
+/// Cost of a way that ends in a doorway or where others end: any other way is better.
+const BAD_END: f64 = 8.0;
+
+impl Taken<'_> {
+    fn free(&self, node: usize) -> bool {
+        let near = |other: &&usize| (self.net.at(**other) - self.net.at(node)).norm() < APART_M;
+        let others = self.starts.iter().filter(near).count();
+        // The robot's own start, the first of them, is its alone.
+        others == 0 || self.crowded && others < SHARED && !self.starts.iter().take(1).any(|robot| near(&robot))
+    }
+
+    /// Whether somebody may end there: nobody else does near by, and nobody has to get through.
+    fn can_end(&self, node: usize) -> bool {
+        let at = self.net.at(node);
+        self.net.kind(node) != PlaceClass::Doorway
+            && self.goals.iter().all(|other| (self.net.at(*other) - at).norm() >= ENDS_APART_M)
+    }
+
+    /// What it costs to end a way there.
+    fn end_cost(&self, nodes: &[usize]) -> f64 {
+        if nodes.last().is_some_and(|last| self.can_end(*last)) { 0.0 } else { BAD_END }
+    }
+}
+
+/// The way of a human, if the robot's way has room for it.
+pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+    match human.relation {
+        Relation::Frontal => frontal::way(human, route, taken),
+        Relation::Crossing => crossing::way(human, route, taken),
+        Relation::Behind => behind::way(human, route, taken, along),
+        Relation::Ahead | Relation::Abreast => ahead::way(human, route, taken),
+        Relation::Static if boarding::boards(human) => {
+            boarding::way(human, route, taken).or_else(|| standing::way(route, taken))
+        }
+        Relation::Static if walks_later(human) => {
+            standing::way(route, taken).map(|way| standing::walking_on(way, route, taken))
+        }
+        Relation::Static => standing::way(route, taken),
+        Relation::Leaving => leaving::way(human, route, taken),
+        Relation::Staying => staying::way(human, route, taken),
+    }
+}
+
+fn before_m(net: &Net<'_>, route: &Route) -> f64 {
+    net.length_m(route.nodes.get(..=route.meet).unwrap_or_default())
+}
+
+/// How far a human walks until the robot is at the meeting node, m.
+fn ideal_m(human: &HumanProposal, net: &Net<'_>, route: &Route) -> f64 {
+    before_m(net, route) / ROBOT_MPS * human.speed_mps.unwrap_or(HUMAN_MPS)
+}
+
+/// Lengthens a way that ends where somebody else's does, straight on, to the next node where nobody ends.
+fn onward(nodes: &mut Vec<usize>, taken: &Taken<'_>) {
+    let net = taken.net;
+    for _ in 0..4 {
+        let (Some(last), Some(previous)) =
+            (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
+        else {
+            return;
+        };
+        if taken.can_end(last) {
+            return;
+        }
+        let next = net.near(last).iter().map(|(node, _)| *node);
+        let next = next.filter(|node| !nodes.contains(node) && !net.inside(*node));
+        let turn = |node: usize| net.straight(previous, last, node) - if taken.can_end(node) { 0.0 } else { 0.5 };
+        let Some(next) = next.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else { return };
+        nodes.push(next);
+    }
+}
+
+/// Whoever the robot follows goes on past the robot's goal, so that both get to where they go.
+pub(crate) fn led_past(mut way: Way, taken: &Taken<'_>) -> Way {
+    onward(&mut way.nodes, taken);
+    way.cost += taken.end_cost(&way.nodes);
+    way
+}
+
+fn onward_m(net: &Net<'_>, from: usize, nodes: &[usize]) -> f64 {
+    let mut all = vec![from];
+    all.extend(nodes);
+    net.length_m(&all)
+}
+
+/// Lengthens a way, as straight as it goes, until it leads far enough from the meeting node.
+fn extend(net: &Net<'_>, nodes: &mut Vec<usize>, meet: usize, barred: &dyn Fn(usize) -> bool) {
+    while let Some(from) = nodes.iter().position(|node| *node == meet) {
+        if net.length_m(nodes.get(from..).unwrap_or_default()) >= ONWARD_M {
+            return;
+        }
+        let (Some(last), Some(previous)) =
+            (nodes.last().copied(), nodes.len().checked_sub(2).and_then(|i| nodes.get(i)).copied())
+        else {
+            return;
+        };
+        let next = net
+            .near(last)
+            .iter()
+            .map(|(node, _)| *node)
+            .filter(|node| !nodes.contains(node) && !barred(*node))
+            // Into a room only through its doorway, once that is entered.
+            .filter(|node| !net.inside(*node) || net.kind(last) == PlaceClass::Doorway);
+        let Some(next) =
+            next.max_by(|a, b| net.straight(previous, last, *a).total_cmp(&net.straight(previous, last, *b)))
+        else {
+            return;
+        };
+        nodes.push(next);
+    }
+}
+
+/// Whether somebody stands at first and walks on later, by a rule.
+#[must_use]
+pub fn walks_later(human: &HumanProposal) -> bool {
+    let later =
+        |rule: &Rule| rule.act == Action::Navigate && rule.for_s.is_none() && !rule.when.contains(&Trigger::Always);
+    human.relation == Relation::Static && human.group.is_none() && human.goal.is_none() && human.rules.iter().any(later)
+}
+
+/// Whether somebody follows the robot or another human.
+pub(crate) fn follows(human: &HumanProposal) -> bool {
+    human.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)))
+}
+
+fn sources(human: &HumanProposal, location: &Location) -> Option<PlaceClass> {
+    human.start.filter(|class| !inside::inside(location, Some(*class)).is_empty())
+}

@@ -1,0 +1,182 @@
+//! The search: all candidates in order, which of them are different answers, and which is the answer.
+
+use socrates_model::{PlaceClass, Proposal, Relation, seeds};
+
+use crate::candidates::{Scene, candidates};
+use crate::everybody::{Solution, written};
+use crate::graph::Net;
+use crate::robot_way::{LEAST_M, Wish};
+use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
+
+/// Solutions within so many points of the best are as good: a draw may take any of them.
+const ALIKE: f64 = 4.0;
+/// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
+const ELSEWHERE_M: f64 = 3.0;
+/// Different solutions that are put in order, and solutions among which they are looked for, at most.
+const ALTERNATIVES: usize = 64;
+const POOL: usize = 400;
+/// A person who wants other paths is given one of so many.
+const OTHERS: usize = 6;
+/// Solutions whose way is held against the grid, at most, before the graph is believed.
+const CHECKED: usize = 24;
+
+/// The paths of a problem.
+///
+/// # Errors
+/// What does not fit, where on the map and by how much, where the map has no paths for it.
+pub fn solve(problem: &Problem<'_>) -> Result<Solved, Miss> {
+    let net = Net::of(problem);
+    if let Some(miss) = miss::beforehand(problem, &net) {
+        return Err(miss);
+    }
+    let solutions = solutions(problem, &net);
+    let alternatives = alternatives(problem, &net, &solutions);
+    let Some(chosen) = chosen(problem, &net, &solutions, &alternatives) else { return Err(miss::of(problem, &net)) };
+    let told = |solution: &Solution| {
+        let mut paths = written(&net, solution, problem);
+        for (human, times) in &problem.told.person_shorts {
+            for _ in 0..(*times).min(4) {
+                edit::lengthened(&net, &mut paths, *human);
+            }
+        }
+        paths
+    };
+    Ok(Solved { paths: told(chosen), alternatives: alternatives.into_iter().map(told).collect() })
+}
+
+/// Every solution, the best first.
+pub(crate) fn solutions(problem: &Problem<'_>, net: &Net<'_>) -> Vec<Solution> {
+    let scene = Scene { net, proposal: problem.proposal, layout: problem.layout, crowded: false };
+    let told = &problem.told;
+    let wish = Wish { via: problem.via, roomy: told.stuck, ..wish(problem.proposal, told.shorts) };
+    let mut solutions = candidates(&scene, &wish);
+    if solutions.is_empty() {
+        solutions = candidates(&Scene { crowded: true, ..scene }, &wish);
+    }
+    solutions.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.route.nodes.cmp(&b.route.nodes)));
+    solutions
+}
+
+/// Where the meeting, the start and the goal of the robot lie.
+fn corners(solution: &Solution) -> [usize; 3] {
+    let nodes = &solution.route.nodes;
+    let at = |node: Option<&usize>| node.copied().unwrap_or(usize::MAX);
+    [at(nodes.get(solution.route.meet)), at(nodes.first()), at(nodes.last())]
+}
+
+/// How far elsewhere the one of two solutions plays, m.
+fn apart_m(net: &Net<'_>, one: &Solution, other: &Solution) -> f64 {
+    let pairs = corners(one).into_iter().zip(corners(other));
+    pairs.map(|(a, b)| (net.at(a) - net.at(b)).norm()).fold(0.0, f64::max)
+}
+
+/// Different solutions that are as good as the best: the best first, then each time the one that is farthest from all before it.
+fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Solution]) -> Vec<&'a Solution> {
+    let natural = |solution: &Solution| net.is_short_on_grid(&solution.route.nodes, problem.radius_m);
+    // The graph may lead a long way round where the floor is open; where all do, the best is as good as any.
+    let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or(solutions.first()) else {
+        return Vec::new();
+    };
+    let mut pool: Vec<(&Solution, f64)> = Vec::new();
+    for solution in solutions.iter().filter(|solution| solution.score >= first.score - ALIKE).take(POOL) {
+        if pool.iter().all(|(other, _)| corners(other) != corners(solution)) && corners(solution) != corners(first) {
+            pool.push((solution, apart_m(net, first, solution)));
+        }
+    }
+    let mut found = vec![first];
+    while found.len() < ALTERNATIVES {
+        let far = pool.iter().enumerate().filter(|(_, (_, m))| *m > ELSEWHERE_M);
+        let Some((at, _)) = far.max_by(|(i, a), (j, b)| a.1.total_cmp(&b.1).then(j.cmp(i))) else { break };
+        let (next, _) = pool.remove(at);
+        if !natural(next) {
+            continue;
+        }
+        for (other, m) in &mut pool {
+            *m = m.min(apart_m(net, next, other));
+        }
+        found.push(next);
+    }
+    found
+}
+
+/// The best solution of each meeting node, in order.
+fn by_place(solutions: &[Solution]) -> Vec<&Solution> {
+    let mut seen: Vec<usize> = Vec::new();
+    let mut best: Vec<&Solution> = Vec::new();
+    for solution in solutions {
+        let [node, ..] = corners(solution);
+        if !seen.contains(&node) {
+            seen.push(node);
+            best.push(solution);
+        }
+    }
+    best
+}
+
+/// The answer: one of those that are as good, by the draw; another than those that were refused.
+fn chosen<'a>(
+    problem: &Problem<'_>,
+    net: &Net<'_>,
+    solutions: &'a [Solution],
+    alternatives: &[&'a Solution],
+) -> Option<&'a Solution> {
+    let told = &problem.told;
+    let first = *alternatives.get(seeds::below(problem.draw, alternatives.len()))?;
+    if told.another {
+        // A person wants others, not the same once more; where there are no others, the same are better than none.
+        let others = |solution: &&Solution| {
+            told.former.as_ref().is_none_or(|former| net.named(&solution.route.nodes) != former.robot)
+        };
+        let best = by_place(solutions);
+        let different: Vec<&Solution> = best.iter().copied().filter(others).collect();
+        // The robot still has to get where its task says: the best answer knows where that is.
+        let goal = best.first().and_then(|top| top.route.nodes.last());
+        let there: Vec<&Solution> =
+            different.iter().copied().filter(|other| other.route.nodes.last() == goal).collect();
+        let best = [there, different, best].into_iter().find(|some| !some.is_empty())?;
+        let at = if told.moves > 0 { told.moves } else { seeds::below(problem.draw, best.len().min(OTHERS)) };
+        return best.get(at % best.len()).copied();
+    }
+    let Some(passed) = told.moves.checked_sub(1) else { return Some(first) };
+    // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
+    let [node, ..] = corners(first);
+    let mut others = by_place(solutions);
+    others.retain(|solution| corners(solution).first() != Some(&node));
+    if others.is_empty() { Some(first) } else { others.get(passed % others.len()).copied() }
+}
+
+fn wish(proposal: &Proposal, shorts: u32) -> Wish {
+    let has = |relation: Relation| proposal.humans.iter().any(|human| human.relation == relation);
+    let straight = if proposal.place == PlaceClass::BlindCorner {
+        -1.0
+    } else if has(Relation::Frontal)
+        || has(Relation::Crossing)
+        || has(Relation::Ahead)
+        || proposal.groups.iter().any(|group| group.standing)
+    {
+        1.0
+    } else {
+        0.3
+    };
+    let longer = f64::from(shorts.min(4));
+    let twice = !second_meeting::asked(proposal).is_empty();
+    // Followers and overtakers need a longer way to show what they do.
+    let along = has(Relation::Behind) || has(Relation::Ahead) || has(Relation::Abreast);
+    Wish {
+        start: proposal.robot.start,
+        goal: proposal.robot.goal,
+        place: proposal.place,
+        via: None,
+        roomy: false,
+        indoors: proposal.place == PlaceClass::Room,
+        straight,
+        least_m: if twice { second_meeting::LEAST_M } else { LEAST_M } + 2.0 * longer,
+        aim_m: if twice {
+            second_meeting::AIM_M
+        } else if along {
+            20.0
+        } else {
+            16.0
+        } + 4.0 * longer,
+    }
+}

@@ -1,0 +1,211 @@
+//! Whole problems on small maps.
+
+use std::collections::BTreeSet;
+
+use socrates_model::{DoorKind, Location, NodeId, PlaceClass, Proposal, Relation};
+
+use crate::testing::{block, corridor, door, map, node, proposal};
+use crate::{Layout, Miss, Problem, Solved, solve};
+
+fn ids(names: &[&str]) -> Vec<NodeId> {
+    names.iter().map(|name| node(name)).collect()
+}
+
+fn between<'a>(proposal: &'a Proposal, location: &'a Location, start: &str, goal: &str) -> Problem<'a> {
+    Problem { starts: ids(&[start]), goals: ids(&[goal]), ..Problem::of(proposal, location, "test".into()) }
+}
+
+fn solved(problem: &Problem<'_>) -> Solved {
+    solve(problem).unwrap_or_else(|miss| panic!("{miss}"))
+}
+
+#[test]
+fn between_ends_by_name_the_robot_goes_the_shortest_way_and_people_come_to_it() {
+    let location = block("INTERSECTION");
+    let shortest = ids(&["b0", "b1", "b2", "b3", "b4", "b5", "b6"]);
+    for (place, relation) in [
+        (PlaceClass::Corridor, Relation::Frontal),
+        (PlaceClass::Corridor, Relation::Behind),
+        (PlaceClass::Corridor, Relation::Ahead),
+        (PlaceClass::Corridor, Relation::Static),
+        (PlaceClass::Intersection, Relation::Crossing),
+        (PlaceClass::Intersection, Relation::Frontal),
+    ] {
+        let proposal = proposal(place, &[relation]);
+        for draw in 0..5 {
+            let paths = solved(&Problem { draw, ..between(&proposal, &location, "b0", "b6") }).paths;
+            assert_eq!(paths.robot, shortest, "{relation:?}");
+            assert!(paths.encounters.iter().all(|encounter| shortest.contains(&encounter.node)), "{paths:?}");
+            assert!(!paths.reasoning.contains('%'), "{}", paths.reasoning);
+        }
+    }
+}
+
+#[test]
+fn a_way_that_is_longer_than_the_shortest_says_why() {
+    let location = block("CORRIDOR");
+    let mut proposal = proposal(PlaceClass::BlindCorner, &[Relation::Frontal]);
+    let mut location = location;
+    location.graph = location.graph.edited(|nodes, _| {
+        for corner in nodes.iter_mut().filter(|corner| corner.id.as_str() == "t3") {
+            corner.kind = "BLIND_CORNER".into();
+        }
+    });
+    let paths = solved(&between(&proposal, &location, "b0", "b6")).paths;
+    assert!(paths.robot.contains(&node("t3")), "{:?}", paths.robot);
+    assert!(paths.reasoning.contains("% more than the 24.0 m of the shortest way"), "{}", paths.reasoning);
+    assert!(paths.reasoning.contains("does not lead over a blind corner"), "{}", paths.reasoning);
+    // Without ends by name there is no reason for a detour.
+    proposal.place = PlaceClass::Corridor;
+    for draw in 0..20 {
+        let open = Problem { draw, ..Problem::of(&proposal, &location, "test".into()) };
+        let robot = solved(&open).paths.robot;
+        let shortest = location.graph.shortest(robot.first().unwrap(), robot.last().unwrap()).unwrap();
+        assert!(location.graph.length_m(&robot) <= 1.2 * location.graph.length_m(&shortest), "{robot:?}");
+    }
+}
+
+#[test]
+fn alternatives_differ_and_the_draw_picks_among_them() {
+    let location = block("INTERSECTION");
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let all = solved(&Problem::of(&proposal, &location, "test".into())).alternatives;
+    assert!(all.len() > 5, "{}", all.len());
+    let at = |id: &NodeId| location.graph.node(id).unwrap().at;
+    for (i, one) in all.iter().enumerate() {
+        for other in all.iter().take(i) {
+            let ends = |paths: &socrates_model::Paths| {
+                [paths.robot.first(), paths.robot.last(), paths.encounters.first().map(|met| &met.node)]
+                    .map(|id| at(id.unwrap()))
+            };
+            let apart_m = ends(one).iter().zip(ends(other)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            assert!(apart_m > 3.0, "{one:?} {other:?}");
+        }
+    }
+    let drawn: BTreeSet<String> = (0..all.len() as u64)
+        .map(|draw| {
+            format!("{:?}", solved(&Problem { draw, ..Problem::of(&proposal, &location, "test".into()) }).paths.robot)
+        })
+        .collect();
+    assert!(drawn.len() > 3);
+    let again = solved(&Problem::of(&proposal, &location, "test".into()));
+    assert_eq!(again.alternatives, all);
+}
+
+fn miss(problem: &Problem<'_>) -> Miss {
+    match solve(problem) {
+        Err(miss) => miss,
+        Ok(solved) => panic!("{:?}", solved.paths),
+    }
+}
+
+#[test]
+fn start_and_goal_in_one_place_and_islands_are_named() {
+    let mut location = block("CORRIDOR");
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    assert_eq!(miss(&between(&proposal, &location, "b1", "b1")), Miss::OnePlace { node: node("b1") });
+    location.graph = location.graph.edited(|_, edges| {
+        edges.retain(|edge| !["b0", "b6"].contains(&edge.from.as_str()) && edge.to.as_str() != "b6")
+    });
+    let apart = miss(&between(&proposal, &location, "b5", "t6"));
+    assert_eq!(apart, Miss::Apart { from: node("b5"), to: node("t6") });
+    assert!(apart.to_string().contains("`b5`") && apart.to_string().contains("`t6`"));
+}
+
+#[test]
+fn a_way_that_is_narrower_than_the_robot_and_a_node_in_a_wall_are_named_with_their_width() {
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let location = corridor(0.3);
+    let Miss::Narrow { has_m, needs_m, .. } = miss(&between(&proposal, &location, "c0", "c6")) else { panic!() };
+    assert!((0.2..0.4).contains(&has_m) && (needs_m - 0.5).abs() < 1e-9, "{has_m} {needs_m}");
+    assert!(matches!(miss(&Problem::of(&proposal, &location, "test".into())), Miss::Narrow { .. }));
+    assert!(solve(&between(&proposal, &corridor(2.0), "c0", "c6")).is_ok());
+    let mut walled = corridor(2.0);
+    walled.graph = walled.graph.edited(|nodes, _| {
+        for wall in nodes.iter_mut().filter(|wall| wall.id.as_str() == "c3") {
+            wall.at.y = 5.5;
+        }
+    });
+    let Miss::Narrow { has_m, between: [a, b], .. } = miss(&between(&proposal, &walled, "c0", "c6")) else { panic!() };
+    assert!(has_m < 1e-9 && [a, b].contains(&node("c3")));
+}
+
+#[test]
+fn a_door_that_never_opens_closes_the_way() {
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let mut location = corridor(2.0);
+    location.doors = vec![door(serde_json::json!({
+        "id": "gate", "kind": DoorKind::Room, "from": [12.0, 2.0], "to": [12.0, 4.0], "opens": "never"
+    }))];
+    assert_eq!(
+        miss(&between(&proposal, &location, "c0", "c6")),
+        Miss::Shut { from: node("c0"), to: node("c6"), door: "gate".into() }
+    );
+}
+
+#[test]
+fn a_map_of_one_node_or_none_is_too_short() {
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    for nodes in [&[][..], &[("a", "CORRIDOR", 3.0, 3.0)][..]] {
+        let location = map([6.0, 6.0], &[[0.5, 0.5, 5.0, 5.0]], nodes, &[]);
+        let found = miss(&Problem::of(&proposal, &location, "test".into()));
+        assert!(matches!(found, Miss::Short { has_m: 0.0, needs_m: 6.0, .. }), "{found:?}");
+    }
+}
+
+#[test]
+fn ten_people_do_not_come_out_of_a_closet() {
+    let mut nodes = vec![("in", "ROOM", 14.0, 5.0)];
+    let names: Vec<String> = (0..7).map(|k| format!("c{k}")).collect();
+    nodes.extend(names.iter().enumerate().map(|(k, id)| (id.as_str(), "CORRIDOR", 2.0 + 4.0 * k as f64, 3.0)));
+    let mut edges: Vec<(&str, &str)> = names.windows(2).map(|pair| (pair[0].as_str(), pair[1].as_str())).collect();
+    edges.push(("c3", "in"));
+    let mut location = map([28.0, 6.0], &[[0.5, 2.0, 27.0, 2.0], [13.4, 4.0, 1.2, 1.6]], &nodes, &edges);
+    location.doors = vec![door(serde_json::json!({
+        "id": "closet", "kind": DoorKind::Room, "from": [13.4, 4.1], "to": [14.6, 4.1], "opens": { "near": 1.5 }, "inside": ["in"]
+    }))];
+    let ten = proposal(PlaceClass::Corridor, &[Relation::Leaving; 10]);
+    let Miss::Full { node: room, has_m2, people, needs_m2 } = miss(&Problem::of(&ten, &location, "test".into())) else {
+        panic!()
+    };
+    assert_eq!((room, people), (node("in"), 10));
+    assert!(has_m2 < 2.0 && needs_m2 > 4.0, "{has_m2} {needs_m2}");
+    assert!(
+        solve(&Problem::of(&proposal(PlaceClass::Corridor, &[Relation::Leaving]), &location, "test".into())).is_ok()
+    );
+}
+
+#[test]
+fn a_width_that_no_place_has_is_named_with_the_nearest() {
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let location = corridor(1.4);
+    let wide = Layout { width_m: Some([1.9, 99.0]), ..Layout::default() };
+    let problem = Problem { layout: wide, ..Problem::of(&proposal, &location, "test".into()) };
+    let Miss::Width { has_m, needs_m: [least_m, _], .. } = miss(&problem) else { panic!() };
+    assert!((has_m - 1.4).abs() < 0.15 && least_m > 1.8, "{has_m}");
+    let four = Layout { arms: Some(4), ..Layout::default() };
+    let problem = Problem { layout: four, ..Problem::of(&proposal, &location, "test".into()) };
+    assert!(matches!(miss(&problem), Miss::Arms { has: 2, needs: 4, .. }));
+}
+
+#[test]
+fn a_graph_of_two_thousand_nodes_is_solved() {
+    let names: Vec<String> = (0..2000).map(|k| format!("n{k}")).collect();
+    let at = |k: usize| (1.0 + (k % 50) as f64, 1.0 + (k / 50) as f64);
+    let nodes: Vec<(&str, &str, f64, f64)> =
+        names.iter().enumerate().map(|(k, id)| (id.as_str(), "OPEN_AREA", at(k).0, at(k).1)).collect();
+    let mut edges: Vec<(&str, &str)> = Vec::new();
+    for k in 0..2000 {
+        if k % 50 != 49 {
+            edges.push((&names[k], &names[k + 1]));
+        }
+        if k + 50 < 2000 {
+            edges.push((&names[k], &names[k + 50]));
+        }
+    }
+    let location = map([52.0, 42.0], &[[0.2, 0.2, 51.6, 41.6]], &nodes, &edges);
+    let proposal = proposal(PlaceClass::OpenArea, &[Relation::Frontal, Relation::Crossing, Relation::Static]);
+    assert_eq!(solved(&Problem::of(&proposal, &location, "test".into())).paths.humans.len(), 3);
+    let proposal = self::proposal(PlaceClass::Exit, &[Relation::Frontal]);
+    assert_eq!(miss(&Problem::of(&proposal, &location, "test".into())), Miss::NoPlace(PlaceClass::Exit));
+}
