@@ -4,7 +4,7 @@ use socrates_maps::Ground;
 use socrates_model::{HumanProposal, PlaceClass, Proposal, Relation};
 
 use crate::everybody::{Solution, everybody};
-use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight};
+use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight, width_m};
 use crate::graph::{Net, Tree};
 use crate::people::boarding;
 use crate::robot_way::{Route, Wish, over, score};
@@ -83,7 +83,30 @@ pub(crate) fn candidates(scene: &Scene<'_>, wish: &Wish) -> Vec<Solution> {
         Ends::Past => {}
     }
     // So many come as a stream: two or three from each node.
-    at_nodes(&Scene { crowded: scene.crowded || walkers > STREAM, ..*scene }, wish, &nodes)
+    let found = at_nodes(&Scene { crowded: scene.crowded || walkers > STREAM, ..*scene }, wish, &nodes);
+    if !found.is_empty() {
+        return found;
+    }
+    // Where every place of the class is a dead end the robot comes to those who stand there; others are met right before it.
+    let there = at_meant(scene, wish, &near);
+    if there.is_empty() { at_nodes(scene, wish, &before(net, &near)) } else { there }
+}
+
+/// Nodes next to places, and on the other side of a doorway next to them, which are none of the places.
+fn before(net: &Net<'_>, places: &[usize]) -> Vec<usize> {
+    let mut found: Vec<usize> = Vec::new();
+    for (next, _) in places.iter().flat_map(|place| net.near(*place)) {
+        let mut beside = vec![*next];
+        if net.kind(*next) == PlaceClass::Doorway {
+            beside.extend(net.near(*next).iter().map(|(node, _)| *node));
+        }
+        for node in beside {
+            if !places.contains(&node) && !found.contains(&node) {
+                found.push(node);
+            }
+        }
+    }
+    found
 }
 
 /// Ways to a place by name: through it, or into it where it is a dead end.
@@ -125,7 +148,8 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
     let overtakers = proposal.humans.iter().filter(|human| overtakes(human)).count();
-    let overtaken = overtakers > 0;
+    let beside = proposal.humans.iter().any(|human| human.relation == Relation::Abreast);
+    let overtaken = overtakers > 0 || beside;
     let ground = Ground::of(&net.location.grid);
     let field = (standing > 0 || overtaken).then(|| ground.field());
     // People who come out are met near the place that they leave.
@@ -140,7 +164,7 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
     let mut ranked: Vec<(f64, usize)> = nodes
         .iter()
         .filter(|node| (!net.inside(**node) || wish.indoors) && net.near(**node).len() >= 2)
-        .filter(|node| suits(&scene.layout, net.near(**node).len(), ground.field().clearance(&net.at(**node))))
+        .filter(|node| suits(&scene.layout, net.near(**node).len(), || width_m(ground.field(), &net.at(**node))))
         .map(|node| {
             let own = if net.kind(*node) == wish.place { 2.0 } else { 0.0 };
             let arms = net.near(*node).len();
@@ -173,7 +197,7 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
                 let squeezed = field
                     .filter(|_| overtaken)
-                    .map_or(0.0, |field| squeezed(net, field, &solution.route, overtakers > 1));
+                    .map_or(0.0, |field| squeezed(net, field, &solution.route, (overtakers > 1, beside)));
                 let tight = 3.0 * tight + spread::squeezes(net, proposal, &solution.route, &solution.ways);
                 solution.score += rank + hidden - if many || wish.roomy { tight } else { 0.0 } - SQUEEZED * squeezed;
                 found.push(solution);

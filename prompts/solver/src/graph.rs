@@ -13,9 +13,6 @@ use crate::cost::{FARTHEST, WEIGHTS};
 use crate::passable::{Closed, floor_m};
 use crate::{Problem, passable};
 
-/// Half a robot: a way through nodes may bend so much more than one on the floor, m.
-const SLACK_M: f64 = 0.5;
-
 /// The scene graph by index.
 pub(crate) struct Net<'a> {
     pub(crate) location: &'a Location,
@@ -110,7 +107,7 @@ impl<'a> Net<'a> {
     pub(crate) fn is_short_on_grid(&self, nodes: &[usize], radius_m: f64) -> bool {
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else { return true };
         let (from, to) = (self.at(*first), self.at(*last));
-        let short = |shortest_m: f64| self.length_m(nodes) <= FARTHEST * shortest_m + SLACK_M;
+        let short = |shortest_m: f64| self.length_m(nodes) <= FARTHEST * shortest_m;
         // No way on the floor is shorter than the straight line, which costs nothing to know.
         short((to - from).norm()) || floor_m(self.location, &from, &to, radius_m).is_none_or(short)
     }

@@ -8,7 +8,7 @@ use socrates_model::{HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation
 use crate::candidates::SHORTEST_M;
 use crate::graph::Net;
 use crate::passable::{Closed, Why};
-use crate::{Problem, inside, people, search};
+use crate::{Problem, fit, inside, people, search};
 
 /// Floor that somebody needs who stands in a room with others, m²: a disc of 0.28 m and what keeps it from the next.
 const PERSON_M2: f64 = 0.5;
@@ -318,7 +318,7 @@ fn arms(problem: &Problem<'_>, net: &Net<'_>, nodes: &[usize]) -> Option<Miss> {
 fn width(problem: &Problem<'_>, net: &Net<'_>, nodes: &[usize]) -> Option<Miss> {
     let [least_m, most_m] = problem.layout.width_m?;
     let ground = Ground::of(&net.location.grid);
-    let width_m = |node: usize| 2.0 * ground.field().clearance(&net.at(node));
+    let width_m = |node: usize| fit::width_m(ground.field(), &net.at(node));
     let off = |node: usize| (least_m - width_m(node)).max(width_m(node) - most_m).max(0.0);
     let nearest = nodes.iter().copied().min_by(|a, b| off(*a).total_cmp(&off(*b)))?;
     let (node, has_m) = (net.id(nearest)?.clone(), width_m(nearest));

@@ -9,7 +9,7 @@ use crate::robot_way::{LEAST_M, Wish};
 use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
 
 /// Solutions within so many points of the best are as good: a draw may take any of them.
-const ALIKE: f64 = 4.0;
+const ALIKE: f64 = 2.5;
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
 /// Different solutions that are put in order, and solutions among which they are looked for, at most.

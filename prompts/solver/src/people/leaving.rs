@@ -2,9 +2,14 @@
 
 use socrates_model::{HumanProposal, PlaceClass};
 
-use super::{Taken, Way, extend, onward, sources};
+use super::{HUMAN_MPS, ROBOT_MPS, Taken, Way, before_m, extend, onward, sources};
 use crate::inside::{self, same_door};
 use crate::robot_way::Route;
+
+/// Longest wait behind a door before somebody comes out, s: people are held for 10 s at most, and a little is needed for the rest.
+const WAITS_S: f64 = 8.0;
+/// Cost per second that somebody would have to wait longer.
+const LATE_PER_S: f64 = 0.8;
 
 /// Out of a room or car, through its door, over the meeting node and on.
 pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
@@ -57,5 +62,8 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
     onward(&mut nodes, taken);
     let length = tree.length_m(start);
-    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + if exit.is_none() { 4.0 } else { 0.0 } })
+    // Nobody waits behind the door until a robot comes that is still far away.
+    let waits_s = before_m(net, route) / ROBOT_MPS - length / human.speed_mps.unwrap_or(HUMAN_MPS);
+    let early = LATE_PER_S * (waits_s - WAITS_S).max(0.0);
+    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + early + if exit.is_none() { 4.0 } else { 0.0 } })
 }
