@@ -6,10 +6,10 @@ use socrates_model::{
 };
 use socrates_offline::catalog;
 
+use crate::cards;
 use crate::config::Config;
 use crate::in_process::{Played, play};
 use crate::mutations::shipped;
-use crate::scenarios;
 
 /// Seeds of each scenario.
 const SEEDS: u64 = 6;
@@ -114,9 +114,9 @@ fn shown(about: String, location: &Location, played: &Played) -> Shown {
 fn asked() -> Vec<(String, Request, Location, u64)> {
     let mut found = Vec::new();
     for card in catalog() {
-        for (seed, place) in (1..=SEEDS).zip(scenarios::places(card, None).unwrap().into_iter().cycle()) {
+        for (seed, place) in (1..=SEEDS).zip(cards::places(card).unwrap().into_iter().cycle()) {
             let about = format!("{} in {} with seed {seed}", card.id, place.name);
-            found.push((about, scenarios::request(card, &place.name).unwrap(), place, seed));
+            found.push((about, cards::request(card, &place.name).unwrap(), place, seed));
         }
     }
     let config = Config::load(None, std::iter::empty(), &[]).unwrap();
