@@ -16,8 +16,13 @@ use crate::replay::tracks::{Group, Known, score};
 const BY_RATE: &[(&str, &str)] = &[];
 
 /// Metrics that tracks alone give otherwise than the bundle, with the reason; the README has the list too.
-const BY_TRACKS: &[(&str, &str)] =
-    &[("legibility", GOALS), ("legibility_observed", GOALS), ("clarity", GOALS), ("readiness_envelope", GOALS)];
+const BY_TRACKS: &[(&str, &str)] = &[
+    ("legibility", GOALS),
+    ("legibility_observed", GOALS),
+    ("clarity", GOALS),
+    ("confusions", GOALS),
+    ("readiness_envelope", GOALS),
+];
 /// The paths of a bundle say from which node to which the robot goes; a table has a point for the goal.
 const GOALS: &str = "the goals that people may expect are those about the robot's nodes, which a table does not name";
 /// Share and amount by which tracks may give another figure than the bundle: they end when the robot first comes near its goal,

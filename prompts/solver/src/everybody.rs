@@ -22,6 +22,8 @@ pub(crate) struct Solution {
     pub(crate) ways: BTreeMap<HumanId, Way>,
     /// Where somebody meets the robot for the second time.
     pub(crate) again: BTreeMap<HumanId, usize>,
+    /// What people's ways cost: 0 where each is led as their relation asks, see [`Way::cost`].
+    pub(crate) strain: f64,
     pub(crate) score: f64,
 }
 
@@ -111,7 +113,7 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
         ways.insert(human.id, own);
     }
     let score = route.score - cost;
-    Some(Solution { route, ways, again, score })
+    Some(Solution { route, ways, again, strain: cost, score })
 }
 
 /// The way of somebody who follows another human: the same, from the node before or after its start.

@@ -102,11 +102,8 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
     if nodes.len() < 4 || total < wish.least_m {
         return f64::NEG_INFINITY;
     }
-    let before = net.length_m(nodes.get(..=meet).unwrap_or_default());
-    let after = total - before;
     let mut score = -w.length_per_m * (total - wish.aim_m).abs() - w.detours(times_shortest(net, nodes, wish.via));
-    // Before the meeting the robot needs room to be seen, after it room to get away.
-    score -= w.room_per_m * ((5.0 - before).max(0.0) + (3.0 - after).max(0.0));
+    score -= w.room_per_m * missing(net, nodes, meet, total);
     if let (Some(a), Some(b), Some(c)) =
         (meet.checked_sub(1).and_then(|i| nodes.get(i)), nodes.get(meet), nodes.get(meet + 1))
     {
@@ -139,6 +136,20 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
         }
     }
     score
+}
+
+/// Before the meeting the robot needs room to be seen, after it room to get away, m.
+const BEFORE_M: f64 = 5.0;
+const AFTER_M: f64 = 3.0;
+
+/// How much of that a way lacks, m.
+pub(crate) fn missing_m(net: &Net<'_>, route: &Route) -> f64 {
+    missing(net, &route.nodes, route.meet, net.length_m(&route.nodes))
+}
+
+fn missing(net: &Net<'_>, nodes: &[usize], meet: usize, total_m: f64) -> f64 {
+    let before = net.length_m(nodes.get(..=meet).unwrap_or_default());
+    (BEFORE_M - before).max(0.0) + (AFTER_M - (total_m - before)).max(0.0)
 }
 
 /// Whether a way leads past a class of place between its ends.

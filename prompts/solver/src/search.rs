@@ -5,11 +5,13 @@ use socrates_model::{PlaceClass, Proposal, Relation, seeds};
 use crate::candidates::{Scene, candidates};
 use crate::everybody::{Solution, written};
 use crate::graph::Net;
-use crate::robot_way::{LEAST_M, Wish};
+use crate::robot_way::{LEAST_M, Wish, missing_m};
 use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
 
 /// Solutions within so many points of the best are as good: a draw may take any of them.
 const ALIKE: f64 = 2.5;
+/// Of those, people's ways may cost so much more than in the best: what was asked of them is not given up for variety.
+const STRAINED: f64 = 0.75;
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
 /// Different solutions that are put in order, and solutions among which they are looked for, at most.
@@ -77,8 +79,14 @@ fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Soluti
     let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or(solutions.first()) else {
         return Vec::new();
     };
+    // Another place is no reason to set off right before it, or to end right behind it, where the best does not.
+    let as_good = |solution: &&Solution| {
+        solution.score >= first.score - ALIKE
+            && solution.strain <= first.strain + STRAINED
+            && missing_m(net, &solution.route) <= missing_m(net, &first.route) + 1e-9
+    };
     let mut pool: Vec<(&Solution, f64)> = Vec::new();
-    for solution in solutions.iter().filter(|solution| solution.score >= first.score - ALIKE).take(POOL) {
+    for solution in solutions.iter().filter(as_good).take(POOL) {
         if pool.iter().all(|(other, _)| corners(other) != corners(solution)) && corners(solution) != corners(first) {
             pool.push((solution, apart_m(net, first, solution)));
         }

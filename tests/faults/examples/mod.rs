@@ -58,7 +58,7 @@ pub(crate) fn office(task: &str, rough: &str) -> (Request, Location) {
 const FURTHER: &str = r#"
 location = "warehouse"
 social_context = "An ordinary day"
-task = "Bring a box from the loading dock to the exit"
+task = "Bring a box from the loading dock to the packing area"
 rough_scenario = "A worker comes towards the robot at a blind corner and steps aside."
 "#;
 
