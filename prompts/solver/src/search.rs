@@ -3,9 +3,10 @@
 use socrates_model::{PlaceClass, Proposal, Relation, seeds};
 
 use crate::candidates::{Scene, candidates};
+use crate::cost::FARTHEST;
 use crate::everybody::{Solution, written};
 use crate::graph::Net;
-use crate::robot_way::{LEAST_M, Wish, missing_m};
+use crate::robot_way::{LEAST_M, Wish, missing_m, times_shortest};
 use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
 
 /// Solutions within so many points of the best are as good: a draw may take any of them.
@@ -74,7 +75,11 @@ fn apart_m(net: &Net<'_>, one: &Solution, other: &Solution) -> f64 {
 
 /// Different solutions that are as good as the best: the best first, then each time the one that is farthest from all before it.
 fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Solution]) -> Vec<&'a Solution> {
-    let natural = |solution: &Solution| net.is_short_on_grid(&solution.route.nodes, problem.radius_m);
+    // Where the task's own ends leave only a detour the floor has nothing to say.
+    let natural = |solution: &Solution| {
+        let nodes = &solution.route.nodes;
+        times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
+    };
     // The graph may lead a long way round where the floor is open; where all do, the best is as good as any.
     let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or(solutions.first()) else {
         return Vec::new();
