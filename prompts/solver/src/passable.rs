@@ -28,13 +28,16 @@ pub(crate) enum Why {
     Shut(String),
 }
 
-/// What is worked out of a map, by two points and the radius as bits.
+/// Something that is worked out of a map once, by two points and the radius as bits.
+type Once<T> = Mutex<BTreeMap<[u64; 5], T>>;
+
+/// What is worked out of a map.
 #[derive(Debug, Default)]
 struct Known {
-    /// The narrowest point of an edge that is closed.
-    narrow: Mutex<BTreeMap<[u64; 5], Option<(Point, f64)>>>,
+    /// The narrowest point of an edge that is closed, and the free width there, m.
+    narrow: Once<Option<(Point, f64)>>,
     /// The shortest way between the points, m.
-    floor_m: Mutex<BTreeMap<[u64; 5], Option<f64>>>,
+    floor_m: Once<Option<f64>>,
 }
 
 fn key(from: &Point, to: &Point, radius_m: f64) -> [u64; 5] {

@@ -81,7 +81,8 @@ fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Soluti
         times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
     };
     // The graph may lead a long way round where the floor is open; where all do, the best is as good as any.
-    let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or(solutions.first()) else {
+    let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or_else(|| solutions.first())
+    else {
         return Vec::new();
     };
     // Another place is no reason to set off right before it, or to end right behind it, where the best does not.
