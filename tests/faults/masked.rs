@@ -74,12 +74,13 @@ async fn decisions() -> BTreeMap<String, Decisions> {
     all
 }
 
-/// What the checks find of every kind of fault in the answers to the shipped requests and one more; every kind strikes.
+/// What the checks find of every kind of fault in the answers to the shipped requests, one more and all cards; every kind strikes.
 async fn found() -> Decisions {
     let mut all = Decisions::new();
     let mut right = Vec::new();
-    // One request more than the shipped ones: in their answers not every kind of fault has a place.
-    for (request, location) in crate::examples::shipped() {
+    // In the answers to the shipped requests alone not every kind of fault has a place.
+    let cards = cards().into_iter().map(|(_, location, request)| (request, location));
+    for (request, location) in crate::examples::shipped().into_iter().chain(cards) {
         let reading = socrates_offline::read(&request, &location);
         all.push(read_facts(&reading));
         right.extend(answers(&Offline, &Question::first(request, reading, location, 1)).await);

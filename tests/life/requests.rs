@@ -59,11 +59,30 @@ fn a_location_in_the_style_of_others_is_realised_guided_and_unguided() {
     let base = format!(
         "location = {location:?}\nsocial_context = \"A storage hall with racks\"\ntask = \"Bring a box from one corner to another\"\n"
     );
-    let guided = format!("{base}rough_scenario = \"A worker comes towards the robot in the aisle and gives way.\"\n");
+    let guided =
+        format!("{base}rough_scenario = \"A worker crosses the robot's path at the intersection and gives way.\"\n");
     for (name, text) in [("guided", &guided), ("unguided", &base)] {
         let (finished, json) = make(folder.path(), name, text, &[]);
         assert_eq!(json["verdict"], "realised", "{name}: {}\n{}", finished.err, finished.out);
     }
+}
+
+#[test]
+fn a_narrow_passage_that_a_location_does_not_have_is_refused_with_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let location = socrates_tests::root().join(socrates_tests::ANNEX).display().to_string();
+    let request = format!(
+        "location = {location:?}\nsocial_context = \"A storage hall with racks\"\ntask = \"Bring a box from one corner to another\"\n\
+         rough_scenario = \"A worker comes towards the robot in the aisle and gives way.\"\n"
+    );
+    let (finished, json) = make(folder.path(), "narrow", &request, &[]);
+    assert!(json["verdict"].is_null(), "{}", finished.out);
+    assert_eq!(
+        json["causes"][0],
+        "E-CANNOT answer: a narrow passage of 1.1 to 1.7 m is needed; `a2`, which comes nearest on this map, has 4.0 m",
+        "{}",
+        finished.err
+    );
 }
 
 #[test]

@@ -35,7 +35,7 @@ impl Stage for Backwards {
     async fn run(&self, job: &Job) -> Result<Done, Failure> {
         self.0.fetch_add(1, Ordering::SeqCst);
         match job.setting("do") {
-            Some("panic") => panic!("boom"),
+            Some("panic") => panic!("index out of range"),
             Some("wait") => job.cancel().stopped().await,
             Some("hang") => std::future::pending::<()>().await,
             Some("big") => {

@@ -35,7 +35,7 @@ fn what_does_not_fit_is_left_out_with_its_reason_and_the_rest_is_played() {
     let runs: Vec<(usize, usize)> = played.runs.iter().map(|(item, _)| (item.card, item.place)).collect();
     assert_eq!(runs, [(0, 2), (1, 0), (1, 1), (1, 2)]);
     let told = table::told(&played).join("\n");
-    assert!(told.contains("-[1]") && told.contains("[1] needs an elevator lobby, the map has none"), "{told}");
+    assert!(told.contains("-[1]") && told.contains("[1] needs an elevator, the map has none"), "{told}");
     assert!(told.contains("fits       4 of 6 pairs"), "{told}");
     // The same map under two names: the same run.
     assert_eq!(played.runs.get(1).map(|(_, outcome)| outcome), played.runs.get(2).map(|(_, outcome)| outcome));
@@ -46,7 +46,7 @@ fn cards_that_fit_no_map_are_refused_with_the_reason_and_the_maps_that_they_fit(
     let played =
         nothing_fits(&cards(&["exiting_elevator".to_owned()]).unwrap(), &places(&["office".to_owned()]).unwrap());
     assert!(played.hint.contains("hospital"), "{played}");
-    assert!(played.causes.iter().any(|why| why.contains("on office: needs an elevator lobby")), "{played}");
+    assert!(played.causes.iter().any(|why| why.contains("on office: needs an elevator, the map has none")), "{played}");
 }
 
 #[test]
