@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::geometry::nearest_on_segment;
-use socrates_model::{Cell, DoorKind, DoorOpens, Fault, FaultCode, Grid, Point, Pose, Where};
+use socrates_model::{Cell, DoorKind, DoorOpens, Fault, FaultCode, Grid, Location, Point, Pose, Where};
 
 use crate::image::gray_png;
 use crate::plan::{PLAN, Plan};
@@ -23,6 +23,14 @@ const SHADES: [(Cell, u8); 3] = [(Cell::Free, 254), (Cell::Occupied, 0), (Cell::
 /// Every problem of the plan with its line, or, where the plan is well formed, every problem of the
 /// location it makes (a node in a wall, a graph in two parts …).
 pub fn generate(plan_toml: &str) -> Result<BTreeMap<String, Vec<u8>>, Vec<Fault>> {
+    made(plan_toml).map(|(files, _)| files)
+}
+
+/// Files by name, and the location that they hold.
+type Made = (BTreeMap<String, Vec<u8>>, Location);
+
+/// The files of [`generate`] and the location that they hold.
+pub(crate) fn made(plan_toml: &str) -> Result<Made, Vec<Fault>> {
     let plan = Plan::read(plan_toml)?;
     let grid = painted(&plan);
     let faults: Vec<Fault> = plan
@@ -47,10 +55,13 @@ pub fn generate(plan_toml: &str) -> Result<BTreeMap<String, Vec<u8>>, Vec<Fault>
         (GRAPH.to_owned(), graph_json(&plan, &grid).into_bytes()),
         (EXTRA.to_owned(), extra_toml(&plan).into_bytes()),
     ]);
-    parse(&files, "plan").map(|_| files).map_err(|faults| {
-        let moved = |fault: Fault| Fault { at: fault.at.made_from(PLAN), ..fault };
-        faults.into_iter().map(moved).collect()
-    })
+    match parse(&files, "plan") {
+        Ok(location) => Ok((files, location)),
+        Err(faults) => {
+            let moved = |fault: Fault| Fault { at: fault.at.made_from(PLAN), ..fault };
+            Err(faults.into_iter().map(moved).collect())
+        }
+    }
 }
 
 fn shade(cell: &Cell) -> u8 {
@@ -75,15 +86,24 @@ fn painted(plan: &Plan) -> Grid {
         origin: Pose::new(0.0, 0.0, 0.0),
         cells: vec![Cell::Unknown; width.saturating_mul(height)],
     };
-    let middles: Vec<Point> = (0..height)
-        .flat_map(|row| (0..width).map(move |column| (column, row)))
-        .map(|(column, row)| grid.center_of(column, row))
-        .collect();
-    // Asks for every cell, by its middle and present state, whether it changes.
-    let paint = |grid: &mut Grid, change: &dyn Fn(&Point, Cell) -> Option<Cell>| {
-        for (cell, middle) in grid.cells.iter_mut().zip(&middles) {
-            if let Some(new) = change(middle, *cell) {
-                *cell = new;
+    // Asks for every cell near a rectangle or line, by its middle and present state, whether it changes.
+    let paint = |grid: &mut Grid, quad: &[f64; 4], more: f64, change: &dyn Fn(&Point, Cell) -> Option<Cell>| {
+        let [x0, y0, x1, y1] = *quad;
+        // One cell more on each side, so that rounding leaves none out.
+        let cells = |a: f64, b: f64, most: usize| {
+            let from = libm::floor((a.min(b) - more) / resolution_m) - 1.0;
+            let to = libm::ceil((a.max(b) + more) / resolution_m) + 1.0;
+            (from.max(0.0) as usize).min(most)..(to.max(0.0) as usize).min(most)
+        };
+        for up in cells(y0, y1, height) {
+            let row = height - 1 - up;
+            for column in cells(x0, x1, width) {
+                let middle = grid.center_of(column, row);
+                if let Some(cell) = grid.cells.get_mut(row * width + column)
+                    && let Some(new) = change(&middle, *cell)
+                {
+                    *cell = new;
+                }
             }
         }
     };
@@ -94,20 +114,22 @@ fn painted(plan: &Plan) -> Grid {
     };
     for (more, cell) in [(thick, Cell::Occupied), (0.0, Cell::Free)] {
         for floor in &plan.floors {
-            paint(&mut grid, &|p, _| within(floor.get_ref(), more, p).then_some(cell));
+            paint(&mut grid, floor.get_ref(), more, &|p, _| within(floor.get_ref(), more, p).then_some(cell));
         }
     }
     for wall in &plan.walls {
         let [x0, y0, x1, y1] = *wall.get_ref();
         let (from, to) = (Point::new(x0, y0), Point::new(x1, y1));
-        paint(&mut grid, &|p, _| (nearest_on_segment(p, &from, &to).0 <= thick * 0.5 + 1e-9).then_some(Cell::Occupied));
+        paint(&mut grid, wall.get_ref(), thick, &|p, _| {
+            (nearest_on_segment(p, &from, &to).0 <= thick * 0.5 + 1e-9).then_some(Cell::Occupied)
+        });
     }
     for opening in &plan.openings {
         let [x0, y0, x1, y1] = *opening.get_ref();
         let (from, to) = (Point::new(x0, y0), Point::new(x1, y1));
         let along = to - from;
         let length = along.norm();
-        paint(&mut grid, &|p, now| {
+        paint(&mut grid, opening.get_ref(), 2.0 * thick, &|p, now| {
             let share = (p - from).dot(&along) / (length * length);
             let aside = (along.perp(&(p - from)) / length).abs();
             let cut = now == Cell::Occupied && (0.0..=1.0).contains(&share) && aside <= thick + 1e-9;
@@ -115,7 +137,7 @@ fn painted(plan: &Plan) -> Grid {
         });
     }
     for block in &plan.blocks {
-        paint(&mut grid, &|p, _| within(block.get_ref(), 0.0, p).then_some(Cell::Occupied));
+        paint(&mut grid, block.get_ref(), 0.0, &|p, _| within(block.get_ref(), 0.0, p).then_some(Cell::Occupied));
     }
     grid
 }

@@ -5,14 +5,16 @@
 //! scene_graph.json ─┼─► parse ─► Location ┤
 //! location.toml ────┘      ▲              └─► Sight
 //!                plan.toml ─ generate
+//!                    ▲
+//!      seed, kind ─ random
 //! ```
 //!
 //! Modules in reading order: files in ([`parse`], [`load`]), what is checked ([`check`]), the grid's
-//! questions (field, geodesic, route, sight; [`Ground`] keeps their answers), places, rooms and cars with their openings, and the
-//! shipped locations with their generator.
+//! questions (field, geodesic, route, sight; [`Ground`] keeps their answers), places, rooms and cars with their openings, the
+//! shipped locations with their generator, and [`random`] ones whose plans are drawn by a seed.
 //!
 //! *Never here:* pictures with labels (they are drawn next door), moving agents, a clock, a random
-//! number, a rule about scenarios.
+//! number that no seed gave, a rule about scenarios.
 
 mod check;
 mod doors_file;
@@ -34,6 +36,7 @@ mod sight;
 
 pub mod openings;
 pub mod place;
+pub mod random;
 pub mod shipped;
 
 pub use check::check;

@@ -1,9 +1,10 @@
 //! `map`: list, check, draw, generate.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde_json::json;
+use socrates_maps::random::Kind;
 
 use crate::exit::Complaint;
 use crate::files;
@@ -87,14 +88,40 @@ pub(crate) fn generated(plan: &Path) -> Result<BTreeMap<String, Vec<u8>>, Compla
     })
 }
 
-/// Makes a location folder from a floor plan.
+/// Makes a location folder from a floor plan; files of a folder that is there are written anew.
 pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint> {
-    let files = generated(plan)?;
+    write(talk, &generated(plan)?, out)
+}
+
+/// Makes a location folder from a floor plan that is drawn by a seed, with the plan in it.
+///
+/// Without `out` the folder is called by kind and seed. A folder that holds anything already is left as it is.
+pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Complaint> {
+    let kind: Kind = kind.parse().map_err(|fault| {
+        Complaint::faults("there is no such random world", &[fault], "choose one of the kinds with `--kind`")
+    })?;
+    let out = out.map_or_else(|| PathBuf::from(socrates_maps::random::name(seed, kind)), Path::to_path_buf);
+    let taken = match std::fs::read_dir(&out) {
+        Ok(mut entries) => entries.next().is_some(),
+        Err(why) => why.kind() != std::io::ErrorKind::NotFound,
+    };
+    if taken {
+        let message = format!("`{}` is there already and is not an empty folder", out.display());
+        return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
+    }
+    let files = socrates_maps::random::files(seed, kind).map_err(|faults| {
+        let message = format!("the {kind} of seed {seed} is not usable");
+        Complaint::faults(message, &faults, "please report the kind and the seed; another seed gives another world")
+    })?;
+    write(talk, &files, &out)
+}
+
+fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {
     let cannot = |path: &Path, why: std::io::Error| {
         Complaint::input(format!("cannot write `{}`: {why}", path.display()), "check the folder")
     };
     std::fs::create_dir_all(out).map_err(|why| cannot(out, why))?;
-    for (name, bytes) in &files {
+    for (name, bytes) in files {
         let path = out.join(name);
         std::fs::write(&path, bytes).map_err(|why| cannot(&path, why))?;
     }
@@ -102,4 +129,31 @@ pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint
     talk.line(&format!("next       socrates map draw {}", out.display()));
     talk.result(&json!({ "location": out.display().to_string(), "files": files.keys().collect::<Vec<_>>() }));
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::Format;
+
+    #[test]
+    fn a_random_world_is_written_once_and_other_kinds_are_refused() {
+        let talk = Printer::to_nobody(Format::Json);
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("home-7");
+        random(&talk, 7, "home", Some(&out)).unwrap();
+        let location = socrates_maps::load(&out).unwrap();
+        assert_eq!(location, socrates_maps::random::location(7, Kind::Home).unwrap());
+        let plan = std::fs::read(out.join("plan.toml")).unwrap();
+        let again = random(&talk, 8, "home", Some(&out)).unwrap_err();
+        assert!(again.what.contains("home-7") && again.what.contains("not an empty folder"), "{}", again.what);
+        assert_eq!(std::fs::read(out.join("plan.toml")).unwrap(), plan);
+        // The plan in the folder makes the folder.
+        let copy = folder.path().join("copy");
+        generate(&talk, &out.join("plan.toml"), &copy).unwrap();
+        assert_eq!(std::fs::read(copy.join("map.png")).unwrap(), std::fs::read(out.join("map.png")).unwrap());
+        let castle = random(&talk, 7, "castle", Some(&folder.path().join("castle-7"))).unwrap_err();
+        assert!(castle.short().contains("`castle`") && castle.short().contains("warehouse"), "{}", castle.short());
+        assert!(!folder.path().join("castle-7").exists());
+    }
 }

@@ -34,13 +34,20 @@ enum MapVerb {
         #[arg(long, short, default_value = "map.png")]
         out: PathBuf,
     },
-    /// Make a location folder from a floor plan (`plan.toml`).
+    /// Make a location folder from a floor plan (`plan.toml`), or from a plan drawn by a seed.
     Generate {
         /// The floor plan.
-        plan: PathBuf,
-        /// Folder to write.
-        #[arg(long, short)]
-        out: PathBuf,
+        #[arg(required_unless_present = "random", conflicts_with = "random")]
+        plan: Option<PathBuf>,
+        /// Draw a floor plan by this seed instead: the same seed and kind give the same files.
+        #[arg(long, value_name = "SEED", requires = "kind")]
+        random: Option<u64>,
+        /// Kind of the drawn world: office, hospital, warehouse, hall or home.
+        #[arg(long, requires = "random")]
+        kind: Option<String>,
+        /// Folder to write; for a drawn world `<kind>-<seed>` by default.
+        #[arg(long, short, required_unless_present = "random")]
+        out: Option<PathBuf>,
     },
 }
 
@@ -50,7 +57,12 @@ impl Map {
             MapVerb::List => map::list(talk),
             MapVerb::Check { location } => map::check(talk, location),
             MapVerb::Draw { location, out } => map::draw(talk, location, out),
-            MapVerb::Generate { plan, out } => map::generate(talk, plan, out),
+            MapVerb::Generate { plan, random, kind, out } => match (plan, random, kind, out) {
+                (_, Some(seed), Some(kind), out) => map::random(talk, *seed, kind, out.as_deref()),
+                (Some(plan), _, _, Some(out)) => map::generate(talk, plan, out),
+                // The parser refuses every other combination.
+                _ => Ok(()),
+            },
         })
     }
 }
