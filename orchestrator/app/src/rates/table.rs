@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
-use socrates_offline::Card;
+use socrates_offline::{Card, Unfit};
 use socrates_stats::{Interval, Z_95, wilson};
 
 use super::{Item, Outcome, Played, RateOptions};
@@ -122,10 +122,9 @@ impl Played {
     }
 
     /// The reasons why cards do not fit, each once, in the order in which they come up: a footnote's number is its place.
-    fn reasons(&self) -> Vec<String> {
-        let mut reasons: Vec<String> = Vec::new();
+    fn reasons(&self) -> Vec<&Unfit> {
+        let mut reasons: Vec<&Unfit> = Vec::new();
         for (_, _, why) in &self.unfit {
-            let why = why.to_string();
             if !reasons.contains(&why) {
                 reasons.push(why);
             }
@@ -135,7 +134,7 @@ impl Played {
 
     /// A cell of the matrix: `17/18`; `-[2]` with the number of the reason where the card fits no map of the column; a dot where it
     /// fits and no seed came to it.
-    fn cell(&self, card: usize, column: &str, reasons: &[String]) -> String {
+    fn cell(&self, card: usize, column: &str, reasons: &[&Unfit]) -> String {
         let here = |place: usize| self.column(place) == column;
         let tally = Tally::of(self.of_card(card).filter(|(item, _)| here(item.place)).map(|(_, outcome)| outcome));
         if tally.played > 0 {
@@ -146,10 +145,8 @@ impl Played {
         if unfit.len() < maps {
             return "·".to_owned();
         }
-        let why: BTreeSet<usize> = unfit
-            .iter()
-            .filter_map(|(_, _, why)| reasons.iter().position(|reason| *reason == why.to_string()))
-            .collect();
+        let why: BTreeSet<usize> =
+            unfit.iter().filter_map(|(_, _, why)| reasons.iter().position(|reason| *reason == why)).collect();
         let numbers: Vec<String> = why.iter().map(|at| (at + 1).to_string()).collect();
         format!("-[{}]", numbers.join(","))
     }
