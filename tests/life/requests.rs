@@ -60,7 +60,7 @@ fn a_location_in_the_style_of_others_is_realised_guided_and_unguided() {
         "location = {location:?}\nsocial_context = \"A storage hall with racks\"\ntask = \"Bring a box from one corner to another\"\n"
     );
     let guided =
-        format!("{base}rough_scenario = \"A worker crosses the robot's path at the intersection and gives way.\"\n");
+        format!("{base}rough_scenario = \"A worker comes towards the robot in the corridor and gives way.\"\n");
     for (name, text) in [("guided", &guided), ("unguided", &base)] {
         let (finished, json) = make(folder.path(), name, text, &[]);
         assert_eq!(json["verdict"], "realised", "{name}: {}\n{}", finished.err, finished.out);
