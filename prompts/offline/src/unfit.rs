@@ -259,9 +259,9 @@ mod tests {
         }
     }
 
-    /// A plan of one corridor of this width, m.
-    fn corridor(width_m: f64) -> Location {
-        let plan = format!(
+    /// The plan of one corridor of this width, m.
+    fn plan(width_m: f64) -> String {
+        format!(
             "description = \"A corridor.\"\nsize_m = [30.0, 6.0]\nresolution_m = 0.05\n\
              floors = [[0.5, 1.0, 29.5, {}]]\n\
              nodes = [{}]\nedges = [{{ type = \"CORRIDOR\", along = [\"a\", \"b\", \"c\", \"d\"] }}]\n",
@@ -269,8 +269,15 @@ mod tests {
             [("a", 1.5), ("b", 10.0), ("c", 20.0), ("d", 28.5)]
                 .map(|(id, x)| format!("{{ id = \"{id}\", type = \"CORRIDOR\", at = [{x}, {}] }}", 1.0 + width_m / 2.0))
                 .join(", ")
-        );
-        socrates_maps::parse(&socrates_maps::generate(&plan).unwrap(), "own").unwrap()
+        )
+    }
+
+    fn drawn(plan: &str) -> Location {
+        socrates_maps::parse(&socrates_maps::generate(plan).unwrap(), "own").unwrap()
+    }
+
+    fn corridor(width_m: f64) -> Location {
+        drawn(&plan(width_m))
     }
 
     #[test]
@@ -294,7 +301,12 @@ mod tests {
 
     #[test]
     fn a_junction_is_asked_for_by_the_number_of_its_ways() {
-        let why = card("perpendicular_traffic").unwrap().fit(&corridor(3.0)).unwrap_err();
+        let traffic = card("perpendicular_traffic").unwrap();
+        let bare = traffic.fit(&corridor(3.0)).unwrap_err();
+        assert_eq!(bare.to_string(), "needs an intersection, the map has none");
+        // A node that is called one, and at which only the two halves of the corridor meet.
+        let named = plan(3.0).replacen("id = \"b\", type = \"CORRIDOR\"", "id = \"b\", type = \"INTERSECTION\"", 1);
+        let why = traffic.fit(&drawn(&named)).unwrap_err();
         assert_eq!(why.to_string(), "needs a junction of at least 4 ways, the largest has 2");
     }
 }
