@@ -22,9 +22,13 @@ const BY_TRACKS: &[(&str, &str)] = &[
     ("clarity", GOALS),
     ("confusions", GOALS),
     ("readiness_envelope", GOALS),
+    ("social_force_on_robot", SIDES),
+    ("social_work", SIDES),
 ];
 /// The paths of a bundle say from which node to which the robot goes; a table has a point for the goal.
 const GOALS: &str = "the goals that people may expect are those about the robot's nodes, which a table does not name";
+/// The sideways force of the model changes its sign where somebody is straight ahead.
+const SIDES: &str = "of people straight ahead the last decimals of their places say on which side they are";
 /// Share and amount by which tracks may give another figure than the bundle: they end when the robot first comes near its goal,
 /// and their places have four decimals.
 const OF_TRACKS: (f64, f64) = (0.08, 5e-3);

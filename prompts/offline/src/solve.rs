@@ -18,12 +18,19 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
     let task = task::read(&question.request.task, &question.location);
     let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
     let told = Told::of(&question.feedback, former, proposal);
+    let goals = spot::ends(question, &task.goals, proposal.robot.goal, true);
+    let mut starts = spot::ends(question, &task.starts, proposal.robot.start, false);
+    // A story in which both ends are one place names where the way ends: only a task says from where to where.
+    let from_to = [&task.starts, &task.goals].iter().all(|ends| !task::nodes(ends).is_empty());
+    if starts == goals && !from_to {
+        starts.clear();
+    }
     let purpose = if told.another { "other paths" } else { "paths" };
     Problem {
         proposal,
         location: &question.location,
-        starts: spot::ends(question, &task.starts, proposal.robot.start, false),
-        goals: spot::ends(question, &task.goals, proposal.robot.goal, true),
+        starts,
+        goals,
         radius_m: question.request.robot.model.radius_m,
         via: task.via.map(|(class, _)| class),
         rooms: spot::rooms(question),

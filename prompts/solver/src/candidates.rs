@@ -1,7 +1,7 @@
 //! The robot's ways that are tried, by what the scenario is: into a car, out of it, up to people, over a place.
 
 use socrates_maps::Ground;
-use socrates_model::{HumanProposal, PlaceClass, Proposal, Relation};
+use socrates_model::{Clause, HumanProposal, PlaceClass, Predicate, Proposal, Relation};
 
 use crate::everybody::{Solution, everybody};
 use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight, width_m};
@@ -143,9 +143,19 @@ fn up_to(scene: &Scene<'_>, wish: &Wish, goal: usize, walkers: bool) -> Vec<Solu
     routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
 }
 
+/// Cost of a place where whoever comes out of a room finds no way across.
+const NOT_ACROSS: f64 = 10.0;
+
 fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
+    // Whoever comes out of a room and has to cross needs a way on that is not the robot's.
+    let crosses = |human: &HumanProposal| {
+        let own =
+            |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if *who == human.id);
+        human.relation == Relation::Leaving && proposal.expected_events.iter().any(|clause| clause.must && own(clause))
+    };
+    let out_and_across = proposal.humans.iter().any(crosses);
     let standing = proposal.humans.iter().filter(|human| human.relation == Relation::Static).count();
     let overtakers = proposal.humans.iter().filter(|human| overtakes(human)).count();
     let beside = proposal.humans.iter().any(|human| human.relation == Relation::Abreast);
@@ -168,8 +178,10 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
         .map(|node| {
             let own = if net.kind(*node) == wish.place { 2.0 } else { 0.0 };
             let arms = net.near(*node).len();
-            // Four ways let people cross straight; fewer than three let nobody cross.
-            let cross = if !crossing {
+            // Four ways let people cross straight; fewer than three let nobody cross. The way out of a room is one of them.
+            let cross = if out_and_across {
+                if arms >= 4 { 1.5 } else { -NOT_ACROSS }
+            } else if !crossing {
                 0.0
             } else if arms >= 4 {
                 1.5

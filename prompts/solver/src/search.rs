@@ -86,8 +86,10 @@ fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Soluti
         return Vec::new();
     };
     // Another place is no reason to set off right before it, or to end right behind it, where the best does not.
+    // Two meetings with one person are timed one by the other: the best is taken.
+    let alike = if first.again.is_empty() { ALIKE } else { 0.0 };
     let as_good = |solution: &&Solution| {
-        solution.score >= first.score - ALIKE
+        solution.score >= first.score - alike
             && solution.strain <= first.strain + STRAINED
             && missing_m(net, &solution.route) <= missing_m(net, &first.route) + 1e-9
     };

@@ -11,6 +11,11 @@ const WAITS_S: f64 = 8.0;
 /// Cost per second that somebody would have to wait longer.
 const LATE_PER_S: f64 = 0.8;
 
+/// Cost of coming out straight towards the robot instead of from its side.
+const HEAD_ON: f64 = 4.0;
+/// Cost of walking on along the robot's own way: a meeting with a way on for people is better.
+const OWN_WAY: f64 = 3.0;
+
 /// Out of a room or car, through its door, over the meeting node and on.
 pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
     let net = taken.net;
@@ -65,5 +70,12 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     // Nobody waits behind the door until a robot comes that is still far away.
     let waits_s = before_m(net, route) / ROBOT_MPS - length / human.speed_mps.unwrap_or(HUMAN_MPS);
     let early = LATE_PER_S * (waits_s - WAITS_S).max(0.0);
-    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + early + if exit.is_none() { 4.0 } else { 0.0 } })
+    let along = match exit {
+        None => 4.0,
+        Some(exit) if Some(exit) == from || Some(exit) == beyond => OWN_WAY,
+        Some(_) => 0.0,
+    };
+    // Where the robot goes in itself, everybody comes out straight towards it.
+    let head_on = if enters { 0.0 } else { from.map_or(0.0, |from| HEAD_ON * net.straight(from, meet, entry).abs()) };
+    Some(Way { nodes, meet, cost: 0.4 * (length - 4.0).max(0.0) + early + along + head_on })
 }
