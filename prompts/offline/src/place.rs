@@ -2,6 +2,7 @@
 
 use socrates_maps::openings::Enclosures;
 use socrates_model::{DoorKind, Location, NodeId, PlaceClass};
+pub(crate) use socrates_solver::inside::{an, inside, words};
 
 /// Whether the map has a place of the class; everything is plain.
 pub(crate) fn has(location: &Location, class: PlaceClass) -> bool {
@@ -18,18 +19,6 @@ pub(crate) fn listed(location: &Location) -> String {
     there.join(", ")
 }
 
-/// The class as prose says it.
-pub(crate) fn words(class: PlaceClass) -> String {
-    if class == PlaceClass::Plain { "passage".to_owned() } else { class.name().replace('_', " ") }
-}
-
-/// The class with its article.
-pub(crate) fn an(class: PlaceClass) -> String {
-    let name = words(class);
-    let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-    format!("{article} {name}")
-}
-
 /// `corridor, exit or open area`, without articles.
 pub(crate) fn either(classes: &[PlaceClass]) -> String {
     let mut names: Vec<String> = classes.iter().map(|class| words(*class)).collect();
@@ -40,13 +29,6 @@ pub(crate) fn either(classes: &[PlaceClass]) -> String {
 /// Whether the node is in a room or an elevator.
 pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
     Enclosures::of(location).is_inside(node)
-}
-
-/// Nodes inside rooms or cars: of cars where an elevator is wanted, of rooms otherwise.
-pub(crate) fn inside(location: &Location, class: Option<PlaceClass>) -> Vec<NodeId> {
-    let (car, all) = (class == Some(PlaceClass::Elevator), Enclosures::of(location));
-    let ids = location.graph.nodes().iter().map(|node| &node.id);
-    ids.filter(|id| all.is_inside(id) && all.is_car(id) == car).cloned().collect()
 }
 
 /// The most places that one room has.

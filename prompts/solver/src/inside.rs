@@ -24,9 +24,16 @@ pub(crate) fn nodes(net: &Net<'_>, class: Option<PlaceClass>) -> Vec<usize> {
     inside(net.location, class).iter().filter_map(|id| net.index(id)).collect()
 }
 
-/// The class with its article, as prose says it.
-pub(crate) fn an(class: PlaceClass) -> String {
-    let name = if class == PlaceClass::Plain { "passage".to_owned() } else { class.name().replace('_', " ") };
+/// The class as prose says it.
+#[must_use]
+pub fn words(class: PlaceClass) -> String {
+    if class == PlaceClass::Plain { "passage".to_owned() } else { class.name().replace('_', " ") }
+}
+
+/// The same with its article.
+#[must_use]
+pub fn an(class: PlaceClass) -> String {
+    let name = words(class);
     let article = if name.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {name}")
 }

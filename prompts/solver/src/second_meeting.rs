@@ -4,11 +4,9 @@ use socrates_model::{HumanId, PlaceClass, Predicate, Proposal, Relation};
 
 use crate::fit::tight;
 use crate::graph::Net;
-use crate::people::Way;
+use crate::people::{ROBOT_MPS, Way};
 use crate::robot_way::Route;
 
-/// Speed of the robot that timings are planned with, m/s.
-const ROBOT_MPS: f64 = 0.8;
 /// Pace at which somebody best comes from the first meeting to the second, m/s, and the limits of what is planned.
 const PACE_MPS: f64 = 1.1;
 const PACES_MPS: [f64; 2] = [0.8, 1.4];

@@ -17,7 +17,7 @@ mod standing;
 mod staying;
 
 /// Speed of the robot that timings are planned with, m/s.
-const ROBOT_MPS: f64 = 0.8;
+pub(crate) const ROBOT_MPS: f64 = 0.8;
 
 /// Fastest walk of somebody who is late for the meeting, m/s; what is farther away than that and so much more is too far, m.
 const HURRY_MPS: f64 = 1.5;
