@@ -79,7 +79,7 @@ fn a_narrow_passage_that_a_location_does_not_have_is_refused_with_its_number() {
     assert!(json["verdict"].is_null(), "{}", finished.out);
     assert_eq!(
         json["causes"][0],
-        "E-CANNOT answer: a narrow passage of 1.1 to 1.7 m is needed; `a2`, which comes nearest on this map, has 4.0 m",
+        "E-CANNOT answer: a narrow passage of 1.3 to 1.7 m is needed; `a2`, which comes nearest on this map, has 4.0 m",
         "{}",
         finished.err
     );

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use socrates_maps::random::Kind;
+use socrates_model::Fault;
 
 use crate::exit::Complaint;
 use crate::files;
@@ -97,9 +98,7 @@ pub fn generate(talk: &Printer, plan: &Path, out: &Path) -> Result<(), Complaint
 ///
 /// Without `out` the folder is called by kind and seed. A folder that holds anything already is left as it is.
 pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Result<(), Complaint> {
-    let kind: Kind = kind.parse().map_err(|fault| {
-        Complaint::faults("there is no such random world", &[fault], "choose one of the kinds with `--kind`")
-    })?;
+    let kind = self::kind(kind)?;
     let out = out.map_or_else(|| PathBuf::from(socrates_maps::random::name(seed, kind)), Path::to_path_buf);
     let taken = match std::fs::read_dir(&out) {
         Ok(mut entries) => entries.next().is_some(),
@@ -109,11 +108,21 @@ pub fn random(talk: &Printer, seed: u64, kind: &str, out: Option<&Path>) -> Resu
         let message = format!("`{}` is there already and is not an empty folder", out.display());
         return Err(Complaint::input(message, "name another folder with `--out`, or remove it"));
     }
-    let files = socrates_maps::random::files(seed, kind).map_err(|faults| {
-        let message = format!("the {kind} of seed {seed} is not usable");
-        Complaint::faults(message, &faults, "please report the kind and the seed; another seed gives another world")
-    })?;
+    let files = socrates_maps::random::files(seed, kind).map_err(|faults| not_usable(seed, kind, &faults))?;
     write(talk, &files, &out)
+}
+
+/// The kind of random worlds of this name.
+pub(crate) fn kind(name: &str) -> Result<Kind, Complaint> {
+    name.parse().map_err(|fault| {
+        Complaint::faults("there is no such random world", &[fault], "choose one of the kinds with `--kind`")
+    })
+}
+
+/// What is said of a random world that its own checks refuse.
+pub(crate) fn not_usable(seed: u64, kind: Kind, faults: &[Fault]) -> Complaint {
+    let message = format!("the {kind} of seed {seed} is not usable");
+    Complaint::faults(message, faults, "please report the kind and the seed; another seed gives another world")
 }
 
 fn write(talk: &Printer, files: &BTreeMap<String, Vec<u8>>, out: &Path) -> Result<(), Complaint> {

@@ -11,7 +11,8 @@ mod work;
 
 use std::path::{Path, PathBuf};
 
-use socrates_model::Location;
+use socrates_maps::random::{self, Kind};
+use socrates_model::{Location, Seeds};
 use socrates_offline::{Card, Unfit, catalog};
 
 use crate::cards::{find, fitting};
@@ -25,6 +26,8 @@ pub(crate) use work::Item;
 #[derive(Debug, Clone)]
 pub(crate) struct Place {
     pub(crate) location: Location,
+    /// What the place is called where one run is told of: no two places have the same.
+    pub(crate) name: String,
     /// Name of the column: the location's own, or that of a whole kind of maps.
     pub(crate) column: String,
 }
@@ -38,8 +41,12 @@ pub struct RateOptions {
     pub seeds: u64,
     /// Whether a card is played with every seed on each location instead of on the fitting ones in turn.
     pub each: bool,
-    /// Shipped names or folders; the shipped locations where none is named.
+    /// Shipped names or folders; the shipped locations where none is named and no random world is asked for.
     pub locations: Vec<String>,
+    /// Seeds of random worlds that are played on besides.
+    pub worlds: Option<Seeds>,
+    /// Names of the kinds of random worlds; every kind where none is named.
+    pub kinds: Vec<String>,
     /// Markdown file for the tables.
     pub out: Option<PathBuf>,
 }
@@ -60,6 +67,27 @@ fn cards(ids: &[String]) -> Result<Vec<&'static Card>, Complaint> {
     if ids.is_empty() { Ok(catalog().iter().collect()) } else { ids.iter().map(|id| find(id)).collect() }
 }
 
+/// Every place of the options: locations by name and random worlds, the shipped locations where neither is named.
+fn all_places(options: &RateOptions) -> Result<Vec<Place>, Complaint> {
+    let Some(worlds) = &options.worlds else { return places(&options.locations) };
+    let mut all = if options.locations.is_empty() { Vec::new() } else { places(&options.locations)? };
+    all.extend(drawn(worlds, &options.kinds)?);
+    Ok(all)
+}
+
+/// The random worlds of these seeds and kinds, with a column for each kind.
+pub(crate) fn drawn(seeds: &Seeds, kinds: &[String]) -> Result<Vec<Place>, Complaint> {
+    let named = kinds.iter().map(|kind| crate::map::kind(kind)).collect::<Result<Vec<Kind>, Complaint>>()?;
+    let kinds = if named.is_empty() { Kind::ALL.to_vec() } else { named };
+    let mut places = Vec::new();
+    // Seed by seed, so that few runs of a card already see every kind.
+    for (seed, kind) in seeds.list().iter().flat_map(|seed| kinds.iter().map(move |kind| (*seed, *kind))) {
+        let location = random::location(seed, kind).map_err(|faults| crate::map::not_usable(seed, kind, &faults))?;
+        places.push(Place { name: location.name.clone(), location, column: kind.name().to_owned() });
+    }
+    Ok(places)
+}
+
 /// The locations of these names or folders, the shipped ones where none is named; a name that is there twice gets a number.
 pub(crate) fn places(names: &[String]) -> Result<Vec<Place>, Complaint> {
     let shipped: Vec<String> = socrates_maps::shipped::names().iter().map(|name| (*name).to_owned()).collect();
@@ -69,7 +97,7 @@ pub(crate) fn places(names: &[String]) -> Result<Vec<Place>, Complaint> {
         let (location, _) = crate::prepare::load_location(name, Path::new("."))?;
         let same = places.iter().filter(|place| place.location.name == location.name).count();
         let column = if same == 0 { location.name.clone() } else { format!("{}-{}", location.name, same + 1) };
-        places.push(Place { location, column });
+        places.push(Place { location, name: column.clone(), column });
     }
     Ok(places)
 }
@@ -106,7 +134,7 @@ pub(crate) fn play(
 /// A card or location that is not known, or cards that fit none of the locations.
 pub fn rate(talk: &Printer, options: &RateOptions) -> Result<(), Complaint> {
     let cards = cards(&options.ids)?;
-    let places = places(&options.locations)?;
+    let places = all_places(options)?;
     if !cards.iter().any(|card| places.iter().any(|place| card.fit(&place.location).is_ok())) {
         return Err(nothing_fits(&cards, &places));
     }

@@ -39,6 +39,9 @@ pub struct Card {
     /// Free width of the floor across the meeting node, least and most, m.
     #[serde(default)]
     pub width_m: Option<[f64; 2]>,
+    /// Length of a way outside of rooms that what happens takes, at least, m.
+    #[serde(default = "usual_way")]
+    pub way_m: f64,
     /// Ways that meet in the meeting node, at least.
     #[serde(default)]
     pub arms: Option<usize>,
@@ -144,6 +147,11 @@ pub struct CardClause {
 
 const fn yes() -> bool {
     true
+}
+
+/// Two come towards each other, meet and go on.
+const fn usual_way() -> f64 {
+    4.0
 }
 
 const fn usual_gap() -> f64 {

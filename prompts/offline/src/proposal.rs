@@ -127,12 +127,20 @@ fn where_at(
     if crossing && there(&PlaceClass::Intersection) {
         return PlaceClass::Intersection;
     }
+    let fits = |card: &Card, class: &PlaceClass| there(class) && card.is_at(location, *class);
     let wanted: Vec<PlaceClass> =
-        found.map(|card| card.places.iter().copied().filter(there).collect()).unwrap_or_default();
+        found.map(|card| card.places.iter().copied().filter(|class| fits(card, class)).collect()).unwrap_or_default();
     // Mostly the place where the card is at home, now and then another that the card allows.
     let other = if reading.humans.is_empty() && draw.below(3) == 0 { draw.pick(&wanted).copied() } else { None };
     let usual = [PlaceClass::Corridor, PlaceClass::Intersection, PlaceClass::OpenArea];
-    other.or_else(|| wanted.first().copied()).or_else(|| usual.into_iter().find(there)).unwrap_or(PlaceClass::Plain)
+    // Where no place of the card's is as wide as it tells, anywhere that is.
+    let anywhere = found.is_some_and(|card| card.width_m.is_some() && card.places.contains(&PlaceClass::Plain));
+    let plain = Some(PlaceClass::Plain).filter(|_| anywhere);
+    other
+        .or_else(|| wanted.first().copied())
+        .or(plain)
+        .or_else(|| usual.into_iter().find(there))
+        .unwrap_or(PlaceClass::Plain)
 }
 
 fn proposed(

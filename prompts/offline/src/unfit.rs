@@ -5,6 +5,7 @@ use std::fmt;
 use serde::Serialize;
 use socrates_maps::Ground;
 use socrates_model::{Location, NodeId, PlaceClass, Point, Relation, RobotModel};
+use socrates_solver::measure;
 
 use crate::card::{Card, Role};
 use crate::place;
@@ -69,6 +70,15 @@ pub enum Unfit {
         /// The free width of the map that is nearest to it, m.
         nearest_m: f64,
     },
+    /// Every way of the robot is too short for what happens on it.
+    Short {
+        /// Length of the robot's way that the card needs, m.
+        needed_m: f64,
+        /// Free width that it needs all along, m; 0 where any will do.
+        width_m: f64,
+        /// Length of the longest, m.
+        longest_m: f64,
+    },
     /// Nowhere meet ways enough.
     Arms {
         /// Ways that must meet in a node.
@@ -76,6 +86,14 @@ pub enum Unfit {
         /// The most that meet in a node of the map.
         most: usize,
     },
+}
+
+impl Unfit {
+    /// Whether the map lacks a place that the card needs; else it has the place, which is too small, too narrow or not as wide.
+    #[must_use]
+    pub const fn lacks_place(&self) -> bool {
+        matches!(self, Self::Place { .. } | Self::Needs { .. } | Self::Inside { .. })
+    }
 }
 
 impl fmt::Display for Unfit {
@@ -96,6 +114,10 @@ impl fmt::Display for Unfit {
                 let place = any_of(places);
                 let to = if *most < OPEN_M { format!("to {most:.1} m") } else { "m or more".to_owned() };
                 write!(f, "needs {place} of {least:.1} {to}, the nearest has {nearest_m:.1} m")
+            }
+            Self::Short { needed_m, width_m, longest_m } => {
+                let wide = if *width_m > 0.0 { format!(" and {width_m:.1} m wide") } else { String::new() };
+                write!(f, "needs a way of {needed_m:.0} m{wide}, the longest outside of rooms has {longest_m:.1} m")
             }
             Self::Arms { needed, most } => {
                 write!(f, "needs a junction of at least {needed} ways, the largest has {most}")
@@ -142,23 +164,35 @@ impl Card {
         if !self.places.iter().any(|class| *class == PlaceClass::Plain || there(class)) {
             return Err(Unfit::Place { wanted: self.places.clone() });
         }
+        let (needed_m, radius_m) = (self.way_m, RobotModel::default().radius_m);
+        // Whoever keeps beside the robot does so all the way.
+        let beside = self.roles.iter().any(|role| role.relation == Relation::Abreast);
+        let width_m = self.width_m.filter(|_| beside).map_or(0.0, |[least, _]| least);
+        let longest_m = measure::longest_way_m(location, radius_m, width_m, needed_m);
+        if longest_m < needed_m {
+            return Err(Unfit::Short { needed_m, width_m, longest_m });
+        }
         self.has_width(location)
+    }
+
+    /// Whether the map has a place of the class, as wide as the card tells where it does.
+    pub(crate) fn is_at(&self, location: &Location, class: PlaceClass) -> bool {
+        let wide = |[least, most]: [f64; 2]| {
+            measure::widths_m(location, class).into_iter().any(|width_m| (least..=most).contains(&width_m))
+        };
+        place::has(location, class) && self.width_m.is_none_or(wide)
     }
 
     /// Where the card tells of a free width, one place must have it; where people pass the robot, one place must let them.
     fn has_width(&self, location: &Location) -> Result<(), Unfit> {
-        let wide = widths_m(location, &self.places);
-        // A wall that ends within a cell is drawn at one side of it.
-        let cell_m = location.grid.resolution_m;
         if let Some([least, most]) = self.width_m {
+            if self.places.iter().any(|class| self.is_at(location, *class)) {
+                return Ok(());
+            }
             let off = |width: &f64| (least - width).max(width - most).max(0.0);
-            let nearest = wide.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0);
-            let places = self.places.clone();
-            return if off(&nearest) > cell_m {
-                Err(Unfit::Width { wanted_m: [least, most], places, nearest_m: nearest })
-            } else {
-                Ok(())
-            };
+            let wide = self.places.iter().flat_map(|class| measure::widths_m(location, *class));
+            let nearest = wide.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0);
+            return Err(Unfit::Width { wanted_m: [least, most], places: self.places.clone(), nearest_m: nearest });
         }
         let abreast = self.roles.iter().map(|role| self.beside(role)).max().unwrap_or(0);
         // Through a doorway or an aisle they go one after the other: that is what such a card is about.
@@ -166,8 +200,9 @@ impl Card {
             return Ok(());
         }
         let needed_m = 2.0 * RobotModel::default().radius_m + f64::from(abreast) * 2.0 * PERSON_M + GAPS * GAP_M;
-        let widest_m = wide.into_iter().fold(0.0, f64::max);
-        if widest_m + cell_m < needed_m {
+        let widest_m = widths_m(location, &self.places).into_iter().fold(0.0, f64::max);
+        // A wall that ends within a cell is drawn at one side of it.
+        if widest_m + location.grid.resolution_m < needed_m {
             return Err(Unfit::Narrow { abreast, needed_m, places: self.places.clone(), widest_m });
         }
         Ok(())
@@ -297,6 +332,18 @@ mod tests {
             team.to_string().starts_with("needs a corridor or a passage of 2.2 m or more, the nearest has 1."),
             "{team}"
         );
+    }
+
+    #[test]
+    fn what_takes_a_long_way_needs_one_and_a_companion_needs_it_wide() {
+        let short = plan(3.0).replace("29.5", "11.5").replace("[10, ", "[4.5, ").replace("[20, ", "[7.5, ");
+        let short = drawn(&short.replace("[28.5, ", "[10.5, "));
+        let why = card("down_path").unwrap().fit(&short).unwrap_err();
+        assert_eq!(why.to_string(), "needs a way of 10 m, the longest outside of rooms has 9.0 m");
+        let companion = card("accompanying").unwrap();
+        assert_eq!(companion.fit(&corridor(2.4)), Ok(()));
+        let why = companion.fit(&corridor(1.6)).unwrap_err().to_string();
+        assert!(why.starts_with("needs a way of 10 m and 2.0 m wide, the longest outside of rooms has 0.0 m"), "{why}");
     }
 
     #[test]

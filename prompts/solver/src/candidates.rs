@@ -10,8 +10,6 @@ use crate::people::boarding;
 use crate::robot_way::{Route, Wish, over, score};
 use crate::{Ends, Layout, inside, meant, spread};
 
-/// Shortest path of the robot that is taken where the map has no longer one, m.
-pub(crate) const SHORTEST_M: f64 = 6.0;
 /// Meeting nodes that are tried, and ways of the robot over each.
 const NODES: usize = 14;
 const ROUTES: usize = 10;

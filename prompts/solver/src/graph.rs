@@ -85,7 +85,7 @@ impl<'a> Net<'a> {
     }
 
     /// Takes edges out that nobody gets through.
-    fn close(&mut self, closed: Vec<Closed>) {
+    pub(crate) fn close(&mut self, closed: Vec<Closed>) {
         for edge in &closed {
             let [a, b] = &edge.between;
             let (Some(a), Some(b)) = (self.index(a), self.index(b)) else { continue };
@@ -96,6 +96,31 @@ impl<'a> Net<'a> {
             }
         }
         self.closed = closed;
+    }
+
+    /// Length and ends of the longest way outside of rooms, m; the first that is long enough ends the search.
+    pub(crate) fn longest(&self, enough_m: f64) -> (f64, Option<(usize, usize)>) {
+        self.longest_past(enough_m, &|_| false)
+    }
+
+    /// The same round nodes that are barred.
+    pub(crate) fn longest_past(&self, enough_m: f64, barred: &dyn Fn(usize) -> bool) -> (f64, Option<(usize, usize)>) {
+        let open = |node: &usize| !self.inside(*node) && self.kind(*node) != PlaceClass::Doorway && !barred(*node);
+        let nodes: Vec<usize> = (0..self.len()).filter(open).collect();
+        let mut longest: Option<(f64, usize, usize)> = None;
+        for from in &nodes {
+            let tree = self.tree(*from, barred);
+            for to in &nodes {
+                let length_m = tree.length_m(*to);
+                if length_m.is_finite() && longest.is_none_or(|(most, ..)| length_m > most) {
+                    longest = Some((length_m, *from, *to));
+                }
+            }
+            if longest.is_some_and(|(most, ..)| most >= enough_m) {
+                break;
+            }
+        }
+        longest.map_or((0.0, None), |(length_m, from, to)| (length_m, Some((from, to))))
     }
 
     /// Edges that nobody gets through.

@@ -19,6 +19,7 @@ mod fit;
 mod graph;
 pub mod inside;
 mod meant;
+pub mod measure;
 mod miss;
 mod passable;
 mod people;

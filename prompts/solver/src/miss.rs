@@ -5,8 +5,8 @@ use std::fmt;
 use socrates_maps::Ground;
 use socrates_model::{HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
 
-use crate::candidates::SHORTEST_M;
 use crate::graph::Net;
+use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, Why};
 use crate::{Problem, fit, inside, people, search};
 
@@ -266,14 +266,15 @@ fn stopped(problem: &Problem<'_>, net: &Net<'_>, way: &[NodeId], (from, to): (No
 
 /// The longest way of the robot, where it is too short for any scenario; what stops it where the map would have a longer one.
 fn too_short(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
-    let (has_m, ends) = longest(net);
+    let (has_m, ends) = net.longest(SHORTEST_M);
+    let ends = ends.and_then(|(from, to)| net.id(from).cloned().zip(net.id(to).cloned()));
     if has_m >= SHORTEST_M {
         return None;
     }
     let whole = Net::new(problem.location);
-    if let (more_m, Some((from, to))) = longest(&whole)
+    if let (more_m, Some((start, goal))) = whole.longest(SHORTEST_M)
         && more_m >= SHORTEST_M
-        && let (Some(start), Some(goal)) = (whole.index(&from), whole.index(&to))
+        && let (Some(from), Some(to)) = (whole.id(start).cloned(), whole.id(goal).cloned())
     {
         let way = whole.named(&whole.ways_from(start).way(goal));
         if let Some(miss) = stopped(problem, net, &way, (from, to)) {
@@ -281,27 +282,6 @@ fn too_short(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
         }
     }
     Some(Miss::Short { ends, has_m, needs_m: SHORTEST_M })
-}
-
-/// Length and ends of the longest way outside of rooms; as soon as one is long enough, that one.
-fn longest(net: &Net<'_>) -> (f64, Option<(NodeId, NodeId)>) {
-    let open = |node: &usize| !net.inside(*node) && net.kind(*node) != PlaceClass::Doorway;
-    let nodes: Vec<usize> = (0..net.len()).filter(open).collect();
-    let mut longest: Option<(f64, usize, usize)> = None;
-    for from in &nodes {
-        let tree = net.ways_from(*from);
-        for to in &nodes {
-            let length_m = tree.length_m(*to);
-            if length_m.is_finite() && longest.is_none_or(|(most, ..)| length_m > most) {
-                longest = Some((length_m, *from, *to));
-            }
-        }
-        if longest.is_some_and(|(most, ..)| most >= SHORTEST_M) {
-            break;
-        }
-    }
-    let Some((length_m, from, to)) = longest else { return (0.0, None) };
-    (length_m, net.id(from).cloned().zip(net.id(to).cloned()))
 }
 
 /// Too few ways that meet, for somebody who crosses or for the pattern.

@@ -27,7 +27,7 @@ pub(crate) struct Outcome {
     pub(crate) success: bool,
     /// What is wrong where it did not happen, in a few words.
     pub(crate) failing: Option<String>,
-    /// What the judge says where it did not happen.
+    /// What the judge says where it did not happen; what is wrong first where it was not written.
     pub(crate) verdict: Option<String>,
     /// Shortest free way over driven way, 0 to 1; none where the way is a person's, or where there was no run.
     pub(crate) efficiency: Option<f64>,
@@ -55,12 +55,13 @@ pub(super) fn of(card: &Card, location: &Location, played: &Result<Played, Vec<F
         Err(faults) => {
             let mut codes: Vec<&str> = faults.iter().filter(|f| !f.is_soft()).map(|fault| fault.code.code()).collect();
             codes.dedup();
+            let hard = faults.iter().find(|fault| !fault.is_soft());
             Outcome {
                 realised: false,
                 late: false,
                 success: false,
                 failing: Some(format!("not written: {}", codes.join(", "))),
-                verdict: None,
+                verdict: hard.map(|fault| format!("not written · {fault}")),
                 efficiency: None,
             }
         }

@@ -81,6 +81,11 @@ impl Played {
         Tally::of(self.runs.iter().map(|(_, outcome)| outcome))
     }
 
+    /// What a place is called.
+    fn name(&self, place: usize) -> &str {
+        self.places.get(place).map_or("", |place| place.name.as_str())
+    }
+
     fn column(&self, place: usize) -> &str {
         self.places.get(place).map_or("", |place| place.column.as_str())
     }
@@ -105,7 +110,7 @@ impl Played {
         let mut failures: BTreeMap<&str, Vec<(u64, &str)>> = BTreeMap::new();
         for (item, outcome) in self.of_card(card) {
             if let Some(why) = &outcome.failing {
-                failures.entry(why.as_str()).or_default().push((item.seed, self.column(item.place)));
+                failures.entry(why.as_str()).or_default().push((item.seed, self.name(item.place)));
             }
         }
         failures
@@ -121,10 +126,15 @@ impl Played {
         told.collect::<Vec<_>>().join(between)
     }
 
-    /// The reasons why cards do not fit, each once, in the order in which they come up: a footnote's number is its place.
+    /// The reasons why cards fit no map of a column, each once, in the order in which they come up: a footnote's number is its place.
     fn reasons(&self) -> Vec<&Unfit> {
         let mut reasons: Vec<&Unfit> = Vec::new();
-        for (_, _, why) in &self.unfit {
+        let maps = |column: &str| self.places.iter().filter(|place| place.column == column).count();
+        let unfit = |card: usize, column: &str| {
+            self.unfit.iter().filter(|(number, place, _)| *number == card && self.column(*place) == column).count()
+        };
+        let told = |card: &usize, place: &usize| unfit(*card, self.column(*place)) == maps(self.column(*place));
+        for (_, _, why) in self.unfit.iter().filter(|(card, place, _)| told(card, place)) {
             if !reasons.contains(&why) {
                 reasons.push(why);
             }
@@ -162,6 +172,17 @@ impl Played {
         Straight { runs, straight, worst: ways }
     }
 
+    /// The sentence about the pairs of a card and a map.
+    fn fits(&self) -> String {
+        let (pairs, lack) =
+            (self.cards.len() * self.places.len(), |(_, _, why): &&(usize, usize, Unfit)| why.lacks_place());
+        let fit = pairs - self.unfit.len();
+        let there = pairs - self.unfit.iter().filter(lack).count();
+        format!(
+            "{fit} of {pairs} pairs of a card and a map; {fit} of the {there} whose map has the places that the card needs"
+        )
+    }
+
     /// The sentence about the robot's ways.
     fn ways(&self) -> String {
         let Straight { runs, straight, .. } = self.straight();
@@ -174,7 +195,7 @@ impl Played {
     /// The least straight ways, a line each.
     fn worst(&self) -> Vec<String> {
         let named = |(share, item): &(f64, &Item)| {
-            format!("{share:.2}  {} on {}, seed {}", self.id(item.card), self.column(item.place), item.seed)
+            format!("{share:.2}  {} on {}, seed {}", self.id(item.card), self.name(item.place), item.seed)
         };
         self.straight().worst.iter().map(named).collect()
     }
@@ -228,8 +249,7 @@ pub(super) fn told(played: &Played) -> Vec<String> {
         lines.push(format!("matrix     {} maps are too wide for a terminal: --out FILE, --format json", columns.len()));
     }
     lines.push(String::new());
-    let pairs = played.cards.len() * played.places.len();
-    lines.push(format!("fits       {} of {pairs} pairs of a card and a map", pairs - played.unfit.len()));
+    lines.push(format!("fits       {}", played.fits()));
     let pooled = played.pooled();
     lines.push(format!("pooled     {}/{} = {}", pooled.realised, pooled.played, percent(pooled.interval())));
     lines.push(format!("ways       {}", played.ways()));
@@ -243,6 +263,8 @@ fn command(options: &RateOptions) -> String {
     words.extend(options.ids.iter().cloned());
     words.push(format!("--seeds {}", options.seeds));
     words.extend(options.locations.iter().map(|name| format!("--location {}", crate::files::shell(name.as_ref()))));
+    words.extend(options.worlds.iter().map(|seeds| format!("--random {seeds}")));
+    words.extend(options.kinds.iter().map(|kind| format!("--kind {kind}")));
     if options.each {
         words.push("--each".to_owned());
     }
@@ -290,6 +312,7 @@ pub(super) fn markdown(played: &Played, options: &RateOptions) -> String {
     }
     text.push_str("\nRealised of played; `-` with the number of the reason where the card does not fit.\n\n");
     reasons.iter().enumerate().for_each(|(at, why)| text.push_str(&format!("- [{}] {why}\n", at + 1)));
+    text.push_str(&format!("\nFits: {}.\n", played.fits()));
     text.push_str(&format!("\nReference robot: {}.\n", played.ways()));
     played.worst().iter().for_each(|line| text.push_str(&format!("- {line}\n")));
     text
@@ -307,7 +330,7 @@ fn card_object(played: &Played, number: usize, card: &Card) -> Value {
         .of_card(number)
         .filter_map(|(item, outcome)| {
             let verdict = outcome.verdict.as_ref()?;
-            Some(json!({ "location": played.column(item.place), "seed": item.seed, "verdict": verdict }))
+            Some(json!({ "location": played.name(item.place), "seed": item.seed, "verdict": verdict }))
         })
         .collect();
     json!({ "id": card.id, "letter": card.letter, "runs": tally.played, "realised": tally.realised, "late": tally.late,
@@ -329,11 +352,10 @@ pub(super) fn object(played: &Played) -> Value {
         let tally = matrix.entry((item.card, item.place)).or_default();
         *tally = Tally { played: tally.played + 1, realised: tally.realised + usize::from(outcome.realised), ..*tally };
     }
-    let name = |place: usize| played.places.get(place).map_or("", |place| place.location.name.as_str());
     let matrix: Vec<Value> = matrix
         .iter()
         .map(|((card, place), tally)| {
-            json!({ "id": played.id(*card), "location": name(*place), "column": played.column(*place),
+            json!({ "id": played.id(*card), "location": played.name(*place), "column": played.column(*place),
                 "runs": tally.played, "realised": tally.realised })
         })
         .collect();
@@ -341,7 +363,7 @@ pub(super) fn object(played: &Played) -> Value {
         .unfit
         .iter()
         .map(|(card, place, why)| {
-            json!({ "id": played.id(*card), "location": name(*place), "column": played.column(*place),
+            json!({ "id": played.id(*card), "location": played.name(*place), "column": played.column(*place),
                 "why": why.to_string(), "unfit": why })
         })
         .collect();
@@ -350,7 +372,7 @@ pub(super) fn object(played: &Played) -> Value {
         .iter()
         .filter_map(|(item, outcome)| {
             let efficiency = outcome.efficiency?;
-            Some(json!({ "id": played.id(item.card), "location": name(item.place), "seed": item.seed,
+            Some(json!({ "id": played.id(item.card), "location": played.name(item.place), "seed": item.seed,
                 "efficiency": efficiency }))
         })
         .collect();

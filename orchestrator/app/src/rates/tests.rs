@@ -1,5 +1,8 @@
 use super::*;
 
+/// Seeds of the random worlds that the tests play on; none was chosen for what it draws. `SOCRATES_WORLDS` sets how many.
+const WORLDS_FROM: u64 = 9001;
+
 /// Seeds per scenario: as many as a test may take.
 const SEEDS: u64 = 5;
 
@@ -22,6 +25,30 @@ fn every_scenario_of_the_catalog_really_happens() {
     let pooled = played.pooled();
     println!("{} of {}\n{}", pooled.realised, pooled.played, lines.join("\n"));
     assert!(pooled.realised * 100 >= pooled.played * 97, "{}", lines.join("\n"));
+}
+
+#[test]
+#[expect(clippy::print_stdout, reason = "figures are for whoever runs the test")]
+fn most_scenarios_happen_on_worlds_that_nobody_has_seen() {
+    let worlds: u64 = std::env::var("SOCRATES_WORLDS").map_or(3, |count| count.parse().unwrap());
+    let seeds: Seeds = format!("{WORLDS_FROM}..{}", WORLDS_FROM + worlds - 1).parse().unwrap();
+    let played = play(&cards(&[]).unwrap(), drawn(&seeds, &[]).unwrap(), (3, false), &mut quiet).unwrap();
+    let pooled = played.pooled();
+    let told = table::told(&played).join("\n");
+    println!("{told}");
+    assert!(pooled.played >= 40 * 3 && pooled.realised * 100 >= pooled.played * 90, "{told}");
+}
+
+#[test]
+fn random_worlds_are_counted_by_kind_and_told_of_by_name() {
+    let two = drawn(&"7..8".parse().unwrap(), &["office".to_owned(), "home".to_owned()]).unwrap();
+    let told: Vec<(&str, &str)> = two.iter().map(|place| (place.column.as_str(), place.name.as_str())).collect();
+    assert_eq!(told, [("office", "office-7"), ("home", "home-7"), ("office", "office-8"), ("home", "home-8")]);
+    let castle = drawn(&Seeds::one(7), &["castle".to_owned()]).unwrap_err();
+    assert!(castle.to_string().contains("castle"), "{castle}");
+    let played = play(&cards(&["a".to_owned(), "o".to_owned()]).unwrap(), two, (2, false), &mut quiet).unwrap();
+    let told = table::told(&played).join("\n");
+    assert!(told.contains("office") && told.contains("needs an elevator, the map has none"), "{told}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use clap::{Args, Subcommand};
 use socrates_app::output::Printer;
 use socrates_app::rates::{self, RateOptions};
 use socrates_app::scenarios;
+use socrates_model::Seeds;
 
 use super::{Outcome, done};
 
@@ -34,9 +35,15 @@ enum ScenariosVerb {
         /// Seeds 1 to N of each scenario, on the locations that it fits in turn.
         #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=10_000))]
         seeds: u64,
-        /// A shipped name or a folder; again for each further one. Default: the shipped locations.
+        /// A shipped name or a folder; again for each further one. Default: the shipped locations, or none beside random worlds.
         #[arg(long, value_name = "LOCATION")]
         location: Vec<String>,
+        /// Play on random worlds of these seeds: "7", "1..40" or "1,4,9", each kind with every seed.
+        #[arg(long, value_name = "SEEDS")]
+        random: Option<Seeds>,
+        /// Kind of the random worlds: office, hospital, warehouse, hall or home; again for each further one. Default: every kind.
+        #[arg(long, requires = "random")]
+        kind: Vec<String>,
         /// Play every seed on each location that fits instead of on one in turn.
         #[arg(long)]
         each: bool,
@@ -54,9 +61,10 @@ impl Scenarios {
                 Ok(())
             }
             ScenariosVerb::Show { id } => scenarios::show(talk, id).await,
-            ScenariosVerb::Rate { ids, seeds, location, each, out } => {
+            ScenariosVerb::Rate { ids, seeds, location, random, kind, each, out } => {
                 let (ids, locations, out) = (ids.clone(), location.clone(), out.clone());
-                rates::rate(talk, &RateOptions { ids, seeds: *seeds, each: *each, locations, out })
+                let (worlds, kinds) = (random.clone(), kind.clone());
+                rates::rate(talk, &RateOptions { ids, seeds: *seeds, each: *each, locations, worlds, kinds, out })
             }
         })
     }

@@ -5,6 +5,12 @@ use socrates_model::{HumanProposal, PlaceClass, Relation};
 use super::{ROBOT_MPS, Taken, Way, before_m};
 use crate::robot_way::Route;
 
+/// Somebody who starts where the robot meets the others is met at least so far from there, m.
+const FURTHER_M: f64 = 2.0;
+/// Cost of such a start, and of one from which nobody is met further on.
+const LATE: f64 = 4.0;
+const AT_ONCE: f64 = 12.0;
+
 /// Ahead: the robot's way from a node further on, so that the robot comes up at the meeting node.
 pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
     let net = taken.net;
@@ -38,6 +44,19 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
         let on = on.max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
         nodes.extend(on);
     }
-    let cost = if start == route.meet { 4.0 } else { 0.0 };
-    Some(Way { nodes, meet: *route.nodes.get(route.meet)?, cost })
+    // Whoever could only start where the robot meets others is come up with further on.
+    let on = |at: &usize| {
+        let from = route.nodes.get(start..=*at).unwrap_or_default();
+        net.length_m(from) >= FURTHER_M && route.nodes.get(*at).is_some_and(|node| net.is(*node, taken.place))
+    };
+    let further = if start < route.meet { Some(route.meet) } else { (start + 1..start + nodes.len()).find(on) };
+    // Nobody is met where the robot's way ends.
+    let further = further
+        .filter(|at| at + 1 < route.nodes.len() && route.nodes.get(*at).is_some_and(|node| nodes.contains(node)));
+    let cost = match (start == route.meet, further) {
+        (false, _) => 0.0,
+        (true, Some(_)) => LATE,
+        (true, None) => AT_ONCE,
+    };
+    Some(Way { nodes, meet: *route.nodes.get(further.unwrap_or(route.meet))?, cost })
 }

@@ -8,6 +8,10 @@ use crate::robot_way::Route;
 /// Cost of a way that ends right after the meeting.
 const SHORT_TAIL: f64 = 3.0;
 
+/// Shortest path of somebody who moves, m, as the checks have it, with what is lost to rounding; and the cost of a shorter one.
+const LEAST_M: f64 = 3.05;
+const TOO_SHORT: f64 = 20.0;
+
 /// Cost of turning into the robot's own way instead of crossing it: a room on the other side is better.
 const OWN_WAY: f64 = 3.0;
 
@@ -65,7 +69,8 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
                     - 0.5 * turn
                     + own
                     + inside
-                    + end_cost;
+                    + end_cost
+                    + if length + net.length_m(tail) < LEAST_M { TOO_SHORT } else { 0.0 };
                 if best.as_ref().is_none_or(|best| cost < best.cost - 1e-9) {
                     let mut nodes: Vec<usize> = way.iter().rev().copied().collect();
                     nodes.extend(tail);

@@ -20,6 +20,9 @@ const TURNS_BACK: f64 = -0.9;
 const TURN_M: f64 = 0.25;
 /// The distance that the floor allows is found in so many parts.
 const SHARES: u32 = 12;
+/// How fast a companion gets back to its line, per second, and at most, m/s.
+const LINE_PER_S: f64 = 1.5;
+const LINE_MPS: f64 = 0.5;
 /// People who walk abreast fall into line so long before a place that is too narrow for that, m, and below that share of
 /// their distance from the middle.
 const LINE_UP_M: f64 = 1.9;
@@ -160,12 +163,26 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     }
     if human.notice.straight {
         human.errand.way = None;
+        if human.relation == Relation::Abreast {
+            return level(human, &ahead, speed);
+        }
         let drawn = scene.robot.is_some_and(|robot| passes(human, robot, &ahead));
         return Want { drawn, ..Want::go(target, speed) };
     }
     // Pushed off its way behind a corner: round it, back to the way.
     let back = human.route.point(human.s + 0.4);
     Want::go(round(human, scene, &back).unwrap_or(base), speed)
+}
+
+/// Goes along its line beside the robot's, at the robot's pace: how fast it gets back to that line does not depend on the pace, or
+/// walls would push a companion of a slow robot into its way.
+fn level(human: &Human, ahead: &Vector, speed_mps: f64) -> Want {
+    let left = Vector::new(-ahead.y, ahead.x);
+    let line = human.route.point(human.s) + left * (human.aside_m * human.notice.share);
+    let sideways = (LINE_PER_S * (line - human.at).dot(&left)).clamp(-LINE_MPS, LINE_MPS);
+    let wish = ahead * speed_mps + left * sideways;
+    let pace = wish.norm();
+    if pace < 1e-9 { Want::STAND } else { Want::go(human.at + wish * (LOOK_AHEAD_M / pace), pace) }
 }
 
 /// Whether somebody from behind has gone aside and is about to get past the robot: it means to be so near, and being pushed back
@@ -500,6 +517,10 @@ fn run_away(human: &mut Human, scene: &Scene<'_>) -> Want {
     Want::go(target, RUN_MPS.min(0.3 + libm::sqrt(2.0 * left)))
 }
 
+/// What a place straight away from the robot is worth against one to the side, m: people run from what comes at them, not across
+/// its way.
+const STRAIGHT_AWAY: f64 = 5.0;
+
 /// The place of the scene graph that is best to run to: reached well before the robot, far from it, not too far away.
 fn refuge(human: &Human, scene: &Scene<'_>, robot: &Robot) -> Option<Point> {
     let graph = &scene.location.graph;
@@ -529,7 +550,9 @@ fn refuge(human: &Human, scene: &Scene<'_>, robot: &Robot) -> Option<Point> {
             continue;
         }
         let far = (node.at - robot.at()).norm();
-        let score = 2.0 * (robots - mine).min(far) + far.min(10.0) - 0.5 * (mine - 8.0).max(0.0);
+        let straight = way.dot(&away) / (way.norm() * away.norm()).max(1e-9);
+        let score =
+            2.0 * (robots - mine).min(far) + far.min(10.0) - 0.5 * (mine - 8.0).max(0.0) + STRAIGHT_AWAY * straight;
         if best.is_none_or(|(top, _)| score > top) {
             best = Some((score, node.at));
         }

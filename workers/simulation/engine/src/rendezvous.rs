@@ -13,6 +13,8 @@ use crate::start::HURRY_MPS;
 
 /// Slowest walk the controller asks for, m/s.
 const SLOWEST_MPS: f64 = 0.6;
+/// The same of somebody whom the robot comes up with from behind, m/s: they have to be slower than it, also where it is held up.
+const STROLL_MPS: f64 = 0.3;
 /// Fastest walk the controller asks for, m/s.
 const FASTEST_MPS: f64 = 1.8;
 /// Longest hold of somebody who has started, s.
@@ -124,7 +126,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     if left <= 0.0 || !robot.before(meeting.robot_s) {
         return free;
     }
-    let slowest = SLOWEST_MPS.min(human.speed_mps);
+    let slowest = if human.relation == Relation::Ahead { STROLL_MPS } else { SLOWEST_MPS }.min(human.speed_mps);
     let fastest =
         if human.relation == Relation::Ahead && is_first { human.speed_mps.max(slowest) } else { FASTEST_MPS };
     // A robot that stands before the meeting is there later than its pace says: it has to get going first.
@@ -190,13 +192,16 @@ fn faces(human: &Human, robot: &Robot) -> bool {
 /// People who leave the place that the robot enters: after the door has opened, one after the other.
 fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> Pace {
     let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
+    // A robot that waits before the door is near, however deep the room is.
+    let at_door = human.doors.first().is_some_and(|door| near_along(robot, &human.route.point(door.s), AT_DOOR_M));
     let since = match moment.door {
         Some((_, true)) if !moment.stands_open => true,
         // A door that opens for those who come near would wait for who waits for it.
-        Some((_, false)) => timing.opens_door && near_along(robot, &human.at, LEAVE_AT_M + DOOR_M),
+        Some((_, false)) => timing.opens_door && (at_door || near_along(robot, &human.at, LEAVE_AT_M + DOOR_M)),
         // Nothing opens: the robot's coming tells when to go.
         Some((_, true)) | None => {
-            (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight || near_along(robot, &human.at, LEAVE_AT_M)
+            let seen = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
+            seen || at_door || near_along(robot, &human.at, LEAVE_AT_M)
         }
     };
     if !since {
@@ -245,10 +250,16 @@ pub(crate) fn let_out(humans: &mut [Human], robot_doors: &[DoorOnWay]) {
     }
 }
 
+/// A robot that has so far to go to a door stands before it, m: it stops outside of where those who come out have to get by.
+const AT_DOOR_M: f64 = 2.2;
+/// A companion goes so far ahead of a robot that stands beside it, m: it may stand because they are too near to each other.
+const MAKES_WAY_M: f64 = 0.8;
+
 /// Speed of somebody who keeps level with the robot.
 fn beside(human: &Human, robot: &Robot) -> f64 {
     let (s, _) = human.route.project_within(&robot.at(), human.s - 4.0, human.s + 4.0);
-    let ahead = s - human.s;
+    let lead_m = if robot.v < STANDS_MPS { MAKES_WAY_M } else { 0.0 };
+    let ahead = s + lead_m - human.s;
     (robot.v.max(0.0) + 0.9 * ahead).clamp(0.0, FASTEST_MPS)
 }
 
