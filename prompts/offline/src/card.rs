@@ -62,7 +62,7 @@ pub struct Card {
     pub gap_s: f64,
     /// What a good robot would do.
     pub expected: String,
-    /// Who is there.
+    /// The people who are there.
     #[serde(rename = "role")]
     pub roles: Vec<Role>,
     /// The robot's script.
@@ -83,7 +83,7 @@ pub struct Role {
     pub relation: Relation,
     /// Smallest and largest number of people.
     pub count: [u32; 2],
-    /// Who may play it.
+    /// Kinds of people that may play it.
     pub who: Vec<String>,
     /// Range of the desired speed, m/s; by the person's own draw where absent.
     #[serde(default)]

@@ -294,7 +294,7 @@ fn about(card: &Card, by_card: bool, humans: &[HumanProposal]) -> String {
     if by_card || played { card.about.clone() } else { ABOUT.to_owned() }
 }
 
-/// Whoever waits for a word of the robot must hear it.
+/// Somebody who waits for a word of the robot must hear it.
 pub(crate) fn hear(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
     for heard in humans.iter().flat_map(|human| &human.rules).flat_map(|rule| &rule.when) {
         if let Trigger::RobotSays(gesture) = heard

@@ -165,7 +165,7 @@ impl Card {
             return Err(Unfit::Place { wanted: self.places.clone() });
         }
         let (needed_m, radius_m) = (self.way_m, RobotModel::default().radius_m);
-        // Whoever keeps beside the robot does so all the way.
+        // A companion keeps beside the robot all the way.
         let beside = self.roles.iter().any(|role| role.relation == Relation::Abreast);
         let width_m = self.width_m.filter(|_| beside).map_or(0.0, |[least, _]| least);
         let longest_m = measure::longest_way_m(location, radius_m, width_m, needed_m);

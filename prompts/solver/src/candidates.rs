@@ -80,7 +80,7 @@ pub(crate) fn candidates(scene: &Scene<'_>, wish: &Wish) -> Vec<Solution> {
         }
         Ends::Past => {}
     }
-    // So many come as a stream: two or three from each node.
+    // A crowd comes as a stream: two or three from each node.
     let found = at_nodes(&Scene { crowded: scene.crowded || walkers > STREAM, ..*scene }, wish, &nodes);
     if !found.is_empty() {
         return found;
@@ -147,7 +147,7 @@ const NOT_ACROSS: f64 = 10.0;
 fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
     let crossing = proposal.humans.iter().any(|human| human.relation == Relation::Crossing);
-    // Whoever comes out of a room and has to cross needs a way on that is not the robot's.
+    // Somebody who comes out of a room and has to cross needs a way on that is not the robot's.
     let crosses = |human: &HumanProposal| {
         let own =
             |clause: &Clause| matches!(&clause.predicate, Predicate::Crosses { human: who, .. } if *who == human.id);

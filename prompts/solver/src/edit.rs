@@ -13,7 +13,7 @@ const STEP_M: f64 = 3.0;
 const LEAST_M: f64 = 6.5;
 const LEAST_NODES: usize = 4;
 /// A human's path that moves is at least this long, m.
-const LEAST_HUMAN_M: f64 = 3.0;
+pub(crate) const LEAST_HUMAN_M: f64 = 3.0;
 
 /// How one way is to change.
 #[derive(Debug, Clone, PartialEq)]

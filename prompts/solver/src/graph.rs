@@ -45,12 +45,17 @@ pub(crate) struct Tree {
 impl<'a> Net<'a> {
     /// The graph of a problem, with the places that its task names.
     pub(crate) fn of(problem: &Problem<'a>) -> Self {
-        let mut net = Self::new(problem.location);
-        net.close(passable::closed(problem.location, problem.radius_m));
-        let net = net.with_ends(&problem.starts, &problem.goals);
+        let net = Self::passable(problem.location, problem.radius_m).with_ends(&problem.starts, &problem.goals);
         let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
         let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
         Self { rooms, ..net }
+    }
+
+    /// The graph of a map without the edges that a disc of this radius does not get through.
+    pub(crate) fn passable(location: &'a Location, radius_m: f64) -> Self {
+        let mut net = Self::new(location);
+        net.close(passable::closed(location, radius_m));
+        net
     }
 
     pub(crate) fn new(location: &'a Location) -> Self {
@@ -85,7 +90,7 @@ impl<'a> Net<'a> {
     }
 
     /// Takes edges out that nobody gets through.
-    pub(crate) fn close(&mut self, closed: Vec<Closed>) {
+    fn close(&mut self, closed: Vec<Closed>) {
         for edge in &closed {
             let [a, b] = &edge.between;
             let (Some(a), Some(b)) = (self.index(a), self.index(b)) else { continue };

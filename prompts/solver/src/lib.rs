@@ -90,7 +90,7 @@ pub struct Told {
 /// What is to be solved.
 #[derive(Debug, Clone)]
 pub struct Problem<'a> {
-    /// Who is there, how they stand to the robot's way, and the class of the place.
+    /// The people who are there, how they stand to the robot's way, and the class of the place.
     pub proposal: &'a Proposal,
     /// The map.
     pub location: &'a Location,
@@ -110,7 +110,7 @@ pub struct Problem<'a> {
     pub told: Told,
     /// A random number: of solutions that are as good as each other it picks one.
     pub draw: u64,
-    /// Who answers, as the paths name it.
+    /// The author who answers, as the paths name it.
     pub author: Signature,
 }
 

@@ -5,7 +5,6 @@ use socrates_model::{Location, PlaceClass};
 
 use crate::fit;
 use crate::graph::Net;
-use crate::passable;
 
 /// Shortest path of the robot that is taken where the map has no longer one, m.
 pub(crate) const SHORTEST_M: f64 = 6.0;
@@ -23,8 +22,7 @@ pub fn widths_m(location: &Location, class: PlaceClass) -> Vec<f64> {
 /// width; the first that is at least `enough_m` long ends the search.
 #[must_use]
 pub fn longest_way_m(location: &Location, radius_m: f64, width_m: f64, enough_m: f64) -> f64 {
-    let (mut net, ground) = (Net::new(location), Ground::of(&location.grid));
-    net.close(passable::closed(location, radius_m));
+    let (net, ground) = (Net::passable(location, radius_m), Ground::of(&location.grid));
     let narrow: Vec<bool> =
         (0..net.len()).map(|node| width_m > 0.0 && fit::width_m(ground.field(), &net.at(node)) < width_m).collect();
     net.longest_past(enough_m, &|node| narrow.get(node).copied().unwrap_or(false)).0

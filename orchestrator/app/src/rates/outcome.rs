@@ -119,7 +119,7 @@ fn efficiency(recording: &Recording, ground: &Ground, via: &[Point], goal: Point
     }
     let coarse: Vec<&Point> = track.iter().step_by(EVERY).chain([&end]).collect();
     let driven_m: f64 = coarse.windows(2).map(step_m).sum();
-    // Who stopped short of the goal has not gone a shorter way.
+    // A robot that stopped short of its goal has not gone a shorter way.
     let left_m = ground.geodesic(&goal, disc_m).distance(&end)?;
     let whole_m = driven_m + left_m;
     (shortest_m > 0.0 && whole_m > 0.0).then(|| (shortest_m / whole_m).min(1.0))

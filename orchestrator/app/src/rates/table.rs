@@ -129,17 +129,25 @@ impl Played {
     /// The reasons why cards fit no map of a column, each once, in the order in which they come up: a footnote's number is its place.
     fn reasons(&self) -> Vec<&Unfit> {
         let mut reasons: Vec<&Unfit> = Vec::new();
-        let maps = |column: &str| self.places.iter().filter(|place| place.column == column).count();
-        let unfit = |card: usize, column: &str| {
-            self.unfit.iter().filter(|(number, place, _)| *number == card && self.column(*place) == column).count()
-        };
-        let told = |card: &usize, place: &usize| unfit(*card, self.column(*place)) == maps(self.column(*place));
-        for (_, _, why) in self.unfit.iter().filter(|(card, place, _)| told(card, place)) {
-            if !reasons.contains(&why) {
-                reasons.push(why);
-            }
+        let columns = self.columns();
+        for why in
+            (0..self.cards.len()).flat_map(|card| columns.iter().filter_map(move |column| self.bars(card, column)))
+        {
+            why.iter().for_each(|why| {
+                if !reasons.contains(why) {
+                    reasons.push(why)
+                }
+            });
         }
         reasons
+    }
+
+    /// Why a card fits no map of a column; nothing where it fits one.
+    fn bars(&self, card: usize, column: &str) -> Option<Vec<&Unfit>> {
+        let maps = self.places.iter().filter(|place| place.column == column).count();
+        let here = self.unfit.iter().filter(|(number, place, _)| *number == card && self.column(*place) == column);
+        let why: Vec<&Unfit> = here.map(|(_, _, why)| why).collect();
+        (why.len() == maps).then_some(why)
     }
 
     /// A cell of the matrix: `17/18`; `-[2]` with the number of the reason where the card fits no map of the column; a dot where it
@@ -150,13 +158,9 @@ impl Played {
         if tally.played > 0 {
             return format!("{}/{}", tally.realised, tally.played);
         }
-        let maps = self.places.iter().filter(|place| place.column == column).count();
-        let unfit: Vec<_> = self.unfit.iter().filter(|(number, place, _)| *number == card && here(*place)).collect();
-        if unfit.len() < maps {
-            return "·".to_owned();
-        }
+        let Some(bars) = self.bars(card, column) else { return "·".to_owned() };
         let why: BTreeSet<usize> =
-            unfit.iter().filter_map(|(_, _, why)| reasons.iter().position(|reason| *reason == why)).collect();
+            bars.iter().filter_map(|why| reasons.iter().position(|reason| reason == why)).collect();
         let numbers: Vec<String> = why.iter().map(|at| (at + 1).to_string()).collect();
         format!("-[{}]", numbers.join(","))
     }

@@ -44,19 +44,17 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
         let on = on.max_by(|a, b| turn(*a).total_cmp(&turn(*b)));
         nodes.extend(on);
     }
-    // Whoever could only start where the robot meets others is come up with further on.
+    let meet = *route.nodes.get(route.meet)?;
+    if start < route.meet {
+        return Some(Way { nodes, meet, cost: 0.0 });
+    }
+    // Somebody who can only start where the robot meets others is met further on, but not where the robot's way ends.
     let on = |at: &usize| {
         let from = route.nodes.get(start..=*at).unwrap_or_default();
-        net.length_m(from) >= FURTHER_M && route.nodes.get(*at).is_some_and(|node| net.is(*node, taken.place))
+        net.length_m(from) >= FURTHER_M && from.last().is_some_and(|node| net.is(*node, taken.place))
     };
-    let further = if start < route.meet { Some(route.meet) } else { (start + 1..start + nodes.len()).find(on) };
-    // Nobody is met where the robot's way ends.
-    let further = further
-        .filter(|at| at + 1 < route.nodes.len() && route.nodes.get(*at).is_some_and(|node| nodes.contains(node)));
-    let cost = match (start == route.meet, further) {
-        (false, _) => 0.0,
-        (true, Some(_)) => LATE,
-        (true, None) => AT_ONCE,
-    };
-    Some(Way { nodes, meet: *route.nodes.get(further.unwrap_or(route.meet))?, cost })
+    let further = (start + 1..route.nodes.len().saturating_sub(1)).find(on);
+    let further = further.and_then(|at| route.nodes.get(at)).filter(|node| nodes.contains(node));
+    let cost = if further.is_some() { LATE } else { AT_ONCE };
+    Some(Way { meet: further.copied().unwrap_or(meet), nodes, cost })
 }

@@ -3,13 +3,14 @@
 use socrates_model::{HumanProposal, PlaceClass};
 
 use super::{Taken, Way, extend, ideal_m, onward, onward_m};
+use crate::edit::LEAST_HUMAN_M;
 use crate::robot_way::Route;
 
 /// Cost of a way that ends right after the meeting.
 const SHORT_TAIL: f64 = 3.0;
 
-/// Shortest path of somebody who moves, m, as the checks have it, with what is lost to rounding; and the cost of a shorter one.
-const LEAST_M: f64 = 3.05;
+/// A path that is hardly longer than the least one, m, may be too short once it is written; and the cost of a path that is too short.
+const ROUNDED_M: f64 = 0.05;
 const TOO_SHORT: f64 = 20.0;
 
 /// Cost of turning into the robot's own way instead of crossing it: a room on the other side is better.
@@ -70,7 +71,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
                     + own
                     + inside
                     + end_cost
-                    + if length + net.length_m(tail) < LEAST_M { TOO_SHORT } else { 0.0 };
+                    + if length + net.length_m(tail) < LEAST_HUMAN_M + ROUNDED_M { TOO_SHORT } else { 0.0 };
                 if best.as_ref().is_none_or(|best| cost < best.cost - 1e-9) {
                     let mut nodes: Vec<usize> = way.iter().rev().copied().collect();
                     nodes.extend(tail);

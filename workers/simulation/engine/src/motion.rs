@@ -39,14 +39,14 @@ const APPROACH_M: f64 = 1.2;
 const SEE_AHEAD_M: f64 = 4.5;
 /// Gap to whom it passes that a walker wants, surface to surface, m: the near edge of personal space.
 const BERTH_M: f64 = 0.45;
-/// Who walks along faster than this is overtaken by people behind it, m/s.
+/// Somebody who walks along faster than this is overtaken by people behind it, m/s.
 const OVERTAKEN_MPS: f64 = 0.2;
 /// So far beside the robot's line, m, and so near, m, whoever comes from behind gets past it.
 const BESIDE_M: f64 = 0.4;
 const PASSES_M: f64 = 1.6;
 /// Farther from its line than this, m, somebody has gone aside.
 const ASIDE_TAKEN_M: f64 = 0.2;
-/// Whoever is this far behind is passed, m.
+/// Distance behind at which somebody is passed, m.
 const PASSED_M: f64 = 0.9;
 /// Distance from the robot's line that gives it way, m.
 const ASIDE_M: f64 = 1.0;
@@ -103,7 +103,7 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
         Action::Navigate => navigate(human, scene, pace),
         Action::StandStill if human.keeps_place() => stay(human, scene),
         Action::StandStill => match scene.robot {
-            // Whoever has come to its end stands there for no reason of its own, so it lets the robot through.
+            // Somebody at the end of their way stands there for no reason of their own, so they let the robot through.
             Some(robot) if human.at_goal() && !human.stays() && jammed(human, robot, scene.now_s, PATIENCE_S) => {
                 give_way(human, scene)
             }
@@ -151,7 +151,7 @@ fn navigate(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     if scene.looks {
         human.notice.share = share(scene.floor, &base, &aside, human.radius_m + 0.08);
         if human.flank_m > 0.0 {
-            // Who walks abreast falls into line before the narrow place, not in it.
+            // People abreast fall into line before the narrow place, not in it.
             let before = human.route.point(human.s + LINE_UP_M);
             human.notice.share = human.notice.share.min(share(scene.floor, &before, &aside, human.radius_m + 0.08));
             human.notice.in_line = human.notice.share < IN_LINE;
@@ -243,7 +243,7 @@ fn jammed(human: &mut Human, robot: &Robot, now_s: f64, patience_s: f64) -> bool
     let stands = way.norm() < 1.6 && robot.velocity.norm() < 0.1;
     let stays = human.at_goal() || human.keeps_place();
     let in_line = stays && -way.dot(&robot.intent()) > 0.5 * way.norm();
-    // Whoever shuffles to and fro before the robot turns a little: its way still leads through the robot.
+    // Somebody who shuffles to and fro before the robot turns a little: their way still leads through the robot.
     let ahead = if human.at_goal() { Vector::zeros() } else { human.route.direction(human.s + 0.3) };
     let facing = stands && (in_line || way.dot(&human.travel()).max(way.dot(&ahead)) > 0.5 * way.norm());
     let still = facing && human.velocity.dot(&way).abs() < 0.3 * way.norm() && robot.arrived_s.is_none();
@@ -288,7 +288,7 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
         }
         let beside = way.dot(&left);
         let (along, others) = (human.velocity.dot(ahead), other.velocity.dot(ahead));
-        // Who has gone aside to overtake and is slowed down beside the other still wants to get past.
+        // Somebody who has gone aside to overtake and is slowed down beside the other still wants to get past.
         let overtakes = others > OVERTAKEN_MPS && human.relation == Relation::Behind && taken.abs() > ASIDE_TAKEN_M;
         let closing = if overtakes { along.max(speed_mps) } else { along } - others;
         let across = other.velocity.dot(&left).abs();
@@ -301,11 +301,11 @@ fn sidestep(human: &Human, scene: &Scene<'_>, ahead: &Vector, speed_mps: f64) ->
         let off = beside + beside_m - line_m;
         // Somebody level with it is still passed: going back to the line now would run into its side.
         let level = before > -PASSED_M && before < 0.1 && human.aside_m.abs() > 0.1;
-        // Who crosses is left to the forces: going aside would lead into its way.
+        // Somebody who crosses is left to the forces: going aside would lead into its way.
         if !level && (before < 0.1 || closing < 0.1) || off.abs() > need || across > 0.5 {
             continue;
         }
-        // Whoever stands where its way ends is joined, not passed.
+        // Somebody who stands where its way ends is joined, not passed.
         if before > left_m - 0.5 && other.velocity.norm() < 0.1 {
             continue;
         }

@@ -2,8 +2,9 @@
 //!
 //! Each tick it predicts when the robot will be at the encounter node, and chooses the human's start
 //! and speed so that both arrive together. A human who has not started may wait as long as needed while the
-//! robot is far or cannot see it; one who walks is only made slower or faster within 0.6 to 1.8 m/s, and is
-//! held (at most 10 s in all) only where the robot cannot see it: nobody freezes in the robot's view.
+//! robot is far or cannot see it; one who walks is only made slower or faster within 0.6 to 1.8 m/s (from 0.3 m/s
+//! where the robot comes up from behind), and is held (at most 10 s in all) only where the robot cannot see it: nobody freezes in
+//! the robot's view.
 
 use socrates_model::{Point, Relation, Vector};
 
@@ -21,7 +22,7 @@ const FASTEST_MPS: f64 = 1.8;
 const HOLD_MAX_S: f64 = 10.0;
 /// Nearer than this a human in line of sight is in the robot's view, m.
 const VIEW_M: f64 = 9.0;
-/// Whoever has not started sets off when the robot sees it from nearer than this, m: it would stand in its way.
+/// Somebody who has not started sets off when the robot sees it from nearer than this, m: it would stand in its way.
 const SET_OFF_M: f64 = 2.5;
 /// Nobody starts before this, s: the first moments show where everybody is.
 const FIRST_START_S: f64 = 0.5;
@@ -33,6 +34,10 @@ const BETWEEN_LEAVERS_S: f64 = 1.1;
 const LEAVE_AT_M: f64 = 4.0;
 /// Behind a closed door it makes them leave from so much farther: it waits before the door, and they have to get there, m.
 const DOOR_M: f64 = 2.0;
+/// A robot that is nearer to a door than this stands before it, m: it stops outside of where those who come out have to get by.
+const AT_DOOR_M: f64 = 2.2;
+/// A companion goes so far ahead of a robot that stands beside it, m: it may stand because they are too near to each other.
+const MAKES_WAY_M: f64 = 0.8;
 /// Somebody who crosses aims at being there so long before the robot, s: on the last steps the robot's nearness slows it.
 const CROSS_S: f64 = 1.1;
 /// Somebody who comes towards the robot aims at being there so long before it, s: who stops on seeing the robot
@@ -50,7 +55,7 @@ const FACES_M: f64 = 5.0;
 const FACES_SHARE: f64 = 0.5;
 /// Cosine from which two ways are the same or opposite: 45°.
 const SAME_COS: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// Who wants in through a door of which the robot comes out aims at being there so long after it, s: in the door both would
+/// Somebody who wants in through a door of which the robot comes out aims at being there so long after it, s: in the door both would
 /// stand.
 const LETS_OUT_S: f64 = 1.2;
 /// A robot that starts farther than this behind a door starts inside, m.
@@ -220,7 +225,7 @@ fn go_in(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     let opens = match moment.door {
         Some((_, true)) => near || !moment.stands_open || timing.open_since_s.is_some(),
         Some((_, false)) => timing.opens_door && near,
-        // Who goes in nowhere is held by its rules alone.
+        // Somebody who goes in nowhere is held by their rules alone.
         None => return free,
     };
     if !opens || !moment.let_out {
@@ -249,11 +254,6 @@ pub(crate) fn let_out(humans: &mut [Human], robot_doors: &[DoorOnWay]) {
         }
     }
 }
-
-/// A robot that has so far to go to a door stands before it, m: it stops outside of where those who come out have to get by.
-const AT_DOOR_M: f64 = 2.2;
-/// A companion goes so far ahead of a robot that stands beside it, m: it may stand because they are too near to each other.
-const MAKES_WAY_M: f64 = 0.8;
 
 /// Speed of somebody who keeps level with the robot.
 fn beside(human: &Human, robot: &Robot) -> f64 {
