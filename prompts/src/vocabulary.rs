@@ -225,6 +225,7 @@ fn robot_do() -> Vec<(Value, String)> {
         row(&RobotDo::WaitForLeavers, "waits until all who leave are out"),
         row(&RobotDo::Follow(HumanId::new(1)), "follows this human"),
         row(&RobotDo::Abreast(HumanId::new(1)), "goes beside this human"),
+        row(&RobotDo::Overtake(HumanId::new(1)), "passes this human, who is slower"),
         row(&RobotDo::Lead(4.0), "waits for followers further behind"),
     ]
 }

@@ -169,7 +169,7 @@ fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
         | RobotWhen::AfterSecs(_) => {}
     }
     match &line.act {
-        RobotDo::Follow(id) | RobotDo::Abreast(id) => known(id),
+        RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) => known(id),
         RobotDo::Say(_) | RobotDo::Hold(_) | RobotDo::WaitForLeavers | RobotDo::Lead(_) => {}
     }
     let number = match (&line.when, &line.act) {

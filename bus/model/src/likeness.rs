@@ -230,6 +230,7 @@ fn scripted(when: &RobotWhen, act: &RobotDo) -> (String, Option<f64>) {
         RobotDo::WaitForLeavers => "waits for leavers".to_owned(),
         RobotDo::Follow(_) => "follows".to_owned(),
         RobotDo::Abreast(_) => "goes beside".to_owned(),
+        RobotDo::Overtake(_) => "overtakes".to_owned(),
         RobotDo::Lead(_) => "leads".to_owned(),
     };
     (format!("{word}: {done}"), time_s)

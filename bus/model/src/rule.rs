@@ -260,6 +260,8 @@ pub enum RobotDo {
     Follow(HumanId),
     /// Goes beside this human.
     Abreast(HumanId),
+    /// Passes this human, who walks ahead and slower, where the floor is wide enough.
+    Overtake(HumanId),
     /// Waits for its followers when they fall more than this far behind, m.
     Lead(f64),
 }
@@ -292,6 +294,7 @@ impl RobotRule {
             RobotDo::WaitForLeavers => "waits until everybody who leaves has left".to_owned(),
             RobotDo::Follow(human) => format!("follows {human}"),
             RobotDo::Abreast(human) => format!("goes beside {human}"),
+            RobotDo::Overtake(human) => format!("overtakes {human} where there is room"),
             RobotDo::Lead(m) => format!("leads, and waits when a follower is more than {m} m behind"),
         };
         format!("{when} it {act}")

@@ -523,7 +523,7 @@ pub(crate) fn remove(desk: &mut Desk, wish: &Wish, crowd: &mut Crowd) {
     proposal
         .robot
         .script
-        .retain(|line| !matches!(&line.act, RobotDo::Follow(id) | RobotDo::Abreast(id) if gone.contains(id)));
+        .retain(|line| !matches!(&line.act, RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) if gone.contains(id)));
     if let Some(paths) = &mut desk.draft.paths {
         paths.humans.retain(|id, _| !gone.contains(id));
         paths.encounters.retain(|encounter| !gone.contains(&encounter.human));

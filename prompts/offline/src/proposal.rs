@@ -232,7 +232,7 @@ fn robot(
     let mut script: Vec<RobotRule> = found.map(|card| card.script.clone()).unwrap_or_default();
     let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);
     for line in &mut script {
-        if let (RobotDo::Follow(who), Some(id)) = (&mut line.act, lead) {
+        if let (RobotDo::Follow(who) | RobotDo::Overtake(who), Some(id)) = (&mut line.act, lead) {
             *who = id;
         }
     }

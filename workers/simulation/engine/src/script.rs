@@ -28,6 +28,7 @@ impl Script {
             | RobotDo::WaitForLeavers
             | RobotDo::Follow(_)
             | RobotDo::Abreast(_)
+            | RobotDo::Overtake(_)
             | RobotDo::Lead(_) => None,
         };
         Self { lines: rules.iter().filter_map(say).collect() }

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Modules in reading order: what a planner is given ([`mission`]), the list of planners ([`catalog`]), the
-//! floor as planners see it (ground), ways round people (detour), following a way (pursuit), where and when it
+//! floor as planners see it (ground), ways round people (detour), past somebody slower (overtaking), following a way (pursuit), where and when it
 //! waits (waiting, patience), then one file per planner and the robot's script that `reference` plays.
 //!
 //! *Never here:* a behavior tree, the engine, a scenario file, the wall clock, a random number.
@@ -15,6 +15,7 @@ pub mod mission;
 
 mod detour;
 mod ground;
+mod overtaking;
 mod patience;
 mod pursuit;
 mod reactive;

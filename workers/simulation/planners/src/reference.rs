@@ -2,11 +2,12 @@
 //! round people who stand or come towards it, waits for those who cross, and asks after 3 s of waiting; before somebody who
 //! does not let it pass it stops dodging.
 
-use socrates_model::{Command, Door, Gesture, Observation, Point, Polyline, RobotDriver, RobotModel};
+use socrates_model::{Command, Door, Gesture, HumanId, Observation, Point, Polyline, RobotDriver, RobotModel};
 
 use crate::detour;
 use crate::ground::{Ground, closed_door_ahead, obstacles};
 use crate::mission::Mission;
+use crate::overtaking::{self, Overtaking};
 use crate::patience::Patience;
 use crate::pursuit::{beside_people, face, safe_share, somebody_ahead, steer};
 use crate::script::{Script, Wish};
@@ -54,6 +55,7 @@ pub(crate) struct Reference {
     script: Script,
     plan: Option<(Polyline, f64)>,
     planned_s: f64,
+    overtaking: Overtaking,
     waiting: Option<WaitingSpot>,
     waiting_since_s: Option<f64>,
     out_since_s: Option<f64>,
@@ -74,6 +76,7 @@ impl Reference {
             script: Script::new(&mission.script, &mission.encounters),
             plan: None,
             planned_s: f64::NEG_INFINITY,
+            overtaking: Overtaking::default(),
             waiting: None,
             waiting_since_s: None,
             out_since_s: None,
@@ -112,6 +115,16 @@ impl Reference {
             (steer(seen, &self.route, self.s, share * limit, &self.robot), share)
         };
         self.asking(seen, command, share)
+    }
+
+    /// Past somebody slower, in a lane beside the way, as fast as it can: beside them for as short a time as may be.
+    fn pass(&mut self, seen: &Observation<'_>, whom: HumanId) -> Option<Command> {
+        let lane = self.overtaking.lane(seen, whom, (&self.route, self.s), &self.ground, &self.robot)?;
+        if overtaking::is_taken(seen, whom, &lane, &self.robot) {
+            return None;
+        }
+        self.plan = None;
+        Some(steer(seen, &lane, 0.0, self.robot.v_max_mps, &self.robot))
     }
 
     /// A way round, where the route ahead is not free of people or the robot is off it.
@@ -295,6 +308,9 @@ impl RobotDriver for Reference {
         // A closed door on the way: stops before it and waits for it to open.
         if closed_door_ahead(seen, &self.route, self.s, 1.2).is_some_and(|left| left < self.robot.radius_m + 0.7) {
             return rest;
+        }
+        if let Some(command) = wish.overtake.and_then(|whom| self.pass(seen, whom)) {
+            return command;
         }
         let (limit, waiting) = self.limit(seen, &wish);
         let command = self.go(seen, limit);

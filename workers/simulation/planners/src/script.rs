@@ -20,6 +20,8 @@ pub(crate) struct Wish {
     pub(crate) follow: Option<HumanId>,
     /// Keep level with this human.
     pub(crate) abreast: Option<HumanId>,
+    /// Pass this human.
+    pub(crate) overtake: Option<HumanId>,
     /// Wait for followers farther behind than this, m.
     pub(crate) lead_m: Option<f64>,
 }
@@ -75,6 +77,7 @@ impl Script {
                 RobotDo::WaitForLeavers => self.wish.wait_for_leavers = true,
                 RobotDo::Follow(human) => self.wish.follow = Some(*human),
                 RobotDo::Abreast(human) => self.wish.abreast = Some(*human),
+                RobotDo::Overtake(human) => self.wish.overtake = Some(*human),
                 RobotDo::Lead(reach) => self.wish.lead_m = Some(*reach),
                 RobotDo::Say(_) => {}
             }

@@ -147,6 +147,25 @@ fn the_reference_lets_somebody_who_crosses_go_first() {
 }
 
 #[test]
+fn the_reference_overtakes_whom_its_script_names_and_stays_behind_others() {
+    let slow = |now: f64| vec![person(5.0 + 0.4 * now, 3.0, 0.4, 0.0)];
+    let ahead_of = |script: Vec<RobotRule>, secs: f64| {
+        let mut driver = make("reference", &mission(script)).unwrap().unwrap();
+        let way = drive(driver.as_mut(), &slow, secs);
+        let gap = |(call, (pose, _)): (usize, &(Pose, Command))| {
+            (pose.point() - slow(call as f64 / 20.0)[0].at).norm() - 0.53
+        };
+        let least = way.iter().enumerate().map(gap).fold(9.0, f64::min);
+        (way.last().unwrap().0.x - slow(secs)[0].at.x, least)
+    };
+    let script = vec![RobotRule { when: RobotWhen::Start, act: RobotDo::Overtake(HumanId::new(1)) }];
+    let (ahead_m, least_m) = ahead_of(script, 20.0);
+    assert!(ahead_m > 1.0 && least_m > 0.35, "{ahead_m} m ahead, {least_m} m between them");
+    let (ahead_m, _) = ahead_of(vec![], 20.0);
+    assert!(ahead_m < 0.0, "{ahead_m}");
+}
+
+#[test]
 fn the_script_holds_and_says_that_it_waits() {
     let hold = RobotRule { when: RobotWhen::AfterSecs(2.0), act: RobotDo::Hold(3.0) };
     let mut driver = make("reference", &mission(vec![hold])).unwrap().unwrap();
