@@ -6,7 +6,10 @@ use socrates_model::{
     Predicate, Proposal, Reading, Relation, Rule, Trigger, ordinal,
 };
 
+use socrates_prompts::Question;
+
 use crate::card::Card;
+use crate::form;
 use crate::place;
 use crate::prose::done;
 use crate::spot;
@@ -78,11 +81,11 @@ impl List {
 /// Every clause of the proposal.
 pub(crate) fn events(
     proposal: &Proposal,
-    reading: &Reading,
+    question: &Question,
     part: &Part<'_>,
     extras: &[Extra],
-    location: &Location,
 ) -> Vec<Clause> {
+    let (request, reading, location) = (&question.request, &question.reading, &question.location);
     let mut list = List::default();
     let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
     let source = |wanted: fn(&FactKind) -> bool| {
@@ -91,7 +94,10 @@ pub(crate) fn events(
     list.setup(true, source(|kind| matches!(kind, FactKind::Humans(_))), headcount(count), Predicate::Humans { count });
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
     for fact in &reading.facts {
-        let at = |class: PlaceClass| spot::nodes(location, &fact.quote, class, &proposal.humans);
+        let at = |class: PlaceClass| match form::met_at(request, location, class) {
+            Some(stated) => spot::counted(location, stated, class, &proposal.humans),
+            None => spot::nodes(location, &fact.quote, class, &proposal.humans),
+        };
         of_fact(&mut list, fact, proposal, extras, &at);
     }
     let line = part.card.is_some_and(|card| card.roles.iter().any(|role| role.line));

@@ -165,6 +165,11 @@ fn pair(story: &mut Story, first: AgentId, then: AgentId, quote: &str) {
     }
 }
 
+/// An order that is stated exactly.
+pub(crate) fn state(order: &mut Order, first: AgentId, then: AgentId, quote: &str) {
+    order.pairs.push((first, then, quote.to_owned()));
+}
+
 /// The human at this place of the cast, from 0.
 pub(crate) fn agent(who: usize) -> AgentId {
     AgentId::Human(HumanId::new(u32::try_from(who + 1).unwrap_or(u32::MAX)))
