@@ -281,6 +281,9 @@ pub struct FormOrder {
     pub first: String,
     /// Name of whoever comes then, or `robot`.
     pub then: String,
+    /// The door where: of a `doorway`, `room` or `elevator`. Without it: where they meet the robot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<PlaceClass>,
 }
 
 /// One line of the robot's part: exactly one of its deeds.
@@ -356,8 +359,7 @@ impl RobotDeed {
     /// Keys of the deeds.
     pub const KEYS: [&str; 7] = ["say", "hold_s", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
     /// The deeds, for messages.
-    pub const ALLOWED: &str =
-        "one of say = \"WAIT\", hold_s = 3.0, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
+    pub const ALLOWED: &str = "one of say = \"WAIT\", hold_s = 3.0, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
 
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
         match self {

@@ -5,6 +5,8 @@
 
 mod author;
 mod form;
+#[cfg(test)]
+mod form_tests;
 mod read;
 mod tree;
 mod values;

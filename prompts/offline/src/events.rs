@@ -79,12 +79,7 @@ impl List {
 }
 
 /// Every clause of the proposal.
-pub(crate) fn events(
-    proposal: &Proposal,
-    question: &Question,
-    part: &Part<'_>,
-    extras: &[Extra],
-) -> Vec<Clause> {
+pub(crate) fn events(proposal: &Proposal, question: &Question, part: &Part<'_>, extras: &[Extra]) -> Vec<Clause> {
     let (request, reading, location) = (&question.request, &question.reading, &question.location);
     let mut list = List::default();
     let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
@@ -203,9 +198,10 @@ fn of_fact(
             let text = format!("it happens at {}", place::an(*class));
             list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: at(*class) });
         }
-        FactKind::Before { first, then } => {
-            let text = format!("{first} is there before {then}");
-            list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then });
+        FactKind::Before { first, then, at_door } => {
+            let place = if *at_door { "through the door" } else { "there" };
+            let text = format!("{first} is {place} before {then}");
+            list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then, at_door: *at_door });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

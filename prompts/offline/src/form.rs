@@ -15,10 +15,10 @@ use socrates_model::{
 
 use crate::bind::QUEUES;
 use crate::cast::{Person, ReadRule};
+use crate::named;
 use crate::order;
 use crate::place;
 use crate::story::Story;
-use crate::named;
 
 /// Where a place of a form is on a map.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -31,9 +31,7 @@ pub(crate) struct Bound {
 /// Binds a place of a form; nothing where the map has none of that name or class.
 pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
     match place {
-        PlaceWord::Class(class) => {
-            place::has(location, *class).then(|| Bound { class: *class, nodes: Vec::new() })
-        }
+        PlaceWord::Class(class) => place::has(location, *class).then(|| Bound { class: *class, nodes: Vec::new() }),
         PlaceWord::Name(name) => {
             let found = named::find(location, name)?;
             Some(Bound { class: found.class, nodes: found.nodes })
@@ -106,7 +104,8 @@ fn in_place(human: &FormHuman, location: &Location) -> Option<PlaceClass> {
     let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
     let closed = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
     let start = human.start.as_ref().and_then(|start| bound(start, location)).map(|start| start.class);
-    let place = || human.place.as_ref().and_then(|place| bound(place, location)).map(|place| place.class).filter(closed);
+    let place =
+        || human.place.as_ref().and_then(|place| bound(place, location)).map(|place| place.class).filter(closed);
     start.or_else(|| if indoors { place() } else { None })
 }
 
@@ -142,9 +141,10 @@ fn groups(request: &Request, story: &mut Story) {
 fn orders(request: &Request, story: &mut Story) {
     for stated in &request.form.orders {
         let quote = format!("order: first = \"{}\", then = \"{}\"", stated.first, stated.then);
+        let at_door = stated.at.is_some();
         for first in request.form.agents(&stated.first) {
             for then in request.form.agents(&stated.then) {
-                order::state(&mut story.order, first, then, &quote);
+                order::state(&mut story.order, (first, then), at_door, &quote);
             }
         }
     }
@@ -173,7 +173,8 @@ fn places(request: &Request, location: &Location, story: &mut Story) {
         let message = format!("{id} is at `{other}`, others at `{first}`; people meet the robot at one place for all");
         story.problems.push(Fault::new(FaultCode::PLimit, "human.place", message).about([other.to_string()]));
     }
-    let first = stated.first().and_then(|(place, _)| bound(place, location).map(|bound| (bound.class, place.to_string())));
+    let first =
+        stated.first().and_then(|(place, _)| bound(place, location).map(|bound| (bound.class, place.to_string())));
     story.place = first.map(|(class, name)| (class, format!("place = \"{name}\"")));
 }
 
@@ -218,7 +219,11 @@ pub(crate) fn rooms(request: &Request, location: &Location) -> BTreeMap<HumanId,
     };
     let indoors = |human: &FormHuman| matches!(human.relation, Relation::Leaving | Relation::Staying);
     let people = request.form.people();
-    people.iter().filter(|person| indoors(person.human)).filter_map(|person| Some((person.id, room(person.human)?))).collect()
+    people
+        .iter()
+        .filter(|person| indoors(person.human))
+        .filter_map(|person| Some((person.id, room(person.human)?)))
+        .collect()
 }
 
 /// What the text says otherwise than the form, in one note: the form is played.

@@ -13,7 +13,7 @@ use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, form, aside, boards, chance, contra, cut, default_cast, expect, numbered, place, spot, words};
+use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {

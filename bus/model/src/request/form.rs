@@ -8,8 +8,10 @@ use super::read::{Door, Section};
 use super::tree::{Kind, Node};
 use super::{Expect, MAX_HUMANS};
 use crate::form::{
-    Deed, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep, Step, When,
+    Deed, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep, Step,
+    When,
 };
+use crate::place::PlaceClass;
 use crate::proposal::Relation;
 
 const HUMAN_KEYS: [&str; 11] =
@@ -31,7 +33,7 @@ const MOST_CHARS: usize = 60;
 
 /// A name in the form, where it stands, and what it is for.
 struct Naming<'n> {
-    name: String,
+    who: String,
     key: &'static str,
     node: Option<&'n Node>,
     /// Whether `robot` is somebody here, and whether several may be meant.
@@ -48,8 +50,7 @@ impl Door<'_> {
         let mut names = Names(Vec::new());
         let humans = self.tables(top, "human").into_iter().filter_map(|node| self.human(node, &mut names)).collect();
         let groups = self.tables(top, "group").into_iter().filter_map(|node| self.group(node)).collect();
-        let orders =
-            self.tables(top, "order").into_iter().filter_map(|node| self.order(node, &mut names)).collect();
+        let orders = self.tables(top, "order").into_iter().filter_map(|node| self.order(node, &mut names)).collect();
         let form = Form { humans, groups, orders };
         self.alike(&form, top);
         (form, names)
@@ -111,7 +112,12 @@ impl Door<'_> {
         if text.trim().is_empty() || length > MOST_CHARS || text.chars().any(char::is_control) {
             let at = section.get(name).and_then(|node| node.at);
             let found = if text.trim().is_empty() { "is empty".to_owned() } else { format!("has {length} characters") };
-            self.bad(section.key(name), at, found, format!("a word or a few, up to {MOST_CHARS} characters on one line"));
+            self.bad(
+                section.key(name),
+                at,
+                found,
+                format!("a word or a few, up to {MOST_CHARS} characters on one line"),
+            );
             return None;
         }
         Some(text.trim().to_owned())
@@ -166,7 +172,13 @@ impl Door<'_> {
         let when = self.whens(&section, names);
         let act = self.maybe::<Deed>(&section, "act", Deed::ALLOWED);
         if let Some(name) = act.as_ref().and_then(Deed::names) {
-            names.0.push(Naming { name: name.clone(), key: "follow_human", node: section.get("act"), robot: false, several: false });
+            names.0.push(Naming {
+                who: name.clone(),
+                key: "follow_human",
+                node: section.get("act"),
+                robot: false,
+                several: false,
+            });
         }
         let for_s = self.maybe::<f64>(&section, "for_s", "0.1 to 600 (s)");
         if let Some(secs) = for_s.filter(|secs| !(0.1..=MOST_S).contains(secs)) {
@@ -175,7 +187,12 @@ impl Door<'_> {
         }
         let say = self.maybe(&section, "say", GESTURES);
         if section.get("act").is_none() && section.get("say").is_none() {
-            self.bad(path.trim_end_matches('.'), node.at, "does nothing", format!("act: {}; say: {GESTURES}", Deed::ALLOWED));
+            self.bad(
+                path.trim_end_matches('.'),
+                node.at,
+                "does nothing",
+                format!("act: {}; say: {GESTURES}", Deed::ALLOWED),
+            );
         }
         Some(Step { when, act, for_s, say })
     }
@@ -188,7 +205,13 @@ impl Door<'_> {
             let Some(when) = self.typed::<When>(&section.key("when"), node, When::ALLOWED) else { continue };
             self.number(&section.key("when"), node, when.number());
             if let Some(name) = when.names() {
-                names.0.push(Naming { name: name.clone(), key: "human_says", node: Some(node), robot: false, several: false });
+                names.0.push(Naming {
+                    who: name.clone(),
+                    key: "human_says",
+                    node: Some(node),
+                    robot: false,
+                    several: false,
+                });
             }
             found.push(when);
         }
@@ -218,18 +241,26 @@ impl Door<'_> {
     }
 
     fn order<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> Option<FormOrder> {
-        let section = self.section(node, "order.", &["first", "then"]);
+        let section = self.section(node, "order.", &["first", "then", "at"]);
         let mut end = |name: &'static str| {
             if section.get(name).is_none() && matches!(node.kind, Kind::Table(_)) {
                 self.bad(section.key(name), node.at, "is missing", "the name of a person, or \"robot\"");
             }
             let word = self.word(&section, name)?;
             let key = if name == "first" { "order.first" } else { "order.then" };
-            names.0.push(Naming { name: word.clone(), key, node: section.get(name), robot: true, several: true });
+            names.0.push(Naming { who: word.clone(), key, node: section.get(name), robot: true, several: true });
             Some(word)
         };
         let (first, then) = (end("first"), end("then"));
-        Some(FormOrder { first: first?, then: then? })
+        let doors = "\"doorway\", \"room\" or \"elevator\", or leave it out for where they meet the robot";
+        let at = self.maybe::<PlaceClass>(&section, "at", doors);
+        if let Some(class) =
+            at.filter(|class| !matches!(class, PlaceClass::Doorway | PlaceClass::Room | PlaceClass::Elevator))
+        {
+            let node = section.get("at").and_then(|node| node.at);
+            self.bad("order.at", node, format!("`{}` has no door", class.name()), doors);
+        }
+        Some(FormOrder { first: first?, then: then?, at })
     }
 
     /// The robot's steps: `does = [{ when = { human_near = 3.0 }, say = "EXCUSE_ME" }]`.
@@ -267,9 +298,12 @@ impl Door<'_> {
                 }
             };
             self.number(&format!("robot.does.{key}"), value, act.number());
-            let named = [(act.names(), "robot.does", Some(value)), (when.as_ref().and_then(RobotMoment::names), "at_encounter", section.get("when"))];
+            let named = [
+                (act.names(), "robot.does", Some(value)),
+                (when.as_ref().and_then(RobotMoment::names), "at_encounter", section.get("when")),
+            ];
             for (name, key, node) in named {
-                names.0.extend(name.map(|name| Naming { name: name.clone(), key, node, robot: false, several: false }));
+                names.0.extend(name.map(|name| Naming { who: name.clone(), key, node, robot: false, several: false }));
             }
             steps.push(RobotStep { when, act });
         }
@@ -291,7 +325,12 @@ impl Door<'_> {
         for (index, human) in form.humans.iter().enumerate() {
             let Some(id) = human.id.as_deref() else { continue };
             if seen.contains(&id) {
-                self.bad("human.id", at("human", index), format!("`{id}` is somebody already"), "a name of its own, or `count`");
+                self.bad(
+                    "human.id",
+                    at("human", index),
+                    format!("`{id}` is somebody already"),
+                    "a name of its own, or `count`",
+                );
             }
             seen.push(id);
         }
@@ -316,7 +355,12 @@ impl Door<'_> {
                 self.bad("group.id", at("group", index), format!("nobody is in `{}`", group.id), hint);
             }
             if form.groups.iter().take(index).any(|other| other.id == group.id) {
-                self.bad("group.id", at("group", index), format!("`{}` is stated already", group.id), "one [[group]] for each");
+                self.bad(
+                    "group.id",
+                    at("group", index),
+                    format!("`{}` is stated already", group.id),
+                    "one [[group]] for each",
+                );
             }
         }
         self.circle(form, top);
@@ -353,20 +397,22 @@ impl Door<'_> {
         let known: Vec<String> = form
             .people()
             .iter()
-            .map(|person| person.human.id.clone().filter(|_| person.human.count == 1).unwrap_or_else(|| person.id.to_string()))
+            .map(|person| {
+                person.human.id.clone().filter(|_| person.human.count == 1).unwrap_or_else(|| person.id.to_string())
+            })
             .collect();
         for naming in &names.0 {
-            if naming.robot && naming.name == "robot" {
+            if naming.robot && naming.who == "robot" {
                 continue;
             }
-            let found = form.named(&naming.name).len();
+            let found = form.named(&naming.who).len();
             let at = naming.node.and_then(|node| node.at);
             if found == 0 {
                 let hint = if known.is_empty() { "no [[human]] is stated".to_owned() } else { known.join(", ") };
-                self.bad(naming.key, at, format!("`{}` is nobody", naming.name), hint);
+                self.bad(naming.key, at, format!("`{}` is nobody", naming.who), hint);
             } else if found > 1 && !naming.several {
-                let hint = format!("one of them: {}_1", naming.name);
-                self.bad(naming.key, at, format!("`{}` is {found} people", naming.name), hint);
+                let hint = format!("one of them: {}_1", naming.who);
+                self.bad(naming.key, at, format!("`{}` is {found} people", naming.who), hint);
             }
         }
     }
@@ -379,7 +425,12 @@ impl Door<'_> {
         let at = |key: &str| top.get(key).and_then(|node| node.at);
         for pinned in ["proposal", "paths", "behaviors"] {
             if at(pinned).is_some() || top.get(pinned).is_some() {
-                self.bad(pinned, at(pinned), "stands beside [[human]]", "a pinned file says who is there already; keep one of the two");
+                self.bad(
+                    pinned,
+                    at(pinned),
+                    "stands beside [[human]]",
+                    "a pinned file says who is there already; keep one of the two",
+                );
             }
         }
         let count = form.headcount();
@@ -396,7 +447,11 @@ impl Door<'_> {
             && places.iter().all(|place| !matches!(place, PlaceWord::Class(own) if *own == class))
             && places.iter().all(|place| matches!(place, PlaceWord::Class(_)))
         {
-            let found = format!("`{}`, but [[human]] says {}", class.name(), places.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "));
+            let found = format!(
+                "`{}`, but [[human]] says {}",
+                class.name(),
+                places.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+            );
             self.bad("expect.place", at("expect"), found, "leave it out, or correct one of the two");
         }
     }
@@ -404,6 +459,5 @@ impl Door<'_> {
 
 /// Whether nothing ends a step but the end of the run.
 fn is_endless(step: &Step) -> bool {
-    step.for_s.is_none()
-        && !matches!(step.act, None | Some(Deed::GiveWay | Deed::Approach))
+    step.for_s.is_none() && !matches!(step.act, None | Some(Deed::GiveWay | Deed::Approach))
 }

@@ -192,7 +192,7 @@ impl Door<'_> {
         let location = self.needed(&top, "location", "a shipped name or a folder");
         let (form, mut names) = self.form(&top);
         // A form says who is there without a social context.
-        let social_context = if form.is_empty() || top.get("social_context").is_some() {
+        let social_context = if top.get("human").is_none() || top.get("social_context").is_some() {
             self.needed(&top, "social_context", "where and among whom the robot works, in a sentence")
         } else {
             Some(String::new())
