@@ -70,7 +70,9 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
         reading.humans.iter().find(|human| human.id == id)
     };
     let class = |word: &str| word.parse::<PlaceClass>().ok();
+    let number = |word: &str| word.trim_end_matches(':').parse::<u32>().is_ok();
     match words[..] {
+        [first, ..] if !number(first) && !matches!(first, "humans" | "group" | "place" | "robot" | "order") => None,
         ["group", ..] if words.iter().skip(1).any(|word| word.parse::<u32>().is_err()) => None,
         ["humans", _] | ["group", ..] | [_, "role", _] => Some(corpus::holds(fact, reading)),
         ["place", place] | [_, "place", place] => class(place).map(|class| reading.place == Some(class)),
@@ -110,6 +112,7 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
             };
             Some(human(who).is_some_and(speaks))
         }
+        [_, "follow_human", other, ..] if !number(other) => None,
         [who, act, ..] if who.ends_with(':') => {
             const ACTS: [&str; 9] = [
                 "navigate",
@@ -186,8 +189,8 @@ fn what_is_asked_for_is_read_no_worse_than_at_first() {
 }
 
 const SETS: [(&str, &str, usize); 4] = [
-    ("student", include_str!("../../../../tests/asked/student.toml"), 0),
-    ("test engineer", include_str!("../../../../tests/asked/test-engineer.toml"), 0),
-    ("staff", include_str!("../../../../tests/asked/staff.toml"), 0),
-    ("author of a benchmark", include_str!("../../../../tests/asked/benchmark.toml"), 0),
+    ("student", include_str!("../../../../tests/asked/student.toml"), 181),
+    ("test engineer", include_str!("../../../../tests/asked/test-engineer.toml"), 162),
+    ("staff", include_str!("../../../../tests/asked/staff.toml"), 185),
+    ("author of a benchmark", include_str!("../../../../tests/asked/benchmark.toml"), 170),
 ];
