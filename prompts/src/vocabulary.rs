@@ -116,7 +116,9 @@ pub(crate) fn fact(kind: &FactKind) -> String {
             let place = place.map_or_else(String::new, |class| format!(", at last at {}", class.name()));
             format!("{human}: meets the robot {times} times{place}")
         }
-        FactKind::Before { first, then } => format!("{first} before {then}"),
+        FactKind::Before { first, then, at_door } => {
+            format!("{first} before {then}{}", if *at_door { " through the door" } else { "" })
+        }
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),
@@ -282,7 +284,10 @@ fn predicates() -> Vec<Test> {
             &Predicate::Order { first: "c2".to_owned(), then: "c3".to_owned() },
             "one clause (c1, c2, …) before another",
         ),
-        setup(&Predicate::Before { first: AgentId::Robot, then: human.into() }, "is at its encounter first"),
+        setup(
+            &Predicate::Before { first: AgentId::Robot, then: human.into(), at_door: false },
+            "is at its encounter first, or with at_door through the door",
+        ),
         setup(
             &Predicate::EncounterAt { place: PlaceClass::Intersection, nodes: vec![] },
             "the encounter is at such a place",

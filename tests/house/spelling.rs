@@ -86,6 +86,7 @@ const WORDS: &[&str] =
     &["fulfil", "fulfils", "grey", "greys", "realise", "realises", "programme", "practise", "kerb", "tyre"];
 /// `(path, reason)`: files below it may hold them.
 const FILES: &[(&str, &str)] = &[
+    ("tests/asked/", "requests stand as they were written"),
     ("prompts/offline/", "requests are read however people spell: tables, sentences of tests, corpus"),
     ("tests/house/spelling.rs", "lists them"),
     ("orchestrator/app/src/ask/command.rs", "a person may type `again behaviours`"),

@@ -72,8 +72,9 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough((*human).into(), what)
             }
         }
-        FactKind::Before { first, then } => {
-            let asks = |clause: &Clause| clause.predicate == Predicate::Before { first: *first, then: *then };
+        FactKind::Before { first, then, at_door } => {
+            let wanted = Predicate::Before { first: *first, then: *then, at_door: *at_door };
+            let asks = |clause: &Clause| clause.predicate == wanted;
             if proposal.expected_events.iter().any(asks) {
                 None
             } else {

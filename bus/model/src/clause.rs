@@ -281,6 +281,9 @@ pub enum Predicate {
         first: AgentId,
         /// Who is there later.
         then: AgentId,
+        /// Whether at the door of the room or car of whoever leaves it, or of the robot's goal, instead: the first of them gets through it first.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        at_door: bool,
     },
     /// The encounter lies on a place of this class, or on one of the nodes where some are named.
     EncounterAt {

@@ -27,6 +27,7 @@ pub mod place;
 
 pub mod behaviors;
 pub mod clause;
+pub mod form;
 pub mod likeness;
 pub mod paths;
 pub mod proposal;

@@ -66,6 +66,9 @@ pub enum FactKind {
         first: AgentId,
         /// Who is there later.
         then: AgentId,
+        /// Whether at the door of the room or car of whoever leaves it, or of the robot's goal, instead: the first of them gets through it first.
+        #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+        at_door: bool,
     },
     /// A human makes a gesture.
     Gestures {

@@ -4,6 +4,9 @@
 //! into types that cannot be wrong. Nobody behind that door sees the text of a seed, a duration, a moment or an author.
 
 mod author;
+mod form;
+#[cfg(test)]
+mod form_tests;
 mod read;
 mod tree;
 mod values;
@@ -19,6 +22,7 @@ pub use values::{Duration, Moment, Seeds};
 
 use crate::drive::RobotModel;
 use crate::fault::FaultCode;
+use crate::form::{Form, PlaceWord, RobotStep};
 use crate::gesture::Gesture;
 use crate::ids::PlannerName;
 use crate::place::PlaceClass;
@@ -40,6 +44,9 @@ pub struct Request {
     /// Overrides the location's own description.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub location_description: Option<String>,
+    /// People, groups and order stated exactly; they win over the text.
+    #[serde(default, flatten)]
+    pub form: Form,
     /// The robot.
     #[serde(default)]
     pub robot: RobotRequest,
@@ -103,6 +110,18 @@ pub struct RobotRequest {
     pub waypoints: Waypoints,
     /// Gestures the robot makes by itself.
     pub gestures: Vec<RobotGesture>,
+    /// Where its way begins. Default: as the task says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start: Option<PlaceWord>,
+    /// Where its way ends. Default: as the task says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<PlaceWord>,
+    /// A place that its way leads past. Default: as the task says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub via: Option<PlaceWord>,
+    /// What it does on its way.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub does: Vec<RobotStep>,
 }
 
 impl Default for RobotRequest {
@@ -112,6 +131,10 @@ impl Default for RobotRequest {
             planners: vec![PlannerName::reference()],
             waypoints: Waypoints::Via,
             gestures: Vec::new(),
+            start: None,
+            goal: None,
+            via: None,
+            does: Vec::new(),
         }
     }
 }

@@ -14,7 +14,9 @@ pub fn fact_words(kind: &FactKind) -> String {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")
         }
-        FactKind::Before { first, then } => format!("{first} is there before {then}"),
+        FactKind::Before { first, then, at_door } => {
+            format!("{first} is {} before {then}", if *at_door { "through the door" } else { "there" })
+        }
         FactKind::Relates { human, relation } => format!("{human} {}", relation_words(*relation)),
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
         FactKind::Place(place) => format!("place: {}", place_words(*place)),

@@ -5,6 +5,7 @@
 mod corridor;
 mod doorless;
 mod elevator;
+mod forms;
 mod group;
 mod intersection;
 mod meetings;

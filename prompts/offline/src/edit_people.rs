@@ -565,7 +565,7 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
         | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)
-        } else if let FactKind::Before { first, then } = kind {
+        } else if let FactKind::Before { first, then, .. } = kind {
             gone.iter().any(|id| [first, then].contains(&&AgentId::Human(*id)))
         } else if let FactKind::Group { members, .. } = kind {
             members.iter().any(|id| gone.contains(id))

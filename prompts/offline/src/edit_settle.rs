@@ -110,8 +110,8 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         FactKind::Reacts { human, rule } => rules(human).contains(rule),
         FactKind::Gestures { human, gesture } => rules(human).iter().any(|rule| rule.gesture == Some(*gesture)),
         FactKind::Group { members, .. } => proposal.groups.iter().any(|group| group.members == *members),
-        FactKind::Before { first, then } => {
-            let clause = Predicate::Before { first: *first, then: *then };
+        FactKind::Before { first, then, at_door } => {
+            let clause = Predicate::Before { first: *first, then: *then, at_door: *at_door };
             proposal.expected_events.iter().any(|other| other.predicate == clause)
         }
         FactKind::RobotSays(gesture) => says(*gesture),

@@ -6,7 +6,10 @@ use socrates_model::{
     Predicate, Proposal, Reading, Relation, Rule, Trigger, ordinal,
 };
 
+use socrates_prompts::Question;
+
 use crate::card::Card;
+use crate::form;
 use crate::place;
 use crate::prose::done;
 use crate::spot;
@@ -76,13 +79,8 @@ impl List {
 }
 
 /// Every clause of the proposal.
-pub(crate) fn events(
-    proposal: &Proposal,
-    reading: &Reading,
-    part: &Part<'_>,
-    extras: &[Extra],
-    location: &Location,
-) -> Vec<Clause> {
+pub(crate) fn events(proposal: &Proposal, question: &Question, part: &Part<'_>, extras: &[Extra]) -> Vec<Clause> {
+    let (request, reading, location) = (&question.request, &question.reading, &question.location);
     let mut list = List::default();
     let count = u32::try_from(proposal.humans.len()).unwrap_or(u32::MAX);
     let source = |wanted: fn(&FactKind) -> bool| {
@@ -91,7 +89,10 @@ pub(crate) fn events(
     list.setup(true, source(|kind| matches!(kind, FactKind::Humans(_))), headcount(count), Predicate::Humans { count });
     list.setup(true, "", "everybody moves like people do", Predicate::Plausible);
     for fact in &reading.facts {
-        let at = |class: PlaceClass| spot::nodes(location, &fact.quote, class, &proposal.humans);
+        let at = |class: PlaceClass| match form::met_at(request, location, class) {
+            Some(stated) => spot::counted(location, stated, class, &proposal.humans),
+            None => spot::nodes(location, &fact.quote, class, &proposal.humans),
+        };
         of_fact(&mut list, fact, proposal, extras, &at);
     }
     let line = part.card.is_some_and(|card| card.roles.iter().any(|role| role.line));
@@ -197,9 +198,10 @@ fn of_fact(
             let text = format!("it happens at {}", place::an(*class));
             list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: at(*class) });
         }
-        FactKind::Before { first, then } => {
-            let text = format!("{first} is there before {then}");
-            list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then });
+        FactKind::Before { first, then, at_door } => {
+            let place = if *at_door { "through the door" } else { "there" };
+            let text = format!("{first} is {place} before {then}");
+            list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then, at_door: *at_door });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

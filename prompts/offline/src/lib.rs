@@ -21,6 +21,7 @@ pub mod card;
 mod aside;
 mod begins;
 mod expect;
+mod form;
 mod hands;
 mod lexicon;
 mod slips;

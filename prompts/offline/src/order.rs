@@ -14,8 +14,8 @@ use crate::story::{Story, Thread};
 pub(crate) struct Order {
     /// Who met the robot in the last clause that told of it.
     met: Vec<usize>,
-    /// First and later one, with the words.
-    pairs: Vec<(AgentId, AgentId, String)>,
+    /// First and later one, whether at a door, with the words.
+    pairs: Vec<(AgentId, AgentId, bool, String)>,
 }
 
 /// The word before a clause, where it tells which of two comes first.
@@ -159,10 +159,15 @@ fn earlier(story: &mut Story, people: &[usize], quote: &str) {
 }
 
 fn pair(story: &mut Story, first: AgentId, then: AgentId, quote: &str) {
-    let known = |(a, b, _): &(AgentId, AgentId, String)| [(first, then), (then, first)].contains(&(*a, *b));
+    let known = |(a, b, ..): &(AgentId, AgentId, bool, String)| [(first, then), (then, first)].contains(&(*a, *b));
     if !story.order.pairs.iter().any(known) {
-        story.order.pairs.push((first, then, quote.to_owned()));
+        story.order.pairs.push((first, then, false, quote.to_owned()));
     }
+}
+
+/// An order that is stated exactly.
+pub(crate) fn state(order: &mut Order, (first, then): (AgentId, AgentId), at_door: bool, quote: &str) {
+    order.pairs.push((first, then, at_door, quote.to_owned()));
 }
 
 /// The human at this place of the cast, from 0.
@@ -172,7 +177,7 @@ pub(crate) fn agent(who: usize) -> AgentId {
 
 /// Tells in the line of the later of two whom it comes after.
 pub(crate) fn tell(kind: &FactKind, humans: &mut [ReadHuman]) {
-    let FactKind::Before { first, then } = kind else { return };
+    let FactKind::Before { first, then, .. } = kind else { return };
     let who = |agent: &AgentId| if *agent == AgentId::Robot { "the robot".to_owned() } else { agent.to_string() };
     let (told, words) = match (first, then) {
         (_, AgentId::Human(then)) => (then, format!("after {}", who(first))),
@@ -187,8 +192,8 @@ pub(crate) fn tell(kind: &FactKind, humans: &mut [ReadHuman]) {
 
 /// The facts, with their words.
 pub(crate) fn facts(story: &Story) -> impl Iterator<Item = (String, FactKind)> + '_ {
-    let fact = |(first, then, quote): &(AgentId, AgentId, String)| {
-        (quote.clone(), FactKind::Before { first: *first, then: *then })
+    let fact = |(first, then, at_door, quote): &(AgentId, AgentId, bool, String)| {
+        (quote.clone(), FactKind::Before { first: *first, then: *then, at_door: *at_door })
     };
     story.order.pairs.iter().map(fact)
 }

@@ -13,7 +13,7 @@ fn told(rough: &str) -> Reading {
 fn order(reading: &Reading) -> Vec<(u32, u32)> {
     let number = |agent: &AgentId| if let AgentId::Human(id) = agent { id.number() } else { 0 };
     let of = |kind: &FactKind| {
-        if let FactKind::Before { first, then } = kind { Some((number(first), number(then))) } else { None }
+        if let FactKind::Before { first, then, .. } = kind { Some((number(first), number(then))) } else { None }
     };
     reading.facts.iter().filter_map(|fact| of(&fact.kind)).collect()
 }
@@ -45,7 +45,7 @@ fn who_comes_first_is_read_and_demanded() {
             .iter()
             .filter(|clause| clause.must)
             .filter_map(|clause| {
-                let Predicate::Before { first, then } = &clause.predicate else { return None };
+                let Predicate::Before { first, then, .. } = &clause.predicate else { return None };
                 let number = |agent: &AgentId| if let AgentId::Human(id) = agent { id.number() } else { 0 };
                 Some((number(first), number(then)))
             })

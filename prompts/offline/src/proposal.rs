@@ -82,7 +82,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         notes,
         author: NAME.into(),
     };
-    proposal.expected_events = events::events(&proposal, reading, &part, &extras, location);
+    proposal.expected_events = events::events(&proposal, question, &part, &extras);
     reachable(&mut proposal, question);
     proposal
 }
@@ -229,7 +229,10 @@ fn robot(
     let goal = class(|kind| if let FactKind::RobotGoal(class) = kind { Some(*class) } else { None });
     let start = start.or_else(|| found.and_then(|card| card.start)).filter(|class| place::has(location, *class));
     let goal = goal.or_else(|| found.and_then(|card| card.goal)).filter(|class| place::has(location, *class));
-    let mut script: Vec<RobotRule> = found.map(|card| card.script.clone()).unwrap_or_default();
+    // The robot's part of a form is what the form states.
+    let of_card = found.filter(|_| request.form.is_empty());
+    let mut script: Vec<RobotRule> = of_card.map(|card| card.script.clone()).unwrap_or_default();
+    script.extend(request.form.script(&request.robot.does));
     let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);
     for line in &mut script {
         if let (RobotDo::Follow(who) | RobotDo::Overtake(who), Some(id)) = (&mut line.act, lead) {
@@ -240,7 +243,9 @@ fn robot(
         humans.iter().filter(|human| human.relation == Relation::Abreast).map(|human| human.id).collect();
     script.extend(beside.first().map(|id| RobotRule { when: RobotWhen::Start, act: RobotDo::Abreast(*id) }));
     for fact in &reading.facts {
-        if let FactKind::RobotSays(gesture) = fact.kind {
+        if let FactKind::RobotSays(gesture) = fact.kind
+            && !request.form.script(&request.robot.does).iter().any(|line| line.act == RobotDo::Say(gesture))
+        {
             // It asks whoever stands in its way once it cannot go on; a card may have it ask already.
             let answers = |human: &HumanProposal| {
                 let said = Trigger::RobotSays(gesture);

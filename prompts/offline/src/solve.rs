@@ -6,7 +6,7 @@ use socrates_solver::{Layout, Miss, Problem, Told};
 
 use crate::card::card;
 use crate::draw::Draw;
-use crate::{NAME, spot, task};
+use crate::{NAME, form, spot, task};
 
 /// Answers a paths question.
 pub(crate) fn solve(question: &Question, proposal: &Proposal) -> Result<Paths, Miss> {
@@ -18,6 +18,8 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
     let task = task::read(&question.request.task, &question.location);
     let former = question.refused.as_deref().and_then(|text| serde_json::from_str::<Paths>(text).ok());
     let told = Told::of(&question.feedback, former, proposal);
+    let (request, location) = (&question.request, &question.location);
+    let stated = |place| form::robot_end(place, location);
     let goals = spot::ends(question, &task.goals, proposal.robot.goal, true);
     let mut starts = spot::ends(question, &task.starts, proposal.robot.start, false);
     // A story in which both ends are one place names where the way ends: only a task says from where to where.
@@ -25,6 +27,9 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
     if starts == goals && !from_to {
         starts.clear();
     }
+    let goals = stated(request.robot.goal.as_ref()).unwrap_or(goals);
+    let starts = stated(request.robot.start.as_ref()).unwrap_or(starts);
+    let via = request.robot.via.as_ref().and_then(|place| form::bound(place, location)).map(|bound| bound.class);
     let purpose = if told.another { "other paths" } else { "paths" };
     Problem {
         proposal,
@@ -32,8 +37,8 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
         starts,
         goals,
         radius_m: question.request.robot.model.radius_m,
-        via: task.via.map(|(class, _)| class),
-        rooms: spot::rooms(question),
+        via: via.or(task.via.map(|(class, _)| class)),
+        rooms: if request.form.is_empty() { spot::rooms(question) } else { form::rooms(request, location) },
         layout: layout(&proposal.pattern),
         told,
         draw: Draw::new(question.seed, purpose).bits(),

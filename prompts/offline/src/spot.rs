@@ -136,8 +136,20 @@ fn doorways(location: &Location, quote: &str, stretches: &[(Stretch, Found)]) ->
 
 /// The nodes that count for a place of the text, in a clause; none where every node of the class does.
 pub(crate) fn nodes(location: &Location, quote: &str, class: PlaceClass, humans: &[HumanProposal]) -> Vec<NodeId> {
+    let meant = named_in(location, quote, class).map(|meant| meant.nodes).unwrap_or_default();
+    counted(location, meant, class, humans)
+}
+
+/// The nodes that count for a place: the meant ones, and where people cannot meet there those right before it; none where every node
+/// of the class does.
+pub(crate) fn counted(
+    location: &Location,
+    meant: Vec<NodeId>,
+    class: PlaceClass,
+    humans: &[HumanProposal],
+) -> Vec<NodeId> {
     let relation = |wanted: &[Relation]| humans.iter().any(|human| wanted.contains(&human.relation));
-    // Who comes out of a room or car is met before it.
+    // Somebody who comes out of a room or car is met before it.
     if matches!(class, PlaceClass::Room | PlaceClass::Doorway) && relation(&[Relation::Leaving, Relation::Staying]) {
         return Vec::new();
     }
@@ -150,7 +162,6 @@ pub(crate) fn nodes(location: &Location, quote: &str, class: PlaceClass, humans:
         Relation::Abreast,
         Relation::Leaving,
     ]);
-    let meant = named_in(location, quote, class).map(|meant| meant.nodes).unwrap_or_default();
     let all = if meant.is_empty() { socrates_maps::place::nodes_of(location, class) } else { meant.clone() };
     // Nobody walks on beyond a dead end, and nobody crosses in a doorway: they meet right before it.
     let dead = all.iter().all(|id| graph.degree(id) < 2) && walks;

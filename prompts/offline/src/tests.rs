@@ -24,6 +24,7 @@ fn blank(task: &str) -> Request {
         task: task.to_owned(),
         rough_scenario: None,
         location_description: None,
+        form: Default::default(),
         robot: Default::default(),
         run: Default::default(),
         expect: Default::default(),

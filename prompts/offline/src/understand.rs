@@ -13,7 +13,7 @@ use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, numbered, place, spot, words};
+use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, spot, words};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -39,7 +39,8 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
-    let mut story = rough.map(story::read).unwrap_or_default();
+    let stated = !request.form.is_empty();
+    let mut story = if stated { form::story(request, location) } else { rough.map(story::read).unwrap_or_default() };
     let mut task = task::read(&asked.story, location);
     let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
     let context = aside::split(&request.social_context);
@@ -52,15 +53,19 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     }
     language(request, &mut reading);
     expect::settle(request, &mut story, &mut reading);
-    story.finish();
-    contra::finish(&mut story, &told.story);
-    boards::settle(&mut story, location);
-    chance::settle(&mut story, &told.story);
-    story.cast.notes.extend(numbered::ranges(&told.story));
-    again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
+    // What a form states is not filled in.
+    if !stated {
+        story.finish();
+        contra::finish(&mut story, &told.story);
+        boards::settle(&mut story, location);
+        chance::settle(&mut story, &told.story);
+        story.cast.notes.extend(numbered::ranges(&told.story));
+        again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
+    }
     unplaceable(location, &mut story, &mut task, &mut reading);
     let wanted = request.expect.pattern.as_deref().or(story.robot_part);
-    reading.pattern = rough.and_then(|_| pattern::of(&story, wanted)).or_else(|| wanted.map(str::to_owned));
+    let told_of = rough.is_some() || stated;
+    reading.pattern = told_of.then(|| pattern::of(&story, wanted)).flatten().or_else(|| wanted.map(str::to_owned));
     if let Some(id) = request.expect.pattern.as_ref().filter(|id| crate::card::card(id).is_none()) {
         let known: Vec<&str> = crate::card::catalog().iter().map(|card| card.id.as_str()).collect();
         reading.problems.push(Fault::new(
@@ -103,6 +108,10 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     }
     leftovers(request, location, &mut story, &task, &mut reading);
     crate::spans::mark(request, &mut reading.problems);
+    if stated && rough.is_some() {
+        let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
+        reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
+    }
     Understood { reading, extras, by_card }
 }
 

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use super::form::Names;
 use super::tree::{Kind, Node, TextPlace};
 use super::{
     AuthorSpec, BadRequest, Duration, Expect, GROUP_SIZES, MAX_HUMANS, MAX_TEXT_CHARS, MAX_VARIANTS, Moment, Request,
@@ -23,7 +24,7 @@ use crate::fault::FaultCode;
 use crate::ids::PlannerName;
 
 /// Keys of a request.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 14] = [
     "location",
     "social_context",
     "task",
@@ -32,6 +33,9 @@ const KEYS: [&str; 11] = [
     "robot",
     "run",
     "expect",
+    "human",
+    "group",
+    "order",
     "proposal",
     "paths",
     "behaviors",
@@ -77,7 +81,7 @@ fn of_node(node: &Node, planners: Option<&[&str]>) -> Result<Request, Vec<BadReq
 }
 
 /// One table of the request.
-struct Section<'n> {
+pub(super) struct Section<'n> {
     /// Its key with a dot behind it, or nothing.
     path: &'static str,
     at: Option<TextPlace>,
@@ -89,22 +93,22 @@ impl<'n> Section<'n> {
         Self { path, at: None, entries: BTreeMap::new() }
     }
 
-    fn key(&self, name: &str) -> String {
+    pub(super) fn key(&self, name: &str) -> String {
         format!("{}{name}", self.path)
     }
 
-    fn get(&self, name: &str) -> Option<&'n Node> {
+    pub(super) fn get(&self, name: &str) -> Option<&'n Node> {
         self.entries.get(name).copied()
     }
 }
 
-struct Door<'p> {
+pub(super) struct Door<'p> {
     problems: Vec<BadRequest>,
     planners: Option<&'p [&'p str]>,
 }
 
 impl Door<'_> {
-    fn bad(
+    pub(super) fn bad(
         &mut self,
         key: impl Into<String>,
         at: Option<TextPlace>,
@@ -116,7 +120,7 @@ impl Door<'_> {
     }
 
     /// The entries of a table; keys that it does not have are named.
-    fn section<'n>(&mut self, node: &'n Node, path: &'static str, known: &[&str]) -> Section<'n> {
+    pub(super) fn section<'n>(&mut self, node: &'n Node, path: &'static str, known: &[&str]) -> Section<'n> {
         let name = path.trim_end_matches('.');
         let Kind::Table(entries) = &node.kind else {
             let found = format!("is {}", node.kind.name());
@@ -143,7 +147,7 @@ impl Door<'_> {
     }
 
     /// A value that reads itself out of what stands there.
-    fn typed<T: DeserializeOwned>(&mut self, key: &str, node: &Node, hint: &str) -> Option<T> {
+    pub(super) fn typed<T: DeserializeOwned>(&mut self, key: &str, node: &Node, hint: &str) -> Option<T> {
         if let Kind::Odd(name) = node.kind {
             self.bad(key, node.at, format!("is {name}"), hint);
             return None;
@@ -158,7 +162,7 @@ impl Door<'_> {
     }
 
     /// The value of a key that may be left out.
-    fn maybe<T: DeserializeOwned>(&mut self, section: &Section<'_>, name: &str, hint: &str) -> Option<T> {
+    pub(super) fn maybe<T: DeserializeOwned>(&mut self, section: &Section<'_>, name: &str, hint: &str) -> Option<T> {
         // In JSON a key that is left out may be written as null.
         let node = section.get(name).filter(|node| !matches!(node.kind, Kind::Plain(Value::Null)))?;
         self.typed(&section.key(name), node, hint)
@@ -186,19 +190,30 @@ impl Door<'_> {
     fn request(&mut self, node: &Node) -> Option<Request> {
         let top = self.section(node, "", &KEYS);
         let location = self.needed(&top, "location", "a shipped name or a folder");
-        let social_context = self.needed(&top, "social_context", "where and among whom the robot works, in a sentence");
+        let (form, mut names) = self.form(&top);
+        // A form says who is there without a social context.
+        let social_context = if top.get("human").is_none() || top.get("social_context").is_some() {
+            self.needed(&top, "social_context", "where and among whom the robot works, in a sentence")
+        } else {
+            Some(String::new())
+        };
         let task_hint = "say what the robot has to do, for example \"Deliver coffee to the meeting room\"";
         let task = self.needed(&top, "task", task_hint);
         if task.as_deref().is_some_and(|task| task.trim().is_empty()) {
             self.bad("task", top.get("task").and_then(|node| node.at), "is empty", task_hint);
         }
         let file = "the name of a file beside the request";
+        let robot = top.get("robot").map(|node| self.robot(node, &mut names)).unwrap_or_default();
+        let expect = top.get("expect").map(|node| self.expect(node)).unwrap_or_default();
+        self.names(&form, &names);
+        self.against(&form, &expect, &top);
         Some(Request {
             rough_scenario: self.text(&top, "rough_scenario"),
             location_description: self.text(&top, "location_description"),
-            robot: top.get("robot").map(|node| self.robot(node)).unwrap_or_default(),
+            robot,
+            form,
             run: top.get("run").map(|node| self.run(node)).unwrap_or_default(),
-            expect: top.get("expect").map(|node| self.expect(node)).unwrap_or_default(),
+            expect,
             proposal: self.maybe(&top, "proposal", file),
             paths: self.maybe(&top, "paths", file),
             behaviors: self.maybe(&top, "behaviors", file),
@@ -208,14 +223,19 @@ impl Door<'_> {
         })
     }
 
-    fn robot(&mut self, node: &Node) -> RobotRequest {
-        let section = self.section(node, "robot.", &["model", "planners", "waypoints", "gestures"]);
+    fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {
+        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "does"];
+        let section = self.section(node, "robot.", &keys);
         let unset = RobotRequest::default();
         RobotRequest {
             model: self.maybe(&section, "model", RobotModel::ALLOWED).unwrap_or(unset.model),
             planners: section.get("planners").map_or(unset.planners, |node| self.planners(node)),
             waypoints: self.maybe(&section, "waypoints", "\"ends\", \"via\" or \"all\"").unwrap_or(unset.waypoints),
             gestures: section.get("gestures").map_or(unset.gestures, |node| self.gestures(node)),
+            start: self.place(&section, "start"),
+            goal: self.place(&section, "goal"),
+            via: self.place(&section, "via"),
+            does: self.robot_steps(&section, names),
         }
     }
 

@@ -58,7 +58,7 @@ fn shifts(robot: &[AgentState], other: &[AgentState], blocks: &[bool]) -> Vec<(f
     found
 }
 
-fn items(case: &Case<'_>) -> Wrong {
+pub(super) fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
     let behind = case.of_relation(Relation::Behind);
     let Some(follower) = behind.first() else { return vec!["S2: nobody is behind the robot".to_owned()] };
@@ -161,14 +161,16 @@ fn items(case: &Case<'_>) -> Wrong {
     wrong
 }
 
+/// Spoiled runs that must be tried and refused.
+pub(super) const KINDS: &[&str] = &[
+    "N: follower ahead",
+    "N: follower beside",
+    "N: gap over 5 m",
+    "N: obstruction of 0.5 s",
+    "N: beside the way all the time",
+];
+
 #[tokio::test]
 async fn in_the_corridor_one_follows_and_one_obstructs() {
-    let kinds = [
-        "N: follower ahead",
-        "N: follower beside",
-        "N: gap over 5 m",
-        "N: obstruction of 0.5 s",
-        "N: beside the way all the time",
-    ];
-    study("corridor", items, &kinds).await;
+    study("corridor", items, KINDS).await;
 }

@@ -4,7 +4,7 @@ use socrates_model::{AgentId, AgentState, Relation, Trigger};
 
 use super::{Case, STOPPED_MPS, Wrong, check, crossings, longest, off_heading, secs, study, tick};
 
-fn items(case: &Case<'_>) -> Wrong {
+pub(super) fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
     let place = &case.scenario.prepared.location;
     let (leavers, stayers) = (case.of_relation(Relation::Leaving), case.of_relation(Relation::Staying));
@@ -113,15 +113,17 @@ fn items(case: &Case<'_>) -> Wrong {
     wrong
 }
 
+/// Spoiled runs that must be tried and refused.
+pub(super) const KINDS: &[&str] = &[
+    "N: leavers 15 s late",
+    "N: one leaver fewer",
+    "N: who should stay leaves",
+    "N: startle before the door opens",
+    "reaction muted",
+    "a person is missing",
+];
+
 #[tokio::test]
 async fn in_the_elevator_two_leave_one_stays_startled() {
-    let kinds = [
-        "N: leavers 15 s late",
-        "N: one leaver fewer",
-        "N: who should stay leaves",
-        "N: startle before the door opens",
-        "reaction muted",
-        "a person is missing",
-    ];
-    study("elevator", items, &kinds).await;
+    study("elevator", items, KINDS).await;
 }

@@ -23,7 +23,7 @@ const fn distance(trigger: &Trigger) -> Option<(bool, f64)> {
     }
 }
 
-fn items(case: &Case<'_>) -> Wrong {
+pub(super) fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
     let group = &case.scenario.made.proposal.groups[0];
     check(&mut wrong, (3..=6).contains(&group.members.len()), || format!("S1: {} members", group.members.len()));
@@ -133,14 +133,16 @@ async fn who_is_named_of_the_group_reacts_alone_and_where_it_was_told() {
     study_of(prepared, items, &["N: reaction at 8 m", "reaction muted"]).await;
 }
 
+/// Spoiled runs that must be tried and refused.
+pub(super) const KINDS: &[&str] = &[
+    "N: a line back to back",
+    "group broken",
+    "N: 5 m from the way",
+    "N: dissolves before the robot comes",
+    "a person is missing",
+];
+
 #[tokio::test]
 async fn in_the_warehouse_a_group_stands_in_a_circle_until_the_robot_is_there() {
-    let kinds = [
-        "N: a line back to back",
-        "group broken",
-        "N: 5 m from the way",
-        "N: dissolves before the robot comes",
-        "a person is missing",
-    ];
-    study("warehouse-group", items, &kinds).await;
+    study("warehouse-group", items, KINDS).await;
 }

@@ -11,7 +11,7 @@ fn there(track: &[AgentState], at: &Point, within_m: f64) -> Option<usize> {
     track.iter().position(|state| (state.point() - at).norm() <= within_m)
 }
 
-fn items(case: &Case<'_>) -> Wrong {
+pub(super) fn items(case: &Case<'_>) -> Wrong {
     let mut wrong = Wrong::new();
     let graph = &case.scenario.prepared.location.graph;
     let paths = &case.scenario.made.paths;
@@ -97,8 +97,11 @@ fn items(case: &Case<'_>) -> Wrong {
     wrong
 }
 
+/// Spoiled runs that must be tried and refused.
+pub(super) const KINDS: &[&str] =
+    &["N: 8 s late", "N: already outside at the start", "path reversed", "a person is missing"];
+
 #[tokio::test]
 async fn at_the_intersection_two_come_out_of_a_room_suddenly() {
-    let kinds = ["N: 8 s late", "N: already outside at the start", "path reversed", "a person is missing"];
-    study("intersection", items, &kinds).await;
+    study("intersection", items, KINDS).await;
 }

@@ -108,7 +108,7 @@ fn judge(corpus: &str) -> (usize, usize, Vec<String>) {
     (right, all, wrong)
 }
 
-fn holds(fact: &str, reading: &Reading) -> bool {
+pub(crate) fn holds(fact: &str, reading: &Reading) -> bool {
     if let Some(rest) = fact.strip_prefix("not ") {
         return !holds(rest, reading);
     }
@@ -152,7 +152,7 @@ fn human<'a>(number: &str, reading: &'a Reading) -> Option<&'a socrates_model::r
 
 /// The rule; where one with the same trigger lasts so long before it, it also waits for that time, and who walks ahead of the
 /// robot notices it where others would see it.
-fn timed(human: &socrates_model::reading::ReadHuman, at: usize) -> Rule {
+pub(crate) fn timed(human: &socrates_model::reading::ReadHuman, at: usize) -> Rule {
     let (rules, mut rule) = (&human.rules, human.rules[at].clone());
     let before = at.checked_sub(1).map(|before| &rules[before]).filter(|before| before.when == rule.when);
     rule.when.extend(before.and_then(|before| before.for_s).map(Trigger::AfterSecs));
@@ -176,9 +176,15 @@ fn does(words: &[&str], rule: &Rule) -> bool {
         [] => true,
         ["for", seconds] => rule.for_s == Some(seconds.parse().unwrap()),
         ["at", value] => rule.when.iter().any(|trigger| amount(trigger) == Some(value.parse().unwrap())),
-        ["when", kind, ..] => rule.when.iter().any(|trigger| is(trigger, kind, &rest[2..])),
+        ["when", ..] => waits(&rest[1..], rule),
         _ => panic!("the corpus says {words:?}"),
     }
+}
+
+/// `near`, `robot_says WAIT`: whether a rule waits for it.
+pub(crate) fn waits(words: &[&str], rule: &Rule) -> bool {
+    let [kind, more @ ..] = words else { return false };
+    rule.when.iter().any(|trigger| is(trigger, kind, more))
 }
 
 fn amount(trigger: &Trigger) -> Option<f64> {

@@ -113,8 +113,8 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         Predicate::MeetsAgain { human, nth, .. } => {
             matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
         }
-        Predicate::Before { first, then } => {
-            matches!(fact, FactKind::Before { first: one, then: other } if one == first && other == then)
+        Predicate::Before { first, then, at_door } => {
+            matches!(fact, FactKind::Before { first: one, then: other, at_door: door } if (one, other, door) == (first, then, at_door))
         }
         Predicate::EncounterAt { place, .. } => matches!(fact, FactKind::Place(asked) if asked == place),
         Predicate::Humans { .. }

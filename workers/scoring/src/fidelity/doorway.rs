@@ -1,5 +1,5 @@
 //! Monitors of doors and lines of sight: leaves, enters, stays inside, door opens, hidden until, robot enters last,
-//! robot leaves first.
+//! robot leaves first, one before another.
 
 use socrates_model::{AgentId, HumanId, Relation};
 
@@ -7,6 +7,7 @@ use crate::fidelity::doors::Crossing;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::openings::{destination, from_node, lines_of};
+use crate::fidelity::setting::BEFORE_S;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::temporal::{Signal, Within};
 use crate::tracks::{Sample, Track};
@@ -212,6 +213,43 @@ pub(super) fn robot_enters_last(signals: &Signals<'_>) -> Result<Finding, Findin
         }
         None => Finding::never(-1.0, vec![entry.t], format!("nobody leaves through {name}")),
     })
+}
+
+/// One gets through the door before the other: the door of whoever comes out, else of whoever goes in.
+pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Result<Finding, Finding> {
+    let humans =
+        || [first, then].into_iter().filter_map(|agent| if let AgentId::Human(id) = agent { Some(id) } else { None });
+    let comes_out = |id: &HumanId| {
+        let human = signals.evidence.proposal.and_then(|proposal| proposal.human(*id));
+        human.is_some_and(|human| matches!(human.relation, Relation::Leaving | Relation::Staying))
+    };
+    let lines = match humans().find(comes_out) {
+        Some(human) => lines_of(signals, "", Some(human))?,
+        None => match humans().next() {
+            Some(human) => destination(signals, human)?,
+            None => lines_of(signals, "", None)?,
+        },
+    };
+    let name = lines.name();
+    let mut times = Vec::new();
+    for agent in [first, then] {
+        let track = match agent {
+            AgentId::Human(id) => person(signals, id)?,
+            AgentId::Robot => match &signals.tracks.robot {
+                Some(robot) => robot,
+                None => return Err(Finding::not_applicable("there is no robot in the recording")),
+            },
+        };
+        let Some((crossing, _)) = lines.crossings(&track.samples).into_iter().next() else {
+            return Ok(Finding::never(-1.0, vec![], format!("{agent} never gets through the door {name}")));
+        };
+        times.push(crossing.t);
+    }
+    let &[before, after] = times.as_slice() else { return Err(Finding::not_applicable("there is nobody to compare")) };
+    let text = format!("{first} gets through {name} at {before:.1} s, {then} at {after:.1} s");
+    // At the same time is not before.
+    let margin = after - before - BEFORE_S;
+    Ok(Finding::by_margin(margin, vec![before.max(after), before, after], text).shifted(margin))
 }
 
 /// The robot is out of the door before the first human goes in.

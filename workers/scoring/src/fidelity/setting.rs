@@ -10,7 +10,7 @@ use crate::fidelity::signals::Signals;
 use crate::tracks::{Sample, Track};
 
 /// Who is there less than this before another is there at the same time, s.
-const BEFORE_S: f64 = 0.3;
+pub(super) const BEFORE_S: f64 = 0.3;
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
 

@@ -59,7 +59,11 @@ fn ordered_s(setup: &Setup, human: HumanId) -> Option<f64> {
         .expected_events
         .iter()
         .filter_map(|clause| {
-            if let Predicate::Before { first, then } = &clause.predicate { Some((*first, *then)) } else { None }
+            if let Predicate::Before { first, then, at_door: false } = &clause.predicate {
+                Some((*first, *then))
+            } else {
+                None
+            }
         })
         .collect();
     let own = AgentId::Human(human);

@@ -1,0 +1,463 @@
+//! The form's part of the door: `[[human]]`, `[[group]]`, `[[order]]` and the robot's steps.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::read::{Door, Section};
+use super::tree::{Kind, Node};
+use super::{Expect, MAX_HUMANS};
+use crate::form::{
+    Deed, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep, Step,
+    When,
+};
+use crate::place::PlaceClass;
+use crate::proposal::Relation;
+
+const HUMAN_KEYS: [&str; 11] =
+    ["id", "count", "role", "relation", "place", "start", "goal", "pace", "group", "does", "reacts"];
+const STEP_KEYS: [&str; 4] = ["when", "act", "for_s", "say"];
+const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
+const GESTURES: &str = "WAIT, PROCEED, ACKNOWLEDGED, EXCUSE_ME or FOLLOW_ME";
+const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
+/// People of one `[[human]]`.
+const MOST_ALIKE: u32 = 30;
+/// Steps of `does`, and of `reacts`.
+const MOST_STEPS: usize = 12;
+/// Longest time of a step, s.
+const MOST_S: f64 = 600.0;
+/// People of a group.
+const GROUP_SIZES: std::ops::RangeInclusive<u32> = 2..=8;
+/// Characters of a name, a role or a place.
+const MOST_CHARS: usize = 60;
+
+/// A name in the form, where it stands, and what it is for.
+struct Naming<'n> {
+    who: String,
+    key: &'static str,
+    node: Option<&'n Node>,
+    /// Whether `robot` is somebody here, and whether several may be meant.
+    robot: bool,
+    several: bool,
+}
+
+/// The names of a form that have to be somebody's.
+pub(super) struct Names<'n>(Vec<Naming<'n>>);
+
+impl Door<'_> {
+    /// The form of a request with the names that it uses.
+    pub(super) fn form<'n>(&mut self, top: &Section<'n>) -> (Form, Names<'n>) {
+        let mut names = Names(Vec::new());
+        let humans = self.tables(top, "human").into_iter().filter_map(|node| self.human(node, &mut names)).collect();
+        let groups = self.tables(top, "group").into_iter().filter_map(|node| self.group(node)).collect();
+        let orders = self.tables(top, "order").into_iter().filter_map(|node| self.order(node, &mut names)).collect();
+        let form = Form { humans, groups, orders };
+        self.alike(&form, top);
+        (form, names)
+    }
+
+    /// The tables of a list: `[[human]]`.
+    fn tables<'n>(&mut self, top: &Section<'n>, key: &'static str) -> Vec<&'n Node> {
+        let Some(node) = top.get(key) else { return Vec::new() };
+        if let Kind::List(nodes) = &node.kind {
+            return nodes.iter().collect();
+        }
+        self.bad(key, node.at, format!("is {}", node.kind.name()), format!("a table for each: [[{key}]]"));
+        Vec::new()
+    }
+
+    fn human<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> Option<FormHuman> {
+        let section = self.section(node, "human.", &HUMAN_KEYS);
+        let at = |name: &str| section.get(name).and_then(|node| node.at);
+        let id = self.word(&section, "id").filter(|id| {
+            let plain = id.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
+            let free = !matches!(id.as_str(), "robot" | "all") && !id.starts_with("human_");
+            if !(plain && free) {
+                let hint = "letters, digits, `_` and `-`; not `robot`, `all` or `human_…`";
+                self.bad("human.id", at("id"), format!("`{id}` is no name of a person"), hint);
+            }
+            plain && free
+        });
+        let count = self.maybe::<u32>(&section, "count", "1 to 30").unwrap_or(1);
+        if count == 0 || count > MOST_ALIKE {
+            self.bad("human.count", at("count"), format!("{count} people"), format!("1 to {MOST_ALIKE}"));
+        }
+        if section.get("relation").is_none() {
+            self.bad("human.relation", node.at, "is missing", RELATIONS);
+        }
+        let relation = self.maybe::<Relation>(&section, "relation", RELATIONS);
+        let pace = self.maybe::<Pace>(&section, "pace", Pace::ALLOWED);
+        if let Some(Pace::Mps(mps)) = pace.filter(|pace| pace.mps().is_some_and(|mps| !(0.2..=1.8).contains(&mps))) {
+            self.bad("human.pace", at("pace"), format!("{mps} m/s is out of range"), Pace::ALLOWED);
+        }
+        Some(FormHuman {
+            role: self.word(&section, "role"),
+            place: self.place(&section, "place"),
+            start: self.place(&section, "start"),
+            goal: self.place(&section, "goal"),
+            group: self.word(&section, "group"),
+            does: self.steps(&section, ("does", "human.does."), names),
+            reacts: self.steps(&section, ("reacts", "human.reacts."), names),
+            id,
+            count,
+            pace,
+            relation: relation?,
+        })
+    }
+
+    /// A short text that is not empty.
+    fn word(&mut self, section: &Section<'_>, name: &'static str) -> Option<String> {
+        let text: String = self.maybe(section, name, "a word in quotation marks")?;
+        let length = text.chars().count();
+        if text.trim().is_empty() || length > MOST_CHARS || text.chars().any(char::is_control) {
+            let at = section.get(name).and_then(|node| node.at);
+            let found = if text.trim().is_empty() { "is empty".to_owned() } else { format!("has {length} characters") };
+            self.bad(
+                section.key(name),
+                at,
+                found,
+                format!("a word or a few, up to {MOST_CHARS} characters on one line"),
+            );
+            return None;
+        }
+        Some(text.trim().to_owned())
+    }
+
+    pub(super) fn place(&mut self, section: &Section<'_>, name: &'static str) -> Option<PlaceWord> {
+        section.get(name)?;
+        match self.maybe::<String>(section, name, PLACE) {
+            Some(_) => self.word(section, name).map(PlaceWord::from),
+            None => None,
+        }
+    }
+
+    fn steps<'n>(
+        &mut self,
+        section: &Section<'n>,
+        (key, path): (&'static str, &'static str),
+        names: &mut Names<'n>,
+    ) -> Vec<Step> {
+        let Some(node) = section.get(key) else { return Vec::new() };
+        let Kind::List(nodes) = &node.kind else {
+            let hint = "a list: [{ when = { robot_near = 2.0 }, act = \"give_way\" }]";
+            self.bad(section.key(key), node.at, format!("is {}", node.kind.name()), hint);
+            return Vec::new();
+        };
+        if nodes.len() > MOST_STEPS {
+            self.bad(section.key(key), node.at, format!("has {} steps", nodes.len()), format!("at most {MOST_STEPS}"));
+        }
+        let mut steps: Vec<Step> = Vec::new();
+        for node in nodes {
+            let Some(step) = self.step(node, path, names) else { continue };
+            let when = format!("{path}when");
+            if path == "human.reacts." && step.when.is_empty() {
+                self.bad(when, node.at, "is missing", When::ALLOWED);
+            } else if path == "human.does." && !steps.is_empty() && !step.when.is_empty() {
+                let hint = "it begins when the step before has ended; what waits for something else stands in `reacts`";
+                self.bad(when, node.at, "belongs to the first step only", hint);
+            } else if path == "human.does." && steps.last().is_some_and(|last| is_endless(last)) {
+                let hint = "give the step before an end: for_s = 5.0";
+                self.bad(path.trim_end_matches('.'), node.at, "a step comes after one that never ends", hint);
+            }
+            steps.push(step);
+        }
+        steps
+    }
+
+    fn step<'n>(&mut self, node: &'n Node, path: &'static str, names: &mut Names<'n>) -> Option<Step> {
+        let section = self.section(node, path, &STEP_KEYS);
+        if !matches!(node.kind, Kind::Table(_)) {
+            return None;
+        }
+        let when = self.whens(&section, names);
+        let act = self.maybe::<Deed>(&section, "act", Deed::ALLOWED);
+        if let Some(name) = act.as_ref().and_then(Deed::names) {
+            names.0.push(Naming {
+                who: name.clone(),
+                key: "follow_human",
+                node: section.get("act"),
+                robot: false,
+                several: false,
+            });
+        }
+        let for_s = self.maybe::<f64>(&section, "for_s", "0.1 to 600 (s)");
+        if let Some(secs) = for_s.filter(|secs| !(0.1..=MOST_S).contains(secs)) {
+            let at = section.get("for_s").and_then(|node| node.at);
+            self.bad(section.key("for_s"), at, format!("{secs} s is out of range"), "0.1 to 600 (s)");
+        }
+        let say = self.maybe(&section, "say", GESTURES);
+        if section.get("act").is_none() && section.get("say").is_none() {
+            self.bad(
+                path.trim_end_matches('.'),
+                node.at,
+                "does nothing",
+                format!("act: {}; say: {GESTURES}", Deed::ALLOWED),
+            );
+        }
+        Some(Step { when, act, for_s, say })
+    }
+
+    fn whens<'n>(&mut self, section: &Section<'n>, names: &mut Names<'n>) -> Vec<When> {
+        let Some(node) = section.get("when") else { return Vec::new() };
+        let nodes: Vec<&Node> = if let Kind::List(nodes) = &node.kind { nodes.iter().collect() } else { vec![node] };
+        let mut found = Vec::new();
+        for node in nodes {
+            let Some(when) = self.typed::<When>(&section.key("when"), node, When::ALLOWED) else { continue };
+            self.number(&section.key("when"), node, when.number());
+            if let Some(name) = when.names() {
+                names.0.push(Naming {
+                    who: name.clone(),
+                    key: "human_says",
+                    node: Some(node),
+                    robot: false,
+                    several: false,
+                });
+            }
+            found.push(when);
+        }
+        found
+    }
+
+    fn number(&mut self, key: &str, node: &Node, number: Option<(f64, [f64; 2], &'static str)>) {
+        if let Some((value, [least, most], unit)) = number
+            && !(least..=most).contains(&value)
+        {
+            self.bad(key, node.at, format!("{value} {unit} is out of range"), format!("{least} to {most} ({unit})"));
+        }
+    }
+
+    fn group(&mut self, node: &Node) -> Option<FormGroup> {
+        let section = self.section(node, "group.", &["id", "formation"]);
+        if section.get("id").is_none() && matches!(node.kind, Kind::Table(_)) {
+            self.bad("group.id", node.at, "is missing", "the name that people have in `group`");
+        }
+        let formations = "circle, queue, side_by_side";
+        if section.get("formation").is_none() && matches!(node.kind, Kind::Table(_)) {
+            self.bad("group.formation", node.at, "is missing", formations);
+        }
+        let id = self.word(&section, "id");
+        let formation = self.maybe::<Formation>(&section, "formation", formations);
+        Some(FormGroup { id: id?, formation: formation? })
+    }
+
+    fn order<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> Option<FormOrder> {
+        let section = self.section(node, "order.", &["first", "then", "at"]);
+        let mut end = |name: &'static str| {
+            if section.get(name).is_none() && matches!(node.kind, Kind::Table(_)) {
+                self.bad(section.key(name), node.at, "is missing", "the name of a person, or \"robot\"");
+            }
+            let word = self.word(&section, name)?;
+            let key = if name == "first" { "order.first" } else { "order.then" };
+            names.0.push(Naming { who: word.clone(), key, node: section.get(name), robot: true, several: true });
+            Some(word)
+        };
+        let (first, then) = (end("first"), end("then"));
+        let doors = "\"doorway\", \"room\" or \"elevator\", or leave it out for where they meet the robot";
+        let at = self.maybe::<PlaceClass>(&section, "at", doors);
+        if let Some(class) =
+            at.filter(|class| !matches!(class, PlaceClass::Doorway | PlaceClass::Room | PlaceClass::Elevator))
+        {
+            let node = section.get("at").and_then(|node| node.at);
+            self.bad("order.at", node, format!("`{}` has no door", class.name()), doors);
+        }
+        Some(FormOrder { first: first?, then: then?, at })
+    }
+
+    /// The robot's steps: `does = [{ when = { human_near = 3.0 }, say = "EXCUSE_ME" }]`.
+    pub(super) fn robot_steps<'n>(&mut self, section: &Section<'n>, names: &mut Names<'n>) -> Vec<RobotStep> {
+        let Some(node) = section.get("does") else { return Vec::new() };
+        let Kind::List(nodes) = &node.kind else {
+            self.bad("robot.does", node.at, format!("is {}", node.kind.name()), "a list: [{ say = \"FOLLOW_ME\" }]");
+            return Vec::new();
+        };
+        let keys: Vec<&str> = ["when"].into_iter().chain(RobotDeed::KEYS).collect();
+        let mut steps = Vec::new();
+        for node in nodes {
+            let section = self.section(node, "robot.does.", &keys);
+            if !matches!(node.kind, Kind::Table(_)) {
+                continue;
+            }
+            let when = section.get("when").and_then(|node| {
+                let moment = self.typed::<RobotMoment>("robot.does.when", node, RobotMoment::ALLOWED)?;
+                self.number("robot.does.when", node, moment.number());
+                Some(moment)
+            });
+            let deeds: Vec<(&str, &Node)> =
+                RobotDeed::KEYS.iter().filter_map(|key| section.get(key).map(|node| (*key, node))).collect();
+            let [(key, value)] = deeds[..] else {
+                let found = if deeds.is_empty() { "does nothing" } else { "does several things at once" };
+                self.bad("robot.does", node.at, found, RobotDeed::ALLOWED);
+                continue;
+            };
+            let table = Value::Object([(key.to_owned(), value.value())].into_iter().collect());
+            let act = match serde_json::from_value::<RobotDeed>(table) {
+                Ok(act) => act,
+                Err(why) => {
+                    self.bad(format!("robot.does.{key}"), value.at, why.to_string(), RobotDeed::ALLOWED);
+                    continue;
+                }
+            };
+            self.number(&format!("robot.does.{key}"), value, act.number());
+            let named = [
+                (act.names(), "robot.does", Some(value)),
+                (when.as_ref().and_then(RobotMoment::names), "at_encounter", section.get("when")),
+            ];
+            for (name, key, node) in named {
+                names.0.extend(name.map(|name| Naming { who: name.clone(), key, node, robot: false, several: false }));
+            }
+            steps.push(RobotStep { when, act });
+        }
+        steps
+    }
+
+    /// What is wrong with names: two people or groups of one name, groups that are too small, too many people.
+    fn alike(&mut self, form: &Form, top: &Section<'_>) {
+        let at = |key: &str, index: usize| match top.get(key).map(|node| &node.kind) {
+            Some(Kind::List(nodes)) => nodes.get(index).and_then(|node| node.at),
+            _ => None,
+        };
+        let total = form.humans.iter().fold(0_u32, |sum, human| sum.saturating_add(human.count));
+        if total > MAX_HUMANS {
+            let node = top.get("human").and_then(|node| node.at);
+            self.bad("human.count", node, format!("{total} people altogether"), format!("at most {MAX_HUMANS}"));
+        }
+        let mut seen: Vec<&str> = Vec::new();
+        for (index, human) in form.humans.iter().enumerate() {
+            let Some(id) = human.id.as_deref() else { continue };
+            if seen.contains(&id) {
+                self.bad(
+                    "human.id",
+                    at("human", index),
+                    format!("`{id}` is somebody already"),
+                    "a name of its own, or `count`",
+                );
+            }
+            seen.push(id);
+        }
+        let sizes: BTreeMap<&str, u32> = form.humans.iter().fold(BTreeMap::new(), |mut sizes, human| {
+            if let Some(name) = human.group.as_deref() {
+                let size: &mut u32 = sizes.entry(name).or_default();
+                *size = size.saturating_add(human.count);
+            }
+            sizes
+        });
+        for (index, human) in form.humans.iter().enumerate() {
+            let size = human.group.as_deref().and_then(|name| sizes.get(name).map(|size| (name, *size)));
+            if let Some((name, size)) = size.filter(|(_, size)| !GROUP_SIZES.contains(size)) {
+                let hint = format!("{} to {} people name a group", GROUP_SIZES.start(), GROUP_SIZES.end());
+                self.bad("human.group", at("human", index), format!("`{name}` has {size} people"), hint);
+            }
+        }
+        for (index, group) in form.groups.iter().enumerate() {
+            if !sizes.contains_key(group.id.as_str()) {
+                let groups: Vec<&str> = sizes.keys().copied().collect();
+                let hint = if groups.is_empty() { "no human names a group".to_owned() } else { groups.join(", ") };
+                self.bad("group.id", at("group", index), format!("nobody is in `{}`", group.id), hint);
+            }
+            if form.groups.iter().take(index).any(|other| other.id == group.id) {
+                self.bad(
+                    "group.id",
+                    at("group", index),
+                    format!("`{}` is stated already", group.id),
+                    "one [[group]] for each",
+                );
+            }
+        }
+        self.circle(form, top);
+    }
+
+    /// Orders that contradict each other: somebody is before themselves, at once or round about.
+    fn circle(&mut self, form: &Form, top: &Section<'_>) {
+        let mut after: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for (index, order) in form.orders.iter().enumerate() {
+            let mut reached = vec![order.then.as_str()];
+            let mut next = 0;
+            while let Some(name) = reached.get(next).copied() {
+                next += 1;
+                for then in after.get(name).into_iter().flatten() {
+                    if !reached.contains(then) {
+                        reached.push(then);
+                    }
+                }
+            }
+            if reached.contains(&order.first.as_str()) {
+                let at = match top.get("order").map(|node| &node.kind) {
+                    Some(Kind::List(nodes)) => nodes.get(index).and_then(|node| node.at),
+                    _ => None,
+                };
+                let found = format!("`{}` before `{}` closes a circle", order.first, order.then);
+                self.bad("order", at, found, "remove one of the orders");
+            }
+            after.entry(&order.first).or_default().push(&order.then);
+        }
+    }
+
+    /// Names that nobody has, or that several have where one is meant.
+    pub(super) fn names(&mut self, form: &Form, names: &Names<'_>) {
+        let known: Vec<String> = form
+            .people()
+            .iter()
+            .map(|person| {
+                person.human.id.clone().filter(|_| person.human.count == 1).unwrap_or_else(|| person.id.to_string())
+            })
+            .collect();
+        for naming in &names.0 {
+            if naming.robot && naming.who == "robot" {
+                continue;
+            }
+            let found = form.named(&naming.who).len();
+            let at = naming.node.and_then(|node| node.at);
+            if found == 0 {
+                let hint = if known.is_empty() { "no [[human]] is stated".to_owned() } else { known.join(", ") };
+                self.bad(naming.key, at, format!("`{}` is nobody", naming.who), hint);
+            } else if found > 1 && !naming.several {
+                let hint = format!("one of them: {}_1", naming.who);
+                self.bad(naming.key, at, format!("`{}` is {found} people", naming.who), hint);
+            }
+        }
+    }
+
+    /// The form against what else is fixed: `[expect]` and pinned files.
+    pub(super) fn against(&mut self, form: &Form, expect: &Expect, top: &Section<'_>) {
+        if form.humans.is_empty() {
+            return;
+        }
+        let at = |key: &str| top.get(key).and_then(|node| node.at);
+        for pinned in ["proposal", "paths", "behaviors"] {
+            if at(pinned).is_some() || top.get(pinned).is_some() {
+                self.bad(
+                    pinned,
+                    at(pinned),
+                    "stands beside [[human]]",
+                    "a pinned file says who is there already; keep one of the two",
+                );
+            }
+        }
+        let count = form.headcount();
+        if let Some(humans) = expect.humans.filter(|humans| *humans != count) {
+            let found = format!("{humans} humans, but [[human]] states {count}");
+            self.bad("expect.humans", at("expect"), found, "leave it out, or correct one of the two");
+        }
+        if !expect.groups.is_empty() {
+            self.bad("expect.groups", at("expect"), "stands beside [[human]]", "name groups by `group` in [[human]]");
+        }
+        let places: Vec<&PlaceWord> = form.humans.iter().filter_map(|human| human.place.as_ref()).collect();
+        if let Some(class) = expect.place
+            && !places.is_empty()
+            && places.iter().all(|place| !matches!(place, PlaceWord::Class(own) if *own == class))
+            && places.iter().all(|place| matches!(place, PlaceWord::Class(_)))
+        {
+            let found = format!(
+                "`{}`, but [[human]] says {}",
+                class.name(),
+                places.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+            );
+            self.bad("expect.place", at("expect"), found, "leave it out, or correct one of the two");
+        }
+    }
+}
+
+/// Whether nothing ends a step but the end of the run.
+fn is_endless(step: &Step) -> bool {
+    step.for_s.is_none() && !matches!(step.act, None | Some(Deed::GiveWay | Deed::Approach))
+}

@@ -1,0 +1,124 @@
+//! What the door says of forms: everything at once, with line, key, value and what is allowed.
+
+use crate::form::{Deed, Form, PlaceWord, When};
+use crate::{Action, AgentId, GroupId, HumanId, PlaceClass, Request, Trigger};
+
+const PLAIN: &str = "location = \"office\"\ntask = \"Deliver mail\"\n";
+
+fn read(more: &str) -> Result<Request, Vec<String>> {
+    let told = |bad: crate::BadRequest| bad.told("my.toml");
+    Request::of_toml(&format!("{PLAIN}{more}"), None).map_err(|problems| problems.into_iter().map(told).collect())
+}
+
+#[track_caller]
+fn form(more: &str) -> Form {
+    read(more).unwrap_or_else(|problems| panic!("{problems:#?}")).form
+}
+
+#[test]
+fn a_form_is_read_into_people_who_are_counted_out() {
+    let form = form(
+        "[[human]]\nid = \"visitor\"\ncount = 2\nrelation = \"leaving\"\nplace = \"elevator\"\ngroup = \"pair\"\n\
+         [[human]]\nrelation = \"static\"\nplace = \"packing area\"\n\
+         reacts = [{ when = { human_says = [\"visitor_2\", \"WAIT\"] }, act = { follow_human = \"visitor_1\" } }]\n\
+         does = [{ when = { robot_near = 2 }, say = \"PROCEED\" }, { act = \"give_way\" }]\n\
+         [[order]]\nfirst = \"visitor\"\nthen = \"robot\"\n",
+    );
+    let people = form.people();
+    assert_eq!(people.len(), 3);
+    assert_eq!(people[0].group, Some(GroupId(1)));
+    assert_eq!(form.named("visitor"), [HumanId::new(1), HumanId::new(2)]);
+    assert_eq!(form.one("visitor_2"), Some(HumanId::new(2)));
+    assert_eq!(form.one("human_3"), Some(HumanId::new(3)));
+    assert_eq!(form.agents("robot"), [AgentId::Robot]);
+    assert_eq!(people[0].human.place, Some(PlaceWord::Class(PlaceClass::Elevator)));
+    assert_eq!(people[2].human.place, Some(PlaceWord::Name("packing area".to_owned())));
+    // Reactions come first, and win; steps of a sequence wait for what its first step waits for.
+    let rules = &people[2].rules;
+    assert_eq!(rules[0].act, Action::FollowHuman(HumanId::new(1)));
+    assert_eq!((&rules[1].act, rules[1].for_s), (&Action::StandStill, Some(2.0)));
+    assert_eq!(rules[2].when, [Trigger::RobotNear(2.0)]);
+    assert!(rules[2].latched && !rules[0].latched);
+}
+
+#[test]
+fn a_request_with_a_form_is_written_and_read_again() {
+    let text = "[[human]]\nid = \"nurse\"\nrelation = \"crossing\"\npace = 0.8\ndoes = [{ when = \"at_encounter\", act = \"stand_still\", for_s = 3.0 }]\n\
+                [robot]\ngoal = \"ward 2\"\ndoes = [{ when = { at_encounter = \"nurse\" }, say = \"EXCUSE_ME\" }]\n";
+    let request = read(text).unwrap();
+    let again = Request::of_toml(&toml::to_string(&request).unwrap(), None).unwrap();
+    assert_eq!(again, request);
+    assert_eq!(Request::of_json(&serde_json::to_value(&request).unwrap(), None).unwrap(), request);
+    assert_eq!(request.form.humans[0].does[0].when, [When::AtEncounter]);
+    assert_eq!(request.form.humans[0].does[0].act, Some(Deed::StandStill));
+}
+
+#[test]
+fn everything_that_is_wrong_with_a_form_is_said_at_once() {
+    let human = "[[human]]\nrelation = \"static\"\n";
+    for (more, wanted) in [
+        ("[[human]]\nrole = \"nurse\"\n", "my.toml:3:1 `human.relation`: is missing"),
+        ("[[human]]\nrelation = \"sideways\"\n", "my.toml:4:12 `human.relation`: unknown variant `sideways`"),
+        ("[[human]]\nrelation = \"static\"\ncolor = \"red\"\n", "my.toml:5:1 `human.color`: is not a key"),
+        ("[[human]]\nrelation = \"static\"\ncount = 0\n", "`human.count`: 0 people (1 to 30)"),
+        ("[[human]]\nrelation = \"static\"\ncount = 1000\n", "`human.count`: 1000 people altogether (at most 40)"),
+        ("[[human]]\nrelation = \"static\"\nid = \"robot\"\n", "`human.id`: `robot` is no name of a person"),
+        ("[[human]]\nrelation = \"static\"\npace = 9\n", "`human.pace`: 9 m/s is out of range"),
+        ("[[human]]\nrelation = \"static\"\ngroup = \"g\"\n", "`human.group`: `g` has 1 people (2 to 8"),
+        (
+            "[[human]]\nid = \"a\"\nrelation = \"static\"\n[[human]]\nid = \"a\"\nrelation = \"ahead\"\n",
+            "`a` is somebody already",
+        ),
+        (&format!("{human}reacts = [{{ act = \"block\" }}]\n"), "`human.reacts.when`: is missing"),
+        (
+            &format!("{human}does = [{{ act = \"block\" }}, {{ act = \"navigate\" }}]\n"),
+            "a step comes after one that never ends",
+        ),
+        (
+            &format!(
+                "{human}does = [{{ act = \"block\", for_s = 2 }}, {{ when = \"robot_passed\", act = \"navigate\" }}]\n"
+            ),
+            "belongs to the first step only",
+        ),
+        (&format!("{human}does = [{{ for_s = 2 }}]\n"), "`human.does`: does nothing"),
+        (&format!("{human}does = [{{ act = \"block\", for_s = -1 }}]\n"), "-1 s is out of range (0.1 to 600 (s))"),
+        (
+            &format!("{human}does = [{{ when = {{ robot_near = 99 }}, act = \"block\" }}]\n"),
+            "99 m is out of range (0.3 to 15 (m))",
+        ),
+        (
+            &format!("{human}does = [{{ act = {{ follow_human = \"bob\" }} }}]\n"),
+            "`follow_human`: `bob` is nobody (human_1)",
+        ),
+        (
+            &format!(
+                "{human}[[order]]\nfirst = \"robot\"\nthen = \"human_1\"\n[[order]]\nfirst = \"human_1\"\nthen = \"robot\"\n"
+            ),
+            "closes a circle",
+        ),
+        (
+            &format!("{human}[[order]]\nfirst = \"robot\"\nthen = \"human_1\"\nat = \"corridor\"\n"),
+            "`order.at`: `corridor` has no door",
+        ),
+        (&format!("{human}[[group]]\nid = \"g\"\nformation = \"circle\"\n"), "nobody is in `g`"),
+        (&format!("{human}[expect]\nhumans = 3\n"), "`expect.humans`: 3 humans, but [[human]] states 1"),
+        (&format!("proposal = \"p.json\"\n{human}"), "`proposal`: stands beside [[human]]"),
+        (&format!("{human}[robot]\ndoes = [{{ hold_s = 100 }}]\n"), "`robot.does.hold_s`: 100 s is out of range"),
+        (&format!("{human}[robot]\ndoes = [{{ say = \"WAIT\", hold_s = 1 }}]\n"), "does several things at once"),
+        (&format!("{human}[robot]\ndoes = [{{ follow = \"ghost\" }}]\n"), "`ghost` is nobody"),
+        ("human = 3\n", "`human`: is a number (a table for each: [[human]])"),
+        ("[[human]]\nrelation = \"static\"\ndoes = 3\n", "`human.does`: is a number"),
+    ] {
+        let problems = read(more).err().unwrap_or_else(|| panic!("{more} is taken"));
+        assert!(problems.iter().any(|problem| problem.contains(wanted)), "{wanted}\n{problems:#?}");
+    }
+    let all = read("[[human]]\nrelation = \"sideways\"\ncount = 0\n[expect]\nhumans = 0\n").unwrap_err();
+    assert_eq!(all.len(), 3, "{all:#?}");
+}
+
+#[test]
+fn without_a_form_the_social_context_has_to_be_there() {
+    let problems = read("").unwrap_err();
+    assert!(problems[0].contains("`social_context`: is missing"), "{problems:?}");
+    assert_eq!(form("[[human]]\nrelation = \"static\"\n").headcount(), 1);
+}

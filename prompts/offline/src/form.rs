@@ -1,0 +1,256 @@
+//! From the form to the story: what a request states exactly takes the place of what would be read from its text.
+//!
+//! ```text
+//! [[human]] [[group]] [[order]] ─► Story (people, place, order), as if it had been read ─► reading, proposal, paths
+//! ```
+//!
+//! Places by name are bound here, to nodes: no word of a form is read as language.
+
+use std::collections::BTreeMap;
+
+use socrates_model::form::{Deed, FormHuman, Formation, PlaceWord};
+use socrates_model::{
+    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Trigger,
+};
+
+use crate::bind::QUEUES;
+use crate::cast::{Person, ReadRule};
+use crate::named;
+use crate::order;
+use crate::place;
+use crate::story::Story;
+
+/// Where a place of a form is on a map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Bound {
+    pub(crate) class: PlaceClass,
+    /// The nodes of a place by name; none where any place of the class is meant.
+    pub(crate) nodes: Vec<NodeId>,
+}
+
+/// Binds a place of a form; nothing where the map has none of that name or class.
+pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
+    match place {
+        PlaceWord::Class(class) => place::has(location, *class).then(|| Bound { class: *class, nodes: Vec::new() }),
+        PlaceWord::Name(name) => {
+            let found = named::find(location, name)?;
+            Some(Bound { class: found.class, nodes: found.nodes })
+        }
+    }
+}
+
+/// The story of a form.
+pub(crate) fn story(request: &Request, location: &Location) -> Story {
+    let mut story = Story::default();
+    let form = &request.form;
+    let people = form.people();
+    let called = |human: &FormHuman, id: HumanId| human.id.clone().unwrap_or_else(|| id.to_string());
+    for person in &people {
+        let human = person.human;
+        let name = called(human, person.id);
+        let line = |key: &str, value: &str| format!("human {name}: {key} = {value}");
+        let start = in_place(human, location);
+        let mut read = Person {
+            role: human.role.clone().unwrap_or_default().to_lowercase(),
+            relation: Some((human.relation, line("relation", &format!("\"{}\"", human.relation.name())))),
+            group: person.group,
+            speed_mps: human.pace.and_then(socrates_model::form::Pace::mps),
+            start,
+            goal: human.goal.as_ref().and_then(|goal| bound(goal, location)).map(|goal| goal.class),
+            bound: true,
+            doings: vec![stands(human.relation, start)],
+            ..Person::default()
+        };
+        let steps = human.reacts.iter().map(|step| (step, "reacts", true));
+        let does = human.does.iter().enumerate().map(|(place, step)| (step, "does", place == 0));
+        for (rule, (step, key, first)) in person.rules.iter().zip(steps.chain(does)) {
+            let timed = rule.when != [Trigger::Always];
+            let deed = step.act.as_ref().unwrap_or(&Deed::StandStill);
+            let said = step.say.map_or_else(String::new, |say| format!(", say {say}"));
+            let phrase = if step.act.is_none() { String::new() } else { rule.act.phrase() };
+            read.doings.push(match rule.gesture {
+                Some(gesture) if phrase.is_empty() => format!("gestures {gesture}"),
+                Some(gesture) => format!("{phrase} and gestures {gesture}"),
+                None => phrase,
+            });
+            read.rules.push(ReadRule {
+                rule: rule.clone(),
+                quote: line(key, &format!("{}{said}", word(deed))),
+                stated: timed && first,
+                exact: true,
+                lasts: rule.for_s.is_some(),
+                then: !first,
+            });
+        }
+        story.cast.people.push(read);
+    }
+    groups(request, &mut story);
+    orders(request, &mut story);
+    places(request, location, &mut story);
+    robot(request, location, &mut story);
+    let count = form.headcount();
+    story.cast.count_quote = Some(format!("[[human]]: {count}"));
+    story
+}
+
+/// The act as the form writes it.
+fn word(deed: &Deed) -> String {
+    let text = serde_json::to_string(deed).unwrap_or_default();
+    text.replace(['{', '}'], "").replace(':', " = ")
+}
+
+/// The class of the room or car that somebody is in at first: as `start` says, or `place` of whoever leaves it or stays in it.
+fn in_place(human: &FormHuman, location: &Location) -> Option<PlaceClass> {
+    let indoors = matches!(human.relation, Relation::Leaving | Relation::Staying);
+    let closed = |class: &PlaceClass| matches!(class, PlaceClass::Room | PlaceClass::Elevator);
+    let start = human.start.as_ref().and_then(|start| bound(start, location)).map(|start| start.class);
+    let place =
+        || human.place.as_ref().and_then(|place| bound(place, location)).map(|place| place.class).filter(closed);
+    start.or_else(|| if indoors { place() } else { None })
+}
+
+/// How somebody stands to the robot's way, for the reading line.
+fn stands(relation: Relation, start: Option<PlaceClass>) -> String {
+    let from = place::words(start.unwrap_or(PlaceClass::Room));
+    match relation {
+        Relation::Frontal => "comes towards the robot".to_owned(),
+        Relation::Behind => "comes from behind".to_owned(),
+        Relation::Ahead => "walks ahead of the robot".to_owned(),
+        Relation::Crossing => "crosses".to_owned(),
+        Relation::Static => "stands".to_owned(),
+        Relation::Leaving => format!("leaves the {from}"),
+        Relation::Staying => format!("stays in the {from}"),
+        Relation::Abreast => "walks beside the robot".to_owned(),
+    }
+}
+
+fn groups(request: &Request, story: &mut Story) {
+    for (number, name) in (1..).zip(request.form.group_names()) {
+        let id = socrates_model::GroupId(number);
+        let of_group = |person: &Person| person.group == Some(id);
+        let members: Vec<usize> =
+            (0..story.cast.people.len()).filter(|who| story.cast.people.get(*who).is_some_and(of_group)).collect();
+        let queue = request.form.groups.iter().any(|group| group.id == name && group.formation == Formation::Queue);
+        for person in story.cast.people.iter_mut().filter(|person| queue && of_group(person)) {
+            person.doings = vec![QUEUES.to_owned()];
+        }
+        story.cast.groups.push((id, members, format!("group = \"{name}\"")));
+    }
+}
+
+fn orders(request: &Request, story: &mut Story) {
+    for stated in &request.form.orders {
+        let quote = format!("order: first = \"{}\", then = \"{}\"", stated.first, stated.then);
+        let at_door = stated.at.is_some();
+        for first in request.form.agents(&stated.first) {
+            for then in request.form.agents(&stated.then) {
+                order::state(&mut story.order, (first, then), at_door, &quote);
+            }
+        }
+    }
+}
+
+/// Where the people meet the robot: one place for all. A place that this map does not have is a fault.
+fn places(request: &Request, location: &Location, story: &mut Story) {
+    let mut stated: Vec<(&PlaceWord, HumanId)> = Vec::new();
+    for person in request.form.people() {
+        let human = person.human;
+        let said = [("human.place", &human.place), ("human.start", &human.start), ("human.goal", &human.goal)];
+        for (key, place) in said {
+            let Some(place) = place else { continue };
+            if bound(place, location).is_none() {
+                let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
+                let fault = Fault::new(FaultCode::PPlace, key, message).about([place.to_string()]);
+                if !story.problems.contains(&fault) {
+                    story.problems.push(fault);
+                }
+            } else if key == "human.place" && !stated.iter().any(|(other, _)| *other == place) {
+                stated.push((place, person.id));
+            }
+        }
+    }
+    if let [(first, _), (other, id), ..] = stated[..] {
+        let message = format!("{id} is at `{other}`, others at `{first}`; people meet the robot at one place for all");
+        story.problems.push(Fault::new(FaultCode::PLimit, "human.place", message).about([other.to_string()]));
+    }
+    let first =
+        stated.first().and_then(|(place, _)| bound(place, location).map(|bound| (bound.class, place.to_string())));
+    story.place = first.map(|(class, name)| (class, format!("place = \"{name}\"")));
+}
+
+fn robot(request: &Request, location: &Location, story: &mut Story) {
+    let mut end = |key: &'static str, place: &Option<PlaceWord>| {
+        let place = place.as_ref()?;
+        let Some(bound) = bound(place, location) else {
+            let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
+            story.problems.push(Fault::new(FaultCode::PPlace, key, message).about([place.to_string()]));
+            return None;
+        };
+        Some((bound.class, format!("{key} = \"{place}\"")))
+    };
+    let (start, goal) = (end("robot.start", &request.robot.start), end("robot.goal", &request.robot.goal));
+    end("robot.via", &request.robot.via);
+    (story.robot_leaves, story.robot_enters) = (start, goal);
+    let script = request.form.script(&request.robot.does);
+    for line in script {
+        if let socrates_model::rule::RobotDo::Say(gesture) = line.act {
+            story.robot_says.push((gesture, format!("robot.does: say = \"{gesture}\"")));
+        }
+    }
+}
+
+/// The nodes of the place where people meet the robot, where it is stated by name; the class has to be the scenario's.
+pub(crate) fn met_at(request: &Request, location: &Location, class: PlaceClass) -> Option<Vec<NodeId>> {
+    let places = request.form.humans.iter().filter_map(|human| human.place.as_ref());
+    let bound = places.filter_map(|place| bound(place, location)).find(|bound| bound.class == class)?;
+    Some(bound.nodes)
+}
+
+/// The nodes where the robot's way begins or ends, where the form states it by name.
+pub(crate) fn robot_end(place: Option<&PlaceWord>, location: &Location) -> Option<Vec<NodeId>> {
+    place.and_then(|place| bound(place, location)).map(|bound| bound.nodes).filter(|nodes| !nodes.is_empty())
+}
+
+/// The rooms that people come out of, or stay in, by name.
+pub(crate) fn rooms(request: &Request, location: &Location) -> BTreeMap<HumanId, Vec<NodeId>> {
+    let room = |human: &FormHuman| {
+        let place = human.start.as_ref().or(human.place.as_ref())?;
+        bound(place, location).map(|bound| bound.nodes).filter(|nodes| !nodes.is_empty())
+    };
+    let indoors = |human: &FormHuman| matches!(human.relation, Relation::Leaving | Relation::Staying);
+    let people = request.form.people();
+    people
+        .iter()
+        .filter(|person| indoors(person.human))
+        .filter_map(|person| Some((person.id, room(person.human)?)))
+        .collect()
+}
+
+/// What the text says otherwise than the form, in one note: the form is played.
+pub(crate) fn differs(stated: &Reading, text: &Reading) -> Option<String> {
+    let relations = |reading: &Reading| {
+        let mut all: Vec<Relation> = reading.humans.iter().filter_map(|human| human.relation).collect();
+        all.sort_unstable();
+        all
+    };
+    let acts = |reading: &Reading| {
+        let mut all: Vec<String> =
+            reading.humans.iter().flat_map(|human| human.rules.iter().map(|rule| Action::phrase(&rule.act))).collect();
+        all.sort_unstable();
+        all
+    };
+    let mut found: Vec<String> = Vec::new();
+    if stated.humans.len() != text.humans.len() {
+        found.push(format!("{} humans in the text, {} in the form", text.humans.len(), stated.humans.len()));
+    } else if relations(stated) != relations(text) {
+        found.push("how people stand to the robot's way".to_owned());
+    }
+    if let Some((said, class)) = text.place.zip(stated.place).filter(|(said, class)| said != class) {
+        found.push(format!("{} in the text, {} in the form", place::an(said), place::an(class)));
+    }
+    if acts(stated) != acts(text) {
+        found.push("what people do".to_owned());
+    }
+    (!text.humans.is_empty() && !found.is_empty())
+        .then(|| format!("the text differs from the form ({}); the form is played", found.join("; ")))
+}
