@@ -37,11 +37,13 @@ pub enum Miss {
         /// How many nodes ways join to the start, and how many to the goal, themselves counted.
         nodes: [usize; 2],
     },
-    /// The robot is wider than every way to its goal.
+    /// The robot is wider than every way to its goal, or people are wider than every way to where they should be met.
     Narrow {
-        /// The robot's start.
+        /// Whether people are, who are a little wider than most robots.
+        people: bool,
+        /// The robot's start, or where people come from.
         from: NodeId,
-        /// Its goal.
+        /// The robot's goal, or the place of the meeting.
         to: NodeId,
         /// The edge that is too narrow.
         between: [NodeId; 2],
@@ -49,7 +51,7 @@ pub enum Miss {
         at: Point,
         /// Width there, m.
         has_m: f64,
-        /// Width of the robot, m.
+        /// Width of the robot, or of the floor that people get through, m.
         needs_m: f64,
     },
     /// A door on every way to the goal never opens.
@@ -146,12 +148,19 @@ impl fmt::Display for Miss {
                 "no way leads from `{from}` to `{to}`: they lie in parts of the map that no edge joins, of {here} and {there} nodes; \
                  take another goal, or join them"
             ),
-            Self::Narrow { from, to, between: [a, b], at, has_m, needs_m } => write!(
-                f,
-                "the robot needs {needs_m:.2} m, and the way from `{from}` to `{to}` has {has_m:.2} m between `{a}` and `{b}`, at \
-                 ({:.2}, {:.2}); take a smaller robot or another goal",
-                at.x, at.y
-            ),
+            Self::Narrow { people, from, to, between: [a, b], at, has_m, needs_m } => {
+                let (who, hint) = if *people {
+                    ("people need", "another place, or widen it")
+                } else {
+                    ("the robot needs", "a smaller robot or another goal")
+                };
+                write!(
+                    f,
+                    "{who} {needs_m:.2} m, and the way from `{from}` to `{to}` has {has_m:.2} m between `{a}` and `{b}`, at \
+                     ({:.2}, {:.2}); take {hint}",
+                    at.x, at.y
+                )
+            }
             Self::Shut { from, to, door, at } => write!(
                 f,
                 "the door `{door}` at ({:.2}, {:.2}) on the way from `{from}` to `{to}` never opens; take another place, or let it open",
@@ -250,6 +259,9 @@ pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
     if class != PlaceClass::Plain && own.is_empty() {
         return Miss::NoPlace(class);
     }
+    if let Some(miss) = narrow_place(problem, net, &own) {
+        return miss;
+    }
     let open = |node: &usize| !net.inside(*node);
     let nodes: Vec<usize> = if class == PlaceClass::Plain { (0..net.len()).collect() } else { own };
     let nodes: Vec<usize> = nodes.into_iter().filter(open).collect();
@@ -303,14 +315,26 @@ fn stopped(problem: &Problem<'_>, net: &Net<'_>, way: &[NodeId], (from, to): (No
             Miss::Shut { from, to, door: door.clone(), at }
         }
         Why::Narrow(at, has_m) => Miss::Narrow {
+            people: net.radius_m > problem.radius_m,
             from,
             to,
             between: closed.between.clone(),
             at: *at,
             has_m: *has_m,
-            needs_m: 2.0 * problem.radius_m,
+            needs_m: 2.0 * net.radius_m,
         },
     })
+}
+
+/// The places of the class where all lie behind edges that are too narrow, or behind doors that never open.
+fn narrow_place(problem: &Problem<'_>, net: &Net<'_>, places: &[usize]) -> Option<Miss> {
+    let first = net.id(*places.first()?)?;
+    if places.iter().any(|place| !net.near(*place).is_empty()) {
+        return None;
+    }
+    let edge = net.closed().iter().find(|edge| edge.between.contains(first))?;
+    let before = edge.between.iter().find(|end| *end != first)?;
+    stopped(problem, net, &[before.clone(), first.clone()], (before.clone(), first.clone()))
 }
 
 /// The longest way of the robot, where it is too short for any scenario; what stops it where the map would have a longer one.

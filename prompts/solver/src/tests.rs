@@ -136,6 +136,43 @@ fn a_way_that_is_narrower_than_the_robot_and_a_node_in_a_wall_are_named_with_the
 }
 
 #[test]
+fn nobody_is_met_where_only_the_robot_gets_through_unless_its_task_leads_there() {
+    // Two corridors between the same ends: the shorter one has a gap of 0.6 m.
+    let nodes = [
+        ("a", "CORRIDOR", 2.0, 3.0),
+        ("g", "CORRIDOR", 8.0, 3.0),
+        ("b", "CORRIDOR", 14.0, 3.0),
+        ("c", "CORRIDOR", 2.0, 7.0),
+        ("d", "CORRIDOR", 14.0, 7.0),
+    ];
+    let edges = [("a", "g"), ("g", "b"), ("a", "c"), ("c", "d"), ("d", "b")];
+    let floor = [
+        [1.0, 2.0, 6.0, 2.0],
+        [7.0, 2.7, 2.0, 0.6],
+        [9.0, 2.0, 6.0, 2.0],
+        [1.0, 2.0, 2.0, 6.0],
+        [13.0, 2.0, 2.0, 6.0],
+        [1.0, 6.0, 14.0, 2.0],
+    ];
+    let both = map([16.0, 9.0], &floor, &nodes, &edges);
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let around = ids(&["a", "c", "d", "b"]);
+    assert_eq!(solved(&between(&proposal, &both, "a", "b")).paths.robot, around);
+    // The robot of 0.5 m gets through where its task leads there.
+    let narrow = map([16.0, 9.0], &floor[..3], &nodes[..3], &edges[..2]);
+    assert!(impossible(&between(&proposal, &narrow, "a", "b")).is_none());
+    // Who comes out of a room behind such a gap does not.
+    let mut closet = with_room(1.6);
+    closet.grid =
+        map([28.0, 8.0], &[[0.5, 2.0, 27.0, 2.0], [13.7, 4.0, 0.6, 0.3], [13.4, 4.3, 1.2, 1.3]], &[], &[]).grid;
+    closet.doors = vec![closet_door(serde_json::json!({ "near": 1.5 }))];
+    let leaving = self::proposal(PlaceClass::Corridor, &[Relation::Leaving]);
+    let why = solve(&Problem::of(&leaving, &closet, "test".into())).unwrap_err();
+    assert!(matches!(why, Miss::Narrow { people: true, .. }), "{why}");
+    assert!(why.to_string().starts_with("people need 0.64 m, and the way from `in` to `c3` has 0.6"), "{why}");
+}
+
+#[test]
 fn a_door_that_never_opens_closes_the_way() {
     let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
     let mut location = corridor(2.0);
