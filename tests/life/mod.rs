@@ -10,6 +10,7 @@ mod folders;
 mod leaving;
 mod libraries;
 mod live;
+mod no_ways;
 mod originals;
 mod pages;
 mod readme;

@@ -285,6 +285,29 @@ impl Enclosures {
         }
     }
 
+    /// Free floor of a place, m²; of one that no walls bound, nothing is known.
+    #[must_use]
+    pub fn floor_m2(&self, place: &Enclosure) -> Option<f64> {
+        let number = self.places.iter().position(|other| other.id == place.id)?;
+        let own = self.floor.values.iter().filter(|label| usize::from(**label) == number + 1).count();
+        let cell_m = self.raster.resolution_m;
+        #[expect(clippy::cast_precision_loss, reason = "a map has far fewer than 2^53 cells")]
+        place.walled.then_some(own as f64 * cell_m * cell_m)
+    }
+
+    /// Ids of the declared doors of the place of a node; none where it lies outside.
+    pub fn doors_of(&self, node: &NodeId) -> impl Iterator<Item = &str> {
+        self.of_node(node).into_iter().flat_map(|place| &place.openings).filter_map(Opening::door)
+    }
+
+    /// Nodes of the places that a declared door leads into, in file order; those that its file names where it leads into none.
+    #[must_use]
+    pub fn behind<'a>(&'a self, door: &'a Door) -> Vec<&'a NodeId> {
+        let places = self.places.iter().filter(|place| place.by_door(&door.id).is_some());
+        let nodes: Vec<&NodeId> = places.flat_map(|place| &place.nodes).collect();
+        if nodes.is_empty() { door.inside.iter().collect() } else { nodes }
+    }
+
     /// The opening through which a way first leads out of the place that it begins in.
     #[must_use]
     pub fn way_out(&self, location: &Location, way: &[NodeId]) -> Option<(&Enclosure, &Opening)> {

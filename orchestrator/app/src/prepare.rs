@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use socrates_export::socrates_json::Imported;
 use socrates_model::request::ServerKind;
-use socrates_model::{AuthorSpec, Fault, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
+use socrates_model::{AuthorSpec, Fault, FaultCode, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -144,6 +144,10 @@ pub(crate) fn prepare_text(
         pins.insert(Role::Behaviors, read_pin(Role::Behaviors, &folder.join(file), |all| all.behaviors)?);
     }
     let (author, mut author_note) = choose_author(&request.run.author, config).map_err(of_request)?;
+    // What a language model would read out of the task is not known beforehand.
+    if author == AuthorSpec::Offline && !pins.contains_key(&Role::Proposal) && !pins.contains_key(&Role::Paths) {
+        check_ways(&reading, &request, &location, shown)?;
+    }
     crate::cost::check_limit(config, &author)?;
     let long = socrates_prompts::too_long(&request);
     // Rules read the whole request; whoever is asked in messages would not see its end.
@@ -202,6 +206,19 @@ fn check_reading(reading: &Reading, request: &Request, location: &Location, show
         ));
     }
     Ok(())
+}
+
+/// Refuses a request for which the map has no ways, with what does not fit, where, and by how much.
+fn check_ways(reading: &Reading, request: &Request, location: &Location, shown: &str) -> Result<(), Complaint> {
+    let Some(miss) = socrates_offline::impossible(request, reading, location) else { return Ok(()) };
+    Err(Complaint::faults(
+        format!("the request `{shown}` asks for ways that the location `{}` does not have", location.name),
+        &[Fault::new(FaultCode::ECannot, "paths", miss.to_string())],
+        format!(
+            "`socrates map draw {} -o map.png` shows the nodes; correct the text or the map",
+            files::shell(Path::new(&request.location))
+        ),
+    ))
 }
 
 /// The settings of `--inject`.

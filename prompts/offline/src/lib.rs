@@ -143,7 +143,7 @@ use socrates_model::{Location, Reading, Request};
 pub use answer::Offline;
 pub use card::{Card, catalog};
 pub use edit::{Draft, Edited, edit, settled};
-pub use solve::layout;
+pub use solve::{impossible, layout};
 pub use summary::summary;
 pub use understand::CONTEXT_NOTE;
 pub use unfit::Unfit;

@@ -1,5 +1,6 @@
 //! Places by the names that a map gives them: `the nurse station`, `ward 2`, `the packing area`.
 
+use socrates_maps::openings::Enclosures;
 use socrates_model::{GraphNode, Location, NodeId, PlaceClass};
 
 use crate::lexicon::lexicon;
@@ -85,10 +86,10 @@ pub(crate) fn telling(name: &str) -> Vec<String> {
 
 /// The nodes of a map whose type, or whose door, has most of the words of a name; `None` where it has none of them.
 pub(crate) fn find(location: &Location, name: &str) -> Option<Found> {
-    let wanted = telling(name);
+    let (wanted, all) = (telling(name), Enclosures::of(location));
     let own = |node: &GraphNode| {
         let mut own = tokens(&node.kind);
-        own.extend(location.door_of(&node.id).map(|door| tokens(&door.id)).unwrap_or_default());
+        own.extend(all.doors_of(&node.id).flat_map(tokens));
         own
     };
     // A number alone is no name: `room 214` is none of the map's.

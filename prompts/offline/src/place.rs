@@ -31,6 +31,15 @@ pub(crate) fn is_inside(location: &Location, node: &NodeId) -> bool {
     Enclosures::of(location).is_inside(node)
 }
 
+/// The first place that is inside by its name alone, and why it is not: `; not inside: …`. Empty where there is none.
+pub(crate) fn open_plan(location: &Location) -> String {
+    let all = Enclosures::of(location);
+    let first = all.open_plan().iter().find_map(|(nodes, why)| Some((location.graph.node(nodes.first()?)?, why)));
+    first.map_or_else(String::new, |(node, why)| {
+        format!("; not inside: `{}` at ({:.2}, {:.2}), because {why}", node.id, node.at.x, node.at.y)
+    })
+}
+
 /// The most places that one room has.
 pub(crate) fn most_places(location: &Location) -> usize {
     let all = Enclosures::of(location);

@@ -206,7 +206,10 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
             let fault = Fault::new(
                 FaultCode::PPlace,
                 crate::order::agent(who),
-                format!("`{quote}` needs a room or an elevator with a place inside, which this map does not have"),
+                format!(
+                    "`{quote}` needs a room or an elevator with a place inside, which this map does not have{}",
+                    place::open_plan(location)
+                ),
             );
             if !reading.problems.contains(&fault) {
                 reading.problems.push(fault);

@@ -3,8 +3,7 @@
 use std::fmt;
 
 use serde::Serialize;
-use socrates_maps::Ground;
-use socrates_model::{Location, NodeId, PlaceClass, Point, Relation, RobotModel};
+use socrates_model::{Location, PlaceClass, Relation, RobotModel};
 use socrates_solver::measure;
 
 use crate::card::{Card, Role};
@@ -21,8 +20,6 @@ const GAP_M: f64 = 0.2;
 const GAPS: f64 = 3.0;
 /// A largest width from here on is none, m.
 const OPEN_M: f64 = 50.0;
-/// Distance between two looks at the floor along an edge, m.
-const STEP_M: f64 = 0.5;
 
 /// Why a map cannot hold a card, with the number that says by how much.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -190,8 +187,7 @@ impl Card {
                 return Ok(());
             }
             let off = |width: &f64| (least - width).max(width - most).max(0.0);
-            let wide = self.places.iter().flat_map(|class| measure::widths_m(location, *class));
-            let nearest = wide.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0);
+            let nearest = self.widths_m(location).min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0);
             return Err(Unfit::Width { wanted_m: [least, most], places: self.places.clone(), nearest_m: nearest });
         }
         let abreast = self.roles.iter().map(|role| self.beside(role)).max().unwrap_or(0);
@@ -200,12 +196,17 @@ impl Card {
             return Ok(());
         }
         let needed_m = 2.0 * RobotModel::default().radius_m + f64::from(abreast) * 2.0 * PERSON_M + GAPS * GAP_M;
-        let widest_m = widths_m(location, &self.places).into_iter().fold(0.0, f64::max);
+        let widest_m = self.widths_m(location).fold(0.0, f64::max);
         // A wall that ends within a cell is drawn at one side of it.
         if widest_m + location.grid.resolution_m < needed_m {
             return Err(Unfit::Narrow { abreast, needed_m, places: self.places.clone(), widest_m });
         }
         Ok(())
+    }
+
+    /// Free widths of the floor at the places of the card, m.
+    fn widths_m<'a>(&'a self, location: &'a Location) -> impl Iterator<Item = f64> + 'a {
+        self.places.iter().flat_map(|class| measure::widths_m(location, *class))
     }
 
     /// How many people of a role are beside the robot at a time, at least: those who come towards it, who keep beside it, or who
@@ -237,25 +238,6 @@ impl Card {
 /// Whether people go through it one after the other.
 const fn is_tight(class: PlaceClass) -> bool {
     matches!(class, PlaceClass::Doorway | PlaceClass::NarrowPassage | PlaceClass::Elevator)
-}
-
-/// Free widths of the floor, m, at the nodes of these classes and along the edges between them: twice the way to the nearest
-/// wall, as a node lies in the middle of its floor.
-fn widths_m(location: &Location, classes: &[PlaceClass]) -> Vec<f64> {
-    let graph = &location.graph;
-    let ground = Ground::of(&location.grid);
-    let width_m = |at: &Point| 2.0 * ground.field().clearance(at);
-    let of_class = |id: &NodeId| classes.iter().any(|class| *class == PlaceClass::Plain || graph.node_is(id, *class));
-    let nodes = graph.nodes().iter().filter(|node| of_class(&node.id)).map(|node| width_m(&node.at));
-    let mut found: Vec<f64> = nodes.collect();
-    for edge in graph.edges().iter().filter(|edge| of_class(&edge.from) && of_class(&edge.to)) {
-        for leg in graph.edge_points(&edge.from, &edge.to).unwrap_or_default().windows(2) {
-            let [a, b] = leg else { continue };
-            let steps = libm::ceil((b - a).norm() / STEP_M).max(1.0) as u32;
-            found.extend((1..steps).map(|step| width_m(&(a + (b - a) * (f64::from(step) / f64::from(steps))))));
-        }
-    }
-    found
 }
 
 #[cfg(test)]

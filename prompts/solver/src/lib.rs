@@ -33,6 +33,8 @@ mod told;
 mod testing;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_by_hand;
 
 use std::collections::BTreeMap;
 
@@ -40,7 +42,7 @@ use serde::Deserialize;
 use socrates_model::{HumanId, Location, NodeId, Paths, PlaceClass, Proposal, RobotModel, Signature};
 
 pub use meant::{met_at, of_proposal};
-pub use miss::Miss;
+pub use miss::{Miss, impossible};
 pub use people::walks_later;
 pub use search::solve;
 

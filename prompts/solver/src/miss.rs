@@ -1,18 +1,21 @@
 //! Why there are no paths: what does not fit, where, and by how much.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use socrates_maps::Ground;
-use socrates_model::{HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
+use socrates_maps::openings::OpenPlan;
+use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
 
 use crate::graph::Net;
 use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, Why};
+use crate::people::boarding;
 use crate::{Problem, fit, inside, people, search};
 
 /// Floor that somebody needs who stands in a room with others, m²: a disc of 0.28 m and what keeps it from the next.
 const PERSON_M2: f64 = 0.5;
-/// A room is looked at so far about its node, m.
+/// A room that no walls bound is looked at so far about its node, m.
 const ROOM_M: f64 = 5.0;
 
 /// Why a map has no paths for a problem: the nearest miss, with its place and its numbers.
@@ -22,6 +25,8 @@ pub enum Miss {
     OnePlace {
         /// The place.
         node: NodeId,
+        /// Where it lies.
+        at: Point,
     },
     /// No way of the graph joins two places.
     Apart {
@@ -29,12 +34,16 @@ pub enum Miss {
         from: NodeId,
         /// Its goal.
         to: NodeId,
+        /// How many nodes ways join to the start, and how many to the goal, themselves counted.
+        nodes: [usize; 2],
     },
-    /// The robot is wider than every way to its goal.
+    /// The robot is wider than every way to its goal, or people are wider than every way to where they should be met.
     Narrow {
-        /// The robot's start.
+        /// Whether people are, who are a little wider than most robots.
+        people: bool,
+        /// The robot's start, or where people come from.
         from: NodeId,
-        /// Its goal.
+        /// The robot's goal, or the place of the meeting.
         to: NodeId,
         /// The edge that is too narrow.
         between: [NodeId; 2],
@@ -42,17 +51,28 @@ pub enum Miss {
         at: Point,
         /// Width there, m.
         has_m: f64,
-        /// Width of the robot, m.
+        /// Width of the robot, or of the floor that people get through, m.
         needs_m: f64,
     },
     /// A door on every way to the goal never opens.
     Shut {
-        /// The robot's start.
+        /// The robot's start, or a place in the room that somebody should come out of.
         from: NodeId,
-        /// Its goal.
+        /// The robot's goal, or the place before the room.
         to: NodeId,
         /// The door.
         door: String,
+        /// Its middle.
+        at: Point,
+    },
+    /// The only rooms or cars that somebody should come out of, stay in or go into have no opening.
+    OpenPlan {
+        /// A place in one of them.
+        node: NodeId,
+        /// Where it lies.
+        at: Point,
+        /// Why it has none.
+        why: OpenPlan,
     },
     /// The longest way of the robot is too short.
     Short {
@@ -118,27 +138,39 @@ impl fmt::Display for Miss {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let an = |class: &PlaceClass| inside::an(*class);
         match self {
-            Self::OnePlace { node } => {
-                write!(
-                    f,
-                    "the robot's start and goal are one place, `{node}`; name another goal, or leave one of them open"
-                )
-            }
-            Self::Apart { from, to } => {
-                write!(f, "no way leads from `{from}` to `{to}`: they lie in parts of the map that no edge joins")
-            }
-            Self::Narrow { from, to, between: [a, b], at, has_m, needs_m } => write!(
+            Self::OnePlace { node, at } => write!(
                 f,
-                "the robot needs {needs_m:.2} m, and the way from `{from}` to `{to}` has {has_m:.2} m between `{a}` and `{b}`, at \
-                 ({:.2}, {:.2}); take a smaller robot or another goal",
+                "the robot's start and goal are one place, `{node}` at ({:.2}, {:.2}); name another goal, or leave one of them open",
                 at.x, at.y
             ),
-            Self::Shut { from, to, door } => {
+            Self::Apart { from, to, nodes: [here, there] } => write!(
+                f,
+                "no way leads from `{from}` to `{to}`: they lie in parts of the map that no edge joins, of {here} and {there} nodes; \
+                 take another goal, or join them"
+            ),
+            Self::Narrow { people, from, to, between: [a, b], at, has_m, needs_m } => {
+                let (who, hint) = if *people {
+                    ("people need", "another place, or widen it")
+                } else {
+                    ("the robot needs", "a smaller robot or another goal")
+                };
                 write!(
                     f,
-                    "the door `{door}` on the way from `{from}` to `{to}` never opens; take another goal, or let it open"
+                    "{who} {needs_m:.2} m, and the way from `{from}` to `{to}` has {has_m:.2} m between `{a}` and `{b}`, at \
+                     ({:.2}, {:.2}); take {hint}",
+                    at.x, at.y
                 )
             }
+            Self::Shut { from, to, door, at } => write!(
+                f,
+                "the door `{door}` at ({:.2}, {:.2}) on the way from `{from}` to `{to}` never opens; take another place, or let it open",
+                at.x, at.y
+            ),
+            Self::OpenPlan { node, at, why } => write!(
+                f,
+                "nobody can come out of `{node}` at ({:.2}, {:.2}) or go in: {why}; take another place, or give it a doorway or a door",
+                at.x, at.y
+            ),
             Self::Short { ends: Some((from, to)), has_m, needs_m } => write!(
                 f,
                 "the longest path of the robot on this map, from `{from}` to `{to}`, is {has_m:.1} m; at least {needs_m} m are needed"
@@ -186,27 +218,49 @@ impl fmt::Display for Miss {
 
 impl std::error::Error for Miss {}
 
+/// What keeps a problem from having paths whatever is drawn, as far as that can be seen without a search for ways of people:
+/// ends, widths, doors, rooms, and the length of the longest way.
+#[must_use]
+pub fn impossible(problem: &Problem<'_>) -> Option<Miss> {
+    let net = Net::of(problem);
+    // Where the robot may drive through rooms a map has ways that are not counted here.
+    let short = || too_short(problem, &net).filter(|_| search::solve(problem).is_err());
+    beforehand(problem, &net).or_else(short)
+}
+
 /// What can be seen before anything is tried.
 pub(crate) fn beforehand(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
-    let [starts, goals] = [&problem.starts, &problem.goals];
-    if let ([start], [goal]) = (starts.as_slice(), goals.as_slice())
-        && start == goal
-    {
-        return Some(Miss::OnePlace { node: start.clone() });
-    }
-    unreachable(problem, net).or_else(|| full(problem, net))
+    let comes_out = |human: &&HumanProposal| human.relation == Relation::Leaving;
+    one_place(problem, net)
+        .or_else(|| unreachable(problem, net))
+        .or_else(|| problem.proposal.humans.iter().filter(comes_out).find_map(|human| shut_in(problem, net, human)))
+        .or_else(|| full(problem, net))
+}
+
+/// Start and goal by name that are the same, or the same few nodes beside each other.
+fn one_place(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
+    let nodes = |ids: &[NodeId]| ids.iter().filter_map(|id| net.index(id)).collect::<BTreeSet<usize>>();
+    let (starts, goals) = (nodes(&problem.starts), nodes(&problem.goals));
+    let first = *starts.first()?;
+    let near = |node: &usize| (net.at(*node) - net.at(first)).norm() < SHORTEST_M;
+    let node = net.id(first).filter(|_| starts == goals && starts.iter().all(near))?.clone();
+    Some(Miss::OnePlace { node, at: net.at(first) })
 }
 
 /// The reason why a map has no paths for a problem, found by leaving parts of it out.
 pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
     let proposal = problem.proposal;
     let class = proposal.place;
-    if let Some(miss) = too_short(problem, net) {
+    let indoors = || proposal.humans.iter().filter(|human| is_indoors(human) || boarding::boards(human));
+    if let Some(miss) = too_short(problem, net).or_else(|| indoors().find_map(|human| shut_in(problem, net, human))) {
         return miss;
     }
     let own: Vec<usize> = (0..net.len()).filter(|node| net.is(*node, class)).collect();
     if class != PlaceClass::Plain && own.is_empty() {
         return Miss::NoPlace(class);
+    }
+    if let Some(miss) = narrow_place(problem, net, &own) {
+        return miss;
     }
     let open = |node: &usize| !net.inside(*node);
     let nodes: Vec<usize> = if class == PlaceClass::Plain { (0..net.len()).collect() } else { own };
@@ -238,7 +292,11 @@ fn unreachable(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
     let (from, to) = (net.id(start)?.clone(), net.id(goal)?.clone());
     let whole = Net::new(problem.location);
     if !joined(&whole) {
-        return Some(Miss::Apart { from, to });
+        let joined_to = |node: usize| {
+            let ways = whole.ways_from(node);
+            (0..whole.len()).filter(|other| ways.length_m(*other).is_finite()).count()
+        };
+        return Some(Miss::Apart { from, to, nodes: [start, goal].map(joined_to) });
     }
     let way = whole.named(&whole.ways_from(start).way(goal));
     stopped(problem, net, &way, (from, to))
@@ -252,16 +310,31 @@ fn stopped(problem: &Problem<'_>, net: &Net<'_>, way: &[NodeId], (from, to): (No
     };
     let closed = net.closed().iter().find(on_way)?;
     Some(match &closed.why {
-        Why::Shut(door) => Miss::Shut { from, to, door: door.clone() },
+        Why::Shut(door) => {
+            let at = problem.location.door(door).map_or_else(Point::origin, Door::middle);
+            Miss::Shut { from, to, door: door.clone(), at }
+        }
         Why::Narrow(at, has_m) => Miss::Narrow {
+            people: net.radius_m > problem.radius_m,
             from,
             to,
             between: closed.between.clone(),
             at: *at,
             has_m: *has_m,
-            needs_m: 2.0 * problem.radius_m,
+            needs_m: 2.0 * net.radius_m,
         },
     })
+}
+
+/// The places of the class where all lie behind edges that are too narrow, or behind doors that never open.
+fn narrow_place(problem: &Problem<'_>, net: &Net<'_>, places: &[usize]) -> Option<Miss> {
+    let first = net.id(*places.first()?)?;
+    if places.iter().any(|place| !net.near(*place).is_empty()) {
+        return None;
+    }
+    let edge = net.closed().iter().find(|edge| edge.between.contains(first))?;
+    let before = edge.between.iter().find(|end| *end != first)?;
+    stopped(problem, net, &[before.clone(), first.clone()], (before.clone(), first.clone()))
 }
 
 /// The longest way of the robot, where it is too short for any scenario; what stops it where the map would have a longer one.
@@ -306,10 +379,43 @@ fn width(problem: &Problem<'_>, net: &Net<'_>, nodes: &[usize]) -> Option<Miss> 
     (off(nearest) > 0.0).then_some(Miss::Width { class, node, has_m, needs_m: [least_m, most_m] })
 }
 
+/// Whether somebody is in a room or car at first.
+const fn is_indoors(human: &HumanProposal) -> bool {
+    matches!(human.relation, Relation::Leaving | Relation::Staying)
+}
+
+/// The rooms or cars of somebody who comes out, stays or goes in, where none has an opening or nothing leads out of any.
+fn shut_in(problem: &Problem<'_>, net: &Net<'_>, human: &HumanProposal) -> Option<Miss> {
+    let wanted = if is_indoors(human) { human.start } else { human.goal };
+    let class = wanted.filter(|class| !inside::nodes(net, Some(*class)).is_empty());
+    let rooms = net.rooms_of(human.id, inside::nodes(net, class));
+    let Some(first) = rooms.first().copied() else {
+        let wanted = wanted.unwrap_or(PlaceClass::Room);
+        let open = net.enclosures.open_plan().iter().find_map(|(nodes, why)| {
+            let own = |id: &&NodeId| net.index(id).is_some_and(|node| net.is(node, wanted));
+            nodes.iter().find(own).map(|id| (id, why))
+        });
+        let Some((id, why)) = open else { return Some(Miss::NoPlace(wanted)) };
+        let at = net.index(id).map_or_else(Point::origin, |node| net.at(node));
+        return Some(Miss::OpenPlan { node: id.clone(), at, why: why.clone() });
+    };
+    let outside = |net: &Net<'_>, room: usize| {
+        let ways = net.ways_from(room);
+        let open = (0..net.len()).filter(|node| !net.inside(*node) && ways.length_m(*node).is_finite());
+        open.min_by(|a, b| ways.length_m(*a).total_cmp(&ways.length_m(*b)))
+    };
+    if rooms.iter().any(|room| outside(net, *room).is_some()) {
+        return None;
+    }
+    let whole = Net::new(problem.location);
+    let before = outside(&whole, first)?;
+    let way = whole.named(&whole.ways_from(first).way(before));
+    stopped(problem, net, &way, (net.id(first)?.clone(), net.id(before)?.clone()))
+}
+
 /// A room or car that is too small for those who come out of it or stay in it.
 fn full(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
-    let indoors = |human: &&HumanProposal| matches!(human.relation, Relation::Leaving | Relation::Staying);
-    let mut inside: Vec<&HumanProposal> = problem.proposal.humans.iter().filter(indoors).collect();
+    let mut inside: Vec<&HumanProposal> = problem.proposal.humans.iter().filter(|human| is_indoors(human)).collect();
     let first = inside.first()?;
     let class = first.start;
     inside.retain(|human| human.start == class);
@@ -326,18 +432,22 @@ fn full(problem: &Problem<'_>, net: &Net<'_>) -> Option<Miss> {
     })
 }
 
-/// Free floor that is seen from a place, behind its door where it has one, m².
+/// Free floor of the room or car of a place, m²; where no walls bound it, what is seen from the place on its side of the doors.
 fn floor_m2(net: &Net<'_>, node: usize) -> f64 {
+    let all = &net.enclosures;
+    let place = net.id(node).and_then(|id| all.of_node(id));
+    if let Some(floor_m2) = place.and_then(|place| all.floor_m2(place)) {
+        return floor_m2;
+    }
     let ground = Ground::of(&net.location.grid);
     let (grid, at) = (ground.grid(), net.at(node));
-    let door = net.id(node).and_then(|id| net.location.door_of(id));
     let step_m = grid.resolution_m.max(0.1);
     let reach = libm::ceil(ROOM_M / step_m) as i32;
     let mut cells = 0_u32;
     for row in -reach..=reach {
         for column in -reach..=reach {
             let point = Point::new(at.x + f64::from(column) * step_m, at.y + f64::from(row) * step_m);
-            let behind = door.is_none_or(|door| door.depth_m(&point, &at) > 0.0);
+            let behind = place.is_none_or(|place| all.holds(place, &point));
             let free = ground.field().clearance(&point) > 0.0;
             cells += u32::from(free && behind && ground.sight().clear(&at, &point));
         }

@@ -28,6 +28,9 @@ pub(crate) enum Why {
     Shut(String),
 }
 
+/// Lengths that differ by less are the same, m.
+const ROUNDED_M: f64 = 1e-6;
+
 /// Something that is worked out of a map once, by two points and the radius as bits.
 type Once<T> = Mutex<BTreeMap<[u64; 5], T>>;
 
@@ -125,8 +128,8 @@ fn narrow(
             }
         }
     }
-    // Nodes and lines are drawn by hand: half a cell is no wall.
-    let fits = |clear_m: f64| clear_m >= radius_m - 0.5 * grid.resolution_m;
+    // Where the line runs beside the middle of the floor the way round it tells: what is narrower than the robot stops it.
+    let fits = |clear_m: f64| clear_m >= radius_m - ROUNDED_M;
     let answer = least.filter(|(_, clear_m)| !fits(*clear_m)).filter(|_| {
         let round = shortest_path(grid, field, first, last, radius_m);
         round.is_none_or(|way| length_m(&way) > ROUND * length_m(&points) + ROUND_M)

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{DoorKind, Location, NodeId, PlaceClass, Proposal, Relation};
+use socrates_model::{Door, DoorKind, Location, NodeId, PlaceClass, Point, Proposal, Relation};
 
 use crate::testing::{block, corridor, door, map, node, proposal};
-use crate::{Layout, Miss, Problem, Solved, solve};
+use crate::{Layout, Miss, Problem, Solved, impossible, solve};
 
 fn ids(names: &[&str]) -> Vec<NodeId> {
     names.iter().map(|name| node(name)).collect()
@@ -103,12 +103,17 @@ fn miss(problem: &Problem<'_>) -> Miss {
 fn start_and_goal_in_one_place_and_islands_are_named() {
     let mut location = block("CORRIDOR");
     let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
-    assert_eq!(miss(&between(&proposal, &location, "b1", "b1")), Miss::OnePlace { node: node("b1") });
+    let at = Point::new(6.0, 6.0);
+    assert_eq!(miss(&between(&proposal, &location, "b1", "b1")), Miss::OnePlace { node: node("b1"), at });
+    // A place of two nodes beside each other, which the task names twice.
+    let both = || ids(&["b1", "b2"]);
+    let twice = Problem { starts: both(), goals: both(), ..Problem::of(&proposal, &location, "test".into()) };
+    assert_eq!(miss(&twice), Miss::OnePlace { node: node("b1"), at });
     location.graph = location.graph.edited(|_, edges| {
         edges.retain(|edge| !["b0", "b6"].contains(&edge.from.as_str()) && edge.to.as_str() != "b6")
     });
     let apart = miss(&between(&proposal, &location, "b5", "t6"));
-    assert_eq!(apart, Miss::Apart { from: node("b5"), to: node("t6") });
+    assert_eq!(apart, Miss::Apart { from: node("b5"), to: node("t6"), nodes: [6, 10] });
     assert!(apart.to_string().contains("`b5`") && apart.to_string().contains("`t6`"));
 }
 
@@ -131,6 +136,43 @@ fn a_way_that_is_narrower_than_the_robot_and_a_node_in_a_wall_are_named_with_the
 }
 
 #[test]
+fn nobody_is_met_where_only_the_robot_gets_through_unless_its_task_leads_there() {
+    // Two corridors between the same ends: the shorter one has a gap of 0.6 m.
+    let nodes = [
+        ("a", "CORRIDOR", 2.0, 3.0),
+        ("g", "CORRIDOR", 8.0, 3.0),
+        ("b", "CORRIDOR", 14.0, 3.0),
+        ("c", "CORRIDOR", 2.0, 7.0),
+        ("d", "CORRIDOR", 14.0, 7.0),
+    ];
+    let edges = [("a", "g"), ("g", "b"), ("a", "c"), ("c", "d"), ("d", "b")];
+    let floor = [
+        [1.0, 2.0, 6.0, 2.0],
+        [7.0, 2.7, 2.0, 0.6],
+        [9.0, 2.0, 6.0, 2.0],
+        [1.0, 2.0, 2.0, 6.0],
+        [13.0, 2.0, 2.0, 6.0],
+        [1.0, 6.0, 14.0, 2.0],
+    ];
+    let both = map([16.0, 9.0], &floor, &nodes, &edges);
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    let around = ids(&["a", "c", "d", "b"]);
+    assert_eq!(solved(&between(&proposal, &both, "a", "b")).paths.robot, around);
+    // The robot of 0.5 m gets through where its task leads there.
+    let narrow = map([16.0, 9.0], &floor[..3], &nodes[..3], &edges[..2]);
+    assert!(impossible(&between(&proposal, &narrow, "a", "b")).is_none());
+    // Who comes out of a room behind such a gap does not.
+    let mut closet = with_room(1.6);
+    closet.grid =
+        map([28.0, 8.0], &[[0.5, 2.0, 27.0, 2.0], [13.7, 4.0, 0.6, 0.3], [13.4, 4.3, 1.2, 1.3]], &[], &[]).grid;
+    closet.doors = vec![closet_door(serde_json::json!({ "near": 1.5 }))];
+    let leaving = self::proposal(PlaceClass::Corridor, &[Relation::Leaving]);
+    let why = solve(&Problem::of(&leaving, &closet, "test".into())).unwrap_err();
+    assert!(matches!(why, Miss::Narrow { people: true, .. }), "{why}");
+    assert!(why.to_string().starts_with("people need 0.64 m, and the way from `in` to `c3` has 0.6"), "{why}");
+}
+
+#[test]
 fn a_door_that_never_opens_closes_the_way() {
     let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
     let mut location = corridor(2.0);
@@ -139,8 +181,59 @@ fn a_door_that_never_opens_closes_the_way() {
     }))];
     assert_eq!(
         miss(&between(&proposal, &location, "c0", "c6")),
-        Miss::Shut { from: node("c0"), to: node("c6"), door: "gate".into() }
+        Miss::Shut { from: node("c0"), to: node("c6"), door: "gate".into(), at: Point::new(12.0, 3.0) }
     );
+}
+
+/// A corridor of 28 m by 2 m with a room on its upper side, 1.2 m wide and so deep, m.
+fn with_room(deep_m: f64) -> Location {
+    let mut nodes = vec![("in", "ROOM", 14.0, 5.0)];
+    let names: Vec<String> = (0..7).map(|k| format!("c{k}")).collect();
+    nodes.extend(names.iter().enumerate().map(|(k, id)| (id.as_str(), "CORRIDOR", 2.0 + 4.0 * k as f64, 3.0)));
+    let mut edges: Vec<(&str, &str)> = names.windows(2).map(|pair| (pair[0].as_str(), pair[1].as_str())).collect();
+    edges.push(("c3", "in"));
+    map([28.0, 8.0], &[[0.5, 2.0, 27.0, 2.0], [13.4, 4.0, 1.2, deep_m]], &nodes, &edges)
+}
+
+fn closet_door(opens: serde_json::Value) -> Door {
+    door(serde_json::json!({
+        "id": "closet", "kind": DoorKind::Room, "from": [13.4, 4.1], "to": [14.6, 4.1], "opens": opens, "inside": ["in"]
+    }))
+}
+
+#[test]
+fn nobody_comes_out_of_a_room_whose_door_never_opens_or_that_has_no_opening() {
+    let leaving = proposal(PlaceClass::Corridor, &[Relation::Leaving]);
+    let found = |location: &Location| solve(&Problem::of(&leaving, location, "test".into()));
+    let mut location = with_room(1.6);
+    location.doors = vec![closet_door("never".into())];
+    let shut = Miss::Shut { from: node("in"), to: node("c3"), door: "closet".into(), at: Point::new(14.0, 4.1) };
+    assert_eq!(found(&location), Err(shut));
+    // An alcove: its walls begin farther from its node than an opening is wide.
+    let mut alcove = with_room(1.6);
+    alcove.graph = alcove.graph.edited(|nodes, _| {
+        for inner in nodes.iter_mut().filter(|inner| inner.id.as_str() == "in") {
+            inner.at = Point::new(14.0, 3.6);
+        }
+    });
+    let why = found(&alcove);
+    assert!(matches!(&why, Ok(_) | Err(Miss::OpenPlan { .. })), "{why:?}");
+    let mut bay = corridor(5.0);
+    bay.graph = bay.graph.edited(|nodes, _| nodes[3].kind = "ROOM".into());
+    let open = found(&bay).unwrap_err();
+    assert!(matches!(&open, Miss::OpenPlan { node: room, .. } if *room == node("c3")), "{open}");
+    assert!(open.to_string().contains("(14.00, 3.00)"), "{open}");
+    let none = found(&corridor(2.0)).unwrap_err();
+    assert_eq!(none, Miss::NoPlace(PlaceClass::Room));
+}
+
+#[test]
+fn what_is_impossible_whatever_is_drawn_is_known_without_a_search() {
+    let proposal = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    assert_eq!(impossible(&between(&proposal, &corridor(2.0), "c0", "c6")), None);
+    assert!(matches!(impossible(&between(&proposal, &corridor(0.3), "c0", "c6")), Some(Miss::Narrow { .. })));
+    let one = map([6.0, 6.0], &[[0.5, 0.5, 5.0, 5.0]], &[("a", "CORRIDOR", 3.0, 3.0)], &[]);
+    assert!(matches!(impossible(&Problem::of(&proposal, &one, "test".into())), Some(Miss::Short { .. })));
 }
 
 #[test]
@@ -155,15 +248,8 @@ fn a_map_of_one_node_or_none_is_too_short() {
 
 #[test]
 fn ten_people_do_not_come_out_of_a_closet() {
-    let mut nodes = vec![("in", "ROOM", 14.0, 5.0)];
-    let names: Vec<String> = (0..7).map(|k| format!("c{k}")).collect();
-    nodes.extend(names.iter().enumerate().map(|(k, id)| (id.as_str(), "CORRIDOR", 2.0 + 4.0 * k as f64, 3.0)));
-    let mut edges: Vec<(&str, &str)> = names.windows(2).map(|pair| (pair[0].as_str(), pair[1].as_str())).collect();
-    edges.push(("c3", "in"));
-    let mut location = map([28.0, 6.0], &[[0.5, 2.0, 27.0, 2.0], [13.4, 4.0, 1.2, 1.6]], &nodes, &edges);
-    location.doors = vec![door(serde_json::json!({
-        "id": "closet", "kind": DoorKind::Room, "from": [13.4, 4.1], "to": [14.6, 4.1], "opens": { "near": 1.5 }, "inside": ["in"]
-    }))];
+    let mut location = with_room(1.6);
+    location.doors = vec![closet_door(serde_json::json!({ "near": 1.5 }))];
     let ten = proposal(PlaceClass::Corridor, &[Relation::Leaving; 10]);
     let Miss::Full { node: room, has_m2, people, needs_m2 } = miss(&Problem::of(&ten, &location, "test".into())) else {
         panic!()
