@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use socrates_maps::openings::Enclosures;
 use socrates_model::{DoorOpens, Location, PlaceClass};
 
 /// Longest label of a map that is shown, characters.
@@ -60,9 +59,9 @@ pub(crate) fn doors(location: &Location) -> String {
     if location.doors.is_empty() {
         return String::new();
     }
-    let (mut text, all) = (String::from("# Doors\n"), Enclosures::of(location));
+    let mut text = String::from("# Doors\n");
     for door in &location.doors {
-        let inside: Vec<String> = all.behind(door).iter().map(|node| format!("`{node}`")).collect();
+        let inside: Vec<String> = door.inside.iter().map(|node| format!("`{node}`")).collect();
         let opens = match &door.opens {
             DoorOpens::Always => "always open".to_owned(),
             DoorOpens::AtTimes(times) => {
