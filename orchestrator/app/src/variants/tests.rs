@@ -1,5 +1,7 @@
 use std::collections::BTreeSet;
 
+use socrates_model::Breadth;
+
 use super::*;
 use crate::config::Config;
 
@@ -10,6 +12,7 @@ fn shipped(name: &str, variants: u32) -> Prepared {
     let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
     let mut one = all.into_iter().find(|one| one.name == name).unwrap();
     one.request.run.variants = variants;
+    one.request.run.breadth = Breadth::Wide;
     one
 }
 
