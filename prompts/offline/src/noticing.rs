@@ -1,11 +1,23 @@
 //! From how far people notice the robot, where the text leaves that open and many different scenarios are wanted.
 
-use socrates_model::{Action, Gesture, Relation, Rule, Trigger};
+use socrates_model::{Action, Gesture, PlaceClass, Relation, Rule, Trigger};
 
 use crate::draw::Draw;
 
-/// Distance between two moments that are two moments, m: a robot of 0.8 m/s drives 2 s, and a little.
-const STEP_M: f64 = 1.7;
+/// How much nearer robot and person come to each other in 2 s and a little, m: what is nearer to another moment than this is the same
+/// moment to anybody who watches.
+const fn step_m(relation: Relation) -> f64 {
+    match relation {
+        Relation::Frontal => 4.1,
+        Relation::Crossing => 3.0,
+        Relation::Behind
+        | Relation::Ahead
+        | Relation::Static
+        | Relation::Leaving
+        | Relation::Staying
+        | Relation::Abreast => 1.7,
+    }
+}
 
 /// The usual distance at which something is done, and the nearest and farthest that are natural, m; nothing for what does not depend on
 /// a moment. The usual ones are those of `deed.rs` and `timing.rs`; nobody makes way or stops so far off that the two no longer meet.
@@ -28,8 +40,12 @@ pub(crate) fn rules(
     rules: &[Rule],
     open: &[bool],
     relation: Relation,
-    (grouped, draw): (bool, &mut Draw),
+    (place, grouped, draw): (PlaceClass, bool, &mut Draw),
 ) -> Vec<Rule> {
+    // Where only one gets through they have to be near before one makes room.
+    if matches!(place, PlaceClass::Doorway | PlaceClass::NarrowPassage) {
+        return rules.to_vec();
+    }
     // Others see the robot as soon as it is there: behind it, or when a door opens; a circle holds until it is near.
     let meets = matches!(relation, Relation::Frontal | Relation::Crossing | Relation::Static);
     let is_open = |at: usize| meets && open.get(at).copied().unwrap_or(false);
@@ -45,8 +61,10 @@ pub(crate) fn rules(
     };
     let least_m = all.iter().map(|(_, (_, [least, _]))| *least).fold(0.0, f64::max);
     let most_m = all.iter().map(|(_, (_, [_, most]))| *most).fold(f64::INFINITY, f64::min);
-    let steps = std::iter::successors(Some(least_m), |m| Some(m + STEP_M)).take_while(|m| *m <= most_m + 1e-9);
-    let Some(drawn_m) = draw.pick(&steps.collect::<Vec<f64>>()).copied() else { return rules.to_vec() };
+    let steps =
+        std::iter::successors(Some(least_m), |m| Some(m + step_m(relation))).take_while(|m| *m <= most_m + 1e-9);
+    let steps: Vec<f64> = steps.collect();
+    let Some(drawn_m) = draw.pick(&steps).copied().filter(|_| steps.len() > 1) else { return rules.to_vec() };
     let scaled = |trigger: &Trigger| match trigger.distance_m() {
         Some(m) => {
             let m = libm::round(m * drawn_m / first_m * 10.0) / 10.0;
@@ -98,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_reaction_is_judged_by_the_distance_that_was_drawn() {
-        let rough = "A nurse comes towards the robot. When she sees the robot, she gives way to it.";
+        let rough = "A nurse comes towards the robot. When she sees the robot, she stops and looks at it.";
         let mut wide = request("Drive to the exit", Some(rough));
         wide.run.breadth = Breadth::Wide;
         for seed in 1..=10 {

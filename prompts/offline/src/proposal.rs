@@ -188,7 +188,7 @@ fn proposed(
     };
     let rules = match request.run.breadth {
         Breadth::Usual => human.rules.clone(),
-        Breadth::Wide => noticing::rules(&human.rules, &extra.open, relation, (human.group.is_some(), draw)),
+        Breadth::Wide => noticing::rules(&human.rules, &extra.open, relation, (place, human.group.is_some(), draw)),
     };
     let mut behavior = prose::behavior(&human.role, relation, place, start, &rules, human.group.is_some());
     let goal = extra.goal.filter(|class| place::has(location, *class));

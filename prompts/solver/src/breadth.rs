@@ -17,19 +17,39 @@ pub(crate) struct Limits {
     pub(crate) nodes: usize,
     pub(crate) routes: usize,
     pub(crate) ends: usize,
+    /// Ways of the robot that all meeting nodes share, where that is more for each.
+    pub(crate) shared: usize,
     /// Whether people who cross are led from every side, and every different solution is as likely. Else they come from the best
     /// one, and what plays in the same place is one solution.
     pub(crate) wide: bool,
 }
 
 /// One good answer: its alternatives are as good for any eye.
-const USUAL: Limits =
-    Limits { alike: 2.5, strained: 0.75, short_m: 0.0, pool: 400, nodes: 14, routes: 10, ends: 9, wide: false };
+const USUAL: Limits = Limits {
+    alike: 2.5,
+    strained: 0.75,
+    short_m: 0.0,
+    pool: 400,
+    nodes: 14,
+    routes: 10,
+    ends: 9,
+    shared: 0,
+    wide: false,
+};
 
 /// Many different answers: 9 points are the robot's way 30 m longer than wished, or a turn at the meeting and 10 m; 3 points are
 /// somebody who crosses and goes on along the robot's way. 1.5 m less room is a meeting 3.5 m after the start.
-const WIDE: Limits =
-    Limits { alike: 9.0, strained: 3.0, short_m: 1.5, pool: 4000, nodes: 20, routes: 30, ends: 14, wide: true };
+const WIDE: Limits = Limits {
+    alike: 9.0,
+    strained: 3.0,
+    short_m: 1.5,
+    pool: 4000,
+    nodes: 20,
+    routes: 30,
+    ends: 20,
+    shared: 240,
+    wide: true,
+};
 
 impl Limits {
     /// The limits of a breadth.

@@ -198,9 +198,11 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    ranked.truncate(scene.limits.nodes);
+    let routes = scene.limits.routes.max(scene.limits.shared / ranked.len().max(1));
     let mut found = Vec::new();
-    for (rank, meet) in ranked.into_iter().take(scene.limits.nodes) {
-        for route in over(net, meet, wish).into_iter().take(scene.limits.routes) {
+    for (rank, meet) in ranked {
+        for route in over(net, meet, wish).into_iter().take(routes) {
             let hidden = sight.map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
             for mut solution in everybody(scene, &route) {
                 // Many people do not get through a doorway against each other.

@@ -80,6 +80,25 @@ fn is_natural(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> bool
     times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
 }
 
+/// Who comes towards the robot is seen to where neither turns so near to the meeting, m, by more than this cosine.
+const FACING_M: f64 = 2.5;
+const FACING: f64 = 0.7;
+
+/// How many turns of the robot's way lie so near to the meeting, beside it, that who comes towards the robot comes round a corner.
+fn turns_near(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> usize {
+    let towards = problem.proposal.humans.iter().any(|human| human.relation == Relation::Frontal);
+    if !towards || problem.proposal.place == PlaceClass::BlindCorner {
+        return 0;
+    }
+    let (nodes, meet) = (&solution.route.nodes, solution.route.meet);
+    let near = |at: usize| net.length_m(nodes.get(at.min(meet)..=at.max(meet)).unwrap_or_default()) < FACING_M;
+    let turns = nodes.windows(3).enumerate().filter(|(before, three)| {
+        let turn = matches!(three, [a, b, c] if net.straight(*a, *b, *c) < FACING);
+        turn && before + 1 != meet && near(before + 1)
+    });
+    turns.count()
+}
+
 /// How far elsewhere the one of two solutions plays, m.
 fn apart_m(net: &Net<'_>, one: &Solution, other: &Solution) -> f64 {
     let pairs = corners(one).into_iter().zip(corners(other));
@@ -103,6 +122,7 @@ fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Soluti
         solution.score >= first.score - alike
             && solution.strain <= first.strain + limits.strained
             && missing_m(net, &solution.route) <= missing_m(net, &first.route) + limits.short_m + 1e-9
+            && (!limits.wide || turns_near(problem, net, solution) <= turns_near(problem, net, first))
     };
     let mut pool: Vec<(&Solution, f64)> = Vec::new();
     let mut known = BTreeSet::from([key(first, &limits)]);
