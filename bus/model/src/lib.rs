@@ -71,7 +71,7 @@ pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotPropos
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
 pub use report::{ClauseResult, MetricValue, Missing, Report, Unit, Verdict};
-pub use request::{AuthorSpec, BadRequest, Moment, Request, Seeds};
+pub use request::{AuthorSpec, BadRequest, Breadth, Moment, Request, Seeds};
 pub use role::Role;
 pub use rule::{Action, RobotRule, Rule, Trigger};
 pub use run::Run;

@@ -3,12 +3,19 @@
 //! Two scenarios differ where the place of a meeting, the robot's start or its goal lies more than [`ELSEWHERE_M`] elsewhere;
 //! where side, relation, number, roles or the order of what is done are others; or where something is triggered more than
 //! [`LATER_S`] earlier or later. Pace, names, words and seeds make no difference.
+//!
+//! A distance at which somebody notices the robot makes a difference only as far as it is seen: behind a corner, and farther than
+//! the two ever are from each other, all distances are one ([`approach`]).
+
+mod approach;
 
 use crate::geometry::{Point, Vector};
 use crate::ids::{AgentId, HumanId, NodeId};
 use crate::location::Location;
 use crate::paths::{Paths, Visit};
 use crate::proposal::{HumanProposal, Proposal, Relation};
+use approach::Approach;
+
 use crate::rule::{Action, RobotDo, RobotWhen, Rule, Trigger};
 
 /// Places no farther apart than this are the same place, m.
@@ -64,8 +71,28 @@ pub struct Likeness {
     pub kind: Kind,
     /// The robot's start and goal, then each place of a meeting, in their order.
     places: Vec<Point>,
-    /// When something is triggered, s, as the parts have it.
-    times_s: Vec<f64>,
+    /// When something is triggered, as the parts have it.
+    times: Vec<Time>,
+}
+
+/// When something is triggered, s, by what is said of it alone and by how the two come near to each other on their ways. A
+/// difference is one by both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Time {
+    said_s: f64,
+    seen_s: f64,
+}
+
+impl Time {
+    /// A time that does not depend on the ways.
+    const fn told(said_s: f64) -> Self {
+        Self { said_s, seen_s: said_s }
+    }
+
+    /// How much earlier or later another is, s.
+    fn later_s(self, other: Self) -> f64 {
+        (self.said_s - other.said_s).abs().min((self.seen_s - other.seen_s).abs())
+    }
 }
 
 impl Likeness {
@@ -73,14 +100,14 @@ impl Likeness {
     #[must_use]
     pub fn of(proposal: &Proposal, paths: &Paths, location: &Location) -> Self {
         let at = |node: &NodeId| location.graph.node(node).map(|node| node.at);
-        let mut parts: Vec<(Part, Vec<f64>)> =
+        let mut parts: Vec<(Part, Vec<Time>)> =
             proposal.humans.iter().map(|human| part(human, proposal, paths, location)).collect();
         parts.sort_by(|(a, x), (b, y)| a.cmp(b).then_with(|| compared(x, y)));
-        let (parts, times): (Vec<Part>, Vec<Vec<f64>>) = parts.into_iter().unzip();
+        let (parts, times): (Vec<Part>, Vec<Vec<Time>>) = parts.into_iter().unzip();
         let (script, mut script_s): (Vec<String>, Vec<Option<f64>>) =
             proposal.robot.script.iter().map(|line| scripted(&line.when, &line.act)).unzip();
-        let mut times_s: Vec<f64> = times.into_iter().flatten().collect();
-        times_s.extend(script_s.drain(..).flatten());
+        let mut times: Vec<Time> = times.into_iter().flatten().collect();
+        times.extend(script_s.drain(..).flatten().map(Time::told));
         let ends = [paths.robot.first(), paths.robot.last()];
         let mut places: Vec<Point> = ends.into_iter().flatten().filter_map(at).collect();
         let mut order: Vec<(Relation, String)> = Vec::new();
@@ -96,7 +123,7 @@ impl Likeness {
             places.extend(here.iter().filter_map(|encounter| at(&encounter.node)));
         }
         let kind = Kind { location: location.name.clone(), parts, script, order };
-        Self { kind, places, times_s }
+        Self { kind, places, times }
     }
 
     /// Whether nothing makes a difference between the two.
@@ -105,8 +132,8 @@ impl Likeness {
         self.kind == other.kind
             && self.places.len() == other.places.len()
             && self.places.iter().zip(&other.places).all(|(a, b)| (b - a).norm() <= ELSEWHERE_M)
-            && self.times_s.len() == other.times_s.len()
-            && self.times_s.iter().zip(&other.times_s).all(|(a, b)| (b - a).abs() <= LATER_S)
+            && self.times.len() == other.times.len()
+            && self.times.iter().zip(&other.times).all(|(a, b)| a.later_s(*b) <= LATER_S)
     }
 
     /// How far two scenarios are from each other, in units of the smallest difference: 0 where nothing differs, and every
@@ -134,22 +161,30 @@ impl Likeness {
         let far = |(a, b): (&Point, &Point)| ((b - a).norm() / ELSEWHERE_M).min(MOST);
         let ends: f64 = self.places.iter().zip(&other.places).take(2).map(far).sum();
         let met = self.places.iter().zip(&other.places).skip(2).map(far).fold(0.0, f64::max);
-        let later = |(a, b): (&f64, &f64)| ((b - a).abs() / LATER_S).min(MOST);
-        said + ends + met + self.times_s.iter().zip(&other.times_s).map(later).fold(0.0, f64::max)
+        let later = |(a, b): (&Time, &Time)| (a.later_s(*b) / LATER_S).min(MOST);
+        said + ends + met + self.times.iter().zip(&other.times).map(later).fold(0.0, f64::max)
     }
 }
 
 /// Times one after the other.
-fn compared(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
-    let first = a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|order| order.is_ne());
+fn compared(a: &[Time], b: &[Time]) -> std::cmp::Ordering {
+    let pairs = a.iter().zip(b).map(|(x, y)| x.said_s.total_cmp(&y.said_s).then(x.seen_s.total_cmp(&y.seen_s)));
+    let first = pairs.into_iter().find(|order| order.is_ne());
     first.unwrap_or_else(|| a.len().cmp(&b.len()))
 }
 
-/// A person's part and when what they do is triggered, s.
-fn part(human: &HumanProposal, proposal: &Proposal, paths: &Paths, location: &Location) -> (Part, Vec<f64>) {
+/// A person's part and when what they do is triggered.
+fn part(human: &HumanProposal, proposal: &Proposal, paths: &Paths, location: &Location) -> (Part, Vec<Time>) {
     let group = proposal.groups.iter().find(|group| group.members.contains(&human.id));
     let nearing_mps = if human.relation == Relation::Frontal { TOWARDS_MPS } else { ROBOT_MPS };
-    let (acts, times): (Vec<String>, Vec<Vec<f64>>) = human.rules.iter().map(|rule| act(rule, nearing_mps)).unzip();
+    let approach = Approach::of(human, paths, location);
+    // The nearer, the later.
+    let near = |trigger: &Trigger, m: f64| {
+        let said_s = -m / nearing_mps;
+        let seen_s = approach.as_ref().map_or(said_s, |approach| approach.from_meeting_s(trigger, m));
+        Time { said_s, seen_s }
+    };
+    let (acts, times): (Vec<String>, Vec<Vec<Time>>) = human.rules.iter().map(|rule| act(rule, &near)).unzip();
     let part = Part {
         relation: human.relation,
         role: human.role.clone(),
@@ -180,15 +215,15 @@ fn side(human: HumanId, paths: &Paths, location: &Location) -> Side {
     }
 }
 
-/// What is done and when, without numbers and ids, and the times of it, s.
-fn act(rule: &Rule, nearing_mps: f64) -> (String, Vec<f64>) {
+/// What is done and when, without numbers and ids, and the times of it; `near` is when the robot is that near.
+fn act(rule: &Rule, near: &dyn Fn(&Trigger, f64) -> Time) -> (String, Vec<Time>) {
     let mut words: Vec<String> = Vec::new();
-    let mut times_s: Vec<f64> = Vec::new();
+    let mut times: Vec<Time> = Vec::new();
     for trigger in &rule.when {
         match trigger {
             Trigger::AfterSecs(s) => {
                 words.push("after".to_owned());
-                times_s.push(*s);
+                times.push(Time::told(*s));
             }
             // Ids are numbers: who it is, the gesture says.
             Trigger::HumanSays(_, gesture) => words.push(format!("a human says {gesture}")),
@@ -203,15 +238,14 @@ fn act(rule: &Rule, nearing_mps: f64) -> (String, Vec<f64>) {
             | Trigger::GoalReached
             | Trigger::AtEncounter => {
                 words.push(trigger.clone().at_distance(0.0).phrase());
-                // The nearer, the later.
-                times_s.extend(trigger.distance_m().map(|m| -m / nearing_mps));
+                times.extend(trigger.distance_m().map(|m| near(trigger, m)));
             }
         }
     }
     let whom = matches!(rule.act, Action::FollowHuman(_));
     let done = if whom { "follow a human".to_owned() } else { rule.act.they() };
     let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
-    (format!("{}: {done}{gesture}", words.join(" and ")), times_s)
+    (format!("{}: {done}{gesture}", words.join(" and ")), times)
 }
 
 /// The same of a line of the robot's script.

@@ -80,6 +80,17 @@ pub enum Waypoints {
     All,
 }
 
+/// How much of what a text leaves open is drawn: by rules, a language model draws as it likes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Breadth {
+    /// The usual: of places and ways those that are as good as the best, and distances that suit what is done.
+    #[default]
+    Usual,
+    /// All that is natural: more places, ends of ways and sides, and nearer or farther moments of noticing the robot.
+    Wide,
+}
+
 /// A gesture of the robot: `{ when = "blocked 3 s", say = "EXCUSE_ME" }`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -152,11 +163,19 @@ pub struct RunRequest {
     pub author: AuthorSpec,
     /// Number of scenarios to make from this request, 1 to 100 000. Default 1.
     pub variants: u32,
+    /// How much of what the text leaves open is drawn. Default `usual`; of several different variants `wide`.
+    #[serde(skip_serializing_if = "is_usual")]
+    pub breadth: Breadth,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+const fn is_usual(breadth: &Breadth) -> bool {
+    matches!(breadth, Breadth::Usual)
 }
 
 impl Default for RunRequest {
     fn default() -> Self {
-        Self { seeds: None, duration: Duration::Auto, author: AuthorSpec::Auto, variants: 1 }
+        Self { seeds: None, duration: Duration::Auto, author: AuthorSpec::Auto, variants: 1, breadth: Breadth::Usual }
     }
 }
 
@@ -350,6 +369,10 @@ mod tests {
         assert_eq!(Request::of_toml(&toml::to_string(&request).unwrap(), None).unwrap(), request);
         let json = serde_json::to_value(&request).unwrap();
         assert_eq!(json["run"]["seeds"], "1..3");
+        assert_eq!(json["run"].get("breadth"), None, "what is usual is not written");
+        let wide = Request::of_toml(&old.replace("variants = 1", "variants = 1\nbreadth = \"wide\""), None).unwrap();
+        assert_eq!(wide.run.breadth, Breadth::Wide);
+        assert_eq!(Request::of_toml(&toml::to_string(&wide).unwrap(), None).unwrap(), wide);
         assert_eq!(serde_json::from_value::<Request>(json).unwrap(), request);
     }
 

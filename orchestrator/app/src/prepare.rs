@@ -7,7 +7,9 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use socrates_export::socrates_json::Imported;
 use socrates_model::request::ServerKind;
-use socrates_model::{AuthorSpec, Fault, FaultCode, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds};
+use socrates_model::{
+    AuthorSpec, Breadth, Fault, FaultCode, Location, PlannerName, Reading, Request, Role, ScenarioId, Seeds,
+};
 
 use crate::config::Config;
 use crate::exit::Complaint;
@@ -255,6 +257,10 @@ fn apply(request: &mut Request, options: &RunOptions) -> Result<(), Complaint> {
     }
     if let Some(variants) = options.variants {
         request.run.variants = variants;
+    }
+    // Different scenarios want all that is open; seeds in turn give what single runs give.
+    if request.run.variants > 1 && !options.repeats {
+        request.run.breadth = Breadth::Wide;
     }
     if let Some(author) = &options.author {
         request.run.author.clone_from(author);

@@ -45,6 +45,8 @@ pub(crate) struct Known {
     pub(crate) draws: usize,
     /// Whether hardly any are left to be found.
     pub(crate) whole: bool,
+    /// How many there are in all, as far as those that came once and twice tell: those that were found, or more.
+    pub(crate) estimated: usize,
 }
 
 impl Plan {
@@ -60,9 +62,12 @@ impl Plan {
                 "variants   {name}: {wanted} by seeds; which of them repeat another is known when they are made"
             );
         };
-        let Known { different, draws, whole } = known;
-        let there =
-            if whole { format!("{different} different ones") } else { format!("{different} or more different ones") };
+        let Known { different, draws, whole, estimated } = known;
+        let there = if whole {
+            format!("{different} different ones")
+        } else {
+            format!("about {estimated} different ones, {different} of them found")
+        };
         format!("variants   {name}: {there} in {draws} draws · {} of {wanted} are made", self.seeds.len())
     }
 }
@@ -131,6 +136,12 @@ struct Different {
 }
 
 /// Draws until hardly anything new can come, or until there is enough to choose from.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a few thousand draws, counted from 0"
+)]
 fn different(wanted: usize, draw: &(dyn Fn(usize) -> Option<Likeness> + Sync)) -> (Vec<Different>, Known) {
     let most = DRAWS.saturating_add(wanted.saturating_mul(DRAWS_EACH));
     let mut found: Vec<Different> = Vec::new();
@@ -145,21 +156,22 @@ fn different(wanted: usize, draw: &(dyn Fn(usize) -> Option<Likeness> + Sync)) -
             }
         }
         draws += ROUND;
-        let whole = is_whole(&found);
+        let estimated = estimated(&found);
+        let whole = found.len() as f64 >= FOUND * estimated;
         let enough = found.len() >= wanted.saturating_mul(CHOICE).max(ROUND);
         if whole || enough || draws >= most {
-            return (found.clone(), Known { different: found.len(), draws, whole });
+            let estimated = (estimated as usize).max(found.len());
+            return (found.clone(), Known { different: found.len(), draws, whole, estimated });
         }
     }
 }
 
-/// Whether hardly any are left to be found: those seen once and twice tell how many were never seen (Chao 1984,
-/// `S = d + f1 (f1 - 1) / 2 (f2 + 1)`).
+/// How many there are: those seen once and twice tell how many were never seen (Chao 1984, `S = d + f1 (f1 - 1) / 2 (f2 + 1)`).
 #[expect(clippy::cast_precision_loss, reason = "a few thousand draws")]
-fn is_whole(found: &[Different]) -> bool {
+fn estimated(found: &[Different]) -> f64 {
     let seen = |times: usize| found.iter().filter(|one| one.hits == times).count() as f64;
     let (once, twice, all) = (seen(1), seen(2), found.len() as f64);
-    all >= FOUND * (all + once * (once - 1.0).max(0.0) / (2.0 * (twice + 1.0)))
+    all + once * (once - 1.0).max(0.0) / (2.0 * (twice + 1.0))
 }
 
 /// Draws of so many of them: the first, then each time the one that is farthest from all before it.

@@ -57,6 +57,7 @@ pub(crate) fn people(card: &Card, draw: &mut Draw, request: &Request) -> (Vec<Re
                 start: role.start,
                 goal: role.goal,
                 stated: vec![false; rules.len()],
+                open: Vec::new(),
             });
             humans.push(ReadHuman {
                 id: HumanId::new(number),

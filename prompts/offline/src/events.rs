@@ -10,6 +10,7 @@ use socrates_prompts::Question;
 
 use crate::card::Card;
 use crate::form;
+use crate::noticing;
 use crate::place;
 use crate::prose::done;
 use crate::spot;
@@ -170,7 +171,10 @@ fn of_fact(
         FactKind::Group { group, .. } => of_group(list, &fact.id, *group, proposal),
         FactKind::Reacts { human, rule } => {
             let Some(who) = proposal.human(*human) else { return };
-            let index = who.rules.iter().position(|own| own == rule);
+            // Where the distance was open the proposal says it.
+            let same = || who.rules.iter().position(|own| noticing::is_same(own, rule));
+            let index = who.rules.iter().position(|own| own == rule).or_else(same);
+            let rule = index.and_then(|at| who.rules.get(at)).unwrap_or(rule);
             let extra = usize::try_from(human.number()).ok().and_then(|n| extras.get(n.checked_sub(1)?));
             let stated = index.zip(extra).and_then(|(i, extra)| extra.stated.get(i)).copied().unwrap_or(false);
             of_rule(list, &fact.id, who, rule, stated);

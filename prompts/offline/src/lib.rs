@@ -105,6 +105,7 @@ mod chance;
 mod draw;
 mod headings;
 mod mended;
+mod noticing;
 mod rules;
 mod solve;
 mod spans;

@@ -5,8 +5,8 @@ use socrates_model::reading::ReadHuman;
 use socrates_model::request::RobotGesture;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    Action, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass, Predicate,
-    Proposal, Reading, Relation, Request, RobotProposal, Trigger,
+    Action, Breadth, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass,
+    Predicate, Proposal, Reading, Relation, Request, RobotProposal, Trigger,
 };
 use socrates_prompts::Question;
 
@@ -14,7 +14,7 @@ use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::finish::CIRCLE_M;
 use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, pattern, place, prose, solve};
+use crate::{NAME, chance, default_cast, events, noticing, pattern, place, prose, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -186,7 +186,11 @@ fn proposed(
                 .map(|pace| if pace > 1.0 { draw.tenths([1.3, 1.5]) } else { draw.tenths([0.7, 0.9]) })
         }),
     };
-    let mut behavior = prose::behavior(&human.role, relation, place, start, &human.rules, human.group.is_some());
+    let rules = match request.run.breadth {
+        Breadth::Usual => human.rules.clone(),
+        Breadth::Wide => noticing::rules(&human.rules, &extra.open, relation, (place, human.group.is_some(), draw)),
+    };
+    let mut behavior = prose::behavior(&human.role, relation, place, start, &rules, human.group.is_some());
     let goal = extra.goal.filter(|class| place::has(location, *class));
     if relation == Relation::Static && goal.is_some() {
         behavior.push_str(" Once the door is open and everybody is out they go in.");
@@ -196,7 +200,7 @@ fn proposed(
         role: human.role.clone(),
         behavior,
         relation,
-        rules: human.rules.clone(),
+        rules,
         group: human.group,
         speed_mps: usual.filter(|_| moves),
         start,

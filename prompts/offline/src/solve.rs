@@ -56,6 +56,7 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
         layout: layout(&proposal.pattern),
         told,
         draw: Draw::new(question.seed, purpose).bits(),
+        breadth: question.request.run.breadth,
         author: NAME.into(),
     }
 }

@@ -32,6 +32,8 @@ pub(crate) struct Extra {
     pub(crate) goal: Option<PlaceClass>,
     /// Per rule: whether the text says when.
     pub(crate) stated: Vec<bool>,
+    /// Per rule: whether the text leaves open how near the robot is then; empty for the rules of a card, which draws its own.
+    pub(crate) open: Vec<bool>,
 }
 
 /// Reads a request. Never fails: what cannot be read stands in `ignored` and `problems`.
@@ -85,6 +87,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
             start: person.start,
             goal: person.goal,
             stated: person.rules.iter().map(|read| read.stated).collect(),
+            open: person.rules.iter().map(|read| !read.exact).collect(),
         })
         .collect();
     // A text without people, or only a number of them: the pattern says what they do.

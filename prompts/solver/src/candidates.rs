@@ -3,6 +3,7 @@
 use socrates_maps::Ground;
 use socrates_model::{Clause, HumanProposal, PlaceClass, Predicate, Proposal, Relation};
 
+use crate::breadth::Limits;
 use crate::everybody::{Solution, everybody};
 use crate::fit::{SQUEEZED, hides, overtakes, squeezed, suits, tight, width_m};
 use crate::graph::{Net, Tree};
@@ -10,9 +11,6 @@ use crate::people::boarding;
 use crate::robot_way::{Route, Wish, over, score};
 use crate::{Ends, Layout, inside, meant, spread};
 
-/// Meeting nodes that are tried, and ways of the robot over each.
-const NODES: usize = 14;
-const ROUTES: usize = 10;
 /// Length of a way to people who stand, or away from them, that is aimed at, m.
 const AIM_M: f64 = 12.0;
 /// Places at which a way may begin or end that are tried, and other ends for each.
@@ -29,6 +27,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) layout: Layout,
     /// Whether a few may start at one node: where there is no room for all to start apart.
     pub(crate) crowded: bool,
+    /// How much is tried.
+    pub(crate) limits: Limits,
 }
 
 /// Whether the robot's way ends inside the car or room that people leave, or go into.
@@ -137,8 +137,8 @@ fn up_to(scene: &Scene<'_>, wish: &Wish, goal: usize, walkers: bool) -> Vec<Solu
             value.is_finite().then_some(Route { nodes, meet, score: value + 6.0 })
         })
         .collect();
-    best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
+    best(scene, &mut routes);
+    routes.into_iter().flat_map(|route| everybody(scene, &route)).collect()
 }
 
 /// Cost of a place where whoever comes out of a room finds no way across.
@@ -198,11 +198,13 @@ fn at_nodes(scene: &Scene<'_>, wish: &Wish, nodes: &[usize]) -> Vec<Solution> {
         })
         .collect();
     ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+    ranked.truncate(scene.limits.nodes);
+    let routes = scene.limits.routes.max(scene.limits.shared / ranked.len().max(1));
     let mut found = Vec::new();
-    for (rank, meet) in ranked.into_iter().take(NODES) {
-        for route in over(net, meet, wish).into_iter().take(ROUTES) {
+    for (rank, meet) in ranked {
+        for route in over(net, meet, wish).into_iter().take(routes) {
             let hidden = sight.map_or(0.0, |sight| if hides(net, sight, &route) { 3.0 } else { 0.0 });
-            if let Some(mut solution) = everybody(scene, route) {
+            for mut solution in everybody(scene, &route) {
                 // Many people do not get through a doorway against each other.
                 let tight = solution.route.nodes.iter().filter(|node| tight(net, **node)).count() as f64;
                 let squeezed = field
@@ -252,11 +254,12 @@ fn into(scene: &Scene<'_>, wish: &Wish, goal: usize) -> Vec<Solution> {
             if !value.is_finite() {
                 return None;
             }
-            everybody(scene, Route { nodes, meet, score: value + 4.0 })
+            Some(Route { nodes, meet, score: value + 4.0 })
         })
+        .flat_map(|route| everybody(scene, &route))
         .collect();
     found.sort_by(|a, b| b.score.total_cmp(&a.score));
-    found.truncate(ROUTES);
+    found.truncate(scene.limits.routes);
     found
 }
 
@@ -286,8 +289,8 @@ fn out_of(scene: &Scene<'_>, wish: &Wish, start: usize) -> Vec<Solution> {
             value.is_finite().then_some(Route { nodes, meet, score: value + cross })
         })
         .collect();
-    best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
+    best(scene, &mut routes);
+    routes.into_iter().flat_map(|route| everybody(scene, &route)).collect()
 }
 
 /// The robot's ways to people who stand at a node, where it stays.
@@ -332,8 +335,8 @@ fn at_end(scene: &Scene<'_>, node: usize, route: impl Fn(Vec<usize>) -> Option<R
         .filter(|route| route.score.is_finite())
         .map(|route| Route { score: route.score + roomy(net, node), ..route })
         .collect();
-    best(&mut routes);
-    routes.into_iter().filter_map(|route| everybody(scene, route)).collect()
+    best(scene, &mut routes);
+    routes.into_iter().flat_map(|route| everybody(scene, &route)).collect()
 }
 
 fn outside(net: &Net<'_>, tree: &Tree, but: usize) -> impl Iterator<Item = usize> {
@@ -345,7 +348,7 @@ fn roomy(net: &Net<'_>, node: usize) -> f64 {
     if net.kind(node) == PlaceClass::OpenArea { 2.0 } else { 0.0 }
 }
 
-fn best(routes: &mut Vec<Route>) {
+fn best(scene: &Scene<'_>, routes: &mut Vec<Route>) {
     routes.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.nodes.cmp(&b.nodes)));
-    routes.truncate(ROUTES);
+    routes.truncate(scene.limits.routes);
 }

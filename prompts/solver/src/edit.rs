@@ -263,6 +263,8 @@ fn taken<'a>(net: &'a Net<'a>, paths: &Paths, but: HumanId, class: PlaceClass, e
         meant: &[],
         standing: Vec::new(),
         boards: 0,
+        wide: false,
+        entry: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use socrates_model::rule::{RobotDo, RobotWhen};
-use socrates_model::{Encounter, FORMAT, HumanId, NodeId, Paths, Relation};
+use socrates_model::{Encounter, FORMAT, HumanId, HumanProposal, NodeId, Paths, Relation};
 
 use crate::candidates::Scene;
 use crate::graph::Net;
@@ -27,9 +27,31 @@ pub(crate) struct Solution {
     pub(crate) score: f64,
 }
 
-/// Everybody's way for one way of the robot.
-pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
-    let Scene { net, proposal, layout, crowded } = *scene;
+/// Everybody's ways for one way of the robot: the best of all, and in a wide search the best for each other side from which
+/// somebody who crosses may come.
+pub(crate) fn everybody(scene: &Scene<'_>, route: &Route) -> Vec<Solution> {
+    let Scene { net, proposal, limits, .. } = *scene;
+    let mut found: Vec<Solution> = led(scene, route, None).into_iter().collect();
+    let (true, Some(best)) = (limits.wide, found.first().cloned()) else { return found };
+    let first_of_group = |human: &HumanProposal| {
+        let before = proposal.humans.iter().take_while(|other| other.id != human.id);
+        human.group.is_none() || before.clone().all(|other| other.group != human.group)
+    };
+    for human in proposal.humans.iter().filter(|human| human.relation == Relation::Crossing && first_of_group(human)) {
+        let Some(way) = best.ways.get(&human.id) else { continue };
+        let at = route.nodes.iter().position(|node| *node == way.meet);
+        let from = at.and_then(|at| at.checked_sub(1)).and_then(|before| route.nodes.get(before));
+        let others = net.near(way.meet).iter().map(|(node, _)| *node);
+        for side in others.filter(|node| Some(node) != from && way.entry() != Some(*node)) {
+            found.extend(led(scene, route, Some((human.id, side))));
+        }
+    }
+    found
+}
+
+/// Everybody's way for one way of the robot; `from` has somebody come to the meeting from a node.
+fn led(scene: &Scene<'_>, route: &Route, from: Option<(HumanId, usize)>) -> Option<Solution> {
+    let Scene { net, proposal, layout, crowded, limits } = *scene;
     let starts = route.nodes.first().copied().into_iter().collect();
     let goals = route.nodes.last().copied().into_iter().collect();
     let meant = meant::indices(net, proposal);
@@ -43,9 +65,11 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
         meant: &meant,
         standing: Vec::new(),
         boards: boarding::count(proposal),
+        wide: limits.wide,
+        entry: None,
     };
     let mut ways: BTreeMap<HumanId, Way> = BTreeMap::new();
-    let spread = spread::spread(net, proposal, &route);
+    let spread = spread::spread(net, proposal, route);
     let beside = |relation: Relation| matches!(relation, Relation::Behind | Relation::Ahead | Relation::Abreast);
     let along = proposal.humans.iter().any(|human| !beside(human.relation));
     let mut cost = 0.0;
@@ -61,6 +85,7 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
             .iter()
             .filter(|other| other.group.is_some() && other.group == human.group)
             .find_map(|other| ways.get(&other.id).filter(|_| other.relation == human.relation));
+        taken.entry = from.filter(|(id, _)| *id == human.id).map(|(_, node)| node);
         let led = human.rules.iter().find_map(|rule| {
             if let socrates_model::Action::FollowHuman(leader) = rule.act { ways.get(&leader) } else { None }
         });
@@ -71,7 +96,7 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
             Some(leader) => after(net, leader, &taken)?,
             None => match spread.iter().find(|(id, _)| *id == human.id) {
                 Some((_, meet)) => way(human, &Route { meet: *meet, ..route.clone() }, &taken, along)?,
-                None => way(human, &route, &taken, along)?,
+                None => way(human, route, &taken, along)?,
             },
         };
         let own = match twice.iter().find(|(id, _)| *id == human.id) {
@@ -81,7 +106,7 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
                 again.extend(of.filter_map(|other| again.get(&other.id)).next().copied().map(|node| (human.id, node)));
                 own
             }
-            Some((_, class)) => match second_meeting::second(net, &route, &own, (human.relation, *class)) {
+            Some((_, class)) => match second_meeting::second(net, route, &own, (human.relation, *class)) {
                 Some((own, node)) => {
                     again.insert(human.id, node);
                     own
@@ -113,7 +138,7 @@ pub(crate) fn everybody(scene: &Scene<'_>, route: Route) -> Option<Solution> {
         ways.insert(human.id, own);
     }
     let score = route.score - cost;
-    Some(Solution { route, ways, again, strain: cost, score })
+    Some(Solution { route: route.clone(), ways, again, strain: cost, score })
 }
 
 /// The way of somebody who follows another human: the same, from the node before or after its start.

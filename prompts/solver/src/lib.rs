@@ -11,6 +11,7 @@
 //!
 //! *Never here:* a word of a request, a file, a clock, a random number of its own (the draw is an argument).
 
+mod breadth;
 mod candidates;
 mod cost;
 pub mod edit;
@@ -39,7 +40,7 @@ mod tests_by_hand;
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use socrates_model::{HumanId, Location, NodeId, Paths, PlaceClass, Proposal, RobotModel, Signature};
+use socrates_model::{Breadth, HumanId, Location, NodeId, Paths, PlaceClass, Proposal, RobotModel, Signature};
 
 pub use meant::{met_at, of_proposal};
 pub use miss::{Miss, impossible};
@@ -112,6 +113,8 @@ pub struct Problem<'a> {
     pub told: Told,
     /// A random number: of solutions that are as good as each other it picks one.
     pub draw: u64,
+    /// How far from the best a solution may be and still be drawn.
+    pub breadth: Breadth,
     /// The author who answers, as the paths name it.
     pub author: Signature,
 }
@@ -131,6 +134,7 @@ impl<'a> Problem<'a> {
             layout: Layout::default(),
             told: Told::default(),
             draw: 0,
+            breadth: Breadth::Usual,
             author,
         }
     }
@@ -142,6 +146,7 @@ pub struct Solved {
     /// The chosen paths.
     pub paths: Paths,
     /// Different paths that are as good as the best, the best first, then each time those that play farthest from all before: two
-    /// differ when the meeting, or the robot's start or goal, lies more than 3 m elsewhere. The draw picks among them.
+    /// differ when the meeting, or the robot's start or goal, lies more than 3 m elsewhere. The draw picks among them. In a wide
+    /// search, where somebody who comes from another side makes a difference too, those with the most points of them.
     pub alternatives: Vec<Paths>,
 }

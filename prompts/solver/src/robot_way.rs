@@ -32,13 +32,12 @@ pub(crate) struct Wish {
     pub(crate) least_m: f64,
     /// Length that is aimed at, m.
     pub(crate) aim_m: f64,
+    /// Ends per branch that are tried in earnest.
+    pub(crate) ends: usize,
 }
 
 /// Shortest way of the robot over a meeting, m.
 pub(crate) const LEAST_M: f64 = 6.5;
-
-/// Ends per branch that are tried in earnest.
-const ENDS: usize = 9;
 
 type Ways = Vec<Vec<usize>>;
 
@@ -60,7 +59,12 @@ pub(crate) fn over(net: &Net<'_>, meet: usize, wish: &Wish) -> Vec<Route> {
                 })
                 .collect();
             found.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            found.into_iter().take(ENDS).map(|(_, end)| tree.way(end)).filter(|way| !way.is_empty()).collect::<Vec<_>>()
+            found
+                .into_iter()
+                .take(wish.ends)
+                .map(|(_, end)| tree.way(end))
+                .filter(|way| !way.is_empty())
+                .collect::<Vec<_>>()
         };
         arms.push((*arm, ends(wish.start, false), ends(wish.goal, true)));
     }

@@ -1,23 +1,22 @@
 //! The search: all candidates in order, which of them are different answers, and which is the answer.
 
-use socrates_model::{PlaceClass, Proposal, Relation, seeds};
+use std::collections::BTreeSet;
 
+use socrates_model::{Breadth, PlaceClass, Proposal, Relation, seeds};
+
+use crate::breadth::Limits;
 use crate::candidates::{Scene, candidates};
 use crate::cost::FARTHEST;
 use crate::everybody::{Solution, written};
 use crate::graph::Net;
+use crate::people::Way;
 use crate::robot_way::{LEAST_M, Wish, missing_m, times_shortest};
 use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
 
-/// Solutions within so many points of the best are as good: a draw may take any of them.
-const ALIKE: f64 = 2.5;
-/// Of those, people's ways may cost so much more than in the best: what was asked of them is not given up for variety.
-const STRAINED: f64 = 0.75;
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
-/// Different solutions that are put in order, and solutions among which they are looked for, at most.
+/// Different solutions that are put in order, at most.
 const ALTERNATIVES: usize = 64;
-const POOL: usize = 400;
 /// A person who wants other paths is given one of so many.
 const OTHERS: usize = 6;
 /// Solutions whose way is held against the grid, at most, before the graph is believed.
@@ -44,14 +43,15 @@ pub fn solve(problem: &Problem<'_>) -> Result<Solved, Miss> {
         }
         paths
     };
-    Ok(Solved { paths: told(chosen), alternatives: alternatives.into_iter().map(told).collect() })
+    Ok(Solved { paths: told(chosen), alternatives: alternatives.into_iter().take(ALTERNATIVES).map(told).collect() })
 }
 
 /// Every solution, the best first.
 pub(crate) fn solutions(problem: &Problem<'_>, net: &Net<'_>) -> Vec<Solution> {
-    let scene = Scene { net, proposal: problem.proposal, layout: problem.layout, crowded: false };
+    let limits = Limits::of(problem.breadth);
+    let scene = Scene { net, proposal: problem.proposal, layout: problem.layout, crowded: false, limits };
     let told = &problem.told;
-    let wish = Wish { via: problem.via, roomy: told.stuck, ..wish(problem.proposal, told.shorts) };
+    let wish = Wish { via: problem.via, roomy: told.stuck, ends: limits.ends, ..wish(problem.proposal, told.shorts) };
     let mut solutions = candidates(&scene, &wish);
     if solutions.is_empty() {
         solutions = candidates(&Scene { crowded: true, ..scene }, &wish);
@@ -67,19 +67,49 @@ fn corners(solution: &Solution) -> [usize; 3] {
     [at(nodes.get(solution.route.meet)), at(nodes.first()), at(nodes.last())]
 }
 
+/// What tells a solution from others: where it plays, and in a wide search from where each comes to the meeting.
+fn key(solution: &Solution, limits: &Limits) -> ([usize; 3], Vec<Option<usize>>) {
+    let sides = solution.ways.values().map(Way::entry).take(if limits.wide { usize::MAX } else { 0 });
+    (corners(solution), sides.collect())
+}
+
+/// Whether the robot's way is no detour on the floor either. Where the task's own ends leave only a detour the floor has nothing to
+/// say.
+fn is_natural(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> bool {
+    let nodes = &solution.route.nodes;
+    times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
+}
+
+/// Who comes towards the robot is seen to where neither turns so near to the meeting, m, by more than this cosine.
+const FACING_M: f64 = 2.5;
+const FACING: f64 = 0.7;
+
+/// How many turns of the robot's way lie so near to the meeting, beside it, that who comes towards the robot comes round a corner.
+fn turns_near(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> usize {
+    let towards = problem.proposal.humans.iter().any(|human| human.relation == Relation::Frontal);
+    if !towards || problem.proposal.place == PlaceClass::BlindCorner {
+        return 0;
+    }
+    let (nodes, meet) = (&solution.route.nodes, solution.route.meet);
+    let near = |at: usize| net.length_m(nodes.get(at.min(meet)..=at.max(meet)).unwrap_or_default()) < FACING_M;
+    let turns = nodes.windows(3).enumerate().filter(|(before, three)| {
+        let turn = matches!(three, [a, b, c] if net.straight(*a, *b, *c) < FACING);
+        turn && before + 1 != meet && near(before + 1)
+    });
+    turns.count()
+}
+
 /// How far elsewhere the one of two solutions plays, m.
 fn apart_m(net: &Net<'_>, one: &Solution, other: &Solution) -> f64 {
     let pairs = corners(one).into_iter().zip(corners(other));
     pairs.map(|(a, b)| (net.at(a) - net.at(b)).norm()).fold(0.0, f64::max)
 }
 
-/// Different solutions that are as good as the best: the best first, then each time the one that is farthest from all before it.
+/// Different solutions that are as good as the best: the best first, then each time the one that is farthest from all before it; in
+/// a wide search all of them as they come.
 fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Solution]) -> Vec<&'a Solution> {
-    // Where the task's own ends leave only a detour the floor has nothing to say.
-    let natural = |solution: &Solution| {
-        let nodes = &solution.route.nodes;
-        times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
-    };
+    let limits = Limits::of(problem.breadth);
+    let natural = |solution: &Solution| is_natural(problem, net, solution);
     // The graph may lead a long way round where the floor is open; where all do, the best is as good as any.
     let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or_else(|| solutions.first())
     else {
@@ -87,19 +117,26 @@ fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Soluti
     };
     // Another place is no reason to set off right before it, or to end right behind it, where the best does not.
     // Two meetings with one person are timed one by the other: the best is taken.
-    let alike = if first.again.is_empty() { ALIKE } else { 0.0 };
+    let alike = if first.again.is_empty() { limits.alike } else { 0.0 };
     let as_good = |solution: &&Solution| {
         solution.score >= first.score - alike
-            && solution.strain <= first.strain + STRAINED
-            && missing_m(net, &solution.route) <= missing_m(net, &first.route) + 1e-9
+            && solution.strain <= first.strain + limits.strained
+            && missing_m(net, &solution.route) <= missing_m(net, &first.route) + limits.short_m + 1e-9
+            && (!limits.wide || turns_near(problem, net, solution) <= turns_near(problem, net, first))
     };
     let mut pool: Vec<(&Solution, f64)> = Vec::new();
-    for solution in solutions.iter().filter(as_good).take(POOL) {
-        if pool.iter().all(|(other, _)| corners(other) != corners(solution)) && corners(solution) != corners(first) {
+    let mut known = BTreeSet::from([key(first, &limits)]);
+    for solution in solutions.iter().filter(as_good).take(limits.pool) {
+        if known.insert(key(solution, &limits)) {
             pool.push((solution, apart_m(net, first, solution)));
         }
     }
     let mut found = vec![first];
+    if limits.wide {
+        // Which of them is no detour on the floor is asked of the one that is drawn.
+        found.extend(pool.into_iter().map(|(solution, _)| solution));
+        return found;
+    }
     while found.len() < ALTERNATIVES {
         let far = pool.iter().enumerate().filter(|(_, (_, m))| *m > ELSEWHERE_M);
         let Some((at, _)) = far.max_by(|(i, a), (j, b)| a.1.total_cmp(&b.1).then(j.cmp(i))) else { break };
@@ -137,7 +174,11 @@ fn chosen<'a>(
     alternatives: &[&'a Solution],
 ) -> Option<&'a Solution> {
     let told = &problem.told;
-    let first = *alternatives.get(seeds::below(problem.draw, alternatives.len()))?;
+    let wide = Limits::of(problem.breadth).wide;
+    let at = seeds::below(problem.draw, alternatives.len());
+    let drawn = alternatives.iter().cycle().skip(at).take(alternatives.len());
+    let natural = drawn.clone().find(|solution| !wide || is_natural(problem, net, solution));
+    let first = natural.or_else(|| alternatives.first()).copied()?;
     if told.another {
         // A person wants others, not the same once more; where there are no others, the same are better than none.
         let others = |solution: &&Solution| {
@@ -156,7 +197,8 @@ fn chosen<'a>(
     let Some(passed) = told.moves.checked_sub(1) else { return Some(first) };
     // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
     let [node, ..] = corners(first);
-    let mut others = by_place(solutions);
+    // Of many that are as good those are next that the draw comes to.
+    let mut others: Vec<&Solution> = if wide { drawn.copied().collect() } else { by_place(solutions) };
     others.retain(|solution| corners(solution).first() != Some(&node));
     if others.is_empty() { Some(first) } else { others.get(passed % others.len()).copied() }
 }
@@ -194,5 +236,6 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         } else {
             16.0
         } + 4.0 * longer,
+        ends: Limits::of(Breadth::Usual).ends,
     }
 }

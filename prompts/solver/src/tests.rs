@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Door, DoorKind, Location, NodeId, PlaceClass, Point, Proposal, Relation};
+use socrates_model::{Breadth, Door, DoorKind, Location, NodeId, PlaceClass, Point, Proposal, Relation};
 
 use crate::testing::{block, corridor, door, map, node, proposal};
 use crate::{Layout, Miss, Problem, Solved, impossible, solve};
@@ -294,4 +294,27 @@ fn a_graph_of_two_thousand_nodes_is_solved() {
     assert_eq!(solved(&Problem::of(&proposal, &location, "test".into())).paths.humans.len(), 3);
     let proposal = self::proposal(PlaceClass::Exit, &[Relation::Frontal]);
     assert_eq!(miss(&Problem::of(&proposal, &location, "test".into())), Miss::NoPlace(PlaceClass::Exit));
+}
+
+#[test]
+fn a_wide_search_leads_people_from_more_sides_and_plays_in_more_places() {
+    let location = block("INTERSECTION");
+    let proposal = proposal(PlaceClass::Intersection, &[Relation::Crossing]);
+    let drawn = |problem: &Problem<'_>, breadth: Breadth| -> (BTreeSet<String>, BTreeSet<String>) {
+        let of = |draw: u64| {
+            let paths = solved(&Problem { draw, breadth, ..problem.clone() }).paths;
+            let own = paths.humans.values().next().unwrap();
+            let at = own.iter().position(|node| *node == paths.encounters[0].node).unwrap();
+            (own[at - 1].to_string(), format!("{:?}", paths.robot))
+        };
+        (0..80).map(of).unzip()
+    };
+    // The lower way has one arm of its own, downwards; from where the robot goes to people come and turn into it.
+    let named = between(&proposal, &location, "b0", "b6");
+    let sides = |breadth| drawn(&named, breadth).0;
+    assert_eq!(sides(Breadth::Usual), BTreeSet::from(["d".to_owned()]));
+    assert_eq!(sides(Breadth::Wide), BTreeSet::from(["b4".to_owned(), "d".to_owned()]));
+    let open = Problem::of(&proposal, &location, "test".into());
+    let ways = |breadth| drawn(&open, breadth).1.len();
+    assert!(ways(Breadth::Wide) > ways(Breadth::Usual), "{} {}", ways(Breadth::Wide), ways(Breadth::Usual));
 }

@@ -61,6 +61,7 @@ fn answer(question: &Question, proposal: &Proposal) -> String {
         layout: socrates_offline::layout(&proposal.pattern),
         told: Told::of(&question.feedback, former, proposal),
         draw: seeds::derive_seed(question.seed, &["paths"]),
+        breadth: question.request.run.breadth,
         ..Problem::of(proposal, &question.location, NAME.into())
     };
     let written = socrates_solver::solve(&problem).map(|solved| serde_json::to_string_pretty(&solved.paths));

@@ -1,7 +1,7 @@
 use super::*;
 use crate::geometry::Pose;
 use crate::graph::{GraphEdge, GraphNode, SceneGraph};
-use crate::grid::Grid;
+use crate::grid::{Cell, Grid};
 use crate::{Encounter, FORMAT, PlaceClass, RobotProposal, RobotRule, Signature};
 
 fn node(text: &str) -> NodeId {
@@ -167,11 +167,37 @@ fn the_order_of_acts_makes_a_difference_and_numbers_of_people_do_not() {
 fn a_trigger_makes_a_difference_from_two_seconds_on() {
     let after = |s: f64| repeats(|new, _| new.humans[0].rules[0].when = vec![Trigger::AfterSecs(s)]);
     assert!(after(6.9) && after(3.1) && !after(7.2) && !after(2.5));
-    // A robot of 0.8 m/s needs 2 s for 1.6 m.
+    // A robot of 0.8 m/s and a person of 1.2 m/s who comes from its side come 2.9 m nearer to each other in 2 s.
     let likeness = |m: f64| {
         let (mut new, ways) = first();
         new.humans[0].rules[0].when = vec![Trigger::RobotNear(m)];
         Likeness::of(&new, &ways, &map())
     };
-    assert!(likeness(2.0).repeats(&likeness(3.5)) && !likeness(2.0).repeats(&likeness(3.7)));
+    assert!(likeness(2.0).repeats(&likeness(4.6)) && !likeness(2.0).repeats(&likeness(5.3)));
+    // They are never farther from each other than 10.8 m.
+    assert!(likeness(12.0).repeats(&likeness(30.0)));
+}
+
+#[test]
+fn a_distance_makes_no_difference_where_a_wall_hides_the_robot() {
+    let mut walled = map();
+    // A wall of 1 m stands north of the corridor and west of the way across it; the person comes from the north.
+    let (width, height) = (40, 20);
+    let origin = Pose::new(-10.0, -3.0, 0.0);
+    walled.grid = Grid { width, height, resolution_m: 0.5, origin, cells: vec![Cell::Free; width * height] };
+    let likeness = |map: &Location, m: f64| {
+        let (mut new, ways) = first();
+        new.humans[0].rules[0].when = vec![Trigger::RobotVisible(m)];
+        Likeness::of(&new, &ways, map)
+    };
+    assert!(!likeness(&walled, 4.5).repeats(&likeness(&walled, 8.0)));
+    for row in 0..height {
+        for column in 0..width {
+            let at = walled.grid.center_of(column, row);
+            if at.y > 1.0 && at.x < -1.0 {
+                walled.grid.cells[row * width + column] = Cell::Occupied;
+            }
+        }
+    }
+    assert!(likeness(&walled, 4.5).repeats(&likeness(&walled, 8.0)));
 }

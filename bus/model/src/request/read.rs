@@ -16,8 +16,8 @@ use serde_json::Value;
 use super::form::Names;
 use super::tree::{Kind, Node, TextPlace};
 use super::{
-    AuthorSpec, BadRequest, Duration, Expect, GROUP_SIZES, MAX_HUMANS, MAX_TEXT_CHARS, MAX_VARIANTS, Moment, Request,
-    RobotGesture, RobotRequest, RunRequest, Seeds,
+    AuthorSpec, BadRequest, Breadth, Duration, Expect, GROUP_SIZES, MAX_HUMANS, MAX_TEXT_CHARS, MAX_VARIANTS, Moment,
+    Request, RobotGesture, RobotRequest, RunRequest, Seeds,
 };
 use crate::drive::RobotModel;
 use crate::fault::FaultCode;
@@ -286,7 +286,7 @@ impl Door<'_> {
     }
 
     fn run(&mut self, node: &Node) -> RunRequest {
-        let section = self.section(node, "run.", &["seeds", "duration", "author", "variants"]);
+        let section = self.section(node, "run.", &["seeds", "duration", "author", "variants", "breadth"]);
         let unset = RunRequest::default();
         let variants_hint = format!("1 to {MAX_VARIANTS}");
         let variants: Option<u32> = self.maybe(&section, "variants", &variants_hint);
@@ -301,6 +301,7 @@ impl Door<'_> {
                 .unwrap_or(unset.duration),
             author: self.maybe::<AuthorSpec>(&section, "author", AuthorSpec::ALLOWED).unwrap_or(unset.author),
             variants: variants.unwrap_or(unset.variants),
+            breadth: self.maybe::<Breadth>(&section, "breadth", "\"usual\" or \"wide\"").unwrap_or(unset.breadth),
         }
     }
 

@@ -1,4 +1,5 @@
-//! Across: in by one way that the robot does not use, out by another.
+//! Across: in by one way that the robot does not use, out by another. Somebody who is to come from where the robot goes to goes out
+//! by a way of their own.
 
 use socrates_model::{HumanProposal, PlaceClass};
 
@@ -35,11 +36,17 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     let ideal = ideal_m(human, net, route);
     let into = used.first().copied().flatten()?;
     let mut best: Option<Way> = None;
-    for entry in &free {
-        let tree = net.tree(*entry, &|node| route.nodes.contains(&node));
+    let entries = taken.entry.map_or_else(|| free.clone(), |entry| vec![entry]);
+    for entry in &entries {
+        let own_entry = used.contains(&Some(*entry));
+        // Who comes along the way that the robot goes on by comes from farther on there.
+        let before = route.nodes.get(..=route.meet).unwrap_or_default();
+        let barred = |node: usize| if own_entry { before.contains(&node) } else { route.nodes.contains(&node) };
+        let tree = net.tree(*entry, &barred);
         let step = onward_m(net, meet, &[*entry]);
         // Out by a free way if there is one, else along the robot's own; where it came from before where it goes to.
-        let exits = free.iter().copied().filter(|exit| exit != entry).chain(used.iter().copied().flatten());
+        let back = used.iter().copied().flatten().filter(|_| !own_entry);
+        let exits = free.iter().copied().filter(|exit| exit != entry).chain(back);
         let tails: Vec<(usize, Vec<usize>, f64)> = exits
             .flat_map(|exit| {
                 let mut tail = vec![*entry, meet, exit];
@@ -59,7 +66,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
                 }
                 let side = net.straight(into, meet, *entry).abs();
                 let turn = net.straight(*entry, meet, *exit);
-                let own = if used.contains(&Some(*exit)) { OWN_WAY } else { 0.0 };
+                let own = if own_entry || used.contains(&Some(*exit)) { OWN_WAY } else { 0.0 };
                 // Where the robot turns, a way that cuts the same corner does not cross its own.
                 let along = used.get(1).copied().flatten().map_or(0.0, |out| net.alike((into, out), (*entry, *exit)));
                 let own = own + SAME_CORNER * (along - CROSSES).max(0.0);

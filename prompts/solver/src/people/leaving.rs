@@ -67,9 +67,9 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     extend(net, &mut nodes, meet, &|node| route.nodes.contains(&node) && Some(node) != exit);
     onward(&mut nodes, taken);
     let length = tree.length_m(start);
-    // Nobody waits behind the door until a robot comes that is still far away.
+    // Nobody waits behind the door until a robot comes that is still far away; of many scenarios some are so.
     let waits_s = before_m(net, route) / ROBOT_MPS - length / human.speed_mps.unwrap_or(HUMAN_MPS);
-    let early = LATE_PER_S * (waits_s - WAITS_S).max(0.0);
+    let early = if taken.wide { 0.0 } else { LATE_PER_S * (waits_s - WAITS_S).max(0.0) };
     let along = match exit {
         None => 4.0,
         Some(exit) if Some(exit) == from || Some(exit) == beyond => OWN_WAY,

@@ -50,6 +50,14 @@ pub(crate) struct Way {
     pub(crate) cost: f64,
 }
 
+impl Way {
+    /// The node from which the way comes to the meeting; none where it begins there.
+    pub(crate) fn entry(&self) -> Option<usize> {
+        let at = self.nodes.iter().position(|node| *node == self.meet)?;
+        self.nodes.get(at.checked_sub(1)?).copied()
+    }
+}
+
 /// What is already taken.
 pub(crate) struct Taken<'a> {
     pub(crate) net: &'a Net<'a>,
@@ -68,6 +76,10 @@ pub(crate) struct Taken<'a> {
     pub(crate) standing: Vec<usize>,
     /// How many stand before a door at first and go in.
     pub(crate) boards: usize,
+    /// Whether many different scenarios are wanted.
+    pub(crate) wide: bool,
+    /// The node from which this one is to come to the meeting; the best one where it is none.
+    pub(crate) entry: Option<usize>,
 }
 
 /// Cost of a way that ends in a doorway or where others end: any other way is better.
