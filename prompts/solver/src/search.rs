@@ -176,8 +176,8 @@ fn chosen<'a>(
     let told = &problem.told;
     let wide = Limits::of(problem.breadth).wide;
     let at = seeds::below(problem.draw, alternatives.len());
-    let drawn = alternatives.iter().cycle().skip(at).take(alternatives.len());
-    let natural = drawn.clone().find(|solution| !wide || is_natural(problem, net, solution));
+    let mut drawn = alternatives.iter().cycle().skip(at).take(alternatives.len());
+    let natural = drawn.find(|solution| !wide || is_natural(problem, net, solution));
     let first = natural.or_else(|| alternatives.first()).copied()?;
     if told.another {
         // A person wants others, not the same once more; where there are no others, the same are better than none.
@@ -197,8 +197,9 @@ fn chosen<'a>(
     let Some(passed) = told.moves.checked_sub(1) else { return Some(first) };
     // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
     let [node, ..] = corners(first);
-    // Of many that are as good those are next that the draw comes to.
-    let mut others: Vec<&Solution> = if wide { drawn.copied().collect() } else { by_place(solutions) };
+    // Of many that are as good the draw takes one again.
+    let mut others: Vec<&Solution> = if wide { alternatives.to_vec() } else { by_place(solutions) };
+    let passed = if wide { passed.saturating_add(at) } else { passed };
     others.retain(|solution| corners(solution).first() != Some(&node));
     if others.is_empty() { Some(first) } else { others.get(passed % others.len()).copied() }
 }
