@@ -37,12 +37,12 @@ const USUAL: Limits = Limits {
     wide: false,
 };
 
-/// Many different answers: 9 points are the robot's way 30 m longer than wished, or a turn at the meeting and 10 m; 3 points are
-/// somebody who crosses and goes on along the robot's way. 1.5 m less room is a meeting 3.5 m after the start.
+/// Many different answers: 11.5 points are 38 m more of the robot's way than is wished, or a turn at the meeting and 18 m, and less
+/// than an end in a doorway; 3 points are somebody who crosses and goes on along the robot's way.
 const WIDE: Limits = Limits {
-    alike: 9.0,
+    alike: 11.5,
     strained: 3.0,
-    short_m: 1.5,
+    short_m: 0.5,
     pool: 4000,
     nodes: 20,
     routes: 30,

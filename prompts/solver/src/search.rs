@@ -73,14 +73,19 @@ fn key(solution: &Solution, limits: &Limits) -> ([usize; 3], Vec<Option<usize>>)
     (corners(solution), sides.collect())
 }
 
-/// Whether the robot's way is no detour on the floor either. Where the task's own ends leave only a detour the floor has nothing to
-/// say.
-fn is_natural(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> bool {
-    let nodes = &solution.route.nodes;
-    times_shortest(net, nodes, problem.via) > FARTHEST || net.is_short_on_grid(nodes, problem.radius_m)
+/// Whether the robot's way is far longer than the shortest on the graph.
+fn is_detour(problem: &Problem<'_>, net: &Net<'_>, solution: &Solution) -> bool {
+    times_shortest(net, &solution.route.nodes, problem.via) > FARTHEST
 }
 
-/// Who comes towards the robot is seen to where neither turns so near to the meeting, m, by more than this cosine.
+/// Whether the robot's way is a detour neither on the graph nor on the floor. Where the task's own ends leave only detours (the best
+/// of all is one) the floor has nothing to say.
+fn is_natural(problem: &Problem<'_>, net: &Net<'_>, best: &Solution, solution: &Solution) -> bool {
+    is_detour(problem, net, best)
+        || !is_detour(problem, net, solution) && net.is_short_on_grid(&solution.route.nodes, problem.radius_m)
+}
+
+/// Somebody who comes towards the robot is seen to where neither turns so near to the meeting, m, by more than this cosine.
 const FACING_M: f64 = 2.5;
 const FACING: f64 = 0.7;
 
@@ -109,7 +114,8 @@ fn apart_m(net: &Net<'_>, one: &Solution, other: &Solution) -> f64 {
 /// a wide search all of them as they come.
 fn alternatives<'a>(problem: &Problem<'_>, net: &Net<'_>, solutions: &'a [Solution]) -> Vec<&'a Solution> {
     let limits = Limits::of(problem.breadth);
-    let natural = |solution: &Solution| is_natural(problem, net, solution);
+    let best = solutions.first();
+    let natural = |solution: &Solution| best.is_some_and(|best| is_natural(problem, net, best, solution));
     // The graph may lead a long way round where the floor is open; where all do, the best is as good as any.
     let Some(first) = solutions.iter().take(CHECKED).find(|solution| natural(solution)).or_else(|| solutions.first())
     else {
@@ -175,9 +181,10 @@ fn chosen<'a>(
 ) -> Option<&'a Solution> {
     let told = &problem.told;
     let wide = Limits::of(problem.breadth).wide;
+    let best = solutions.first()?;
     let at = seeds::below(problem.draw, alternatives.len());
-    let drawn = alternatives.iter().cycle().skip(at).take(alternatives.len());
-    let natural = drawn.clone().find(|solution| !wide || is_natural(problem, net, solution));
+    let mut drawn = alternatives.iter().cycle().skip(at).take(alternatives.len());
+    let natural = drawn.find(|solution| !wide || is_natural(problem, net, best, solution));
     let first = natural.or_else(|| alternatives.first()).copied()?;
     if told.another {
         // A person wants others, not the same once more; where there are no others, the same are better than none.
@@ -197,8 +204,9 @@ fn chosen<'a>(
     let Some(passed) = told.moves.checked_sub(1) else { return Some(first) };
     // What is wrong with the place moves on to the next meeting node, and so does a simulation in which they did not meet.
     let [node, ..] = corners(first);
-    // Of many that are as good those are next that the draw comes to.
-    let mut others: Vec<&Solution> = if wide { drawn.copied().collect() } else { by_place(solutions) };
+    // Of many that are as good the draw takes one again.
+    let mut others: Vec<&Solution> = if wide { alternatives.to_vec() } else { by_place(solutions) };
+    let passed = if wide { passed.saturating_add(at) } else { passed };
     others.retain(|solution| corners(solution).first() != Some(&node));
     if others.is_empty() { Some(first) } else { others.get(passed % others.len()).copied() }
 }
