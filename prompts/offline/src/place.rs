@@ -46,7 +46,11 @@ pub(crate) fn most_places(location: &Location) -> usize {
     all.all().iter().filter(|place| place.kind == DoorKind::Room).map(|place| place.nodes.len()).max().unwrap_or(0)
 }
 
-/// The most ways that meet in a node outside; for somebody who comes out of a place, right outside its door.
+/// Cosine of the turn up to which a way leads straight on.
+const STRAIGHT: f64 = 0.7;
+
+/// The most ways that meet in a node outside; for somebody who comes out of a place, right outside its door, where a way leads straight
+/// on over them.
 pub(crate) fn most_arms(location: &Location, from: Option<PlaceClass>) -> usize {
     let graph = &location.graph;
     let arms = |id: &NodeId| graph.neighbors(id).len();
@@ -56,11 +60,22 @@ pub(crate) fn most_arms(location: &Location, from: Option<PlaceClass>) -> usize 
     let Some(class) = from else {
         return graph.nodes().iter().filter(|node| outside(&node.id)).map(|node| arms(&node.id)).max().unwrap_or(0);
     };
+    // Where no way out leads straight on, the robot turns into one of the others: so many are left to cross it.
+    let at = |id: &NodeId| graph.node(id).map(|node| node.at);
+    let straight_on = |from: &NodeId, over: &NodeId| {
+        let (Some(a), Some(b)) = (at(from), at(over)) else { return false };
+        let on = |id: &&NodeId| at(id).is_some_and(|c| (b - a).normalize().dot(&(c - b).normalize()) > STRAIGHT);
+        graph.neighbors(over).iter().filter(|id| *id != from && outside(id)).any(|id| on(&id))
+    };
+    let crossed =
+        |(from, over): (&NodeId, &NodeId)| if straight_on(from, over) { arms(over) } else { arms(over).min(3) };
     let starts = inside(location, Some(class));
     let beyond = starts.iter().flat_map(|start| {
         let next = graph.neighbors(start);
-        let behind: Vec<&NodeId> = next.iter().filter(|id| doorway(id)).flat_map(|id| graph.neighbors(id)).collect();
-        next.iter().chain(behind).filter(|id| outside(id)).map(arms).collect::<Vec<usize>>()
+        let behind = next.iter().filter(|id| doorway(id));
+        let behind = behind.flat_map(|door| graph.neighbors(door).iter().map(move |id| (door, id)));
+        let all = next.iter().map(|id| (start, id)).chain(behind);
+        all.filter(|(_, over)| outside(over)).map(crossed).collect::<Vec<usize>>()
     });
     beyond.max().unwrap_or(0)
 }
