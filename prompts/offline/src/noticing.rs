@@ -96,7 +96,7 @@ mod tests {
     fn drawn(rough: &str, breadth: Breadth) -> BTreeSet<u64> {
         let mut asked = request("Drive to the exit", Some(rough));
         asked.run.breadth = breadth;
-        (1..=12)
+        (1..=6)
             .map(|seed| {
                 let (_, proposal, _) = answers(&asked, &map("hospital"), seed);
                 let m = proposal.humans[0].rules[0].when[0].distance_m().unwrap();
@@ -107,8 +107,8 @@ mod tests {
 
     #[test]
     fn a_distance_that_is_said_is_never_drawn_and_one_that_is_open_only_where_many_are_wanted() {
-        let open = "A nurse comes towards the robot. When she sees the robot, she stops and looks at it.";
-        let said = "A nurse comes towards the robot. When the robot is 3 m away, she stops and looks at it.";
+        let open = "A nurse crosses the robot's way. When she sees the robot, she looks at it.";
+        let said = "A nurse crosses the robot's way. When the robot is 3 m away, she looks at it.";
         assert_eq!(drawn(open, Breadth::Usual).len(), 1);
         assert!(drawn(open, Breadth::Wide).len() > 1, "{:?}", drawn(open, Breadth::Wide));
         assert_eq!(drawn(said, Breadth::Wide), BTreeSet::from([30]));
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn a_reaction_is_judged_by_the_distance_that_was_drawn() {
-        let rough = "A nurse comes towards the robot. When she sees the robot, she stops and looks at it.";
+        let rough = "A nurse crosses the robot's way. When she sees the robot, she looks at it.";
         let mut wide = request("Drive to the exit", Some(rough));
         wide.run.breadth = Breadth::Wide;
         for seed in 1..=4 {
