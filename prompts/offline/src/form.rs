@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::form::{Deed, FormHuman, Formation, PlaceWord};
+use socrates_model::form::{Deed, FormHuman, Formation, PlaceWord, RobotDeed};
 use socrates_model::{
     Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Trigger,
 };
@@ -33,7 +33,8 @@ pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
     match place {
         PlaceWord::Class(class) => place::has(location, *class).then(|| Bound { class: *class, nodes: Vec::new() }),
         PlaceWord::Name(name) => {
-            let found = named::find(location, name)?;
+            // `ward 9` of a map with two wards is no place of it.
+            let found = named::find(location, name).filter(|found| found.exact)?;
             Some(Bound { class: found.class, nodes: found.nodes })
         }
     }
@@ -84,6 +85,7 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
         }
         story.cast.people.push(read);
     }
+    paces(request, &mut story);
     groups(request, &mut story);
     orders(request, &mut story);
     places(request, location, &mut story);
@@ -121,6 +123,29 @@ fn stands(relation: Relation, start: Option<PlaceClass>) -> String {
         Relation::Leaving => format!("leaves the {from}"),
         Relation::Staying => format!("stays in the {from}"),
         Relation::Abreast => "walks beside the robot".to_owned(),
+    }
+}
+
+/// Slowest pace of somebody who overtakes the robot, and fastest of somebody whom it catches up with, m/s: it goes 0.8 m/s.
+const OVERTAKES_MPS: f64 = 1.2;
+const AHEAD_MPS: f64 = 0.75;
+
+/// Paces at which somebody cannot stand to the robot's way as stated.
+fn paces(request: &Request, story: &mut Story) {
+    for person in request.form.people() {
+        let follows = person.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)));
+        let Some(mps) = person.human.pace.and_then(socrates_model::form::Pace::mps) else { continue };
+        let why = match person.human.relation {
+            Relation::Behind if !follows && mps < OVERTAKES_MPS => {
+                format!("somebody behind who follows nobody overtakes the robot, at {OVERTAKES_MPS} m/s or faster")
+            }
+            Relation::Ahead if mps > AHEAD_MPS => {
+                format!("the robot catches up with somebody ahead at {AHEAD_MPS} m/s or slower")
+            }
+            _ => continue,
+        };
+        let message = format!("{} has a pace of {mps} m/s; {why}", person.id);
+        story.problems.push(Fault::new(FaultCode::PLimit, "human.pace", message).about([format!("pace = {mps}")]));
     }
 }
 
@@ -253,4 +278,47 @@ pub(crate) fn differs(stated: &Reading, text: &Reading) -> Option<String> {
     }
     (!text.humans.is_empty() && !found.is_empty())
         .then(|| format!("the text differs from the form ({}); the form is played", found.join("; ")))
+}
+
+/// The card of the robot's own part, where the form states one.
+pub(crate) fn robot_part(request: &Request) -> Option<&'static str> {
+    request.robot.does.iter().find_map(|step| match step.act {
+        RobotDeed::Follow(_) => Some("robot_following"),
+        RobotDeed::LeadM(_) => Some("leading"),
+        RobotDeed::Overtake(_) => Some("robot_overtaking"),
+        RobotDeed::Beside(_) | RobotDeed::Say(_) | RobotDeed::HoldS(_) | RobotDeed::WaitForLeavers(_) => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use socrates_model::{FaultCode, Request};
+
+    use crate::tests::map;
+
+    fn problems(more: &str) -> Vec<(FaultCode, String)> {
+        let text = format!("location = \"hospital\"\ntask = \"Drive to the exit\"\n{more}");
+        let request = Request::of_toml(&text, None).unwrap();
+        let reading = crate::read(&request, &map("hospital"));
+        reading.problems.iter().map(|fault| (fault.code, fault.message.to_string())).collect()
+    }
+
+    #[test]
+    fn what_a_form_states_is_played_as_it_stands_or_refused() {
+        assert_eq!(problems("[[human]]\nrelation = \"static\"\nplace = \"ward 2\"\n"), []);
+        for (more, code, words) in [
+            ("relation = \"static\"\nplace = \"ward 9\"", FaultCode::PPlace, "`ward 9` is no place of this map"),
+            ("relation = \"static\"\nplace = \"moon\"", FaultCode::PPlace, "`moon` is no place of this map"),
+            ("relation = \"behind\"\npace = \"slow\"", FaultCode::PLimit, "overtakes the robot, at 1.2 m/s or faster"),
+            ("relation = \"ahead\"\npace = 1.0", FaultCode::PLimit, "catches up with somebody ahead at 0.75 m/s"),
+            (
+                "relation = \"static\"\nplace = \"corridor\"\n[[human]]\nrelation = \"static\"\nplace = \"room\"",
+                FaultCode::PLimit,
+                "at one place for all",
+            ),
+        ] {
+            let found = problems(&format!("[[human]]\n{more}\n"));
+            assert!(found.iter().any(|(own, text)| *own == code && text.contains(words)), "{words}: {found:?}");
+        }
+    }
 }

@@ -65,7 +65,7 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         again_and_again(request.rough_scenario.as_deref().unwrap_or_default(), &mut story);
     }
     unplaceable(location, &mut story, &mut task, &mut reading);
-    let wanted = request.expect.pattern.as_deref().or(story.robot_part);
+    let wanted = request.expect.pattern.as_deref().or(story.robot_part).or_else(|| form::robot_part(request));
     let told_of = rough.is_some() || stated;
     reading.pattern = told_of.then(|| pattern::of(&story, wanted)).flatten().or_else(|| wanted.map(str::to_owned));
     if let Some(id) = request.expect.pattern.as_ref().filter(|id| crate::card::card(id).is_none()) {
@@ -483,7 +483,7 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
             reading.notes.push(format!("nothing is said of what human_{} does; they walk their path", i + 1));
         }
     }
-    if request.rough_scenario.is_none() {
+    if request.rough_scenario.is_none() && request.form.is_empty() {
         reading.notes.push("no rough scenario: a pattern that fits the map is drawn by the seed".to_owned());
     }
     if !request.social_context.trim().is_empty() {

@@ -457,7 +457,7 @@ impl Door<'_> {
     }
 }
 
-/// Whether nothing ends a step but the end of the run.
-fn is_endless(step: &Step) -> bool {
-    step.for_s.is_none() && !matches!(step.act, None | Some(Deed::GiveWay | Deed::Approach))
+/// Whether nothing ends a step but the end of the run: only a time does, and a sign is over by itself.
+const fn is_endless(step: &Step) -> bool {
+    step.for_s.is_none() && step.act.is_some()
 }

@@ -80,6 +80,10 @@ fn everything_that_is_wrong_with_a_form_is_said_at_once() {
             ),
             "belongs to the first step only",
         ),
+        (
+            &format!("{human}does = [{{ act = \"give_way\" }}, {{ act = \"navigate\" }}]\n"),
+            "a step comes after one that never ends",
+        ),
         (&format!("{human}does = [{{ for_s = 2 }}]\n"), "`human.does`: does nothing"),
         (&format!("{human}does = [{{ act = \"block\", for_s = -1 }}]\n"), "-1 s is out of range (0.1 to 600 (s))"),
         (
