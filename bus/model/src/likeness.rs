@@ -181,7 +181,7 @@ fn part(human: &HumanProposal, proposal: &Proposal, paths: &Paths, location: &Lo
     // The nearer, the later.
     let near = |trigger: &Trigger, m: f64| {
         let said_s = -m / nearing_mps;
-        let seen_s = approach.as_ref().map_or(said_s, |approach| approach.from_meeting_s(trigger, m));
+        let seen_s = approach.as_ref().map_or(said_s, |approach| approach.since_meeting_s(trigger, m));
         Time { said_s, seen_s }
     };
     let (acts, times): (Vec<String>, Vec<Vec<Time>>) = human.rules.iter().map(|rule| act(rule, &near)).unzip();

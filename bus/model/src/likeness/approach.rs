@@ -53,7 +53,7 @@ impl<'a> Approach<'a> {
 
     /// When the robot is as near as a trigger wants for the first time, s from the meeting on; at the end of what is looked at where
     /// it never is.
-    pub(super) fn from_meeting_s(&self, trigger: &Trigger, within_m: f64) -> f64 {
+    pub(super) fn since_meeting_s(&self, trigger: &Trigger, within_m: f64) -> f64 {
         let [robot_m, person_m] = self.met_m;
         let start_s = -(robot_m / ROBOT_MPS).min(BEFORE_S);
         // Who stands looks around; who walks sees what is before them and beside them.

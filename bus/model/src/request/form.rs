@@ -155,7 +155,7 @@ impl Door<'_> {
             } else if path == "human.does." && !steps.is_empty() && !step.when.is_empty() {
                 let hint = "it begins when the step before has ended; what waits for something else stands in `reacts`";
                 self.bad(when, node.at, "belongs to the first step only", hint);
-            } else if path == "human.does." && steps.last().is_some_and(|last| is_endless(last)) {
+            } else if path == "human.does." && steps.last().is_some_and(is_endless) {
                 let hint = "give the step before an end: for_s = 5.0";
                 self.bad(path.trim_end_matches('.'), node.at, "a step comes after one that never ends", hint);
             }
