@@ -142,7 +142,14 @@ fn paces(request: &Request, story: &mut Story) {
             Relation::Ahead if mps > AHEAD_MPS => {
                 format!("the robot catches up with somebody ahead at {AHEAD_MPS} m/s or slower")
             }
-            _ => continue,
+            Relation::Behind
+            | Relation::Ahead
+            | Relation::Frontal
+            | Relation::Crossing
+            | Relation::Static
+            | Relation::Leaving
+            | Relation::Staying
+            | Relation::Abreast => continue,
         };
         let message = format!("{} has a pace of {mps} m/s; {why}", person.id);
         story.problems.push(Fault::new(FaultCode::PLimit, "human.pace", message).about([format!("pace = {mps}")]));

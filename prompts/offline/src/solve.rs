@@ -51,7 +51,7 @@ pub(crate) fn problem<'a>(question: &'a Question, proposal: &'a Proposal) -> Pro
         starts,
         goals,
         radius_m: question.request.robot.model.radius_m,
-        via: via.or(task.via.map(|(class, _)| class)),
+        via: via.or_else(|| task.via.map(|(class, _)| class)),
         rooms: if request.form.is_empty() { spot::rooms(question) } else { form::rooms(request, location) },
         layout: layout(&proposal.pattern),
         told,

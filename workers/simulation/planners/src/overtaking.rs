@@ -62,7 +62,7 @@ impl Overtaking {
             return None;
         }
         let passing_m = (ahead_m + IN_M) / slower * robot.v_max_mps;
-        let sides = self.side.map_or(vec![1.0, -1.0], |side| vec![side]);
+        let sides = self.side.map_or_else(|| vec![1.0, -1.0], |side| vec![side]);
         let lane = GAPS_M.into_iter().find_map(|gap_m| {
             let beside = |side: &f64| {
                 let off_m = side * (robot.radius_m + person.radius_m + gap_m) + route.lateral_m(&person.at, theirs);
