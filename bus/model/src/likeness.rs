@@ -5,7 +5,7 @@
 //! [`LATER_S`] earlier or later. Pace, names, words and seeds make no difference.
 //!
 //! A distance at which somebody notices the robot makes a difference only as far as it is seen: behind a corner, and farther than
-//! the two ever are from each other, all distances are one ([`approach`]).
+//! the two ever are from each other, all distances are one (module `approach`).
 
 mod approach;
 
