@@ -185,7 +185,7 @@ pub enum When {
     GoalReached,
     /// They are where they meet the robot.
     AtEncounter,
-    /// So many s after the start.
+    /// Time after the start, s.
     AfterSecs(f64),
 }
 
@@ -211,7 +211,7 @@ impl When {
         }
     }
 
-    /// Whom it names.
+    /// The person whom it names.
     pub(crate) const fn names(&self) -> Option<&String> {
         if let Self::HumanSays(id, _) = self { Some(id) } else { None }
     }
@@ -245,7 +245,7 @@ impl Deed {
     /// The acts, for messages.
     pub const ALLOWED: &str = "navigate, stand_still, look_at_robot, follow_robot, { follow_human = \"nurse\" }, run_away, give_way, block, approach";
 
-    /// Whom it names.
+    /// The person whom it names.
     pub(crate) const fn names(&self) -> Option<&String> {
         if let Self::FollowHuman(id) = self { Some(id) } else { None }
     }
@@ -312,7 +312,7 @@ pub enum RobotMoment {
     HumanSays(Gesture),
     /// It is where it meets this person.
     AtEncounter(String),
-    /// So many s after the start.
+    /// Time after the start, s.
     AfterSecs(f64),
 }
 
@@ -523,7 +523,7 @@ impl Form {
         })
     }
 
-    /// Whom an order means.
+    /// The agents whom a name of an order means.
     #[must_use]
     pub fn agents(&self, name: &str) -> Vec<AgentId> {
         if name == "robot" {

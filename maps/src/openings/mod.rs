@@ -300,14 +300,6 @@ impl Enclosures {
         self.of_node(node).into_iter().flat_map(|place| &place.openings).filter_map(Opening::door)
     }
 
-    /// Nodes of the places that a declared door leads into, in file order; those that its file names where it leads into none.
-    #[must_use]
-    pub fn behind<'a>(&'a self, door: &'a Door) -> Vec<&'a NodeId> {
-        let places = self.places.iter().filter(|place| place.by_door(&door.id).is_some());
-        let nodes: Vec<&NodeId> = places.flat_map(|place| &place.nodes).collect();
-        if nodes.is_empty() { door.inside.iter().collect() } else { nodes }
-    }
-
     /// The opening through which a way first leads out of the place that it begins in.
     #[must_use]
     pub fn way_out(&self, location: &Location, way: &[NodeId]) -> Option<(&Enclosure, &Opening)> {

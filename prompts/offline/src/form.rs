@@ -15,9 +15,12 @@ use socrates_model::{
 
 use crate::bind::QUEUES;
 use crate::cast::{Person, ReadRule};
+use crate::deed::{self, Around};
+use crate::lexicon::Act;
 use crate::named;
 use crate::order;
 use crate::place;
+use crate::proposal::{AHEAD_MPS, OVERTAKES_MPS, overtakes};
 use crate::story::Story;
 
 /// Where a place of a form is on a map.
@@ -38,6 +41,12 @@ pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
             Some(Bound { class: found.class, nodes: found.nodes })
         }
     }
+}
+
+/// What is said of a place that the map does not have.
+fn no_place(key: &'static str, place: &PlaceWord, location: &Location) -> Fault {
+    let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
+    Fault::new(FaultCode::PPlace, key, message).about([place.to_string()])
 }
 
 /// The story of a form.
@@ -114,42 +123,30 @@ fn in_place(human: &FormHuman, location: &Location) -> Option<PlaceClass> {
 /// How somebody stands to the robot's way, for the reading line.
 fn stands(relation: Relation, start: Option<PlaceClass>) -> String {
     let from = place::words(start.unwrap_or(PlaceClass::Room));
-    match relation {
-        Relation::Frontal => "comes towards the robot".to_owned(),
-        Relation::Behind => "comes from behind".to_owned(),
-        Relation::Ahead => "walks ahead of the robot".to_owned(),
-        Relation::Crossing => "crosses".to_owned(),
-        Relation::Static => "stands".to_owned(),
-        Relation::Leaving => format!("leaves the {from}"),
-        Relation::Staying => format!("stays in the {from}"),
-        Relation::Abreast => "walks beside the robot".to_owned(),
-    }
+    let act = match relation {
+        Relation::Leaving => return format!("leaves the {from}"),
+        Relation::Staying => return format!("stays in the {from}"),
+        Relation::Frontal => Act::Toward,
+        Relation::Behind => Act::Behind,
+        Relation::Ahead => Act::Ahead,
+        Relation::Crossing => Act::Cross,
+        Relation::Static => Act::Stand,
+        Relation::Abreast => Act::Abreast,
+    };
+    deed::words(act, &Around::default())
 }
-
-/// Slowest pace of somebody who overtakes the robot, and fastest of somebody whom it catches up with, m/s: it goes 0.8 m/s.
-const OVERTAKES_MPS: f64 = 1.2;
-const AHEAD_MPS: f64 = 0.75;
 
 /// Paces at which somebody cannot stand to the robot's way as stated.
 fn paces(request: &Request, story: &mut Story) {
     for person in request.form.people() {
-        let follows = person.rules.iter().any(|rule| matches!(rule.act, Action::FollowRobot | Action::FollowHuman(_)));
         let Some(mps) = person.human.pace.and_then(socrates_model::form::Pace::mps) else { continue };
-        let why = match person.human.relation {
-            Relation::Behind if !follows && mps < OVERTAKES_MPS => {
-                format!("somebody behind who follows nobody overtakes the robot, at {OVERTAKES_MPS} m/s or faster")
-            }
-            Relation::Ahead if mps > AHEAD_MPS => {
-                format!("the robot catches up with somebody ahead at {AHEAD_MPS} m/s or slower")
-            }
-            Relation::Behind
-            | Relation::Ahead
-            | Relation::Frontal
-            | Relation::Crossing
-            | Relation::Static
-            | Relation::Leaving
-            | Relation::Staying
-            | Relation::Abreast => continue,
+        let relation = person.human.relation;
+        let why = if overtakes(relation, &person.rules) && mps < OVERTAKES_MPS {
+            format!("somebody behind who does not follow it overtakes the robot, at {OVERTAKES_MPS} m/s or faster")
+        } else if relation == Relation::Ahead && mps > AHEAD_MPS {
+            format!("the robot catches up with somebody ahead at {AHEAD_MPS} m/s or slower")
+        } else {
+            continue;
         };
         let message = format!("{} has a pace of {mps} m/s; {why}", person.id);
         story.problems.push(Fault::new(FaultCode::PLimit, "human.pace", message).about([format!("pace = {mps}")]));
@@ -191,8 +188,7 @@ fn places(request: &Request, location: &Location, story: &mut Story) {
         for (key, place) in said {
             let Some(place) = place else { continue };
             if bound(place, location).is_none() {
-                let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
-                let fault = Fault::new(FaultCode::PPlace, key, message).about([place.to_string()]);
+                let fault = no_place(key, place, location);
                 if !story.problems.contains(&fault) {
                     story.problems.push(fault);
                 }
@@ -214,8 +210,7 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
     let mut end = |key: &'static str, place: &Option<PlaceWord>| {
         let place = place.as_ref()?;
         let Some(bound) = bound(place, location) else {
-            let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
-            story.problems.push(Fault::new(FaultCode::PPlace, key, message).about([place.to_string()]));
+            story.problems.push(no_place(key, place, location));
             return None;
         };
         Some((bound.class, format!("{key} = \"{place}\"")))

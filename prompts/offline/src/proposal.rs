@@ -6,7 +6,7 @@ use socrates_model::request::RobotGesture;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
     Action, Breadth, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass,
-    Predicate, Proposal, Reading, Relation, Request, RobotProposal, Trigger,
+    Predicate, Proposal, Reading, Relation, Request, RobotProposal, Rule, Trigger,
 };
 use socrates_prompts::Question;
 
@@ -143,6 +143,15 @@ fn where_at(
         .unwrap_or(PlaceClass::Plain)
 }
 
+/// Fastest pace of somebody whom a robot of 0.8 m/s catches up with, and slowest of somebody who overtakes it, m/s.
+pub(crate) const AHEAD_MPS: f64 = 0.75;
+pub(crate) const OVERTAKES_MPS: f64 = 1.2;
+
+/// Whether somebody who stands to the robot's way like this, and does this, overtakes it.
+pub(crate) fn overtakes(relation: Relation, rules: &[Rule]) -> bool {
+    relation == Relation::Behind && !rules.iter().any(|rule| rule.act == Action::FollowRobot)
+}
+
 fn proposed(
     human: &ReadHuman,
     extra: &Extra,
@@ -170,11 +179,11 @@ fn proposed(
         | Relation::Abreast => None,
     };
     let moves = !matches!(relation, Relation::Static | Relation::Staying);
-    let overtakes = relation == Relation::Behind && !human.rules.iter().any(|rule| rule.act == Action::FollowRobot);
     let usual = match relation {
-        // Slow enough to be caught up with by a robot of 0.8 m/s.
-        Relation::Ahead => Some(extra.speed_mps.map_or(0.5, |speed| speed.min(0.75))),
-        Relation::Behind if overtakes => Some(extra.speed_mps.map_or(1.5, |speed| speed.max(1.2))),
+        Relation::Ahead => Some(extra.speed_mps.map_or(0.5, |speed| speed.min(AHEAD_MPS))),
+        Relation::Behind if overtakes(relation, &human.rules) => {
+            Some(extra.speed_mps.map_or(1.5, |speed| speed.max(OVERTAKES_MPS)))
+        }
         Relation::Frontal
         | Relation::Behind
         | Relation::Crossing
@@ -236,7 +245,9 @@ fn robot(
     // The robot's part of a form is what the form states.
     let of_card = found.filter(|_| request.form.is_empty());
     let mut script: Vec<RobotRule> = of_card.map(|card| card.script.clone()).unwrap_or_default();
-    script.extend(request.form.script(&request.robot.does));
+    let stated = request.form.script(&request.robot.does);
+    let is_stated = |gesture| stated.iter().any(|line| line.act == RobotDo::Say(gesture));
+    script.extend(stated.iter().cloned());
     let lead = humans.iter().find(|human| human.relation == Relation::Ahead).map(|human| human.id);
     for line in &mut script {
         if let (RobotDo::Follow(who) | RobotDo::Overtake(who), Some(id)) = (&mut line.act, lead) {
@@ -248,7 +259,7 @@ fn robot(
     script.extend(beside.first().map(|id| RobotRule { when: RobotWhen::Start, act: RobotDo::Abreast(*id) }));
     for fact in &reading.facts {
         if let FactKind::RobotSays(gesture) = fact.kind
-            && !request.form.script(&request.robot.does).iter().any(|line| line.act == RobotDo::Say(gesture))
+            && !is_stated(gesture)
         {
             // It asks whoever stands in its way once it cannot go on; a card may have it ask already.
             let answers = |human: &HumanProposal| {

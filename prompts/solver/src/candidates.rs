@@ -265,15 +265,6 @@ fn into(scene: &Scene<'_>, wish: &Wish, goal: usize) -> Vec<Solution> {
 
 /// Points of a way out of a room that others can cross.
 const CROSSED: f64 = 6.0;
-/// Cosine of the turn up to which a way leads straight over a place.
-const STRAIGHT_OVER: f64 = 0.7;
-
-/// Whether a way leads straight over its node at this place.
-fn straight_over(net: &Net<'_>, nodes: &[usize], at: usize) -> bool {
-    let around = at.checked_sub(1).and_then(|before| nodes.get(before..at + 2));
-    matches!(around, Some([before, node, after]) if net.straight(*before, *node, *after) > STRAIGHT_OVER)
-}
-
 /// The robot's ways out of a car or room: met is who comes by at the first node outside.
 fn out_of(scene: &Scene<'_>, wish: &Wish, start: usize) -> Vec<Solution> {
     let Scene { net, proposal, .. } = *scene;
@@ -291,7 +282,7 @@ fn out_of(scene: &Scene<'_>, wish: &Wish, start: usize) -> Vec<Solution> {
             let value = score(net, &nodes, meet, &Wish { aim_m: 14.0, straight: 0.5, start: None, ..*wish });
             let arms = net.near(*nodes.get(meet)?).len();
             // Only a way straight on over a place of four ways is crossed there: one that turns into another runs along it.
-            let straight_on = straight_over(net, &nodes, meet);
+            let straight_on = spread::straight_over(net, &nodes, meet);
             let cross = match (crossing, arms) {
                 (false, _) => 0.0,
                 (true, 0..3) => -20.0,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Breadth, PlaceClass, Proposal, Relation, seeds};
+use socrates_model::{PlaceClass, Proposal, Relation, seeds};
 
 use crate::breadth::Limits;
 use crate::candidates::{Scene, candidates};
@@ -51,7 +51,7 @@ pub(crate) fn solutions(problem: &Problem<'_>, net: &Net<'_>) -> Vec<Solution> {
     let limits = Limits::of(problem.breadth);
     let scene = Scene { net, proposal: problem.proposal, layout: problem.layout, crowded: false, limits };
     let told = &problem.told;
-    let wish = Wish { via: problem.via, roomy: told.stuck, ends: limits.ends, ..wish(problem.proposal, told.shorts) };
+    let wish = Wish { via: problem.via, roomy: told.stuck, ..wish(problem.proposal, told.shorts, limits.ends) };
     let mut solutions = candidates(&scene, &wish);
     if solutions.is_empty() {
         solutions = candidates(&Scene { crowded: true, ..scene }, &wish);
@@ -211,7 +211,7 @@ fn chosen<'a>(
     if others.is_empty() { Some(first) } else { others.get(passed % others.len()).copied() }
 }
 
-fn wish(proposal: &Proposal, shorts: u32) -> Wish {
+fn wish(proposal: &Proposal, shorts: u32, ends: usize) -> Wish {
     let has = |relation: Relation| proposal.humans.iter().any(|human| human.relation == relation);
     let straight = if proposal.place == PlaceClass::BlindCorner {
         -1.0
@@ -244,6 +244,6 @@ fn wish(proposal: &Proposal, shorts: u32) -> Wish {
         } else {
             16.0
         } + 4.0 * longer,
-        ends: Limits::of(Breadth::Usual).ends,
+        ends,
     }
 }

@@ -28,6 +28,12 @@ fn passes(human: &HumanProposal) -> bool {
     walks && !follows(human)
 }
 
+/// Whether a way leads straight over its node at this place.
+pub(crate) fn straight_over(net: &Net<'_>, nodes: &[usize], at: usize) -> bool {
+    let around = at.checked_sub(1).and_then(|before| nodes.get(before..at + 2));
+    matches!(around, Some([before, node, after]) if net.straight(*before, *node, *after) > STRAIGHT)
+}
+
 /// Where each of many is met along a way of the robot, as places in its nodes; nobody where a few are met, or where all have to
 /// be at one place.
 pub(crate) fn spread(net: &Net<'_>, proposal: &Proposal, route: &Route) -> Vec<(HumanId, usize)> {
@@ -47,10 +53,9 @@ pub(crate) fn spread(net: &Net<'_>, proposal: &Proposal, route: &Route) -> Vec<(
     }
     let fits = |at: &usize| {
         let far = net.length_m(route.nodes.get(..=*at).unwrap_or_default()) >= BEFORE_M;
-        let around = at.checked_sub(1).and_then(|before| route.nodes.get(before..at + 2));
+        let Some(node) = route.nodes.get(*at) else { return false };
         // Round a corner nobody comes straight towards it.
-        let Some([before, node, after]) = around else { return false };
-        let straight = net.straight(*before, *node, *after) > STRAIGHT;
+        let straight = straight_over(net, &route.nodes, *at);
         let open = !net.inside(*node) && !tight(net, *node);
         far && straight && open && (proposal.place == PlaceClass::Plain || place(*at))
     };

@@ -161,7 +161,7 @@ fn nobody_is_met_where_only_the_robot_gets_through_unless_its_task_leads_there()
     // The robot of 0.5 m gets through where its task leads there.
     let narrow = map([16.0, 9.0], &floor[..3], &nodes[..3], &edges[..2]);
     assert!(impossible(&between(&proposal, &narrow, "a", "b")).is_none());
-    // Who comes out of a room behind such a gap does not.
+    // Somebody who comes out of a room behind such a gap does not.
     let mut closet = with_room(1.6);
     closet.grid =
         map([28.0, 8.0], &[[0.5, 2.0, 27.0, 2.0], [13.7, 4.0, 0.6, 0.3], [13.4, 4.3, 1.2, 1.3]], &[], &[]).grid;

@@ -13,9 +13,9 @@ const DRAWN: &str = include_str!("../tests/data/ways.json");
 /// A way agrees where none of its nodes lies so far from the other way, m, and the lengths differ by no more than this share.
 const ASIDE_M: f64 = 3.0;
 const LONGER: f64 = 0.05;
-/// So many of the ways agreed when this was written.
+/// Ways that agreed when this was written.
 const AGREE: usize = 20;
-/// So many of those where several ways are as short were as short as what was drawn, up to [`LONGER`].
+/// Of those where several ways are as short, ways as short as what was drawn, up to [`LONGER`].
 const AS_SHORT: usize = 6;
 
 #[derive(Deserialize)]

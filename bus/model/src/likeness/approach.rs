@@ -56,7 +56,7 @@ impl<'a> Approach<'a> {
     pub(super) fn since_meeting_s(&self, trigger: &Trigger, within_m: f64) -> f64 {
         let [robot_m, person_m] = self.met_m;
         let start_s = -(robot_m / ROBOT_MPS).min(BEFORE_S);
-        // Who stands looks around; who walks sees what is before them and beside them.
+        // People who stand look around; people who walk see what is before them and beside them.
         let stands = self.person.length_m() < 1e-9;
         let mut at_s = start_s;
         while at_s < AFTER_S {

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde_json::Value;
 
-use super::read::{Door, Section};
+use super::read::{Door, GESTURES, Section};
 use super::tree::{Kind, Node};
-use super::{Expect, MAX_HUMANS};
+use super::{Expect, GROUP_SIZES, MAX_HUMANS};
 use crate::form::{
     Deed, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep, Step,
     When,
@@ -18,7 +18,6 @@ const HUMAN_KEYS: [&str; 11] =
     ["id", "count", "role", "relation", "place", "start", "goal", "pace", "group", "does", "reacts"];
 const STEP_KEYS: [&str; 4] = ["when", "act", "for_s", "say"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
-const GESTURES: &str = "WAIT, PROCEED, ACKNOWLEDGED, EXCUSE_ME or FOLLOW_ME";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
 /// People of one `[[human]]`.
 const MOST_ALIKE: u32 = 30;
@@ -26,8 +25,6 @@ const MOST_ALIKE: u32 = 30;
 const MOST_STEPS: usize = 12;
 /// Longest time of a step, s.
 const MOST_S: f64 = 600.0;
-/// People of a group.
-const GROUP_SIZES: std::ops::RangeInclusive<u32> = 2..=8;
 /// Characters of a name, a role or a place.
 const MOST_CHARS: usize = 60;
 
@@ -334,10 +331,10 @@ impl Door<'_> {
             }
             seen.push(id);
         }
-        let sizes: BTreeMap<&str, u32> = form.humans.iter().fold(BTreeMap::new(), |mut sizes, human| {
+        let sizes: BTreeMap<&str, usize> = form.humans.iter().fold(BTreeMap::new(), |mut sizes, human| {
             if let Some(name) = human.group.as_deref() {
-                let size: &mut u32 = sizes.entry(name).or_default();
-                *size = size.saturating_add(human.count);
+                let size: &mut usize = sizes.entry(name).or_default();
+                *size = size.saturating_add(usize::try_from(human.count).unwrap_or(usize::MAX));
             }
             sizes
         });

@@ -41,6 +41,9 @@ const KEYS: [&str; 14] = [
     "behaviors",
 ];
 
+/// What may be said.
+pub(super) const GESTURES: &str = "WAIT, PROCEED, ACKNOWLEDGED, EXCUSE_ME or FOLLOW_ME";
+
 impl Request {
     /// Reads a request as written in its file. Of `planners`, where they are given, every planner must be one.
     ///
@@ -279,7 +282,7 @@ impl Door<'_> {
                 }
             }
             let when: Option<Moment> = self.maybe(&section, "when", Moment::ALLOWED);
-            let say = self.maybe(&section, "say", "WAIT, PROCEED, ACKNOWLEDGED, EXCUSE_ME or FOLLOW_ME");
+            let say = self.maybe(&section, "say", GESTURES);
             made.extend(when.zip(say).map(|(when, say)| RobotGesture { when, say }));
         }
         made

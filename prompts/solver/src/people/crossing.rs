@@ -39,7 +39,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     let entries = taken.entry.map_or_else(|| free.clone(), |entry| vec![entry]);
     for entry in &entries {
         let own_entry = used.contains(&Some(*entry));
-        // Who comes along the way that the robot goes on by comes from farther on there.
+        // Somebody who comes along the way that the robot goes on by comes from farther on there.
         let before = route.nodes.get(..=route.meet).unwrap_or_default();
         let barred = |node: usize| if own_entry { before.contains(&node) } else { route.nodes.contains(&node) };
         let tree = net.tree(*entry, &barred);

@@ -7,7 +7,7 @@ use crate::fidelity::doors::Crossing;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::openings::{destination, from_node, lines_of};
-use crate::fidelity::setting::BEFORE_S;
+use crate::fidelity::setting::in_order;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::temporal::{Signal, Within};
 use crate::tracks::{Sample, Track};
@@ -246,10 +246,7 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
         times.push(crossing.t);
     }
     let &[before, after] = times.as_slice() else { return Err(Finding::not_applicable("there is nobody to compare")) };
-    let text = format!("{first} gets through {name} at {before:.1} s, {then} at {after:.1} s");
-    // At the same time is not before.
-    let margin = after - before - BEFORE_S;
-    Ok(Finding::by_margin(margin, vec![before.max(after), before, after], text).shifted(margin))
+    Ok(in_order(before, after, format!("{first} gets through {name} at {before:.1} s, {then} at {after:.1} s")))
 }
 
 /// The robot is out of the door before the first human goes in.

@@ -10,7 +10,7 @@ use crate::fidelity::signals::Signals;
 use crate::tracks::{Sample, Track};
 
 /// Who is there less than this before another is there at the same time, s.
-pub(super) const BEFORE_S: f64 = 0.3;
+const BEFORE_S: f64 = 0.3;
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
 
@@ -129,10 +129,13 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Fi
         times.push(t);
     }
     let &[before, after] = times.as_slice() else { return Finding::not_applicable("there is nobody to compare") };
-    let margin = after - before;
-    let text = format!("{first} is there at {before:.1} s, {then} at {after:.1} s");
-    // At the same time is not before.
-    Finding::by_margin(margin - BEFORE_S, vec![before.max(after), before, after], text).shifted(margin - BEFORE_S)
+    in_order(before, after, format!("{first} is there at {before:.1} s, {then} at {after:.1} s"))
+}
+
+/// What two times say of one thing before another: at the same time is not before.
+pub(super) fn in_order(before_s: f64, after_s: f64, text: String) -> Finding {
+    let margin = after_s - before_s - BEFORE_S;
+    Finding::by_margin(margin, vec![before_s.max(after_s), before_s, after_s], text).shifted(margin)
 }
 
 /// When a track gets to a place, or is nearest to it within reach. Whoever goes aside for somebody passes the place beside it.

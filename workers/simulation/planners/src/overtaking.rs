@@ -55,7 +55,7 @@ impl Overtaking {
         }
         let along = person.velocity.dot(&route.direction(theirs));
         let slower = robot.v_max_mps - along;
-        // Whoever left the way, stands or hurries is not passed by a lane.
+        // Somebody who left the way, stands or hurries is not passed by a lane.
         let passable = aside_m < 2.0 && along > STANDS_MPS && slower > SLOWER_MPS;
         if !passable || self.side.is_none() && !(0.0..OUT_M).contains(&ahead_m) {
             self.side = None;
@@ -77,7 +77,7 @@ impl Overtaking {
 }
 
 /// A lane at a distance beside the route, left of it where that is positive, and the least distance to walls in it, m; nothing where
-/// it does not fit between walls, leaves the route's end behind, or somebody else is in it.
+/// it does not fit between walls, leads round a corner, or is longer than what is left of the route.
 fn beside(
     seen: &Observation<'_>,
     (route, s): (&Polyline, f64),
