@@ -6,7 +6,7 @@ use super::*;
 use crate::config::Config;
 
 /// Draws of a count that leaves nothing out: as many as a test may take.
-const ALL: usize = 1024;
+const ALL: usize = 2048;
 
 fn shipped(name: &str, variants: u32) -> Prepared {
     let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
@@ -35,9 +35,10 @@ fn no_variant_repeats_another_and_the_same_command_chooses_the_same() {
     assert_eq!(turn.seeds, (1..=20).collect::<Vec<u64>>());
 }
 
-#[test]
-fn the_count_that_is_said_beforehand_is_most_of_what_a_count_of_all_draws_finds() {
-    let one = shipped("hospital-crossing", 10_000);
+/// What is said beforehand of a request, and how many different ones a count of all draws finds.
+fn counted(name: &str, breadth: Breadth) -> (Known, usize) {
+    let mut one = shipped(name, 10_000);
+    one.request.run.breadth = breadth;
     let known = plan(&one, 1).unwrap().known.unwrap();
     let seeds: Vec<u64> = (1..=u64::try_from(ALL).unwrap()).collect();
     let mut all: Vec<Likeness> = Vec::new();
@@ -46,7 +47,16 @@ fn the_count_that_is_said_beforehand_is_most_of_what_a_count_of_all_draws_finds(
             all.push(one);
         }
     }
-    assert!(known.estimated * 100 >= all.len() * 80, "{known:?} of {}", all.len());
+    (known, all.len())
+}
+
+#[test]
+fn the_count_that_is_said_beforehand_is_most_of_what_a_count_of_all_draws_finds() {
+    for (name, breadth) in [("office-corridor", Breadth::Usual), ("hospital-elevator", Breadth::Wide)] {
+        let (known, all) = counted(name, breadth);
+        assert!(known.different * 100 >= all * 80, "{name}: {known:?} of {all}");
+        assert!(known.estimated * 100 >= all * 80, "{name}: {known:?} of {all}");
+    }
 }
 
 #[test]
