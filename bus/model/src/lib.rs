@@ -47,6 +47,7 @@ pub mod role;
 pub mod schema;
 pub mod signature;
 pub mod standing;
+pub mod statement;
 pub mod wire;
 pub mod words;
 
@@ -77,6 +78,7 @@ pub use rule::{Action, RobotRule, Rule, Trigger};
 pub use run::Run;
 pub use signature::Signature;
 pub use standing::{JobState, ScenarioEnd};
+pub use statement::Statement;
 pub use time::SimTime;
 
 /// Format number written into every artifact. A reader refuses a larger one.

@@ -9,6 +9,7 @@ use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
 use crate::proposal::Relation;
 use crate::rule::Rule;
+use crate::statement::Statement;
 
 /// One thing that the text asks for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -130,10 +131,51 @@ pub struct Reading {
     pub task: String,
     /// Everything asked for, one by one.
     pub facts: Vec<Fact>,
-    /// Content words of the request that were not used.
-    pub ignored: Vec<String>,
+    /// What became of every clause of the texts, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub statements: Vec<Statement>,
     /// Assumptions that were made, in sentences.
     pub notes: Vec<String>,
     /// Wishes that cannot be read, placed or simulated.
     pub problems: Vec<Fault>,
+}
+
+impl Reading {
+    /// The wishes that are not in the run and that nobody has given up, in the words of the request: pieces of its texts that were
+    /// not read or are not played, and problems of its other keys, each once.
+    #[must_use]
+    pub fn missing(&self) -> Vec<String> {
+        let mut quotes: Vec<String> = Vec::new();
+        let pieces =
+            self.statements.iter().filter(|statement| statement.is_missing()).map(|statement| statement.quote.clone());
+        let others = self.problems.iter().filter(|problem| !self.accounts_for(problem));
+        let words = |problem: &Fault| {
+            let key = problem.quotes.is_empty().then(|| problem.at.to_string());
+            problem.quotes.iter().cloned().chain(key).collect::<Vec<String>>()
+        };
+        for quote in pieces.chain(others.flat_map(words)) {
+            if !quotes.contains(&quote) {
+                quotes.push(quote);
+            }
+        }
+        quotes
+    }
+
+    /// The wishes that are not in the run and were given up, in the words of the request.
+    #[must_use]
+    pub fn waived(&self) -> Vec<&str> {
+        self.statements.iter().filter(|statement| statement.waived).map(|statement| &*statement.quote).collect()
+    }
+
+    /// Whether a statement tells what became of the words of a problem.
+    fn accounts_for(&self, problem: &Fault) -> bool {
+        let of = |statement: &&Statement| {
+            problem.at.is_key(statement.at.name())
+                && problem
+                    .quotes
+                    .iter()
+                    .any(|quote| statement.quote.contains(&**quote) || quote.contains(&*statement.quote))
+        };
+        self.statements.iter().any(|statement| of(&statement))
+    }
 }

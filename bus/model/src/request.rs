@@ -56,6 +56,9 @@ pub struct Request {
     /// Facts that win over the text.
     #[serde(default)]
     pub expect: Expect,
+    /// Words of the texts that are given up: that they are not read or not played costs nothing, and stays visible.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waive: Vec<String>,
     /// Pinned proposal: a file beside the request.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub proposal: Option<String>,

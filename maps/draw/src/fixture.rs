@@ -116,7 +116,7 @@ pub(crate) fn papers(text: &str) -> (Request, Reading, Proposal, Paths) {
         ..plain
     };
     let reading = read(json!({
-        "format": 1, "humans": [], "task": text, "ignored": [text], "notes": [text], "problems": [],
+        "format": 1, "humans": [], "task": text, "notes": [text], "problems": [],
         "facts": [{ "id": "f1", "quote": text, "kind": { "humans": 1 } }, { "id": "f2", "quote": "", "kind": { "robot_task": text } }],
     }));
     let proposal = read(json!({

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::job::Stage;
-use socrates_model::{JobState, Location, Paths, Proposal, Reading, Recording, Report, Request};
+use socrates_model::{JobState, Location, Paths, Proposal, Reading, Recording, Report, Request, Statement};
 
 use crate::page_data::page_data;
 use crate::svg::{escape, escape_code};
@@ -106,9 +106,9 @@ impl Page<'_> {
             let text = text.unwrap_or_default();
             out.push_str(&format!("<dt>{name}</dt><dd class=\"said\">{}</dd>", escape(text.trim())));
         }
-        let ignored =
-            if self.reading.ignored.is_empty() { "nothing".to_owned() } else { self.reading.ignored.join(", ") };
-        out.push_str(&format!("<dt>Ignored words</dt><dd>{}</dd>", escape_code(&ignored)));
+        if !self.reading.statements.is_empty() {
+            out.push_str(&format!("<dt>What became of it</dt><dd>{}</dd>", self.statements_html()));
+        }
         let notes: BTreeSet<&str> = self.reading.notes.iter().chain(&self.proposal.notes).map(String::as_str).collect();
         for note in notes {
             out.push_str(&format!("<dt>Assumed</dt><dd>{}</dd>", escape_code(note)));
@@ -118,6 +118,17 @@ impl Page<'_> {
         }
         out.push_str(&format!("<dt>Proposed</dt><dd>{}</dd></dl>", escape_code(&self.proposal.description)));
         out
+    }
+
+    /// Every piece of the texts, and what became of it.
+    fn statements_html(&self) -> String {
+        let row = |statement: &Statement| {
+            let class = if statement.is_missing() { " class=\"bad\"" } else { "" };
+            let (quote, told) = (escape(&statement.quote), escape_code(&statement.told()));
+            format!("<tr{class}><td><q>{quote}</q></td><td>{}</td><td>{told}</td></tr>", statement.fate())
+        };
+        let rows: String = self.reading.statements.iter().map(row).collect();
+        format!("<table class=\"statements\"><tr><th>words</th><th>are</th><th></th></tr>{rows}</table>")
     }
 
     fn people_html(&self) -> String {

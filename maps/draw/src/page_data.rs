@@ -20,7 +20,11 @@ pub(crate) fn page_data(location: &Location, way: &[Point], reading: &Reading, r
         .collect();
     let runs: Vec<Value> =
         runs.iter().map(|(recording, report)| run_data(location, way, recording, report, hz)).collect();
-    json!({ "runs": runs, "facts": facts, "whole": place.get("whole"), "focus": focus, "places": [place] })
+    let unplayed = reading.statements.iter().filter(|statement| statement.is_unplayed());
+    let missing: Vec<Value> = unplayed
+        .map(|statement| json!({ "quote": statement.quote, "fate": statement.fate(), "why": statement.told() }))
+        .collect();
+    json!({ "runs": runs, "facts": facts, "missing": missing, "whole": place.get("whole"), "focus": focus, "places": [place] })
 }
 
 fn run_data(location: &Location, way: &[Point], recording: &Recording, report: &Report, hz: u32) -> Value {

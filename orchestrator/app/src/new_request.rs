@@ -110,7 +110,7 @@ fn request(name: &str, wording: &Wording) -> Option<Request> {
 fn complaints(request: &Request, location: &Location) -> usize {
     let reading = socrates_offline::read(request, location);
     let notes = reading.notes.iter().filter(|note| *note != socrates_offline::CONTEXT_NOTE).count();
-    reading.problems.len() + reading.ignored.len() + notes
+    reading.missing().len() + notes
 }
 
 /// The file.

@@ -62,7 +62,7 @@ pub(crate) fn after_run(options: &RunOptions, bundle: &Bundle, file: Option<&Pat
         seeds: seeds.len(),
         verdict: bundle.manifest.verdict,
         fault: report.and_then(|report| Some(report.repair.as_ref()?.faults.first()?.code.code())),
-        misread: !bundle.reading.ignored.is_empty() || !bundle.reading.problems.is_empty(),
+        misread: !bundle.reading.missing().is_empty(),
         looked_at: options.ask,
         filmed: std::fs::read_dir(&bundle.dir).into_iter().flatten().filter_map(Result::ok).any(films),
     })

@@ -10,14 +10,18 @@ pub(crate) fn print_reading(talk: &Printer, prepared: &Prepared) {
         "planners   {}",
         prepared.request.robot.planners.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
     ));
+    for statement in &prepared.reading.statements {
+        talk.line(&format!("{:<11}\"{}\" → {}", statement.fate(), one_line(&statement.quote), statement.told()));
+    }
     for problem in &prepared.reading.problems {
         talk.line(&format!("problem    {problem}"));
-    }
-    if !prepared.reading.ignored.is_empty() {
-        let words: Vec<String> = prepared.reading.ignored.iter().map(|word| format!("\"{word}\"")).collect();
-        talk.line(&format!("ignored    {}", words.join(" ")));
     }
     for note in &prepared.reading.notes {
         talk.line(&format!("note       {note}"));
     }
+}
+
+/// Words of a text without its line breaks.
+fn one_line(quote: &str) -> String {
+    quote.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -41,7 +41,7 @@ fn a_second_meeting_is_read_in_many_words() {
         let reading = read(&request(rough), &map("office"));
         assert_eq!(often(&reading), [TWICE], "{rough}");
         assert_eq!(reading.humans.len(), 1, "{rough}");
-        assert!(reading.problems.is_empty() && reading.ignored.is_empty(), "{rough}: {reading:#?}");
+        assert!(reading.problems.is_empty() && crate::tests::loose(&reading).is_empty(), "{rough}: {reading:#?}");
     }
 }
 

@@ -2,9 +2,17 @@
 
 /// A request's text without the sentences that speak to the program.
 pub(crate) struct Told {
+    /// With spaces in their place, so that every word stands where it stood.
     pub(crate) story: String,
     /// Sentences that speak to the program, as written.
     pub(crate) instructions: Vec<String>,
+}
+
+impl Told {
+    fn drop(&mut self, sentence: &str) {
+        self.instructions.push(sentence.trim().to_owned());
+        self.story.extend(std::iter::repeat_n(' ', sentence.len()));
+    }
 }
 
 /// Words that only speak to a program when they come with one of [`OF_PROGRAMS`].
@@ -151,9 +159,9 @@ pub(crate) fn split(text: &str) -> Told {
             if sentence.trim_end().ends_with([':', ';']) {
                 (sentence, after) = rest.split_at(end + more);
             }
-            told.instructions.push(sentence.trim().to_owned());
+            told.drop(sentence);
         } else if instructs(sentence) {
-            told.instructions.push(sentence.trim().to_owned());
+            told.drop(sentence);
         } else {
             told.story.push_str(sentence);
         }

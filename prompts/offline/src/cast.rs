@@ -4,6 +4,7 @@ use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule};
 
 use crate::lexicon::{Act, lexicon};
 use crate::mention::{Mention, Who};
+use crate::statements::Unplayed;
 
 /// A rule with where it comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,6 +78,8 @@ pub(crate) struct Cast {
     /// Whom the last clause spoke of.
     pub(crate) last: Vec<usize>,
     pub(crate) notes: Vec<String>,
+    /// What was understood and is not played as it was said.
+    pub(crate) unplayed: Vec<Unplayed>,
     pub(crate) problems: Vec<Fault>,
     /// Words that said how many, for the fact.
     pub(crate) count_quote: Option<String>,
@@ -116,6 +119,14 @@ fn usual_mps(role: &str) -> Option<f64> {
 const CALLED: &[&str] = &["participant", "confederate", "bystander", "passenger", "occupant", "pedestrian"];
 
 impl Cast {
+    /// Remembers words that were understood and are not played as they were said.
+    pub(crate) fn leave_out(&mut self, quote: &str, why: &str) {
+        let unplayed = Unplayed::of(quote, why);
+        if !self.unplayed.contains(&unplayed) {
+            self.unplayed.push(unplayed);
+        }
+    }
+
     /// A cast of people of whom was spoken before.
     pub(crate) fn known(people: Vec<Person>) -> Self {
         let members: Vec<usize> = (0..people.len()).collect();

@@ -6,8 +6,9 @@ use crate::cast::{Person, ReadRule};
 use crate::deed;
 use crate::inside;
 use crate::relation;
-use crate::robot_deed::up_to_planner;
+use crate::robot_deed::UP_TO_PLANNER;
 use crate::rules;
+use crate::statements::Unplayed;
 use crate::story::Story;
 
 /// A standing group is judged until the robot is within 3 m; its members react a little later.
@@ -33,8 +34,8 @@ impl Story {
         if of_rooms
             && let Some((_, quote)) = place.take_if(|(class, quote)| *class == PlaceClass::Elevator && end(quote))
         {
-            let note = format!("`{quote}`: people are met on their way; that they end at the elevator is not demanded");
-            self.cast.notes.push(note);
+            let why = "people are met on their way; that they end at the elevator is not demanded";
+            self.cast.leave_out(&quote, why);
         }
         let elevator = self.place.as_ref().is_some_and(|(class, _)| *class == PlaceClass::Elevator);
         let leaving = self.cast.people.iter().any(|p| is(p, Relation::Leaving));
@@ -64,7 +65,9 @@ impl Story {
             let own = |read: &ReadRule| {
                 read.rule.when.iter().any(|trigger| matches!(trigger, Trigger::HumanSays(who, _) if *who == id))
             };
-            self.cast.notes.extend(person.rules.iter().filter(|read| own(read)).map(|read| up_to_planner(&read.quote)));
+            let left =
+                person.rules.iter().filter(|read| own(read)).map(|read| Unplayed::of(&read.quote, UP_TO_PLANNER));
+            self.cast.unplayed.extend(left);
             person.rules.retain(|read| !own(read));
             deed::settle_going_on(person);
             rules::settle(person);

@@ -110,6 +110,7 @@ mod rules;
 mod solve;
 mod spans;
 mod spot;
+mod statements;
 mod unfit;
 
 #[cfg(test)]
@@ -156,16 +157,25 @@ pub const NAME: &str = "offline/1";
 ///
 /// Deterministic in the request and the location; never fails. Wishes that cannot be read (P-READ), placed
 /// (P-PLACE), reconciled (P-CONTRA) or simulated (P-LIMIT), and texts that are not English (P-LANG), stand in
-/// [`Reading::problems`]; unused words in [`Reading::ignored`]; assumptions in [`Reading::notes`].
+/// [`Reading::problems`]; what became of every clause in [`Reading::statements`]; assumptions in [`Reading::notes`].
 #[must_use]
 pub fn read(request: &Request, location: &Location) -> Reading {
+    let whole = understand::understand(request, location);
+    let statements = statements::statements(request, location, &whole);
+    Reading { statements, ..whole.reading }
+}
+
+/// The same without [`Reading::statements`], at a fiftieth of the time: for those who only need what was understood.
+#[must_use]
+pub fn understood(request: &Request, location: &Location) -> Reading {
     understand::understand(request, location).reading
 }
 
 /// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.
 #[must_use]
 pub fn settled_by(request: &Request, location: &Location) -> Vec<&'static str> {
-    let stops = |request: &Request| socrates_model::fault::hard(&read(request, location).problems);
+    let stops =
+        |request: &Request| socrates_model::fault::hard(&understand::understand(request, location).reading.problems);
     let before = stops(request);
     let settles = |expect: socrates_model::request::Expect| {
         let after = stops(&Request { expect, ..request.clone() });

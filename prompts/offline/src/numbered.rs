@@ -263,7 +263,7 @@ mod tests {
             let reading = read(rough);
             assert_eq!(reading.humans.len(), 3, "{rough}: {reading:?}");
             assert!(reading.notes.iter().any(|note| note.contains("was read as 3")), "{rough}: {:?}", reading.notes);
-            assert_eq!(reading.ignored, [""; 0], "{rough}");
+            assert_eq!(crate::tests::loose(&reading), [""; 0], "{rough}");
         }
         let plain = read("1,000 m away two people wait. Two nurses come at 2 to 4 m.");
         assert!(!plain.notes.iter().any(|note| note.contains("leaves the number open")), "{:?}", plain.notes);

@@ -13,6 +13,7 @@ use socrates_prompts::Question;
 use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::finish::CIRCLE_M;
+use crate::statements::unread;
 use crate::understand::{Extra, understand};
 use crate::{NAME, chance, default_cast, events, noticing, pattern, place, prose, solve};
 
@@ -78,7 +79,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         groups,
         robot,
         expected_events: Vec::new(),
-        not_understood: reading.ignored.clone(),
+        not_understood: unread(reading).into_iter().map(str::to_owned).collect(),
         notes,
         author: NAME.into(),
     };

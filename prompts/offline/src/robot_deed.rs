@@ -80,11 +80,9 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         Act::Stop | Act::GoOn | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look
     );
     if its_own {
-        story.cast.notes.push(up_to_planner(quote));
+        story.cast.leave_out(quote, UP_TO_PLANNER);
     }
 }
 
 /// What is said of a deed of the robot that nobody can promise.
-pub(crate) fn up_to_planner(quote: &str) -> String {
-    format!("`{quote}`: what the robot does is up to its planner; no clause demands it")
-}
+pub(crate) const UP_TO_PLANNER: &str = "what the robot does is up to its planner; no clause demands it";

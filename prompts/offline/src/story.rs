@@ -39,6 +39,8 @@ pub(crate) struct Story {
     /// Words of doors that somebody opens or closes.
     pub(crate) doors: Vec<String>,
     pub(crate) ignored: Vec<String>,
+    /// Where the words stand that some rule read, in bytes of the text.
+    pub(crate) used: Vec<std::ops::Range<usize>>,
     pub(crate) order: Order,
     pub(crate) held: contra::Held,
     pub(crate) problems: Vec<Fault>,
@@ -98,6 +100,9 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
             ).about([quote.as_str()]).with(Payload::TriggerAlone));
         }
         for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
+            if !word.unread() && word.to > word.from {
+                story.used.push(word.from..word.to);
+            }
             let often = again::how_often(word, text);
             let known = often.is_none()
                 && (lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot");

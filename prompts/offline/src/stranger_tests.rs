@@ -41,7 +41,7 @@ fn to_return_to_the_only_place_of_a_task_is_no_way_back() {
 #[test]
 fn a_door_that_somebody_opens_to_walk_through_opens_by_itself() {
     let reading = told("A nurse opens the door and comes out of the room.");
-    assert!(reading.problems.is_empty() && reading.ignored.is_empty(), "{reading:#?}");
+    assert!(reading.problems.is_empty() && crate::tests::loose(&reading).is_empty(), "{reading:#?}");
     assert!(reading.notes.iter().any(|note| note.contains("by themselves for whoever comes near")), "{reading:#?}");
     let reading = told("A person waits in front of the elevator and gets in when it opens.");
     assert!(reading.problems.is_empty(), "{reading:#?}");
@@ -72,7 +72,7 @@ fn a_word_that_only_describes_whom_no_rule_tells_apart_is_listed() {
         ("A worker gives way to the left.", &["left"]),
         ("A nurse comes towards the robot.", &[]),
     ] {
-        assert_eq!(told(rough).ignored, unread, "{rough}");
+        assert_eq!(crate::tests::loose(&told(rough)), unread, "{rough}");
     }
 }
 

@@ -34,7 +34,6 @@ pub(crate) struct Task {
     pub(crate) back: Option<String>,
     /// Words that say where the robot is not to go.
     pub(crate) denied: Vec<String>,
-    pub(crate) ignored: Vec<String>,
 }
 
 /// The nodes where a way begins or ends by name.
@@ -135,13 +134,6 @@ fn errand(task: &mut Task, mut stretch: Stretch, text: &str, location: &Location
         task.goals.append(&mut task.starts);
     }
     load(&mut stretch);
-    for word in stretch.words {
-        let lex = lexicon();
-        let known = [&lex.stop, &lex.task].iter().any(|table| table.contains(&word.text) || table.contains(&word.stem));
-        if word.unread() && !known && word.stem != "robot" && !task.ignored.contains(&word.text) {
-            task.ignored.push(word.text);
-        }
-    }
 }
 
 /// Takes the words off a clause that say where the robot is not to go: `do not go to the kitchen`, `without entering the elevator`.
@@ -303,8 +295,6 @@ mod tests {
     fn start_goal_and_leftovers_are_told_apart() {
         let task = of("Take the elevator to deliver supplies");
         assert_eq!(task.goal.unwrap().0, PlaceClass::Elevator);
-        assert_eq!(task.ignored, [""; 0]);
-        assert_eq!(of("Deliver juggled mail and juggle").ignored, ["juggle"]);
         let task = of("Bring mail from the exit to the meeting room via the corridor");
         assert_eq!(task.start.unwrap().0, PlaceClass::Exit);
         assert_eq!(task.goal.unwrap().0, PlaceClass::Room);
@@ -333,7 +323,7 @@ mod tests {
             let task = of(text);
             assert_eq!(task.denied, [denied], "{text}");
             assert_eq!(task.goal.map(|(class, _)| class), goal, "{text}");
-            assert_eq!((task.via, task.ignored), (None, Vec::<String>::new()), "{text}");
+            assert_eq!(task.via, None, "{text}");
         }
         assert_eq!(of("Bring coffee to the kitchen and do not spill it").denied, [""; 0]);
     }

@@ -184,9 +184,10 @@ pub(crate) fn timing(
             thread.said.clone_from(&thread.ended);
         }
         // Whoever stands there anyway, or does nothing of their own until then, does so as long as it takes.
-        story.cast.notes.extend(timed.map(|deed| {
-            format!("`{deed}`, until `{quote}`: it is played for {UNTIL_S} s, whether or not that comes before")
-        }));
+        if let Some(deed) = timed {
+            let why = format!("`{deed}` is played for {UNTIL_S} s, whether or not that comes before");
+            story.cast.leave_out(quote, &why);
+        }
         return;
     }
     // `if it moves they wait, if it stops they walk on`: what has its own time already is not timed by what comes after it.

@@ -11,6 +11,7 @@ use crate::cast::{Person, ReadRule};
 use crate::lexicon::lexicon;
 use crate::order;
 use crate::pattern;
+use crate::statements::{Line, Unplayed, lines};
 use crate::story::{self, Story};
 use crate::task::{self, Task};
 use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, spot, words};
@@ -22,6 +23,14 @@ pub(crate) struct Understood {
     pub(crate) extras: Vec<Extra>,
     /// Whether the people are those of the pattern, because the text names none.
     pub(crate) by_card: bool,
+    /// What was understood, line by line.
+    pub(crate) lines: Vec<Line>,
+    /// Words that were understood, and are not played as they were said.
+    pub(crate) unplayed: Vec<Unplayed>,
+    /// Where the words of the rough scenario stand that some rule read, in bytes.
+    pub(crate) used: Vec<std::ops::Range<usize>>,
+    /// Sentences that speak to the program.
+    pub(crate) instructions: Vec<String>,
 }
 
 /// What is known of one human beyond the reading.
@@ -36,8 +45,13 @@ pub(crate) struct Extra {
     pub(crate) open: Vec<bool>,
 }
 
-/// Reads a request. Never fails: what cannot be read stands in `ignored` and `problems`.
+/// Reads a request. Never fails: what cannot be read stands in `problems`.
 pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
+    understood(request, location, true)
+}
+
+/// Reads a request; a text of which words are hidden is not held to be in another language.
+pub(crate) fn understood(request: &Request, location: &Location, tongues: bool) -> Understood {
     let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
@@ -53,7 +67,9 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
             Fault::new(FaultCode::PRead, at, message).about([sentence.as_str()])
         }));
     }
-    language(request, &mut reading);
+    if tongues {
+        language(request, &mut reading);
+    }
     expect::settle(request, &mut story, &mut reading);
     // What a form states is not filled in.
     if !stated {
@@ -109,13 +125,17 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
         let kind = FactKind::Pattern(id.clone());
         reading.facts.push(Fact { id: id_of_fact, quote: format!("expect.pattern = \"{id}\""), kind });
     }
+    let lines = lines((&story, &task), &reading, &extras, location);
     leftovers(request, location, &mut story, &task, &mut reading);
     crate::spans::mark(request, &mut reading.problems);
     if stated && rough.is_some() {
         let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
         reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
     }
-    Understood { reading, extras, by_card }
+    let before = told.story.len() - told.story.trim_start().len();
+    let used = story.used.iter().map(|at| at.start + before..at.end + before).collect();
+    let instructions = [&told, &asked, &context].into_iter().flat_map(|told| told.instructions.clone()).collect();
+    Understood { reading, extras, by_card, lines, unplayed: story.cast.unplayed, used, instructions }
 }
 
 /// A pattern by name that this map cannot hold: a fault that says what is missing.
@@ -464,20 +484,6 @@ fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &T
     doors(story, location, reading);
     reading.problems.append(&mut story.problems);
     reading.notes.append(&mut story.cast.notes);
-    // The name and the description of the place are no wishes: `warehouse` in a warehouse is used.
-    let about: Vec<String> =
-        cut::sentences(&format!("{} {}", location.name.replace(['_', '-'], " "), location.description))
-            .into_iter()
-            .flatten()
-            .flat_map(|stretch| stretch.words)
-            .flat_map(|word| [word.text, word.stem])
-            .collect();
-    for word in story.ignored.iter().chain(&task.ignored) {
-        let base = lexicon().stem(word);
-        if !about.contains(word) && !about.contains(&base) && !reading.ignored.contains(word) {
-            reading.ignored.push(word.clone());
-        }
-    }
     for (i, human) in reading.humans.iter().enumerate() {
         if human.summary.is_empty() && request.rough_scenario.is_some() {
             reading.notes.push(format!("nothing is said of what human_{} does; they walk their path", i + 1));

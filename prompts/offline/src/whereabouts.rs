@@ -120,18 +120,18 @@ pub(crate) fn place_of(story: &mut Story, found: &Found, stretch: &Stretch, subj
             && matches!(found.places.as_slice(), [(_, from), (_, to)]
             if before(*from, stretch, &["from"]) && before(*to, stretch, &["to", "into"]));
         if trip && before(*at, stretch, &["from"]) {
-            story.cast.notes.push(format!(
-                "`{quote}`: people are met on their way; that they start at {} is not demanded",
-                crate::place::an(class)
-            ));
+            let why =
+                format!("people are met on their way; that they start at {} is not demanded", crate::place::an(class));
+            story.cast.leave_out(quote, &why);
             continue;
         }
         let headed = headed || trip;
         if headed && story.robot_part != Some("leading") {
-            story.cast.notes.push(format!(
-                "`{quote}`: people are met on their way and walk on; that they end at {} is not demanded",
+            let why = format!(
+                "people are met on their way and walk on; that they end at {} is not demanded",
                 crate::place::an(class)
-            ));
+            );
+            story.cast.leave_out(quote, &why);
         }
         if !headed && !source && (weak || in_lobby) {
             story.place = Some((class, quote.to_owned()));

@@ -103,6 +103,12 @@ impl Where {
         Self::default().at_key(name)
     }
 
+    /// Whether it is this key, wherever in its value.
+    #[must_use]
+    pub fn is_key(&self, name: &str) -> bool {
+        Self { span: None, ..self.clone() } == Self::key(name)
+    }
+
     /// The same, at this step of a path, from 1.
     #[must_use]
     pub fn step(self, step: usize) -> Self {

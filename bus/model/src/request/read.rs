@@ -24,7 +24,7 @@ use crate::fault::FaultCode;
 use crate::ids::PlannerName;
 
 /// Keys of a request.
-const KEYS: [&str; 14] = [
+const KEYS: [&str; 15] = [
     "location",
     "social_context",
     "task",
@@ -33,6 +33,7 @@ const KEYS: [&str; 14] = [
     "robot",
     "run",
     "expect",
+    "waive",
     "human",
     "group",
     "order",
@@ -210,8 +211,12 @@ impl Door<'_> {
         let expect = top.get("expect").map(|node| self.expect(node)).unwrap_or_default();
         self.names(&form, &names);
         self.against(&form, &expect, &top);
+        let rough_scenario = self.text(&top, "rough_scenario");
+        let texts = [rough_scenario.as_deref(), task.as_deref(), social_context.as_deref()];
+        let waive = top.get("waive").map(|node| self.waive(node, &texts)).unwrap_or_default();
         Some(Request {
-            rough_scenario: self.text(&top, "rough_scenario"),
+            rough_scenario,
+            waive,
             location_description: self.text(&top, "location_description"),
             robot,
             form,
@@ -224,6 +229,31 @@ impl Door<'_> {
             social_context: social_context?,
             task: task?,
         })
+    }
+
+    /// Words that are given up: each must stand in one of the texts.
+    fn waive(&mut self, node: &Node, texts: &[Option<&str>]) -> Vec<String> {
+        const KEY: &str = "waive";
+        let Kind::List(nodes) = &node.kind else {
+            let hint = "a list of quotes of the texts: [\"and then he sings\"]";
+            self.bad(KEY, node.at, format!("is {}", node.kind.name()), hint);
+            return Vec::new();
+        };
+        let mut quotes = Vec::new();
+        for node in nodes {
+            let Some(quote) = self.typed::<String>(KEY, node, "words of the texts, in quotation marks") else {
+                continue;
+            };
+            let stands = !quote.trim().is_empty() && texts.iter().flatten().any(|text| text.contains(quote.trim()));
+            if stands {
+                quotes.push(quote.trim().to_owned());
+            } else {
+                let shown: String = quote.chars().take(80).collect();
+                let found = format!("`{shown}` stands in none of the texts");
+                self.bad(KEY, node.at, found, "copy the words as they stand in rough_scenario, task or social_context");
+            }
+        }
+        quotes
     }
 
     fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {

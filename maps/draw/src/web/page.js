@@ -272,7 +272,14 @@
       }
       if (!clauses.length) { word("span", "no clause names it", promised, "quiet"); word("span", "–", seen, "quiet"); }
     }
-    if (!data.facts.length) { const cell = word("td", "nothing was asked for in particular: the author was free", word("tr", "", body), "quiet"); cell.colSpan = 4; }
+    for (const wish of data.missing || []) {
+      const row = word("tr", "", body);
+      word("q", wish.quote, word("td", "", row));
+      words("td", wish.why, row);
+      word("td", "nothing: " + wish.fate, row, "quiet");
+      word("td", wish.fate === "waived" ? "– given up" : "✘ not in this run", row, wish.fate === "waived" ? "quiet" : "bad");
+    }
+    if (!data.facts.length && !(data.missing || []).length) { const cell = word("td", "nothing was asked for in particular: the author was free", word("tr", "", body), "quiet"); cell.colSpan = 4; }
     const known = new Set(data.facts.map((f) => f.id)), rest = run.clauses.filter((c) => !sources(c).some((s) => known.has(s)));
     const line = at("unasked"); line.textContent = "";
     if (rest.length) {

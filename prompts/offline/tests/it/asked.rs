@@ -3,7 +3,8 @@
 
 use serde::Deserialize;
 use socrates_model::reading::ReadHuman;
-use socrates_model::{FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request};
+use socrates_model::statement::TextKey;
+use socrates_model::{FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Statement};
 
 use crate::corpus;
 
@@ -38,6 +39,8 @@ struct Look {
     said: usize,
     /// Not right, and nothing was said.
     lost: usize,
+    /// Right, though words of its wish are said not to be read or played.
+    alarmed: usize,
 }
 
 fn read(case: &Case) -> Reading {
@@ -133,23 +136,15 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
     }
 }
 
-/// Whether anything that the reading says was not read, played or placed has a word of a quote.
-fn is_said(quote: &str, reading: &Reading) -> bool {
-    let quote = quote.to_lowercase();
-    let words = |text: &str| -> Vec<String> {
-        text.to_lowercase()
-            .split(|c: char| !c.is_alphanumeric())
-            .filter(|word| word.len() > 2)
-            .map(str::to_owned)
-            .collect()
+/// Whether the reading says of any word of a quote that it was not read or is not played.
+fn is_said(quote: &str, text: &str, at: TextKey, reading: &Reading) -> bool {
+    let from = text.find(quote).map(|from| text[..from].chars().count());
+    let from = from.unwrap_or_else(|| panic!("`{quote}` stands in its text"));
+    let (from, to) = (from, from + quote.chars().count());
+    let over = |statement: &&Statement| {
+        statement.at == at && (statement.span.from as usize) < to && from < statement.span.to as usize
     };
-    let own = words(&quote);
-    let ignored = reading.ignored.iter().any(|word| own.contains(&word.to_lowercase()));
-    let problem = |text: &str| quote.contains(&text.to_lowercase()) || text.to_lowercase().contains(&quote);
-    let quoted = reading.problems.iter().flat_map(|fault| &fault.quotes).any(|text| problem(text));
-    // A note quotes the words that it speaks of between backticks.
-    let noted = reading.notes.iter().flat_map(|note| note.split('`').skip(1).step_by(2)).any(problem);
-    ignored || quoted || noted
+    reading.statements.iter().filter(|statement| statement.is_unplayed()).any(|statement| over(&statement))
 }
 
 fn look(text: &str) -> (Look, Look) {
@@ -158,14 +153,17 @@ fn look(text: &str) -> (Look, Look) {
     for case in &asked.request {
         let reading = read(case);
         let wishes = case.wishes.iter().map(|wish| (wish.quote.as_str(), &wish.facts));
-        for (quote, facts) in wishes.chain([(case.task.as_str(), &case.task_facts)]) {
+        let wishes = wishes.map(|(quote, facts)| (quote, facts, TextKey::RoughScenario));
+        for (quote, facts, at) in wishes.chain([(case.task.as_str(), &case.task_facts, TextKey::Task)]) {
+            let said = is_said(quote, if at == TextKey::Task { &case.task } else { &case.text }, at, &reading);
             for fact in facts.iter().flat_map(|fact| each(fact)) {
                 let held = holds(&fact, &reading);
                 let look = if held.is_some() { &mut known } else { &mut unknown };
                 look.all += 1;
                 if held == Some(true) {
                     look.right += 1;
-                } else if is_said(quote, &reading) {
+                    look.alarmed += usize::from(said);
+                } else if said {
                     look.said += 1;
                 } else {
                     look.lost += 1;

@@ -125,7 +125,9 @@ pub(crate) fn holds(fact: &str, reading: &Reading) -> bool {
         ["robot", "start", class] => kinds().any(|kind| *kind == FactKind::RobotStart(class.parse().unwrap())),
         ["robot", "goal", class] => kinds().any(|kind| *kind == FactKind::RobotGoal(class.parse().unwrap())),
         ["problem", code] => reading.problems.iter().any(|fault| fault.code.code() == code),
-        ["ignored", word] => reading.ignored.iter().any(|ignored| ignored == word),
+        ["ignored", word] => reading.statements.iter().any(|s| {
+            s.is_unread() && s.quote.split(|c: char| !c.is_alphanumeric()).any(|w| w.eq_ignore_ascii_case(word))
+        }),
         [who, "role", role] => human(who, reading).is_some_and(|human| human.role == role),
         [who, "says", gesture] => {
             let gesture: Gesture = gesture.parse().unwrap();

@@ -1,6 +1,9 @@
 //! From clauses to one verdict, one score and one sentence.
 
+use std::collections::BTreeMap;
+
 use socrates_model::report::Standing;
+use socrates_model::statement::{Became, Statement};
 use socrates_model::{Predicate, Verdict};
 
 use crate::evidence::Evidence;
@@ -24,19 +27,22 @@ pub struct Ruling {
 /// Rules on the clauses, and on what the request asks for beyond them. `reference` is the ruling on the clauses alone of the
 /// same scenario with the reference robot, if known.
 ///
-/// A run that shows all its clauses is `invalid` while part of the request could not be read or played: nothing is
+/// A run that shows all its clauses is `invalid` while a wish of the request was not read or is not played, and nobody has waived it: nothing is
 /// realised by leaving a wish out. Verdicts that tell of what was played (`contradicted`, `not_triggered`,
 /// `robot_prevented`) take precedence.
 #[must_use]
 pub fn rule(evidence: &Evidence<'_>, judged: &Judged, gaps: &Gaps, reference: Option<Verdict>) -> Ruling {
     let ruling = ruling_of_played(evidence, judged, gaps, reference);
-    let wishes = unplayed_wishes(evidence);
+    let wishes = missing(evidence);
+    let count = match wishes.len() {
+        1 => "1 wish is not in this run".to_owned(),
+        n => format!("{n} wishes are not in this run"),
+    };
     if !matches!(ruling.verdict, Verdict::Realised | Verdict::RealisedLate) || wishes.is_empty() {
-        let text = format!("{}{}{}", ruling.text, after(" · not played: ", &wishes), unread_words(evidence));
+        let text = format!("{}{}{}", ruling.text, after(&format!(" · {count}: "), &wishes), waived(evidence));
         return Ruling { text, ..ruling };
     }
-    let text =
-        format!("part of the request is not played: {} · {}{}", named(&wishes), ruling.text, unread_words(evidence));
+    let text = format!("{count}: {} · {}{}", named(&wishes), ruling.text, waived(evidence));
     Ruling { verdict: Verdict::Invalid, text, score: 0.0 }
 }
 
@@ -49,7 +55,7 @@ pub(crate) fn ruling_of_played(
 ) -> Ruling {
     let total = judged.deciding().count();
     let has_robot = evidence.recording.header.agents.iter().any(|info| info.agent == socrates_model::AgentId::Robot);
-    let tally = tally(judged);
+    let tally = tally(evidence, judged);
     let invalid = |why: String| Ruling { verdict: Verdict::Invalid, text: why, score: 0.0 };
     if evidence.proposal.is_none() && evidence.paths.is_none() {
         return invalid("nothing to verify: there is neither a proposal nor paths".to_owned());
@@ -108,23 +114,16 @@ pub(crate) fn ruling_of_played(
 /// Most quotes of a request beside a verdict; the rest is counted, and all of them stand in the reading.
 const MOST_QUOTES: usize = 3;
 
-/// The words of every problem of the reading, as quoted in the request; where a problem quotes none, the key of the request.
-fn unplayed_wishes(evidence: &Evidence<'_>) -> Vec<String> {
-    let mut wishes: Vec<String> = Vec::new();
-    for problem in evidence.reading.map_or(&[][..], |reading| &reading.problems) {
-        let key = problem.quotes.is_empty().then(|| problem.at.to_string());
-        for wish in problem.quotes.iter().cloned().chain(key) {
-            if !wishes.contains(&wish) {
-                wishes.push(wish);
-            }
-        }
-    }
-    wishes
+/// The wishes that are not in the run, in the words of the request.
+fn missing(evidence: &Evidence<'_>) -> Vec<String> {
+    evidence.reading.map_or_else(Vec::new, socrates_model::Reading::missing)
 }
 
-/// Words of the request that no rule of the reader used: said beside every verdict, so that none is taken for more than it is.
-fn unread_words(evidence: &Evidence<'_>) -> String {
-    after(" · words not read: ", evidence.reading.map_or(&[][..], |reading| &reading.ignored))
+/// The wishes that were given up: said beside every verdict, so that none is taken for more than it is.
+fn waived(evidence: &Evidence<'_>) -> String {
+    let quotes: Vec<String> =
+        evidence.reading.map_or_else(Vec::new, |reading| reading.waived().into_iter().map(str::to_owned).collect());
+    after(" · waived: ", &quotes)
 }
 
 /// The first quotes after an introduction; nothing where there are none.
@@ -140,12 +139,17 @@ fn named(quotes: &[String]) -> String {
     format!("{}{more}", first.join(", "))
 }
 
-/// How many setup clauses were seen, how many of them late, and which could not be judged: none of those counts as seen.
-fn tally(judged: &Judged) -> String {
+/// How many wishes were seen, by how many setup clauses, how many of those late, and which could not be judged: none of those
+/// counts as seen.
+fn tally(evidence: &Evidence<'_>, judged: &Judged) -> String {
     let count = |wanted: Standing| judged.deciding().filter(|(_, finding)| finding.standing == wanted).count();
     let (late, unjudged) = (count(Standing::Late), judged.unjudged().count());
     let seen = count(Standing::Holds) + late;
     let mut text = format!("{seen} of {} setup clauses", judged.deciding().count() + unjudged);
+    let (wishes, all) = wishes(evidence, judged);
+    if all > 0 {
+        text = format!("{wishes} of {all} wishes seen, by {text}");
+    }
     if late > 0 {
         text.push_str(&format!(", {late} of them late"));
     }
@@ -153,6 +157,24 @@ fn tally(judged: &Judged) -> String {
         text.push_str(&format!(", {unjudged} not applicable: {}: {}", clause.id, finding.evidence));
     }
     text
+}
+
+/// How many wishes of the request were seen, and how many there are of which clauses tell: facts that one piece of a text became are
+/// one wish, and so are those of one line of a form. A wish is seen where every clause that decides of it was.
+fn wishes(evidence: &Evidence<'_>, judged: &Judged) -> (usize, usize) {
+    let Some(reading) = evidence.reading else { return (0, 0) };
+    let told = |fact: &str| {
+        let became = |statement: &&Statement| matches!(&statement.became, Became::Read { facts, .. } if facts.iter().any(|id| id == fact));
+        reading.statements.iter().find(became).map(|statement| &*statement.quote)
+    };
+    let mut found: BTreeMap<&str, bool> = BTreeMap::new();
+    for (clause, finding) in judged.deciding().chain(judged.unjudged()) {
+        let Some(fact) = reading.facts.iter().find(|fact| fact.id == clause.source) else { continue };
+        let seen = matches!(finding.standing, Standing::Holds | Standing::Late);
+        let wish = told(&fact.id).unwrap_or(if fact.quote.is_empty() { &*fact.id } else { &*fact.quote });
+        *found.entry(wish).or_insert(true) &= seen;
+    }
+    (found.values().filter(|seen| **seen).count(), found.len())
 }
 
 /// First and last time of the evidence of deciding clauses.

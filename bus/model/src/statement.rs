@@ -1,0 +1,165 @@
+//! Statements: what became of each piece of a request's texts. Together they account for every word that says something.
+
+use std::fmt;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::fault::Span;
+
+/// A text of the request.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TextKey {
+    /// `rough_scenario`.
+    RoughScenario,
+    /// `task`.
+    Task,
+    /// `social_context`.
+    SocialContext,
+}
+
+impl TextKey {
+    /// The texts, in the order in which they are shown.
+    pub const ALL: [Self; 3] = [Self::RoughScenario, Self::Task, Self::SocialContext];
+
+    /// The key in the request.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RoughScenario => "rough_scenario",
+            Self::Task => "task",
+            Self::SocialContext => "social_context",
+        }
+    }
+}
+
+impl fmt::Display for TextKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// Why words ask for nothing that could be seen in a run. A closed list: whatever has none of these reasons is a wish.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Background {
+    /// Place, time of day and mood of the whole.
+    Setting,
+    /// The robot's task in other words: what it carries, and why.
+    Errand,
+    /// About the study, or the asker: `we want to see whether the robot waits`.
+    Comment,
+    /// Why somebody does what is stated: `because she is late`.
+    Cause,
+    /// How somebody or something looks or feels, and what they have with them.
+    Looks,
+    /// Speaks to the program: nothing is done about it.
+    Instruction,
+    /// Of other days: `last week a visitor …`.
+    Report,
+}
+
+impl Background {
+    /// The reason in a word or two, as `socrates read` shows it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Setting => "setting",
+            Self::Errand => "errand",
+            Self::Comment => "comment",
+            Self::Cause => "cause",
+            Self::Looks => "looks",
+            Self::Instruction => "instruction",
+            Self::Report => "report",
+        }
+    }
+}
+
+/// What a piece of a text became.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Became {
+    /// It was read.
+    Read {
+        /// What of the form it became: `human_1: relation = "frontal"`. Empty where it repeats what another piece says.
+        lines: Vec<String>,
+        /// The facts of the reading that it became, by their ids.
+        facts: Vec<String>,
+    },
+    /// It asks for nothing.
+    Background(Background),
+    /// It was understood, and is not played.
+    NotPlayed {
+        /// Why, and what is played instead.
+        why: String,
+    },
+    /// It was not understood.
+    NotRead {
+        /// The sentence in other words that would be read, found by trying it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rewording: Option<String>,
+    },
+}
+
+/// One piece of a text, and what became of it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Statement {
+    /// Which text.
+    pub at: TextKey,
+    /// Where in it, in characters from 0.
+    pub span: Span,
+    /// Its words, as they stand there.
+    pub quote: String,
+    /// What became of it.
+    pub became: Became,
+    /// Whether `waive` of the request gives it up.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub waived: bool,
+}
+
+impl Statement {
+    /// Whether it is a wish that is not in the run, and that nobody has given up.
+    #[must_use]
+    pub const fn is_missing(&self) -> bool {
+        !self.waived && self.is_unplayed()
+    }
+
+    /// Whether it is a wish that is not in the run.
+    #[must_use]
+    pub const fn is_unplayed(&self) -> bool {
+        matches!(self.became, Became::NotPlayed { .. } | Became::NotRead { .. })
+    }
+
+    /// Whether it was not understood.
+    #[must_use]
+    pub const fn is_unread(&self) -> bool {
+        matches!(self.became, Became::NotRead { .. })
+    }
+
+    /// What it is called that became of it: `read`, `background`, `not played`, `not read`, `waived`.
+    #[must_use]
+    pub const fn fate(&self) -> &'static str {
+        match self.became {
+            _ if self.waived => "waived",
+            Became::Read { .. } => "read",
+            Became::Background(_) => "background",
+            Became::NotPlayed { .. } => "not played",
+            Became::NotRead { .. } => "not read",
+        }
+    }
+
+    /// What became of it, in words for people: the lines of a form, the reason, or what helps.
+    #[must_use]
+    pub fn told(&self) -> String {
+        match &self.became {
+            Became::Read { lines, .. } if lines.is_empty() => "goes with the rest".to_owned(),
+            Became::Read { lines, .. } => lines.join("; "),
+            Became::Background(reason) => reason.name().to_owned(),
+            Became::NotPlayed { why } => why.clone(),
+            Became::NotRead { rewording: Some(other) } => format!("would be read: `{other}`"),
+            Became::NotRead { rewording: None } => "say it in other words, or as a form".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Which words of a text were read: those without which something else would have been understood.
+//!
+//! Words are exchanged for one that nobody knows, and the text is read again. Where every line of the reading stays as it is, nothing
+//! was made of them, whatever rule may have touched them. That holds for any reader.
+//!
+//! A clause is looked at as a whole: a rule reads phrases, and `comes` of `comes towards the robot` changes nothing alone. Of a clause
+//! that changes something, the words that a rule took for a phrase are read; those that none took, and those that say a side, a
+//! number, an order or a denial, have to change something by themselves.
+
+use super::lines::Line;
+use super::text::{Token, exchanged, masked};
+use super::words::{Kind, opposite};
+
+/// What the words of a text do to the reading.
+pub(super) struct Influence {
+    /// Per clause: the lines of the whole reading that it changes, by their numbers; nothing where it changes none.
+    pub(super) lines: Vec<Vec<usize>>,
+    /// Per word: whether it was read.
+    pub(super) read: Vec<bool>,
+}
+
+/// A text, and how it is read again.
+pub(super) struct Text<'a> {
+    pub(super) text: &'a str,
+    pub(super) tokens: &'a [Token],
+    pub(super) kinds: &'a [Kind],
+    /// Per word: whether a rule took it.
+    pub(super) used: Vec<bool>,
+    /// The lines of the whole reading.
+    pub(super) whole: &'a [Line],
+    /// The lines of another text in its place.
+    pub(super) read: &'a dyn Fn(&str) -> Vec<Line>,
+}
+
+impl Text<'_> {
+    fn kind(&self, place: usize) -> Kind {
+        self.kinds.get(place).copied().unwrap_or(Kind::Connective)
+    }
+
+    fn says(&self, place: usize) -> bool {
+        self.kind(place) != Kind::Connective
+    }
+
+    fn is_used(&self, place: usize) -> bool {
+        self.used.get(place).copied().unwrap_or(false)
+    }
+
+    /// Whether a word is read with the phrase that it stands in.
+    fn goes_along(&self, place: usize) -> bool {
+        self.kind(place).joins_phrases() && self.is_used(place)
+    }
+
+    fn without(&self, hidden: &dyn Fn(usize) -> bool) -> Vec<Line> {
+        (self.read)(&masked(self.text, self.tokens, hidden))
+    }
+
+    /// The words of a clause that say something.
+    fn of_clause(&self, clause: usize) -> Vec<usize> {
+        let own =
+            |place: &usize| self.tokens.get(*place).is_some_and(|token| token.clause == clause) && self.says(*place);
+        (0..self.tokens.len()).filter(own).collect()
+    }
+
+    /// Whether a word by itself changes the reading. Where another word would say the opposite, that one must: `from the left` may
+    /// say that somebody crosses without a word being read of the side, and `two nurses` are two as `nurses` are.
+    fn changes(&self, place: usize) -> bool {
+        let other = self.tokens.get(place).and_then(|token| Some((token, opposite(&token.lower)?)));
+        match other {
+            Some((token, word)) => (self.read)(&exchanged(self.text, token, &word)) != self.whole,
+            None => self.without(&|n| n == place) != self.whole,
+        }
+    }
+
+    /// Which words were read, and what each clause became.
+    pub(super) fn influence(&self) -> Influence {
+        let clauses = self.tokens.last().map_or(0, |last| last.clause + 1);
+        let mut found = Influence { lines: vec![Vec::new(); clauses], read: vec![false; self.tokens.len()] };
+        let mut idle = Vec::new();
+        for clause in 0..clauses {
+            let words = self.of_clause(clause);
+            if words.is_empty() {
+                continue;
+            }
+            let other = self.without(&|n| words.contains(&n));
+            if other == self.whole {
+                idle.push(clause);
+            }
+            let lost = |n: &usize| self.whole.get(*n).is_some_and(|line| !other.contains(line));
+            if let Some(lines) = found.lines.get_mut(clause) {
+                *lines = (0..self.whole.len()).filter(lost).collect();
+            }
+            for place in words {
+                let read = other != self.whole && (self.goes_along(place) || self.changes(place));
+                if let Some(flag) = found.read.get_mut(place) {
+                    *flag = read;
+                }
+            }
+        }
+        self.said_twice(&idle, &mut found);
+        found
+    }
+
+    /// Clauses that change nothing because another says the same: of two, each alone with the rest of the text.
+    fn said_twice(&self, idle: &[usize], found: &mut Influence) {
+        if idle.len() < 2 {
+            return;
+        }
+        let all: Vec<usize> = idle.iter().flat_map(|clause| self.of_clause(*clause)).collect();
+        let none = self.without(&|n| all.contains(&n));
+        for clause in idle {
+            let own = self.of_clause(*clause);
+            let alone = self.without(&|n| all.contains(&n) && !own.contains(&n));
+            for place in own.into_iter().filter(|place| alone != none && self.goes_along(*place)) {
+                if let Some(flag) = found.read.get_mut(place) {
+                    *flag = true;
+                }
+            }
+        }
+    }
+}

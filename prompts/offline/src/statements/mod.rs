@@ -1,0 +1,309 @@
+//! The account of a request's texts: what became of every clause, and of every word in it that says something.
+//!
+//! ```text
+//! text ─► words, clauses, sentences (text)
+//!      ─► clauses and words hidden in turn, the text read again (influence): which lines of the reading (lines) need them
+//!      ─► a fate per word: read · not played · background with a reason (background, words) · not read
+//!      ─► statements, in the order of the text; for what was not read another wording, found by trying it (rewording)
+//! ```
+//!
+//! Nothing here knows the rules of the grammar: a word is read where the reading would be another one without it.
+
+mod background;
+mod influence;
+mod lines;
+mod rewording;
+mod text;
+mod words;
+
+use socrates_model::fault::{Span, Where};
+use socrates_model::statement::{Background, Became, Statement, TextKey};
+use socrates_model::{Fault, Location, Reading, Request};
+
+use crate::understand::{Understood, understood};
+use background::Around;
+use influence::Influence;
+pub(crate) use lines::{Line, lines};
+use text::Token;
+use words::Kind;
+
+/// Something that was understood, and is not played as it was said.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Unplayed {
+    /// Words of the text.
+    pub(crate) quote: String,
+    /// Why, and what is played instead.
+    pub(crate) why: String,
+}
+
+impl Unplayed {
+    pub(crate) fn of(quote: &str, why: &str) -> Self {
+        Self { quote: quote.to_owned(), why: why.to_owned() }
+    }
+}
+
+/// What became of a word.
+#[derive(Debug, Clone, PartialEq)]
+enum Fate {
+    /// Says nothing of its own.
+    Joins,
+    Read,
+    Background(Background),
+    NotPlayed(String),
+    NotRead,
+}
+
+/// Accounts for every text of a request.
+pub(crate) fn statements(request: &Request, location: &Location, whole: &Understood) -> Vec<Statement> {
+    let mut found = Vec::new();
+    for key in TextKey::ALL {
+        let text = text_of(request, key);
+        if key == TextKey::RoughScenario && !request.form.is_empty() {
+            found.extend(whole_text(key, text));
+        } else if !text.trim().is_empty() {
+            found.extend(Account::new(request, location, whole, key).statements());
+        }
+    }
+    for statement in &mut found {
+        statement.waived =
+            statement.is_unplayed() && request.waive.iter().any(|quote| gives_up(quote, statement, request));
+    }
+    found
+}
+
+/// One statement for a text beside a form: what the form states is played, and where the text differs is noted elsewhere.
+fn whole_text(key: TextKey, text: &str) -> Option<Statement> {
+    let quote = text.trim();
+    let before = text.chars().take_while(|c| c.is_whitespace()).count();
+    let chars = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
+    let span = Span { from: chars(before), to: chars(before + quote.chars().count()) };
+    let became = Became::Read { lines: vec!["as the form states".to_owned()], facts: Vec::new() };
+    (!quote.is_empty()).then(|| Statement { at: key, span, quote: quote.to_owned(), became, waived: false })
+}
+
+/// A text of the request.
+pub(crate) fn text_of(request: &Request, key: TextKey) -> &str {
+    match key {
+        TextKey::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
+        TextKey::Task => &request.task,
+        TextKey::SocialContext => &request.social_context,
+    }
+}
+
+/// Whether a quote of `waive` stands in the text of the statement and has all of its words.
+fn gives_up(quote: &str, statement: &Statement, request: &Request) -> bool {
+    let text = text_of(request, statement.at);
+    let Some(own) = bytes(text, statement.span) else { return false };
+    text.match_indices(quote).any(|(from, _)| from <= own.start && own.end <= from + quote.len())
+}
+
+/// The bytes of a span in characters.
+fn bytes(text: &str, span: Span) -> Option<std::ops::Range<usize>> {
+    let place = |chars: u32| {
+        let chars = usize::try_from(chars).ok()?;
+        text.char_indices().map(|(at, _)| at).chain([text.len()]).nth(chars)
+    };
+    Some(place(span.from)?..place(span.to)?)
+}
+
+struct Account<'a> {
+    request: &'a Request,
+    location: &'a Location,
+    whole: &'a Understood,
+    key: TextKey,
+    text: &'a str,
+    tokens: Vec<Token>,
+    kinds: Vec<Kind>,
+    influence: Influence,
+}
+
+impl<'a> Account<'a> {
+    fn new(request: &'a Request, location: &'a Location, whole: &'a Understood, key: TextKey) -> Self {
+        let text = text_of(request, key);
+        let tokens = text::tokens(text);
+        let kinds = words::kinds(&tokens, location);
+        let read = |text: &str| read_again(request, location, key, text);
+        let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
+        let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
+        let influence = again.influence();
+        Self { request, location, whole, key, text, tokens, kinds, influence }
+    }
+
+    fn reads(&self, text: &str) -> Vec<Line> {
+        read_again(self.request, self.location, self.key, text)
+    }
+
+    fn statements(&self) -> Vec<Statement> {
+        let fates = self.fates();
+        let mut found = Vec::new();
+        let clauses = self.tokens.last().map_or(0, |last| last.clause + 1);
+        for clause in 0..clauses {
+            let places: Vec<usize> = (0..self.tokens.len())
+                .filter(|k| self.tokens.get(*k).is_some_and(|token| token.clause == clause))
+                .collect();
+            self.of_clause(&places, &fates, &mut found);
+        }
+        found
+    }
+
+    /// What became of each word.
+    fn fates(&self) -> Vec<Fate> {
+        let around = Around { tokens: &self.tokens, kinds: &self.kinds, read: &self.influence.read };
+        (0..self.tokens.len()).map(|place| self.fate(place, &around)).collect()
+    }
+
+    fn fate(&self, place: usize, around: &Around<'_>) -> Fate {
+        if let Some((problem, instructs)) = self.problem(place) {
+            return if instructs {
+                Fate::Background(Background::Instruction)
+            } else {
+                Fate::NotPlayed(problem.message.to_string())
+            };
+        }
+        if self.kinds.get(place).is_none_or(|kind| *kind == Kind::Connective) {
+            return Fate::Joins;
+        }
+        if self.influence.read.get(place).copied().unwrap_or(false) {
+            return Fate::Read;
+        }
+        match self.key {
+            TextKey::SocialContext => return Fate::Background(Background::Setting),
+            TextKey::Task if !self.binds(place) => return Fate::Background(Background::Errand),
+            TextKey::Task => return Fate::NotRead,
+            TextKey::RoughScenario => {}
+        }
+        match around.reason(place) {
+            Some(Background::Comment) => Fate::Background(Background::Comment),
+            reason => match (self.unplayed(place), reason) {
+                (Some(unplayed), _) => Fate::NotPlayed(unplayed.why.clone()),
+                (None, Some(reason)) => Fate::Background(reason),
+                (None, None) => Fate::NotRead,
+            },
+        }
+    }
+
+    /// Whether a word of the task asks for something all the same: a place that this map has, or that something is not to be.
+    fn binds(&self, place: usize) -> bool {
+        let denies = self.kinds.get(place) == Some(&Kind::Denial);
+        denies || self.tokens.get(place).is_some_and(|token| words::on_map(&token.lower, self.location))
+    }
+
+    /// The problem of the reading that quotes a word, and whether the word speaks to the program.
+    fn problem(&self, place: usize) -> Option<(&Fault, bool)> {
+        let own = |fault: &&Fault| fault.at == Where::key(self.key.name()) || fault.at == self.spanned(fault);
+        let quotes = |fault: &&Fault| fault.quotes.iter().any(|quote| self.quoted(quote, place));
+        let problem = self.whole.reading.problems.iter().filter(own).find(quotes)?;
+        Some((problem, self.whole.instructions.iter().any(|sentence| problem.quotes.contains(sentence))))
+    }
+
+    fn spanned(&self, fault: &Fault) -> Where {
+        Where { span: fault.at.span, ..Where::key(self.key.name()) }
+    }
+
+    fn unplayed(&self, place: usize) -> Option<&Unplayed> {
+        self.whole.unplayed.iter().find(|unplayed| self.quoted(&unplayed.quote, place))
+    }
+
+    /// Whether a word stands in a quote of the text.
+    fn quoted(&self, quote: &str, place: usize) -> bool {
+        let Some(at) = self.tokens.get(place).map(|token| &token.at) else { return false };
+        !quote.is_empty()
+            && self.text.match_indices(quote).any(|(from, _)| from <= at.start && at.end <= from + quote.len())
+    }
+
+    /// The statements of one clause: what was read of it, and every run of words that became something else.
+    fn of_clause(&self, places: &[usize], fates: &[Fate], found: &mut Vec<Statement>) {
+        let fate = |place: &usize| fates.get(*place).cloned().unwrap_or(Fate::Joins);
+        let clause =
+            places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.clause).next().unwrap_or(0);
+        if places.iter().any(|place| fate(place) == Fate::Read) {
+            let (lines, facts) = self.became(clause);
+            found.extend(self.statement(places, Became::Read { lines, facts }));
+        }
+        let mut runs: Vec<(Fate, Vec<usize>)> = Vec::new();
+        let mut joins: Vec<usize> = Vec::new();
+        for place in places {
+            let own = fate(place);
+            match runs.last_mut() {
+                _ if own == Fate::Joins => joins.push(*place),
+                Some((last, run)) if *last == own => {
+                    run.append(&mut joins);
+                    run.push(*place);
+                }
+                Some(_) | None => {
+                    let mut run =
+                        if runs.is_empty() && own != Fate::Read { std::mem::take(&mut joins) } else { Vec::new() };
+                    joins.clear();
+                    run.push(*place);
+                    runs.push((own, run));
+                }
+            }
+        }
+        for (fate, run) in runs {
+            let became = match fate {
+                Fate::Joins | Fate::Read => continue,
+                Fate::Background(reason) => Became::Background(reason),
+                Fate::NotPlayed(why) => Became::NotPlayed { why },
+                Fate::NotRead => Became::NotRead { rewording: rewording::of(self, &run, places) },
+            };
+            found.extend(self.statement(&run, became));
+        }
+    }
+
+    /// The lines and facts that a clause became: each line stands with the clauses on which the least else hangs.
+    fn became(&self, clause: usize) -> (Vec<String>, Vec<String>) {
+        let of = |clause: usize| self.influence.lines.get(clause).map_or(&[][..], Vec::as_slice);
+        let least = |line: usize| self.influence.lines.iter().filter(|lines| lines.contains(&line)).map(Vec::len).min();
+        let numbers = of(clause).iter().filter(|line| least(**line) == Some(of(clause).len()));
+        let own: Vec<&Line> = numbers.filter_map(|line| self.whole.lines.get(*line)).collect();
+        let fact = |line: &&Line| {
+            let kind = line.fact.as_ref()?;
+            self.whole.reading.facts.iter().find(|fact| fact.kind == *kind).map(|fact| fact.id.clone())
+        };
+        let facts = own.iter().filter_map(fact).collect();
+        (own.iter().filter(|line| line.shown).map(|line| line.text.clone()).collect(), facts)
+    }
+
+    fn statement(&self, places: &[usize], became: Became) -> Option<Statement> {
+        let first = places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.at.start).min()?;
+        let last = places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.at.end).max()?;
+        let chars = |bytes: usize| {
+            u32::try_from(self.text.get(..bytes).unwrap_or_default().chars().count()).unwrap_or(u32::MAX)
+        };
+        let quote = self.text.get(first..last)?.to_owned();
+        Some(Statement {
+            at: self.key,
+            span: Span { from: chars(first), to: chars(last) },
+            quote,
+            became,
+            waived: false,
+        })
+    }
+}
+
+/// Whether a rule took any part of a word.
+fn touched(token: &Token, used: &[std::ops::Range<usize>]) -> bool {
+    used.iter().any(|at| at.start < token.at.end && token.at.start < at.end)
+}
+
+/// The lines of the request with another text in place of one of its own.
+fn read_again(request: &Request, location: &Location, key: TextKey, text: &str) -> Vec<Line> {
+    let mut other = request.clone();
+    match key {
+        TextKey::RoughScenario => other.rough_scenario = Some(text.to_owned()),
+        TextKey::Task => text.clone_into(&mut other.task),
+        TextKey::SocialContext => text.clone_into(&mut other.social_context),
+    }
+    understood(&other, location, false).lines
+}
+
+/// The words of the reading's texts that were not understood, each once, as they stand there.
+pub(crate) fn unread(reading: &Reading) -> Vec<&str> {
+    let mut words: Vec<&str> = Vec::new();
+    for statement in reading.statements.iter().filter(|statement| statement.is_unread()) {
+        if !words.contains(&statement.quote.as_str()) {
+            words.push(&statement.quote);
+        }
+    }
+    words
+}
