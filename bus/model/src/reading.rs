@@ -9,7 +9,7 @@ use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
 use crate::proposal::Relation;
 use crate::rule::Rule;
-use crate::statement::Statement;
+use crate::statement::{Statement, TextKey};
 
 /// One thing that the text asks for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -170,7 +170,8 @@ impl Reading {
     /// Whether a statement tells what became of the words of a problem.
     fn accounts_for(&self, problem: &Fault) -> bool {
         let of = |statement: &&Statement| {
-            problem.at.is_key(statement.at.name())
+            let of_person = problem.at.agent.is_some() && statement.at == TextKey::RoughScenario;
+            (of_person || problem.at.is_key(statement.at.name()))
                 && problem
                     .quotes
                     .iter()

@@ -214,14 +214,17 @@ impl Cast {
                 };
                 if let Some(set) = total.filter(|set| same(set)) {
                     let (members, first) = (set.members.clone(), set.quote.clone());
-                    self.problems.push(Fault::new(
-                        FaultCode::PContra,
-                        "rough_scenario",
-                        format!(
-                            "`{first}` gives {} humans, but `{quote}` speaks of {n}; correct one of the two",
-                            members.len()
-                        ),
-                    ));
+                    self.problems.push(
+                        Fault::new(
+                            FaultCode::PContra,
+                            "rough_scenario",
+                            format!(
+                                "`{first}` gives {} humans, but `{quote}` speaks of {n}; correct one of the two",
+                                members.len()
+                            ),
+                        )
+                        .about([first, quote.to_owned()]),
+                    );
                     return members;
                 }
                 // `at a corner that neither of them can see around`, before anybody was spoken of

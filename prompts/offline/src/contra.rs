@@ -37,6 +37,7 @@ fn contradiction(at: impl Into<Where>, first: &str, second: &str, why: &str) -> 
         at,
         format!("`{}` and `{}` cannot both hold: {why}; correct one of the two", first.trim(), second.trim()),
     )
+    .about([first.trim(), second.trim()])
 }
 
 /// Words by which something is so only for a while, or for others.
@@ -113,14 +114,17 @@ pub(crate) fn emptied(story: &mut Story, found: &Found, next: Option<Joint>, quo
         return;
     }
     let first = story.cast.count_quote.clone().unwrap_or_default();
-    story.problems.push(Fault::new(
-        FaultCode::PContra,
-        "rough_scenario",
-        format!(
-            "`{first}` speaks of {}, but `{quote}` says that nobody is there; correct one of the two",
-            story.cast.people.len()
-        ),
-    ));
+    story.problems.push(
+        Fault::new(
+            FaultCode::PContra,
+            "rough_scenario",
+            format!(
+                "`{first}` speaks of {}, but `{quote}` says that nobody is there; correct one of the two",
+                story.cast.people.len()
+            ),
+        )
+        .about([first.as_str(), quote]),
+    );
 }
 
 /// `Nobody is there.`, before anybody is.

@@ -259,7 +259,7 @@ impl Story {
                             FaultCode::PContra,
                             crate::order::agent(who),
                             format!("`{}` and `{}` cannot both hold for the same human at the same time; say when each, or correct one", first.quote, second.quote),
-                        ));
+                        ).about([first.quote.as_str(), second.quote.as_str()]));
                     }
                 }
             }

@@ -130,11 +130,14 @@ pub(crate) fn meant(
 fn told_otherwise(story: &mut Story, mention: &Mention, said: &str, listed: usize) {
     let Who::New { count: Some(n), .. } = mention.who else { return };
     if usize::try_from(n) != Ok(listed) && !mention.group {
-        story.problems.push(socrates_model::Fault::new(
-            socrates_model::FaultCode::PContra,
-            "rough_scenario",
-            format!("`{said}` counts {n}, but {listed} are listed; correct one of the two"),
-        ));
+        story.problems.push(
+            socrates_model::Fault::new(
+                socrates_model::FaultCode::PContra,
+                "rough_scenario",
+                format!("`{said}` counts {n}, but {listed} are listed; correct one of the two"),
+            )
+            .about([said]),
+        );
     }
 }
 

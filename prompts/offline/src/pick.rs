@@ -89,7 +89,7 @@ impl Cast {
             FaultCode::PContra,
             "rough_scenario",
             format!("`{first}` gives {total} humans, but `{quote}` asks for {n} more than the {} left; correct one of the two", open.len()),
-        ));
+        ).about([first.as_str(), quote]));
         Some(open)
     }
 

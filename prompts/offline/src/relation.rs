@@ -106,6 +106,7 @@ pub(crate) fn contradiction(who: usize, first: &str, second: &str) -> Fault {
         crate::order::agent(who),
         format!("`{first}` and `{second}` cannot both hold for the same human; correct one of the two"),
     )
+    .about([first, second])
 }
 
 /// `turns around and walks back towards it`: after what it did before.

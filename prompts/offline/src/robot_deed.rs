@@ -21,6 +21,9 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
             }
         }
     };
+    if matches!(act, Act::Walk | Act::Pass | Act::Toward | Act::Approach | Act::Cross) {
+        story.on_its_way.push(act);
+    }
     match act {
         // Who has the robot behind walks ahead of it.
         Act::Behind => set(story, Relation::Ahead),

@@ -38,6 +38,8 @@ pub(crate) struct Story {
     pub(crate) headed: Option<(PlaceClass, String)>,
     /// Words of doors that somebody opens or closes.
     pub(crate) doors: Vec<String>,
+    /// What the robot does on its way, as it would anyway: `drives past`, `comes to`.
+    pub(crate) on_its_way: Vec<Act>,
     pub(crate) ignored: Vec<String>,
     /// Where the words stand that some rule read, in bytes of the text.
     pub(crate) used: Vec<std::ops::Range<usize>>,

@@ -52,8 +52,10 @@ fn a_door_that_somebody_opens_to_walk_through_opens_by_itself() {
 
 #[test]
 fn a_time_is_only_told_of_what_is_played_for_that_time() {
-    let notes =
-        |rough: &str| -> Vec<String> { told(rough).notes.into_iter().filter(|note| note.contains("10 s")).collect() };
+    let notes = |rough: &str| -> Vec<String> {
+        let problems = told(rough).problems.into_iter().map(|problem| problem.message.to_string());
+        problems.filter(|message| message.contains("10 s")).collect()
+    };
     // They stand there as long as it takes.
     let stands = "A person stands in the corridor until the robot is very close, then steps aside.";
     assert_eq!(notes(stands), [""; 0]);

@@ -1,6 +1,6 @@
 //! Clauses that only say when, and clauses that only name people.
 
-use socrates_model::{Gesture, HumanId, PlaceClass, Trigger};
+use socrates_model::{Fault, FaultCode, Gesture, HumanId, PlaceClass, Trigger};
 
 use crate::clause::Found;
 use crate::cut::{Joint, Stretch};
@@ -184,10 +184,11 @@ pub(crate) fn timing(
             thread.said.clone_from(&thread.ended);
         }
         // Whoever stands there anyway, or does nothing of their own until then, does so as long as it takes.
-        if let Some(deed) = timed {
-            let why = format!("`{deed}` is played for {UNTIL_S} s, whether or not that comes before");
-            story.cast.leave_out(quote, &why);
-        }
+        story.problems.extend(timed.map(|deed| {
+            let why =
+                format!("`{deed}`, until `{quote}`: it is played for {UNTIL_S} s, whether or not that comes before");
+            Fault::new(FaultCode::PRead, "rough_scenario", why).about([quote])
+        }));
         return;
     }
     // `if it moves they wait, if it stops they walk on`: what has its own time already is not timed by what comes after it.

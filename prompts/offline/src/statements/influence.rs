@@ -9,7 +9,7 @@
 
 use super::lines::Line;
 use super::text::{Token, exchanged, masked};
-use super::words::{Kind, opposite};
+use super::words::{Kind, others};
 
 /// What the words of a text do to the reading.
 pub(super) struct Influence {
@@ -64,11 +64,12 @@ impl Text<'_> {
     /// Whether a word by itself changes the reading. Where another word would say the opposite, that one must: `from the left` may
     /// say that somebody crosses without a word being read of the side, and `two nurses` are two as `nurses` are.
     fn changes(&self, place: usize) -> bool {
-        let other = self.tokens.get(place).and_then(|token| Some((token, opposite(&token.lower)?)));
-        match other {
-            Some((token, word)) => (self.read)(&exchanged(self.text, token, &word)) != self.whole,
-            None => self.without(&|n| n == place) != self.whole,
+        let Some(token) = self.tokens.get(place) else { return false };
+        let others = others(&token.lower);
+        if others.is_empty() {
+            return self.without(&|n| n == place) != self.whole;
         }
+        others.iter().any(|word| (self.read)(&exchanged(self.text, token, word)) != self.whole)
     }
 
     /// Which words were read, and what each clause became.
@@ -90,14 +91,57 @@ impl Text<'_> {
                 *lines = (0..self.whole.len()).filter(lost).collect();
             }
             for place in words {
-                let read = other != self.whole && (self.goes_along(place) || self.changes(place));
+                let idle = other == self.whole;
+                let read = if self.goes_along(place) {
+                    !idle
+                } else {
+                    // Without a number the usual one is taken: only another number shows whether it was read.
+                    (!idle || self.kind(place) == Kind::Number) && self.changes(place)
+                };
                 if let Some(flag) = found.read.get_mut(place) {
                     *flag = read;
                 }
             }
         }
+        self.ranges(&mut found);
         self.said_twice(&idle, &mut found);
+        self.said_before(&idle, &mut found);
         found
+    }
+
+    /// `two or three people`: both ends of a range are read where one is.
+    fn ranges(&self, found: &mut Influence) {
+        let joins = |place: usize| {
+            let join = self.tokens.get(place).is_some_and(|token| matches!(token.lower.as_str(), "or" | "to" | "and"));
+            join && place.checked_sub(1).is_some_and(|before| self.kind(before) == Kind::Number)
+                && self.kind(place + 1) == Kind::Number
+        };
+        for place in (0..self.tokens.len()).filter(|place| joins(*place)) {
+            let ends = [place - 1, place + 1];
+            let read = ends.iter().any(|end| found.read.get(*end).copied().unwrap_or(false));
+            for end in ends.into_iter().filter(|_| read) {
+                if let Some(flag) = found.read.get_mut(end) {
+                    *flag = true;
+                }
+            }
+        }
+    }
+
+    /// Clauses that change nothing because what they say is a part of what the others say: alone, they are read as nothing else.
+    fn said_before(&self, idle: &[usize], found: &mut Influence) {
+        let says = |place: usize| self.says(place);
+        let none = if idle.is_empty() { Vec::new() } else { self.without(&says) };
+        for clause in idle {
+            let own = self.of_clause(*clause);
+            let alone = self.without(&|n| says(n) && !own.contains(&n));
+            let more: Vec<&Line> = alone.iter().filter(|line| !none.contains(line)).collect();
+            let same = !more.is_empty() && more.iter().all(|line| !line.shown || self.whole.contains(line));
+            for place in own.into_iter().filter(|place| same && self.goes_along(*place)) {
+                if let Some(flag) = found.read.get_mut(place) {
+                    *flag = true;
+                }
+            }
+        }
     }
 
     /// Clauses that change nothing because another says the same: of two, each alone with the rest of the text.

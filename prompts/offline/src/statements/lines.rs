@@ -87,6 +87,12 @@ pub(crate) fn lines(
     if let Some((class, _)) = &task.via {
         put(format!("robot: via = \"{}\"", class.name()), true, None);
     }
+    for act in &story.on_its_way {
+        put(format!("robot: {}", format!("{act:?}").to_lowercase()), false, None);
+    }
+    for quote in &story.doors {
+        put(format!("doors open by themselves: {quote}"), false, None);
+    }
     if let Some(part) = story.robot_part {
         put(format!("robot: {part}"), true, None);
     }

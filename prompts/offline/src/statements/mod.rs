@@ -16,7 +16,7 @@ mod rewording;
 mod text;
 mod words;
 
-use socrates_model::fault::{Span, Where};
+use socrates_model::fault::Span;
 use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{Fault, Location, Reading, Request};
 
@@ -184,20 +184,24 @@ impl<'a> Account<'a> {
 
     /// Whether a word of the task asks for something all the same: a place that this map has, or that something is not to be.
     fn binds(&self, place: usize) -> bool {
-        let denies = self.kinds.get(place) == Some(&Kind::Denial);
-        denies || self.tokens.get(place).is_some_and(|token| words::on_map(&token.lower, self.location))
+        let Some(token) = self.tokens.get(place) else { return false };
+        let read =
+            |place: Option<usize>| place.and_then(|place| self.influence.read.get(place)).copied().unwrap_or(false);
+        // `small office`, where `small` tells which.
+        let told = read(place.checked_sub(1)) || read(place.checked_add(1));
+        // `the elevator`, into which the robot goes anyway.
+        let known = || self.whole.lines.iter().any(|line| line.text.contains(&format!("\"{}\"", token.lower)));
+        self.kinds.get(place) == Some(&Kind::Denial)
+            || words::tells_place(&token.lower, self.location) && !told && !known()
     }
 
     /// The problem of the reading that quotes a word, and whether the word speaks to the program.
     fn problem(&self, place: usize) -> Option<(&Fault, bool)> {
-        let own = |fault: &&Fault| fault.at == Where::key(self.key.name()) || fault.at == self.spanned(fault);
+        let of_person = |fault: &Fault| fault.at.agent.is_some() && self.key == TextKey::RoughScenario;
+        let own = |fault: &&Fault| fault.at.is_key(self.key.name()) || of_person(fault);
         let quotes = |fault: &&Fault| fault.quotes.iter().any(|quote| self.quoted(quote, place));
         let problem = self.whole.reading.problems.iter().filter(own).find(quotes)?;
         Some((problem, self.whole.instructions.iter().any(|sentence| problem.quotes.contains(sentence))))
-    }
-
-    fn spanned(&self, fault: &Fault) -> Where {
-        Where { span: fault.at.span, ..Where::key(self.key.name()) }
     }
 
     fn unplayed(&self, place: usize) -> Option<&Unplayed> {

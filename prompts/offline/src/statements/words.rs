@@ -127,6 +127,13 @@ fn kind(tokens: &[Token], place: usize, location: &Location) -> Kind {
     if word == "moment" && matches!(before, "the" | "this" | "that") || word == "soon" && before == "as" {
         return Kind::Connective;
     }
+    // `the other one`, `the two`: those of whom was spoken.
+    let definite = matches!(before, "the" | "these" | "those" | "all" | "both");
+    let named = matches!(before, "other" | "this" | "that" | "each" | "every" | "which" | "same")
+        || lex.ordinals.contains_key(before);
+    if lex.numbers.contains_key(word) && (definite || word == "one" && named) {
+        return Kind::Connective;
+    }
     for (table, kind) in [
         (DENIALS, Kind::Denial),
         (SIDES, Kind::Side),
@@ -170,6 +177,11 @@ fn is_place(tokens: &[Token], place: usize, location: &Location) -> bool {
         before.map(|token| token.lower.as_str()).find(|word| !FILL.contains(word) && !lex.adjectives.contains(*word));
     let sort = |word: &str| lex.verbs.contains(&lex.stem(word)) || word.ends_with("ing") && !among(NOUNS, word);
     first.is_some_and(|word| AT.contains(&word)) && !sort(word) && !lex.goods.contains(word)
+}
+
+/// Whether a word tells which place of this map is meant.
+pub(super) fn tells_place(word: &str, location: &Location) -> bool {
+    on_map(word, location) && !crate::named::telling(word).is_empty()
 }
 
 /// Whether a word stands in the name of a place of this map.
@@ -228,19 +240,35 @@ const OPPOSITES: &[(&str, &str)] = &[
     ("minute", "second"),
 ];
 
-/// A word of the same kind that says something else, where there is one.
-pub(super) fn opposite(word: &str) -> Option<String> {
-    let pairs = OPPOSITES.iter().find_map(|(a, b)| if *a == word { Some(*b) } else { (*b == word).then_some(*a) });
-    let number = || match lexicon().numbers.get(word) {
-        Some(5) => Some("three".to_owned()),
-        Some(_) => Some("five".to_owned()),
-        None => {
-            let digits: f64 = word.parse().ok()?;
-            Some(if digits > 2.0 { "1".to_owned() } else { "9".to_owned() })
-        }
-    };
-    pairs.map(str::to_owned).or_else(number)
+/// Words of the same kind that say something else, where there are any.
+pub(super) fn others(word: &str) -> Vec<String> {
+    let pair = OPPOSITES.iter().find_map(|(a, b)| if *a == word { Some(*b) } else { (*b == word).then_some(*a) });
+    if let Some(other) = pair {
+        return vec![other.to_owned()];
+    }
+    // `one` can be somebody: other numbers are larger.
+    if let Some(count) = lexicon().numbers.get(word) {
+        let named = |wanted: u32| {
+            NAMED.iter().find(|(_, n)| *n == wanted).map_or_else(|| wanted.to_string(), |(name, _)| (*name).to_owned())
+        };
+        return [count + 1, count + 4].into_iter().map(named).collect();
+    }
+    let number: Option<f64> = word.parse().ok();
+    number.map_or_else(Vec::new, |number| vec![(number + 1.0).to_string(), (number + 4.0).to_string()])
 }
+
+/// Names of small numbers.
+const NAMED: &[(&str, u32)] = &[
+    ("two", 2),
+    ("three", 3),
+    ("four", 4),
+    ("five", 5),
+    ("six", 6),
+    ("seven", 7),
+    ("eight", 8),
+    ("nine", 9),
+    ("ten", 10),
+];
 
 /// Whether a word names people.
 pub(super) fn is_person(token: &Token) -> bool {
