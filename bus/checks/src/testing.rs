@@ -104,6 +104,7 @@ pub(crate) fn crossing_proposal() -> Proposal {
         role: "employee".into(),
         behavior: "crosses the corridor and walks on".into(),
         relation: Relation::Crossing,
+        side: None,
         rules,
         group: None,
         speed_mps: None,

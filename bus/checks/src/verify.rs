@@ -98,6 +98,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
+        | FactKind::Side { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_) => true,
@@ -112,9 +113,10 @@ const fn needs_clause(kind: &FactKind) -> bool {
 
 const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::MeetsTimes { human, .. } => {
-            Some(*human)
-        }
+        FactKind::Reacts { human, .. }
+        | FactKind::Gestures { human, .. }
+        | FactKind::MeetsTimes { human, .. }
+        | FactKind::Side { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }
         | FactKind::Group { .. }

@@ -63,6 +63,13 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 )
             }
         }
+        FactKind::Side { human, side } => {
+            if proposal.human(*human)?.side == Some(*side) {
+                None
+            } else {
+                rough((*human).into(), format!("has not the side `{}`", side.name()))
+            }
+        }
         FactKind::MeetsTimes { human, times, .. } => {
             let asks = |clause: &Clause| matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times);
             if *times < 2 || proposal.expected_events.iter().any(asks) {

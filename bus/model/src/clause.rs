@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
+use crate::proposal::Side;
 use crate::rule::{Action, Trigger};
 
 /// Whom a clause judges.
@@ -75,6 +76,17 @@ pub enum Predicate {
         human: HumanId,
         /// Largest difference of arrival times.
         gap_s: f64,
+    },
+    /// The human is on this side of the robot's way as it drives, which depends on how they stand to it. Crossing and leaving: they
+    /// walk up to its way from there, 0.8 m or more beside it at last; leaving, they start there too. Static: they are 0.3 m or
+    /// more beside it as the robot is nearest, within 3.5 m. Frontal, behind, ahead and abreast: they walk, and are 0.2 m or more
+    /// beside it for 80 % of the time that both are level within 4 m; ahead, and where they never are, for 80 % of 1 s or more
+    /// within 6 m.
+    OnSide {
+        /// Who.
+        human: HumanId,
+        /// Which side.
+        side: Side,
     },
     /// The human is ahead of the robot on its way, within `within_m`, for `for_s` without a break.
     Ahead {
@@ -359,6 +371,7 @@ impl Predicate {
             | Self::MeetsAgain { human, .. }
             | Self::HeadOn { human }
             | Self::Crosses { human, .. }
+            | Self::OnSide { human, .. }
             | Self::Ahead { human, .. }
             | Self::Overtakes { human }
             | Self::RobotPasses { human }
@@ -421,6 +434,7 @@ impl Predicate {
             | Self::MeetsAgain { .. }
             | Self::HeadOn { .. }
             | Self::Crosses { .. }
+            | Self::OnSide { .. }
             | Self::Ahead { .. }
             | Self::Overtakes { .. }
             | Self::RobotPasses { .. }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Relation, Side};
 use crate::rule::{Action, RobotDo, RobotRule, RobotWhen, Rule, Trigger};
 
 /// Everything that a request states exactly about people.
@@ -113,6 +113,9 @@ pub struct FormHuman {
     pub role: Option<String>,
     /// How they stand to the robot's way.
     pub relation: Relation,
+    /// Side of the robot's way that they come from, stand on or walk on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
     /// Where they meet the robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceWord>,

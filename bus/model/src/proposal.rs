@@ -47,6 +47,39 @@ impl Relation {
     }
 }
 
+/// A side of the robot's way as it drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// To the left of it.
+    Left,
+    /// To the right of it.
+    Right,
+}
+
+impl Side {
+    /// Somebody who stands or walks on a side does so as far beside the middle of the robot's way, as it is planned, m.
+    pub const BESIDE_M: f64 = 0.55;
+
+    /// Name, as written in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+
+    /// 1 for the left, -1 for the right: the sign of a distance to the left of a way.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+}
+
 /// One human of the proposal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -59,6 +92,9 @@ pub struct HumanProposal {
     pub behavior: String,
     /// How it stands to the robot's way.
     pub relation: Relation,
+    /// Side of the robot's way that they come from, stand on or walk on; drawn where absent. See [`crate::Predicate::OnSide`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
     /// Reactions, earlier ones win.
     #[serde(default)]
     pub rules: Vec<Rule>,

@@ -7,7 +7,7 @@ use crate::fault::Fault;
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Relation, Side};
 use crate::rule::Rule;
 
 /// One thing that the text asks for.
@@ -48,6 +48,13 @@ pub enum FactKind {
         human: HumanId,
         /// How.
         relation: Relation,
+    },
+    /// A human comes from, stands on or walks on this side of the robot's way.
+    Side {
+        /// Who.
+        human: HumanId,
+        /// Which side.
+        side: Side,
     },
     /// A human meets the robot several times.
     MeetsTimes {

@@ -14,6 +14,7 @@ pub fn fact_words(kind: &FactKind) -> String {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")
         }
+        FactKind::Side { human, side } => format!("{human} is on the {} of the robot's way", side.name()),
         FactKind::Before { first, then, at_door } => {
             format!("{first} is {} before {then}", if *at_door { "through the door" } else { "there" })
         }

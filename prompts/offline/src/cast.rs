@@ -1,6 +1,6 @@
 //! The cast: who is there, and whom a mention means.
 
-use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule};
+use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule, Side};
 
 use crate::lexicon::{Act, lexicon};
 use crate::mention::{Mention, Who};
@@ -26,6 +26,8 @@ pub(crate) struct ReadRule {
 pub(crate) struct Person {
     pub(crate) role: String,
     pub(crate) relation: Option<(Relation, String)>,
+    /// Side of the robot's way, with the words.
+    pub(crate) side: Option<(Side, String)>,
     pub(crate) rules: Vec<ReadRule>,
     pub(crate) group: Option<GroupId>,
     pub(crate) speed_mps: Option<f64>,

@@ -97,6 +97,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             FactKind::Group { .. }
             | FactKind::Gestures { .. }
             | FactKind::MeetsTimes { .. }
+            | FactKind::Side { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
@@ -115,6 +116,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             proposal.expected_events.iter().any(|other| other.predicate == clause)
         }
         FactKind::RobotSays(gesture) => says(*gesture),
+        FactKind::Side { human, side } => proposal.human(*human).is_some_and(|human| human.side == Some(*side)),
         FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
         FactKind::Humans(_)

@@ -133,6 +133,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         if let FactKind::Reacts { human: who, .. }
         | FactKind::Gestures { human: who, .. }
         | FactKind::MeetsTimes { human: who, .. }
+        | FactKind::Side { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -206,6 +207,10 @@ fn of_fact(
             let place = if *at_door { "through the door" } else { "there" };
             let text = format!("{first} is {place} before {then}");
             list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then, at_door: *at_door });
+        }
+        FactKind::Side { human, side } => {
+            let text = format!("{human} is on the {} of the robot's way", side.name());
+            list.setup(true, &fact.id, text, Predicate::OnSide { human: *human, side: *side });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

@@ -63,6 +63,7 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
         let mut read = Person {
             role: human.role.clone().unwrap_or_default().to_lowercase(),
             relation: Some((human.relation, line("relation", &format!("\"{}\"", human.relation.name())))),
+            side: human.side.map(|side| (side, line("side", &format!("\"{}\"", side.name())))),
             group: person.group,
             speed_mps: human.pace.and_then(socrates_model::form::Pace::mps),
             start,

@@ -73,6 +73,7 @@ mod pick;
 mod relation;
 mod robot_deed;
 mod short;
+mod sides;
 mod story;
 mod task;
 mod thread;

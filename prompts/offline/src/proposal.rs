@@ -14,7 +14,7 @@ use crate::card::{Card, card};
 use crate::draw::Draw;
 use crate::finish::CIRCLE_M;
 use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, noticing, pattern, place, prose, solve};
+use crate::{NAME, chance, default_cast, events, noticing, pattern, place, prose, sides, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -50,6 +50,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
             human
         })
         .collect();
+    let humans = sides::stated(humans, reading);
     let groups = groups(&humans);
     let part = events::Part { card: found, by_card, read: &read };
     let robot = robot(reading, request, found, &humans, location);
@@ -209,6 +210,7 @@ fn proposed(
         role: human.role.clone(),
         behavior,
         relation,
+        side: None,
         rules,
         group: human.group,
         speed_mps: usual.filter(|_| moves),

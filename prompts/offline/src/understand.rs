@@ -13,7 +13,9 @@ use crate::order;
 use crate::pattern;
 use crate::story::{self, Story};
 use crate::task::{self, Task};
-use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, spot, words};
+use crate::{
+    again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, sides, spot, words,
+};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -277,6 +279,7 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             facts
                 .extend(crosses.map(|quote| (quote, FactKind::Relates { human: id(i), relation: Relation::Crossing })));
         }
+        facts.extend(sides::fact(id(i), story.relation_of(i), person, &mut reading.problems));
         let twice = person.again.as_ref();
         let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
         if let Some(human) = reading.humans.get_mut(i).filter(|_| twice.is_some()) {

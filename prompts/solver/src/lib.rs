@@ -27,6 +27,7 @@ mod people;
 mod robot_way;
 mod search;
 mod second_meeting;
+mod sides;
 mod spread;
 mod told;
 

@@ -5,13 +5,13 @@ use std::fmt;
 
 use socrates_maps::Ground;
 use socrates_maps::openings::OpenPlan;
-use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
+use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation, Side};
 
 use crate::graph::Net;
 use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, Why};
 use crate::people::boarding;
-use crate::{Problem, fit, inside, people, search};
+use crate::{Problem, fit, inside, people, search, sides};
 
 /// Floor that somebody needs who stands in a room with others, m²: a disc of 0.28 m and what keeps it from the next.
 const PERSON_M2: f64 = 0.5;
@@ -125,6 +125,13 @@ pub enum Miss {
         /// The class of the place.
         class: PlaceClass,
     },
+    /// Somebody cannot be on the side of the robot's way on which they should be.
+    Side {
+        /// They, how they stand to the robot's way, and on which side of it.
+        who: Vec<(HumanId, Relation, Side)>,
+        /// The class of the place.
+        class: PlaceClass,
+    },
     /// Each alone could meet the robot, all together cannot.
     Together {
         /// How many.
@@ -193,6 +200,17 @@ impl fmt::Display for Miss {
                 f,
                 "{people} at `{node}` need {needs_m2:.1} m² of floor; there are {has_m2:.1} m²; ask for fewer, or for another room"
             ),
+            Self::Side { who, class } => {
+                let names =
+                    who.iter().map(|(id, relation, side)| format!("{id} (`{}`, `{}`)", relation.name(), side.name()));
+                let names = names.collect::<Vec<_>>().join(" and ");
+                write!(
+                    f,
+                    "this map has no path of the robot on which {names} would be on that side of its way at {}; take the other \
+                     side, another place, or leave the side out",
+                    an(class)
+                )
+            }
             Self::People { who, class } => {
                 let names = who.iter().map(|(id, relation, from)| {
                     let from = from.map_or_else(String::new, |class| format!(" from {}", inside::an(class)));
@@ -225,7 +243,7 @@ pub fn impossible(problem: &Problem<'_>) -> Option<Miss> {
     let net = Net::of(problem);
     // Where the robot may drive through rooms a map has ways that are not counted here.
     let short = || too_short(problem, &net).filter(|_| search::solve(problem).is_err());
-    beforehand(problem, &net).or_else(short)
+    beforehand(problem, &net).or_else(short).or_else(|| sides::missing(problem, &net))
 }
 
 /// What can be seen before anything is tried.
@@ -276,6 +294,9 @@ pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
     };
     let stuck = proposal.humans.iter().filter(|human| !alone(human));
     let who: Vec<_> = stuck.map(|human| (human.id, human.relation, human.start)).collect();
+    if let Some(miss) = sides::missing(problem, net) {
+        return miss;
+    }
     if who.is_empty() { Miss::Together { people: proposal.humans.len(), class } } else { Miss::People { who, class } }
 }
 

@@ -85,6 +85,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Meets { .. }
         | Predicate::MeetsAgain { .. }
         | Predicate::HeadOn { .. }
+        | Predicate::OnSide { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

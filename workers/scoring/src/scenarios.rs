@@ -33,6 +33,7 @@ pub(crate) fn proposal(humans: u32, clauses: Vec<Clause>) -> Proposal {
                 role: "person".into(),
                 behavior: "walks".into(),
                 relation: Relation::Frontal,
+                side: None,
                 rules: vec![],
                 group: None,
                 speed_mps: None,

@@ -12,10 +12,10 @@ use crate::form::{
     When,
 };
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Relation, Side};
 
-const HUMAN_KEYS: [&str; 11] =
-    ["id", "count", "role", "relation", "place", "start", "goal", "pace", "group", "does", "reacts"];
+const HUMAN_KEYS: [&str; 12] =
+    ["id", "count", "role", "relation", "side", "place", "start", "goal", "pace", "group", "does", "reacts"];
 const STEP_KEYS: [&str; 4] = ["when", "act", "for_s", "say"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
@@ -83,6 +83,27 @@ impl Door<'_> {
             self.bad("human.relation", node.at, "is missing", RELATIONS);
         }
         let relation = self.maybe::<Relation>(&section, "relation", RELATIONS);
+        let side = self.maybe::<Side>(&section, "side", "left, right");
+        if let (Some(side), Some(Relation::Staying)) = (side, relation) {
+            let found = format!("`{}` of somebody who stays inside", side.name());
+            self.bad(
+                "human.side",
+                at("side"),
+                found,
+                "leave it out: whoever stays inside is on no side of the robot's way",
+            );
+        }
+        let (does, reacts) = (
+            self.steps(&section, ("does", "human.does."), names),
+            self.steps(&section, ("reacts", "human.reacts."), names),
+        );
+        let follows = |step: &Step| matches!(step.act, Some(Deed::FollowRobot | Deed::FollowHuman(_)));
+        if let Some(side) = side
+            && does.iter().chain(&reacts).any(follows)
+        {
+            let found = format!("`{}` of somebody who follows", side.name());
+            self.bad("human.side", at("side"), found, "leave it out: whoever follows walks behind, on no side");
+        }
         let pace = self.maybe::<Pace>(&section, "pace", Pace::ALLOWED);
         if let Some(Pace::Mps(mps)) = pace.filter(|pace| pace.mps().is_some_and(|mps| !(0.2..=1.8).contains(&mps))) {
             self.bad("human.pace", at("pace"), format!("{mps} m/s is out of range"), Pace::ALLOWED);
@@ -93,11 +114,12 @@ impl Door<'_> {
             start: self.place(&section, "start"),
             goal: self.place(&section, "goal"),
             group: self.word(&section, "group"),
-            does: self.steps(&section, ("does", "human.does."), names),
-            reacts: self.steps(&section, ("reacts", "human.reacts."), names),
+            does,
+            reacts,
             id,
             count,
             pace,
+            side,
             relation: relation?,
         })
     }

@@ -85,6 +85,10 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
             gesture.parse::<Gesture>().ok()?;
             Some(corpus::holds(&format!("{who} says {gesture}"), reading))
         }
+        [who, "side", side] if number(who) => {
+            let (id, side) = (HumanId::new(who.parse().ok()?), serde_json::from_value(serde_json::json!(side)).ok()?);
+            Some(kinds().any(|kind| *kind == FactKind::Side { human: id, side }))
+        }
         [who, "crosses"] => {
             let id = HumanId::new(who.parse().ok()?);
             let across = FactKind::Relates { human: id, relation: Relation::Crossing };

@@ -24,6 +24,7 @@ mod reactions;
 mod ring;
 mod robot;
 mod setting;
+mod sides;
 mod signals;
 mod since;
 mod times;

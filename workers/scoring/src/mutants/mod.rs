@@ -7,6 +7,7 @@
 mod early;
 mod edit;
 mod harmless;
+mod sides;
 mod spoil;
 
 use socrates_model::Recording;
