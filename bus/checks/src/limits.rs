@@ -160,6 +160,8 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         Predicate::Humans { .. }
         | Predicate::HeadOn { .. }
         | Predicate::OnSide { .. }
+        | Predicate::Faces { .. }
+        | Predicate::RobotWay { .. }
         | Predicate::Overtakes { .. }
         | Predicate::RobotPasses { .. }
         | Predicate::GivesWay { .. }

@@ -105,6 +105,7 @@ pub(crate) fn crossing_proposal() -> Proposal {
         behavior: "crosses the corridor and walks on".into(),
         relation: Relation::Crossing,
         side: None,
+        facing: None,
         rules,
         group: None,
         speed_mps: None,

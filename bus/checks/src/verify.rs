@@ -99,6 +99,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
+        | FactKind::Facing { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_) => true,
@@ -107,6 +108,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => false,
     }
 }
@@ -116,7 +118,8 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
         | FactKind::MeetsTimes { human, .. }
-        | FactKind::Side { human, .. } => Some(*human),
+        | FactKind::Side { human, .. }
+        | FactKind::Facing { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }
         | FactKind::Group { .. }
@@ -126,6 +129,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::RobotSays(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => None,
     }
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::proposal::Side;
+use crate::proposal::{Facing, Side, WayPart};
 use crate::rule::{Action, Trigger};
 
 /// Whom a clause judges.
@@ -87,6 +87,14 @@ pub enum Predicate {
         human: HumanId,
         /// Which side.
         side: Side,
+    },
+    /// The human stands and faces so, within 45° (60° of straight away from the robot), for 80 % of the time that the robot comes
+    /// from 6 m to 3 m in view, and before they react; where that is not seen, from 3 m to 1 m. 0.3 s at least.
+    Faces {
+        /// Who.
+        human: HumanId,
+        /// Where.
+        facing: Facing,
     },
     /// The human is ahead of the robot on its way, within `within_m`, for `for_s` without a break.
     Ahead {
@@ -323,6 +331,14 @@ pub enum Predicate {
         /// How near.
         within_m: f64,
     },
+    /// The robot's way as planned begins at, ends at, leads past or keeps out of these nodes, and the reference robot drives so:
+    /// it starts within 1.5 m of one, comes within 1.5 m of one, or never enters their room and stays 1 m away.
+    RobotWay {
+        /// Which part of the way.
+        part: WayPart,
+        /// The nodes that count: one of them is enough; of those to be kept out of, none.
+        nodes: Vec<NodeId>,
+    },
     /// The human and the robot get to the human's encounter node (within 1.5 m) at most `gap_s` apart.
     OnTime {
         /// Who.
@@ -372,6 +388,7 @@ impl Predicate {
             | Self::HeadOn { human }
             | Self::Crosses { human, .. }
             | Self::OnSide { human, .. }
+            | Self::Faces { human, .. }
             | Self::Ahead { human, .. }
             | Self::Overtakes { human }
             | Self::RobotPasses { human }
@@ -409,6 +426,7 @@ impl Predicate {
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
+            | Self::RobotWay { .. }
             | Self::Plausible
             | Self::RobotArrives
             | Self::RobotKeeps { .. }
@@ -435,6 +453,7 @@ impl Predicate {
             | Self::HeadOn { .. }
             | Self::Crosses { .. }
             | Self::OnSide { .. }
+            | Self::Faces { .. }
             | Self::Ahead { .. }
             | Self::Overtakes { .. }
             | Self::RobotPasses { .. }
@@ -462,6 +481,7 @@ impl Predicate {
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
+            | Self::RobotWay { .. }
             | Self::OnTime { .. }
             | Self::Plausible
             | Self::RobotArrives

@@ -247,6 +247,7 @@ fn read_scenario(value: &Value, groups: Option<&Value>, paths: Option<&Paths>) -
             behavior,
             relation: relation(paths, id),
             side: None,
+            facing: None,
             rules: Vec::new(),
             group,
             speed_mps: None,

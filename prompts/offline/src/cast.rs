@@ -1,5 +1,6 @@
 //! The cast: who is there, and whom a mention means.
 
+use socrates_model::proposal::Facing;
 use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule, Side};
 
 use crate::lexicon::{Act, lexicon};
@@ -28,6 +29,8 @@ pub(crate) struct Person {
     pub(crate) relation: Option<(Relation, String)>,
     /// Side of the robot's way, with the words.
     pub(crate) side: Option<(Side, String)>,
+    /// Where they face at first, with the words.
+    pub(crate) facing: Option<(Facing, String)>,
     pub(crate) rules: Vec<ReadRule>,
     pub(crate) group: Option<GroupId>,
     pub(crate) speed_mps: Option<f64>,

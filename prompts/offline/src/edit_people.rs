@@ -283,6 +283,7 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
         behavior,
         relation,
         side: None,
+        facing: None,
         rules,
         group: None,
         speed_mps: said.speed_mps,
@@ -564,6 +565,7 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
         | FactKind::Gestures { human, .. }
         | FactKind::Relates { human, .. }
         | FactKind::Side { human, .. }
+        | FactKind::Facing { human, .. }
         | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)

@@ -98,11 +98,13 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             | FactKind::Gestures { .. }
             | FactKind::MeetsTimes { .. }
             | FactKind::Side { .. }
+            | FactKind::Facing { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
             | FactKind::RobotStart(_)
             | FactKind::RobotGoal(_)
+            | FactKind::RobotAt { .. }
             | FactKind::Pattern(_) => {}
         }
     }
@@ -117,6 +119,13 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
         }
         FactKind::RobotSays(gesture) => says(*gesture),
         FactKind::Side { human, side } => proposal.human(*human).is_some_and(|human| human.side == Some(*side)),
+        FactKind::Facing { human, facing } => {
+            proposal.human(*human).is_some_and(|human| human.facing.as_ref() == Some(facing))
+        }
+        FactKind::RobotAt { part, nodes, .. } => {
+            let clause = Predicate::RobotWay { part: *part, nodes: nodes.clone() };
+            proposal.expected_events.iter().any(|other| other.predicate == clause)
+        }
         FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
         FactKind::Humans(_)

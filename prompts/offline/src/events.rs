@@ -134,6 +134,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         | FactKind::Gestures { human: who, .. }
         | FactKind::MeetsTimes { human: who, .. }
         | FactKind::Side { human: who, .. }
+        | FactKind::Facing { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -211,6 +212,14 @@ fn of_fact(
         FactKind::Side { human, side } => {
             let text = format!("{human} is on the {} of the robot's way", side.name());
             list.setup(true, &fact.id, text, Predicate::OnSide { human: *human, side: *side });
+        }
+        FactKind::Facing { human, facing } => {
+            let text = format!("{human} faces {} before they react", facing.phrase());
+            list.setup(true, &fact.id, text, Predicate::Faces { human: *human, facing: facing.clone() });
+        }
+        FactKind::RobotAt { part, name, nodes } => {
+            let text = format!("the robot's way {} {name}", part.does());
+            list.setup(true, &fact.id, text, Predicate::RobotWay { part: *part, nodes: nodes.clone() });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

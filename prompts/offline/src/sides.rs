@@ -159,6 +159,12 @@ pub(crate) fn fact(
     Some((quote.clone(), FactKind::Side { human, side: *side }))
 }
 
+/// A side for the reading line: `crosses, from the left`.
+pub(crate) fn words(relation: Option<Relation>, side: Side) -> String {
+    let comes = matches!(relation, Some(Relation::Crossing | Relation::Leaving));
+    format!("{} the {}", if comes { "from" } else { "on" }, side.name())
+}
+
 /// The people of a proposal with the sides that the reading states.
 pub(crate) fn stated(mut humans: Vec<HumanProposal>, reading: &Reading) -> Vec<HumanProposal> {
     for fact in &reading.facts {

@@ -22,6 +22,7 @@ pub mod inside;
 mod meant;
 pub mod measure;
 mod miss;
+mod named_way;
 mod passable;
 mod people;
 mod robot_way;

@@ -12,8 +12,9 @@ use crate::{Miss, Problem, search};
 const SINE: f64 = 0.5;
 /// The room that somebody comes out of lies so far beside the robot's way, m.
 const ROOM_M: f64 = 1.0;
-/// Free floor round who stands or walks on a side, m: their body and a little.
-const BODY_M: f64 = 0.32;
+/// Free floor round who stands and who walks on a side, m: their body and a little; walkers keep farther from walls.
+const STANDS_M: f64 = 0.32;
+const WALKS_M: f64 = 0.38;
 
 /// Whether a node from which somebody comes to the meeting lies on the side of the robot's way that the proposal names.
 pub(crate) fn enters(net: &Net<'_>, route: &Route, human: &HumanProposal, entry: usize) -> bool {
@@ -57,7 +58,8 @@ pub(crate) fn has_floor(net: &Net<'_>, route: &Route, human: &HumanProposal, ind
     }
     let left = socrates_model::Vector::new(-along.y, along.x) / along.norm();
     let ground = Ground::of(&net.location.grid);
-    ground.field().clearance(&(at + left * (side.sign() * Side::BESIDE_M))) >= BODY_M
+    let body_m = if walks_along(human.relation) { WALKS_M } else { STANDS_M };
+    ground.field().clearance(&(at + left * (side.sign() * Side::BESIDE_M))) >= body_m
 }
 
 /// How those who walk the robot's way need floor beside it where they meet it.

@@ -98,6 +98,7 @@ pub(crate) fn proposal(place: PlaceClass, relations: &[Relation]) -> Proposal {
         behavior: "does something".into(),
         relation: *relation,
         side: None,
+        facing: None,
         rules: Vec::new(),
         group: None,
         speed_mps: None,

@@ -2,7 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Breadth, Door, DoorKind, Location, NodeId, PlaceClass, Point, Proposal, Relation, Side};
+use socrates_model::proposal::WayPart;
+use socrates_model::{
+    Breadth, Clause, ClauseRole, Door, DoorKind, Location, NodeId, PlaceClass, Point, Predicate, Proposal, Relation,
+    Side,
+};
 
 use crate::testing::{block, corridor, door, map, node, proposal};
 use crate::{Layout, Miss, Problem, Solved, impossible, solve};
@@ -366,4 +370,28 @@ fn a_corridor_too_narrow_for_a_side_is_refused_with_the_side() {
         assert_eq!(miss.is_none(), fits, "{width_m}: {miss:?}");
         assert!(miss.is_none_or(|miss| miss.contains("human_1 (`static`, `left`)")));
     }
+}
+
+#[test]
+fn the_way_leads_past_a_place_by_name_and_keeps_out_of_another_or_is_refused() {
+    let location = block("CORRIDOR");
+    let clause = |part, name: &str| Clause {
+        id: "c1".into(),
+        text: "by name".into(),
+        role: ClauseRole::Setup,
+        must: true,
+        source: String::new(),
+        predicate: Predicate::RobotWay { part, nodes: ids(&[name]) },
+    };
+    let mut asked = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    asked.expected_events = vec![clause(WayPart::Via, "t3")];
+    let past = solved(&between(&asked, &location, "b0", "b6")).paths.robot;
+    assert!(past.contains(&node("t3")), "{past:?}");
+    asked.expected_events = vec![clause(WayPart::Avoid, "b3")];
+    let round = solved(&between(&asked, &location, "b0", "b6")).paths.robot;
+    assert!(!round.contains(&node("b3")) && round.contains(&node("t3")), "{round:?}");
+    asked.expected_events = vec![clause(WayPart::Avoid, "b6"), clause(WayPart::Goal, "b6")];
+    let problem = between(&asked, &location, "b0", "b6");
+    let miss = impossible(&problem).or_else(|| solve(&problem).err()).map(|miss| miss.to_string()).unwrap();
+    assert!(miss.contains("`b6`"), "{miss}");
 }

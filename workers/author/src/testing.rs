@@ -77,6 +77,7 @@ pub(crate) fn proposal() -> Proposal {
         behavior: "crosses the corridor".into(),
         relation: Relation::Crossing,
         side: None,
+        facing: None,
         rules: vec![Rule { when: vec![Trigger::RobotNear(3.0)], act, gesture: None, for_s: None, latched: false }],
         group: None,
         speed_mps: None,

@@ -86,6 +86,8 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::MeetsAgain { .. }
         | Predicate::HeadOn { .. }
         | Predicate::OnSide { .. }
+        | Predicate::Faces { .. }
+        | Predicate::RobotWay { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

@@ -34,6 +34,7 @@ pub(crate) fn proposal(humans: u32, clauses: Vec<Clause>) -> Proposal {
                 behavior: "walks".into(),
                 relation: Relation::Frontal,
                 side: None,
+                facing: None,
                 rules: vec![],
                 group: None,
                 speed_mps: None,

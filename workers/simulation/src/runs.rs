@@ -37,6 +37,7 @@ fn scenario(
             behavior: String::new(),
             relation,
             side: None,
+            facing: None,
             rules,
             group: standing.then_some(GroupId(1)),
             speed_mps: None,

@@ -61,6 +61,7 @@ fn proposal() -> Proposal {
             behavior: String::new(),
             relation: Relation::Crossing,
             side: None,
+            facing: None,
             rules: vec![rule],
             group: None,
             speed_mps: Some(1.0),

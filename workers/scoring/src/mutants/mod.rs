@@ -6,7 +6,9 @@
 
 mod early;
 mod edit;
+mod facing;
 mod harmless;
+mod named_way;
 mod sides;
 mod spoil;
 

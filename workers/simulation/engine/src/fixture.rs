@@ -79,6 +79,7 @@ pub(crate) fn setup(location: Location, robot: &[&str], cast: &[Cast<'_>], meet:
             behavior: String::new(),
             relation: *relation,
             side: None,
+            facing: None,
             rules: rules.clone(),
             group: None,
             speed_mps: None,

@@ -208,6 +208,9 @@ fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> 
 }
 
 fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
+    if let Some(gaze) = human.gaze {
+        return gaze.yaw(at);
+    }
     let ahead = human.route.direction(0.0);
     let toward = match door {
         Some(door) => door - at,

@@ -18,6 +18,7 @@ use socrates_model::{
 use crate::block::blockers;
 use crate::ends;
 use crate::floor::Floor;
+use crate::gaze;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::make_room::Facing;
 use crate::meetings::{self, Marks};
@@ -241,6 +242,7 @@ fn human(
         relation: proposal.relation,
         group: proposal.group,
         side: proposal.side,
+        gaze: gaze::of(setup, proposal, meetings.first(), robot_way),
         lane_m: lane_m(proposal, SWAY_WALKING * sway.0),
         blockers: blockers(setup, proposal),
         sway,
@@ -284,6 +286,7 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         group: None,
         standing: false,
         side: None,
+        gaze: None,
         lane_m: 0.0,
         flank_m: 0.0,
         lined_up: false,

@@ -80,6 +80,7 @@ pub fn crowd(n: u32, secs: f64) -> Setup {
             behavior: String::new(),
             relation: Relation::Crossing,
             side: None,
+            facing: None,
             rules: rules(),
             group: None,
             speed_mps: None,

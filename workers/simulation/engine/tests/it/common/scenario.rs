@@ -47,6 +47,7 @@ pub fn scenario(
             behavior: String::new(),
             relation,
             side: None,
+            facing: None,
             rules,
             group: standing.then_some(GroupId(1)),
             speed_mps: None,
