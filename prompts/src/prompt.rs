@@ -223,7 +223,12 @@ fn paths_outline(proposal: &Proposal) -> String {
         .iter()
         .map(|human| {
             let mut told = json!({"id": human.id, "relation": human.relation});
-            let more = [("group", json!(human.group)), ("start", json!(human.start)), ("goal", json!(human.goal))];
+            let more = [
+                ("group", json!(human.group)),
+                ("side", json!(human.side)),
+                ("start", json!(human.start)),
+                ("goal", json!(human.goal)),
+            ];
             if let Some(members) = told.as_object_mut() {
                 members.extend(more.into_iter().filter(|(_, value)| !value.is_null()).map(|(k, v)| (k.to_owned(), v)));
             }

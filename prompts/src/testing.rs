@@ -45,6 +45,8 @@ pub(crate) fn proposal() -> Proposal {
         role: "visitor".into(),
         behavior: "comes along and reacts to the robot".into(),
         relation: Relation::Crossing,
+        side: None,
+        facing: None,
         rules: vec![Rule { when: vec![Trigger::RobotNear(3.0)], act, gesture: None, for_s: None, latched: false }],
         group: None,
         speed_mps: Some(1.1),

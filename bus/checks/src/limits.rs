@@ -159,6 +159,9 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         Predicate::RobotKeeps { min_m } => vec![meters("min_m", *min_m, (0.01, 5.0))],
         Predicate::Humans { .. }
         | Predicate::HeadOn { .. }
+        | Predicate::OnSide { .. }
+        | Predicate::Faces { .. }
+        | Predicate::RobotWay { .. }
         | Predicate::Overtakes { .. }
         | Predicate::RobotPasses { .. }
         | Predicate::GivesWay { .. }

@@ -104,6 +104,8 @@ pub(crate) fn crossing_proposal() -> Proposal {
         role: "employee".into(),
         behavior: "crosses the corridor and walks on".into(),
         relation: Relation::Crossing,
+        side: None,
+        facing: None,
         rules,
         group: None,
         speed_mps: None,

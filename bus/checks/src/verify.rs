@@ -98,6 +98,8 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
+        | FactKind::Side { .. }
+        | FactKind::Facing { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
         | FactKind::RobotSays(_) => true,
@@ -106,15 +108,18 @@ const fn needs_clause(kind: &FactKind) -> bool {
         | FactKind::RobotTask(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => false,
     }
 }
 
 const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::MeetsTimes { human, .. } => {
-            Some(*human)
-        }
+        FactKind::Reacts { human, .. }
+        | FactKind::Gestures { human, .. }
+        | FactKind::MeetsTimes { human, .. }
+        | FactKind::Side { human, .. }
+        | FactKind::Facing { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }
         | FactKind::Group { .. }
@@ -124,6 +129,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
         | FactKind::RobotSays(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => None,
     }
 }

@@ -63,6 +63,20 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 )
             }
         }
+        FactKind::Side { human, side } => {
+            if proposal.human(*human)?.side == Some(*side) {
+                None
+            } else {
+                rough((*human).into(), format!("has not the side `{}`", side.name()))
+            }
+        }
+        FactKind::Facing { human, facing } => {
+            if proposal.human(*human)?.facing.as_ref() == Some(facing) {
+                None
+            } else {
+                rough((*human).into(), format!("does not face {}", facing.phrase()))
+            }
+        }
         FactKind::MeetsTimes { human, times, .. } => {
             let asks = |clause: &Clause| matches!(&clause.predicate, Predicate::MeetsAgain { human: who, nth, .. } if who == human && nth == times);
             if *times < 2 || proposal.expected_events.iter().any(asks) {
@@ -123,8 +137,9 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough("pattern".into(), format!("is `{}`, asked for was `{card}`", proposal.pattern))
             }
         }
-        // An empty task is P-ROBOT; whether prose means the same as prose is not judged here.
-        FactKind::RobotTask(_) => None,
+        // An empty task is P-ROBOT; whether prose means the same as prose is not judged here. Where the robot's way leads by name
+        // is written from the facts, or given up with a note.
+        FactKind::RobotTask(_) | FactKind::RobotAt { .. } => None,
     }
 }
 

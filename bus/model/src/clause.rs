@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
+use crate::proposal::{Facing, Side, WayPart};
 use crate::rule::{Action, Trigger};
 
 /// Whom a clause judges.
@@ -75,6 +76,25 @@ pub enum Predicate {
         human: HumanId,
         /// Largest difference of arrival times.
         gap_s: f64,
+    },
+    /// The human is on this side of the robot's way as it drives, which depends on how they stand to it. Crossing and leaving: they
+    /// walk up to its way from there, 0.8 m or more beside it at last; leaving, they start there too. Static: they are 0.3 m or
+    /// more beside it as the robot is nearest, within 3.5 m. Frontal, behind, ahead and abreast: they walk, and are 0.2 m or more
+    /// beside it for 80 % of the time that both are level within 4 m; ahead, and where they never are, for 80 % of 1 s or more
+    /// within 6 m.
+    OnSide {
+        /// Who.
+        human: HumanId,
+        /// Which side.
+        side: Side,
+    },
+    /// The human stands and faces so, within 45° (60° of straight away from the robot), for 80 % of the time that the robot comes
+    /// from 6 m to 3 m in view, and before they react; where that is not seen, from 3 m to 1 m. 0.3 s at least.
+    Faces {
+        /// Who.
+        human: HumanId,
+        /// Where.
+        facing: Facing,
     },
     /// The human is ahead of the robot on its way, within `within_m`, for `for_s` without a break.
     Ahead {
@@ -311,6 +331,14 @@ pub enum Predicate {
         /// How near.
         within_m: f64,
     },
+    /// The robot's way as planned begins at, ends at, leads past or keeps out of these nodes, and the reference robot drives so:
+    /// it starts within 1.5 m of one, comes within 1.5 m of one, or never enters their room and stays 1 m away.
+    RobotWay {
+        /// Which part of the way.
+        part: WayPart,
+        /// The nodes that count: one of them is enough; of those to be kept out of, none.
+        nodes: Vec<NodeId>,
+    },
     /// The human and the robot get to the human's encounter node (within 1.5 m) at most `gap_s` apart.
     OnTime {
         /// Who.
@@ -359,6 +387,8 @@ impl Predicate {
             | Self::MeetsAgain { human, .. }
             | Self::HeadOn { human }
             | Self::Crosses { human, .. }
+            | Self::OnSide { human, .. }
+            | Self::Faces { human, .. }
             | Self::Ahead { human, .. }
             | Self::Overtakes { human }
             | Self::RobotPasses { human }
@@ -396,6 +426,7 @@ impl Predicate {
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
+            | Self::RobotWay { .. }
             | Self::Plausible
             | Self::RobotArrives
             | Self::RobotKeeps { .. }
@@ -421,6 +452,8 @@ impl Predicate {
             | Self::MeetsAgain { .. }
             | Self::HeadOn { .. }
             | Self::Crosses { .. }
+            | Self::OnSide { .. }
+            | Self::Faces { .. }
             | Self::Ahead { .. }
             | Self::Overtakes { .. }
             | Self::RobotPasses { .. }
@@ -448,6 +481,7 @@ impl Predicate {
             | Self::EncounterAt { .. }
             | Self::Reaches { .. }
             | Self::StartsAt { .. }
+            | Self::RobotWay { .. }
             | Self::OnTime { .. }
             | Self::Plausible
             | Self::RobotArrives

@@ -3,16 +3,18 @@
 //! A form is read where the request is read ([`crate::Request::of_toml`]), into types that cannot be wrong: every name in it is
 //! somebody's, every number is in its range. [`Form::people`] counts everybody out as `human_1` to `human_n`.
 
-use std::fmt;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Relation, Side};
 use crate::rule::{Action, RobotDo, RobotRule, RobotWhen, Rule, Trigger};
+
+mod words;
+
+pub use words::{FacingWord, Pace, PaceWord, PlaceWord};
 
 /// Everything that a request states exactly about people.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
@@ -26,76 +28,6 @@ pub struct Form {
     /// Which of two is there first: `[[order]]`.
     #[serde(rename = "order", skip_serializing_if = "Vec::is_empty")]
     pub orders: Vec<FormOrder>,
-}
-
-/// A place as a form writes it: a class, or a place of this map in its own words.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(from = "String", into = "String")]
-#[schemars(with = "String")]
-pub enum PlaceWord {
-    /// Any place of the class.
-    Class(PlaceClass),
-    /// `packing area`, `ward 2`.
-    Name(String),
-}
-
-impl From<String> for PlaceWord {
-    fn from(text: String) -> Self {
-        text.parse().map_or(Self::Name(text), Self::Class)
-    }
-}
-
-impl From<PlaceWord> for String {
-    fn from(place: PlaceWord) -> Self {
-        place.to_string()
-    }
-}
-
-impl fmt::Display for PlaceWord {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Class(class) => f.write_str(class.name()),
-            Self::Name(name) => f.write_str(name),
-        }
-    }
-}
-
-/// How fast somebody walks.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(untagged)]
-pub enum Pace {
-    /// By a word.
-    Word(PaceWord),
-    /// Desired speed, m/s, 0.2 to 1.8.
-    Mps(f64),
-}
-
-/// A pace by its word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PaceWord {
-    /// 0.6 m/s.
-    Slow,
-    /// As people walk: drawn by the seed.
-    Normal,
-    /// 1.5 m/s.
-    Brisk,
-}
-
-impl Pace {
-    /// What a number may be, and the words.
-    pub const ALLOWED: &str = "\"slow\", \"normal\", \"brisk\", or 0.2 to 1.8 (m/s)";
-
-    /// Desired speed, m/s; nothing where it is drawn.
-    #[must_use]
-    pub const fn mps(self) -> Option<f64> {
-        match self {
-            Self::Word(PaceWord::Slow) => Some(0.6),
-            Self::Word(PaceWord::Normal) => None,
-            Self::Word(PaceWord::Brisk) => Some(1.5),
-            Self::Mps(mps) => Some(mps),
-        }
-    }
 }
 
 /// One `[[human]]`: somebody, or several who are alike.
@@ -113,6 +45,12 @@ pub struct FormHuman {
     pub role: Option<String>,
     /// How they stand to the robot's way.
     pub relation: Relation,
+    /// Side of the robot's way that they come from, stand on or walk on.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
+    /// Where they face at first, who stand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facing: Option<FacingWord>,
     /// Where they meet the robot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<PlaceWord>,

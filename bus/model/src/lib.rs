@@ -68,7 +68,7 @@ pub use location::{Door, DoorKind, DoorOpens, Location};
 pub use paths::{Encounter, Paths, Visit, ordinal};
 pub use place::PlaceClass;
 pub use polyline::Polyline;
-pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal};
+pub use proposal::{GroupProposal, HumanProposal, Proposal, Relation, RobotProposal, Side};
 pub use reading::{Fact, FactKind, Reading};
 pub use recording::{AgentState, Event, EventKind, Recording, RecordingHeader};
 pub use report::{ClauseResult, MetricValue, Missing, Report, Unit, Verdict};

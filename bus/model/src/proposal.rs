@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::clause::Clause;
-use crate::ids::{GroupId, HumanId};
+use crate::ids::{GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::rule::{RobotRule, Rule};
 
@@ -47,6 +47,121 @@ impl Relation {
     }
 }
 
+/// A side of the robot's way as it drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// To the left of it.
+    Left,
+    /// To the right of it.
+    Right,
+}
+
+impl Side {
+    /// Somebody who stands or walks on a side does so as far beside the middle of the robot's way, as it is planned, m.
+    pub const BESIDE_M: f64 = 0.55;
+
+    /// Name, as written in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+
+    /// 1 for the left, -1 for the right: the sign of a distance to the left of a way.
+    #[must_use]
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+}
+
+/// Where somebody faces who stands.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Facing {
+    /// To where the robot comes from.
+    Robot,
+    /// Away from there.
+    Away,
+    /// To the left of the robot's way as it drives.
+    Left,
+    /// To the right of it.
+    Right,
+    /// To where another human is at first.
+    Human(HumanId),
+    /// To a node of the map.
+    Node(NodeId),
+}
+
+impl Facing {
+    /// What is faced, in words: `the robot`, `away from the robot`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        match self {
+            Self::Robot => "the robot".to_owned(),
+            Self::Away => "away from the robot".to_owned(),
+            Self::Left => "to the left of the robot's way".to_owned(),
+            Self::Right => "to the right of the robot's way".to_owned(),
+            Self::Human(id) => id.to_string(),
+            Self::Node(id) => format!("`{id}`"),
+        }
+    }
+}
+
+/// A part of the robot's way for which a place is named.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WayPart {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    Goal,
+    /// What it leads past, between its ends.
+    Via,
+    /// What it keeps out of.
+    Avoid,
+}
+
+impl WayPart {
+    /// Name, as written in files.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+            Self::Via => "via",
+            Self::Avoid => "avoid",
+        }
+    }
+
+    /// What the way does, before the name of the place.
+    #[must_use]
+    pub const fn does(self) -> &'static str {
+        match self {
+            Self::Start => "begins at",
+            Self::Goal => "ends at",
+            Self::Via => "leads past",
+            Self::Avoid => "keeps out of",
+        }
+    }
+
+    /// What it does not do then.
+    #[must_use]
+    pub const fn does_not(self) -> &'static str {
+        match self {
+            Self::Start => "does not begin at",
+            Self::Goal => "does not end at",
+            Self::Via => "does not lead past",
+            Self::Avoid => "does not keep out of",
+        }
+    }
+}
+
 /// One human of the proposal.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -59,6 +174,12 @@ pub struct HumanProposal {
     pub behavior: String,
     /// How it stands to the robot's way.
     pub relation: Relation,
+    /// Side of the robot's way that they come from, stand on or walk on; drawn where absent. See [`crate::Predicate::OnSide`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<Side>,
+    /// Where they face at first, who stand; drawn by the relation where absent. See [`crate::Predicate::Faces`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facing: Option<Facing>,
     /// Reactions, earlier ones win.
     #[serde(default)]
     pub rules: Vec<Rule>,

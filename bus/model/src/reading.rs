@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::fault::Fault;
 use crate::gesture::Gesture;
-use crate::ids::{AgentId, GroupId, HumanId};
+use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Facing, Relation, Side, WayPart};
 use crate::rule::Rule;
 use crate::statement::{Statement, TextKey};
 
@@ -50,6 +50,20 @@ pub enum FactKind {
         /// How.
         relation: Relation,
     },
+    /// A human comes from, stands on or walks on this side of the robot's way.
+    Side {
+        /// Who.
+        human: HumanId,
+        /// Which side.
+        side: Side,
+    },
+    /// A human who stands faces so before they react.
+    Facing {
+        /// Who.
+        human: HumanId,
+        /// Where.
+        facing: Facing,
+    },
     /// A human meets the robot several times.
     MeetsTimes {
         /// Who.
@@ -88,6 +102,15 @@ pub enum FactKind {
     RobotStart(PlaceClass),
     /// The robot ends at a place of this class.
     RobotGoal(PlaceClass),
+    /// The robot's way begins or ends at, leads past or keeps out of a place by name.
+    RobotAt {
+        /// Which part of the way.
+        part: WayPart,
+        /// The place in the words of the request.
+        name: String,
+        /// The nodes that the map calls so.
+        nodes: Vec<NodeId>,
+    },
     /// The scenario follows this card.
     Pattern(String),
 }

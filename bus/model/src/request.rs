@@ -133,6 +133,9 @@ pub struct RobotRequest {
     /// A place that its way leads past. Default: as the task says.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub via: Option<PlaceWord>,
+    /// Places that its way keeps out of.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub avoid: Vec<PlaceWord>,
     /// What it does on its way.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub does: Vec<RobotStep>,
@@ -148,6 +151,7 @@ impl Default for RobotRequest {
             start: None,
             goal: None,
             via: None,
+            avoid: Vec::new(),
             does: Vec::new(),
         }
     }

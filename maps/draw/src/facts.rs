@@ -14,6 +14,8 @@ pub fn fact_words(kind: &FactKind) -> String {
             let place = place.map_or_else(String::new, |class| format!(", at last at: {}", place_words(class)));
             format!("{human} meets the robot {times} times{place}")
         }
+        FactKind::Side { human, side } => format!("{human} is on the {} of the robot's way", side.name()),
+        FactKind::Facing { human, facing } => format!("{human} faces {}", facing.phrase()),
         FactKind::Before { first, then, at_door } => {
             format!("{first} is {} before {then}", if *at_door { "through the door" } else { "there" })
         }
@@ -24,6 +26,7 @@ pub fn fact_words(kind: &FactKind) -> String {
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),
         FactKind::RobotStart(place) => format!("the robot starts at: {}", place_words(*place)),
         FactKind::RobotGoal(place) => format!("the robot goes to: {}", place_words(*place)),
+        FactKind::RobotAt { part, name, .. } => format!("the robot's way {} {name}", part.does()),
         FactKind::Pattern(card) => format!("pattern: {}", card.replace('_', " ")),
     }
 }

@@ -246,6 +246,8 @@ fn read_scenario(value: &Value, groups: Option<&Value>, paths: Option<&Paths>) -
             role: "person".to_owned(),
             behavior,
             relation: relation(paths, id),
+            side: None,
+            facing: None,
             rules: Vec::new(),
             group,
             speed_mps: None,

@@ -1,6 +1,7 @@
 //! The cast: who is there, and whom a mention means.
 
-use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule};
+use socrates_model::proposal::Facing;
+use socrates_model::{Fault, FaultCode, GroupId, PlaceClass, Relation, Rule, Side};
 
 use crate::lexicon::{Act, lexicon};
 use crate::mention::{Mention, Who};
@@ -27,6 +28,10 @@ pub(crate) struct ReadRule {
 pub(crate) struct Person {
     pub(crate) role: String,
     pub(crate) relation: Option<(Relation, String)>,
+    /// Side of the robot's way, with the words.
+    pub(crate) side: Option<(Side, String)>,
+    /// Where they face at first, with the words.
+    pub(crate) facing: Option<(Facing, String)>,
     pub(crate) rules: Vec<ReadRule>,
     pub(crate) group: Option<GroupId>,
     pub(crate) speed_mps: Option<f64>,

@@ -282,6 +282,8 @@ fn joins(desk: &mut Desk, who: usize, read: &Story, wish: &Wish) -> bool {
         role,
         behavior,
         relation,
+        side: None,
+        facing: None,
         rules,
         group: None,
         speed_mps: said.speed_mps,
@@ -562,6 +564,8 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
         if let FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
         | FactKind::Relates { human, .. }
+        | FactKind::Side { human, .. }
+        | FactKind::Facing { human, .. }
         | FactKind::MeetsTimes { human, .. } = kind
         {
             gone.contains(human)

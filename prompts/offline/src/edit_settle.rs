@@ -97,11 +97,14 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             FactKind::Group { .. }
             | FactKind::Gestures { .. }
             | FactKind::MeetsTimes { .. }
+            | FactKind::Side { .. }
+            | FactKind::Facing { .. }
             | FactKind::Before { .. }
             | FactKind::RobotTask(_)
             | FactKind::RobotSays(_)
             | FactKind::RobotStart(_)
             | FactKind::RobotGoal(_)
+            | FactKind::RobotAt { .. }
             | FactKind::Pattern(_) => {}
         }
     }
@@ -115,6 +118,14 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             proposal.expected_events.iter().any(|other| other.predicate == clause)
         }
         FactKind::RobotSays(gesture) => says(*gesture),
+        FactKind::Side { human, side } => proposal.human(*human).is_some_and(|human| human.side == Some(*side)),
+        FactKind::Facing { human, facing } => {
+            proposal.human(*human).is_some_and(|human| human.facing.as_ref() == Some(facing))
+        }
+        FactKind::RobotAt { part, nodes, .. } => {
+            let clause = Predicate::RobotWay { part: *part, nodes: nodes.clone() };
+            proposal.expected_events.iter().any(|other| other.predicate == clause)
+        }
         FactKind::RobotStart(class) => proposal.robot.start.is_none_or(|now| now == *class),
         FactKind::RobotGoal(class) => proposal.robot.goal.is_none_or(|now| now == *class),
         FactKind::Humans(_)

@@ -133,6 +133,8 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
         if let FactKind::Reacts { human: who, .. }
         | FactKind::Gestures { human: who, .. }
         | FactKind::MeetsTimes { human: who, .. }
+        | FactKind::Side { human: who, .. }
+        | FactKind::Facing { human: who, .. }
         | FactKind::Relates { human: who, .. } = &fact.kind
         {
             *who == human.id
@@ -206,6 +208,18 @@ fn of_fact(
             let place = if *at_door { "through the door" } else { "there" };
             let text = format!("{first} is {place} before {then}");
             list.setup(true, &fact.id, text, Predicate::Before { first: *first, then: *then, at_door: *at_door });
+        }
+        FactKind::Side { human, side } => {
+            let text = format!("{human} is on the {} of the robot's way", side.name());
+            list.setup(true, &fact.id, text, Predicate::OnSide { human: *human, side: *side });
+        }
+        FactKind::Facing { human, facing } => {
+            let text = format!("{human} faces {} before they react", facing.phrase());
+            list.setup(true, &fact.id, text, Predicate::Faces { human: *human, facing: facing.clone() });
+        }
+        FactKind::RobotAt { part, name, nodes } => {
+            let text = format!("the robot's way {} {name}", part.does());
+            list.setup(true, &fact.id, text, Predicate::RobotWay { part: *part, nodes: nodes.clone() });
         }
         FactKind::Humans(_)
         | FactKind::RobotTask(_)

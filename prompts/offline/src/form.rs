@@ -8,9 +8,10 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::form::{Deed, FormHuman, Formation, PlaceWord, RobotDeed};
+use socrates_model::form::{Deed, FacingWord, Form, FormHuman, Formation, PlaceWord, RobotDeed};
+use socrates_model::proposal::Facing;
 use socrates_model::{
-    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Trigger,
+    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Side, Trigger,
 };
 
 use crate::bind::QUEUES;
@@ -43,6 +44,20 @@ pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
     }
 }
 
+/// What somebody faces: a place is that of its first node. Nothing where nobody, and no place of this map, is called so.
+fn faced(said: &FacingWord, form: &Form, location: &Location) -> Option<Facing> {
+    match said {
+        FacingWord::Robot => Some(Facing::Robot),
+        FacingWord::Away => Some(Facing::Away),
+        FacingWord::To(Side::Left) => Some(Facing::Left),
+        FacingWord::To(Side::Right) => Some(Facing::Right),
+        FacingWord::Name(name) => form.one(name).map(Facing::Human).or_else(|| {
+            let place = PlaceWord::from(name.clone());
+            bound(&place, location)?.nodes.into_iter().next().map(Facing::Node)
+        }),
+    }
+}
+
 /// What is said of a place that the map does not have.
 fn no_place(key: &'static str, place: &PlaceWord, location: &Location) -> Fault {
     let message = format!("`{place}` is no place of this map, which has: {}", place::listed(location));
@@ -63,6 +78,11 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
         let mut read = Person {
             role: human.role.clone().unwrap_or_default().to_lowercase(),
             relation: Some((human.relation, line("relation", &format!("\"{}\"", human.relation.name())))),
+            side: human.side.map(|side| (side, line("side", &format!("\"{}\"", side.name())))),
+            facing: human
+                .facing
+                .as_ref()
+                .and_then(|said| Some((faced(said, form, location)?, line("facing", &format!("\"{said}\""))))),
             group: person.group,
             speed_mps: human.pace.and_then(socrates_model::form::Pace::mps),
             start,
@@ -184,6 +204,19 @@ fn places(request: &Request, location: &Location, story: &mut Story) {
     let mut stated: Vec<(&PlaceWord, HumanId)> = Vec::new();
     for person in request.form.people() {
         let human = person.human;
+        if let Some(FacingWord::Name(name)) = &human.facing
+            && faced(&FacingWord::Name(name.clone()), &request.form, location).is_none()
+        {
+            let names = location.graph.nodes().len();
+            let message = format!(
+                "`{name}` is nobody of the form and no place by name among the {names} nodes of this map; face robot, away, left, right, \
+                 the id of somebody, or a room or area in the map's own words"
+            );
+            let fault = Fault::new(FaultCode::PPlace, "human.facing", message).about([name.clone()]);
+            if !story.problems.contains(&fault) {
+                story.problems.push(fault);
+            }
+        }
         let said = [("human.place", &human.place), ("human.start", &human.start), ("human.goal", &human.goal)];
         for (key, place) in said {
             let Some(place) = place else { continue };
@@ -217,6 +250,9 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
     };
     let (start, goal) = (end("robot.start", &request.robot.start), end("robot.goal", &request.robot.goal));
     end("robot.via", &request.robot.via);
+    for place in &request.robot.avoid {
+        end("robot.avoid", &Some(place.clone()));
+    }
     (story.robot_leaves, story.robot_enters) = (start, goal);
     let script = request.form.script(&request.robot.does);
     for line in script {

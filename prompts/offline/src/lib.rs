@@ -29,6 +29,7 @@ mod wording;
 mod words;
 
 mod named;
+mod named_way;
 mod noun;
 mod numbered;
 
@@ -66,6 +67,7 @@ mod bind;
 mod cast;
 mod deed;
 mod ellipsis;
+mod facing;
 mod finish;
 mod inside;
 mod lasting;
@@ -73,6 +75,7 @@ mod pick;
 mod relation;
 mod robot_deed;
 mod short;
+mod sides;
 mod story;
 mod task;
 mod thread;

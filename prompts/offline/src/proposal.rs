@@ -15,7 +15,7 @@ use crate::draw::Draw;
 use crate::finish::CIRCLE_M;
 use crate::statements::unread;
 use crate::understand::{Extra, understand};
-use crate::{NAME, chance, default_cast, events, noticing, pattern, place, prose, solve};
+use crate::{NAME, chance, default_cast, events, facing, named_way, noticing, pattern, place, prose, sides, solve};
 
 /// The pattern of a story that fits no card.
 const FREE: &str = "free";
@@ -51,6 +51,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
             human
         })
         .collect();
+    let humans = facing::stated(sides::stated(humans, reading), reading);
     let groups = groups(&humans);
     let part = events::Part { card: found, by_card, read: &read };
     let robot = robot(reading, request, found, &humans, location);
@@ -84,6 +85,7 @@ pub(crate) fn propose(question: &Question) -> Proposal {
         author: NAME.into(),
     };
     proposal.expected_events = events::events(&proposal, question, &part, &extras);
+    named_way::playable(&mut proposal, question);
     reachable(&mut proposal, question);
     proposal
 }
@@ -210,6 +212,8 @@ fn proposed(
         role: human.role.clone(),
         behavior,
         relation,
+        side: None,
+        facing: None,
         rules,
         group: human.group,
         speed_mps: usual.filter(|_| moves),

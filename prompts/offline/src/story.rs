@@ -11,6 +11,7 @@ use crate::contra;
 use crate::cut::{Joint, Stretch, sentences};
 use crate::deed;
 use crate::ellipsis;
+use crate::facing;
 use crate::lexicon::{Act, Cue, lexicon};
 use crate::meant::meant;
 use crate::mention::Who;
@@ -18,6 +19,7 @@ use crate::order::{self, Order};
 use crate::relation;
 use crate::robot_deed::robot_deed;
 use crate::short;
+use crate::sides;
 pub(crate) use crate::thread::Thread;
 use crate::timing::{quiet, robot_first, timing, trigger};
 use crate::whereabouts::place_of;
@@ -285,6 +287,8 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
     contra::nobody(story, &found, stretch, next, &quote);
     contra::members(story, &mut found, stretch, text);
     let meant = meant(story, thread, stretch, &found, text, next);
+    sides::note(story, &thread.subject, stretch, &found, &meant, &quote);
+    facing::note(story, &thread.subject, stretch, &meant, &quote);
     contra::place(story, thread, stretch, &found, &meant, &quote);
     let one = found.mentions.iter().any(|mention| mention.who == Who::ToldApart && !found.acts());
     thread.apart = match meant.as_slice() {

@@ -30,6 +30,8 @@ pub(crate) struct Task {
     /// Beginnings and goals by name, in the order of the text; the first that the map knows counts.
     pub(crate) starts: Vec<End>,
     pub(crate) goals: Vec<End>,
+    /// Places by name that the way leads past, those that the map knows.
+    pub(crate) vias: Vec<End>,
     /// Words that ask for the way back.
     pub(crate) back: Option<String>,
     /// Words that say where the robot is not to go.
@@ -159,6 +161,8 @@ fn denied(stretch: &mut Stretch, text: &str, location: &Location) -> Option<Stri
 const FROM: &[&str] = &["from"];
 const TO: &[&str] = &["to", "into", "towards", "toward", "reach", "visit"];
 const IN: &[&str] = &["in", "at", "inside"];
+/// Words before what a way leads past.
+const PAST: &[&str] = &["via", "through", "past"];
 /// Words between such a word and the name.
 const FILL: &[&str] = &[
     "the", "a", "an", "its", "their", "our", "my", "your", "this", "that", "next", "nearest", "closest", "main", "new",
@@ -179,7 +183,8 @@ fn named_ends(
     for at in 0..stretch.words.len() {
         let text = |k: usize| stretch.words.get(k).map_or("", |word| word.text.as_str());
         let goes = TO.contains(&text(at));
-        if !goes && !FROM.contains(&text(at)) && !IN.contains(&text(at)) {
+        let past = PAST.contains(&text(at));
+        if !goes && !past && !FROM.contains(&text(at)) && !IN.contains(&text(at)) {
             continue;
         }
         let from = (at + 1..).find(|k| !FILL.contains(&text(*k))).unwrap_or(at + 1);
@@ -212,14 +217,16 @@ fn named_ends(
             (None, Some(class)) => goes || FROM.contains(&text(at)) || class == PlaceClass::Room,
             (None, None) => !IN.contains(&text(at)) && article && !verb,
         };
-        if !wanted {
+        if !wanted || past && known.as_ref().is_none_or(|known| !known.exact) {
             continue;
         }
         let exact = known.as_ref().is_some_and(|known| known.exact);
         let of_map = known.as_ref().map(|known| known.class).filter(|class| *class != PlaceClass::Plain);
         let end =
             End { name, nodes: known.map(|known| known.nodes).unwrap_or_default(), class: of_map.or(class), exact };
-        if FROM.contains(&text(at)) {
+        if past {
+            task.vias.push(end)
+        } else if FROM.contains(&text(at)) {
             task.starts.push(end)
         } else {
             task.goals.push(end)

@@ -1,5 +1,6 @@
 //! From the story to the reading: facts with their quotes, and every wish that has no place in the simulation.
 
+use socrates_model::proposal::WayPart;
 use socrates_model::reading::ReadHuman;
 use socrates_model::{
     Action, FORMAT, Fact, FactKind, Fault, FaultCode, GroupId, HumanId, Location, PlaceClass, Reading, Relation,
@@ -13,8 +14,11 @@ use crate::order;
 use crate::pattern;
 use crate::statements::{Line, Unplayed, lines};
 use crate::story::{self, Story};
-use crate::task::{self, Task};
-use crate::{again, aside, boards, chance, contra, cut, default_cast, expect, form, numbered, place, spot, words};
+use crate::task::{self, End, Task};
+use crate::{
+    again, aside, boards, chance, contra, cut, default_cast, expect, facing, form, named_way, numbered, place, sides,
+    spot, words,
+};
 
 /// The reading with what the model has no field for.
 pub(crate) struct Understood {
@@ -297,6 +301,22 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             facts
                 .extend(crosses.map(|quote| (quote, FactKind::Relates { human: id(i), relation: Relation::Crossing })));
         }
+        let relation = story.relation_of(i);
+        let said = [
+            sides::fact(id(i), relation, person, &mut reading.problems),
+            facing::fact(id(i), relation, person, &mut reading.problems),
+        ];
+        for (quote, kind) in said.into_iter().flatten() {
+            let words = match &kind {
+                FactKind::Side { side, .. } => sides::words(relation, *side),
+                kind => facing::words(kind),
+            };
+            if let Some(human) = reading.humans.get_mut(i) {
+                human.summary.push_str(if human.summary.is_empty() { "" } else { ", " });
+                human.summary.push_str(&words);
+            }
+            facts.push((quote, kind));
+        }
         let twice = person.again.as_ref();
         let twice = twice.and_then(|said| again::fact(id(i), story.relation_of(i), said, location, reading));
         if let Some(human) = reading.humans.get_mut(i).filter(|_| twice.is_some()) {
@@ -344,13 +364,15 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
 }
 
 /// What of the task is no start and no goal: the way over a place, and the way back.
-fn errand(task: &Task, reading: &mut Reading) {
+fn errand(task: &Task, location: &Location, reading: &mut Reading) {
     if let Some((class, quote)) = &task.via {
         reading
             .notes
             .push(format!("`{quote}`: the robot's way leads past {} where the map has such a way", place::an(*class)));
     }
-    reading.problems.extend(task.denied.iter().map(|quote| {
+    // What is named is kept out of.
+    let open = task.denied.iter().filter(|quote| named_way::avoided_by(quote, location).is_empty());
+    reading.problems.extend(open.map(|quote| {
         let message =
             format!("`{quote}`: where the robot may not go is up to its planner and is not judged; say where it goes");
         Fault::new(FaultCode::PRead, "task", message).about([quote.as_str()])
@@ -377,6 +399,7 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
     let starts = ends_of.and_then(|card| card.start);
     let stays = ends_of.is_some_and(|card| card.ends == Ends::With);
     let leaves_people = ends_of.is_some_and(|card| card.ends == Ends::From);
+    let mut played: Vec<(WayPart, &End)> = Vec::new();
     for (what, named, other, people) in
         [("start", &task.starts, leaves.or(starts), leaves_people), ("goal", &task.goals, enters, stays)]
     {
@@ -401,11 +424,22 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
             } else if !end.exact {
                 "this map has no place of that number; one of the same name is taken".to_owned()
             } else {
+                // The first that the map knows is where the way begins or ends.
+                if known == Some(end) {
+                    played.push((if what == "start" { WayPart::Start } else { WayPart::Goal }, end));
+                }
                 continue;
             };
             reading.notes.push(format!("the robot's {what} `{}`: {instead}", end.name));
         }
     }
+    // The story's own ends win over the task's.
+    played.retain(|(part, _)| match part {
+        WayPart::Start => story.robot_leaves.is_none(),
+        WayPart::Goal => story.robot_enters.is_none() && !car,
+        WayPart::Via | WayPart::Avoid => true,
+    });
+    named_way::ends(&played, reading);
 }
 
 /// Said of every request with a social context.
@@ -478,7 +512,8 @@ fn doors(story: &Story, location: &Location, reading: &mut Reading) {
 }
 
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
-    errand(task, reading);
+    named_way::rest(task, request, location, reading);
+    errand(task, location, reading);
     ends(story, task, location, reading);
     other_places(location, reading);
     doors(story, location, reading);

@@ -12,7 +12,7 @@ use socrates_model::{HumanId, Location, NodeId, PlaceClass, Point};
 use crate::cost::{FARTHEST, WEIGHTS};
 use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, floor_m};
-use crate::{Problem, passable};
+use crate::{Problem, named_way, passable};
 
 /// Half the width of floor that people get through, m: their radius of 0.28 m, and what keeps them off walls. In the simulation
 /// they come through 0.65 m and stay before 0.6 m.
@@ -36,6 +36,8 @@ pub(crate) struct Net<'a> {
     between_m: f64,
     /// The rooms that people come out of by name.
     rooms: BTreeMap<HumanId, Vec<usize>>,
+    /// Nodes by name of which the robot's way has to lead past one; empty where it has not.
+    pub(crate) past: Vec<usize>,
     /// Edges that nobody gets through.
     closed: Vec<Closed>,
     /// Shortest ways from nodes, nothing barred, as they were asked for.
@@ -52,13 +54,19 @@ pub(crate) struct Tree {
 impl<'a> Net<'a> {
     /// The graph of a problem, with the places that its task names.
     pub(crate) fn of(problem: &Problem<'a>) -> Self {
-        let of = |radius_m: f64| Self::passable(problem.location, radius_m).with_ends(&problem.starts, &problem.goals);
+        let avoided = named_way::avoided(problem.proposal);
+        let of = |radius_m: f64| {
+            let mut net = Self::passable(problem.location, radius_m);
+            net.keep_out(&avoided);
+            net.with_ends(&problem.starts, &problem.goals)
+        };
         // Nobody is met where only the robot gets through, unless its task leads there.
         let (own, wide) = (of(problem.radius_m), of(problem.radius_m.max(PERSON_M)));
         let net = if wide.serves(&own, problem) { wide } else { own };
         let index = |ids: &Vec<NodeId>| ids.iter().filter_map(|id| net.index(id)).collect();
         let rooms = problem.rooms.iter().map(|(human, ids)| (*human, index(ids))).collect();
-        Self { rooms, ..net }
+        let past = named_way::via(problem.proposal).iter().filter_map(|id| net.index(id)).collect();
+        Self { rooms, past, ..net }
     }
 
     /// Whether edges are closed here and not there, and the task can be done without them.
@@ -107,8 +115,17 @@ impl<'a> Net<'a> {
             goal_m: Vec::new(),
             between_m: f64::INFINITY,
             rooms: BTreeMap::new(),
+            past: Vec::new(),
             closed: Vec::new(),
             trees: RefCell::default(),
+        }
+    }
+
+    /// Takes the edges of nodes out that the robot is to keep out of.
+    fn keep_out(&mut self, nodes: &[NodeId]) {
+        let barred: Vec<usize> = nodes.iter().filter_map(|id| self.index(id)).collect();
+        for (node, list) in self.near.iter_mut().enumerate() {
+            list.retain(|(next, _)| !barred.contains(&node) && !barred.contains(next));
         }
     }
 
@@ -178,6 +195,10 @@ impl<'a> Net<'a> {
     /// Length of the shortest way between two nodes, past a node of the class where one is given, m; infinite where there is none.
     pub(crate) fn shortest_m(&self, from: usize, to: usize, via: Option<PlaceClass>) -> f64 {
         let (out, back) = (self.ways_from(from), self.ways_from(to));
+        let over = |node: usize| out.length_m(node) + back.length_m(node);
+        if !self.past.is_empty() {
+            return self.past.iter().map(|node| over(*node)).fold(f64::INFINITY, f64::min);
+        }
         match via {
             None => out.length_m(to),
             Some(class) => (0..self.len())

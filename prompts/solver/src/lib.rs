@@ -22,11 +22,13 @@ pub mod inside;
 mod meant;
 pub mod measure;
 mod miss;
+mod named_way;
 mod passable;
 mod people;
 mod robot_way;
 mod search;
 mod second_meeting;
+mod sides;
 mod spread;
 mod told;
 

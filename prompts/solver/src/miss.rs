@@ -5,13 +5,14 @@ use std::fmt;
 
 use socrates_maps::Ground;
 use socrates_maps::openings::OpenPlan;
-use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation};
+use socrates_model::proposal::WayPart;
+use socrates_model::{Door, HumanId, HumanProposal, NodeId, PlaceClass, Point, Relation, Side};
 
 use crate::graph::Net;
 use crate::measure::SHORTEST_M;
 use crate::passable::{Closed, Why};
 use crate::people::boarding;
-use crate::{Problem, fit, inside, people, search};
+use crate::{Problem, fit, inside, named_way, people, search, sides};
 
 /// Floor that somebody needs who stands in a room with others, m²: a disc of 0.28 m and what keeps it from the next.
 const PERSON_M2: f64 = 0.5;
@@ -125,6 +126,18 @@ pub enum Miss {
         /// The class of the place.
         class: PlaceClass,
     },
+    /// Somebody cannot be on the side of the robot's way on which they should be.
+    Side {
+        /// They, how they stand to the robot's way, and on which side of it.
+        who: Vec<(HumanId, Relation, Side)>,
+        /// The class of the place.
+        class: PlaceClass,
+    },
+    /// No way of the robot begins, ends, leads past or keeps out where it should by name.
+    Way {
+        /// The parts of the way, with the nodes that count.
+        parts: Vec<(WayPart, Vec<NodeId>)>,
+    },
     /// Each alone could meet the robot, all together cannot.
     Together {
         /// How many.
@@ -193,6 +206,8 @@ impl fmt::Display for Miss {
                 f,
                 "{people} at `{node}` need {needs_m2:.1} m² of floor; there are {has_m2:.1} m²; ask for fewer, or for another room"
             ),
+            Self::Way { parts } => f.write_str(&no_way(parts)),
+            Self::Side { who, class } => f.write_str(&no_side(who, *class)),
             Self::People { who, class } => {
                 let names = who.iter().map(|(id, relation, from)| {
                     let from = from.map_or_else(String::new, |class| format!(" from {}", inside::an(class)));
@@ -216,6 +231,30 @@ impl fmt::Display for Miss {
     }
 }
 
+/// That no way of the robot does what is asked of it by name.
+fn no_way(parts: &[(WayPart, Vec<NodeId>)]) -> String {
+    let part = |(part, nodes): &(WayPart, Vec<NodeId>)| {
+        let nodes = nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
+        format!("{} {nodes}", part.does())
+    };
+    let parts = parts.iter().map(part).collect::<Vec<_>>().join(" and ");
+    format!(
+        "this map has no path of the robot that {parts} and on which it meets the people as they are asked for; take other places for \
+         its way, or for the people"
+    )
+}
+
+/// That nobody can be on the side of the robot's way on which they are asked for.
+fn no_side(who: &[(HumanId, Relation, Side)], class: PlaceClass) -> String {
+    let names = who.iter().map(|(id, relation, side)| format!("{id} (`{}`, `{}`)", relation.name(), side.name()));
+    let names = names.collect::<Vec<_>>().join(" and ");
+    format!(
+        "this map has no path of the robot on which {names} would be on that side of its way at {}; take the other side, another place, \
+         or leave the side out",
+        inside::an(class)
+    )
+}
+
 impl std::error::Error for Miss {}
 
 /// What keeps a problem from having paths whatever is drawn, as far as that can be seen without a search for ways of people:
@@ -225,7 +264,10 @@ pub fn impossible(problem: &Problem<'_>) -> Option<Miss> {
     let net = Net::of(problem);
     // Where the robot may drive through rooms a map has ways that are not counted here.
     let short = || too_short(problem, &net).filter(|_| search::solve(problem).is_err());
-    beforehand(problem, &net).or_else(short)
+    beforehand(problem, &net)
+        .or_else(short)
+        .or_else(|| sides::missing(problem, &net))
+        .or_else(|| named_way::missing(problem))
 }
 
 /// What can be seen before anything is tried.
@@ -276,6 +318,9 @@ pub(crate) fn of(problem: &Problem<'_>, net: &Net<'_>) -> Miss {
     };
     let stuck = proposal.humans.iter().filter(|human| !alone(human));
     let who: Vec<_> = stuck.map(|human| (human.id, human.relation, human.start)).collect();
+    if let Some(miss) = sides::missing(problem, net).or_else(|| named_way::missing(problem)) {
+        return miss;
+    }
     if who.is_empty() { Miss::Together { people: proposal.humans.len(), class } } else { Miss::People { who, class } }
 }
 

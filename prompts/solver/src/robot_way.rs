@@ -125,6 +125,10 @@ pub(crate) fn score(net: &Net<'_>, nodes: &[usize], meet: usize, wish: &Wish) ->
     if wish.via.is_some_and(|class| passes(net, nodes, class)) {
         score += w.via;
     }
+    let past = |node: &usize| net.past.contains(node);
+    if mid.iter().any(past) && ![nodes.first(), nodes.last()].into_iter().flatten().any(past) {
+        score += w.named_end;
+    }
     let of_place = mid.iter().filter(|node| net.is(**node, wish.place)).count();
     score += w.of_place * of_place as f64;
     for (end, class, goal) in [(nodes.first(), wish.start, false), (nodes.last(), wish.goal, true)] {

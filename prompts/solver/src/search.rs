@@ -11,7 +11,7 @@ use crate::everybody::{Solution, written};
 use crate::graph::Net;
 use crate::people::Way;
 use crate::robot_way::{LEAST_M, Wish, missing_m, times_shortest};
-use crate::{Miss, Problem, Solved, edit, miss, second_meeting};
+use crate::{Miss, Problem, Solved, edit, miss, named_way, second_meeting};
 
 /// Two solutions differ when the place of the meeting, or an end of the robot's way, lies so far elsewhere, m.
 const ELSEWHERE_M: f64 = 3.0;
@@ -19,6 +19,9 @@ const ELSEWHERE_M: f64 = 3.0;
 const ALTERNATIVES: usize = 64;
 /// A person who wants other paths is given one of so many.
 const OTHERS: usize = 6;
+/// Meeting nodes that are tried where the way leads past a place by name, and ends of each branch of them.
+const PAST_NODES: usize = 40;
+const PAST_ENDS: usize = 20;
 /// Solutions whose way is held against the grid, at most, before the graph is believed.
 const CHECKED: usize = 24;
 
@@ -48,13 +51,20 @@ pub fn solve(problem: &Problem<'_>) -> Result<Solved, Miss> {
 
 /// Every solution, the best first.
 pub(crate) fn solutions(problem: &Problem<'_>, net: &Net<'_>) -> Vec<Solution> {
-    let limits = Limits::of(problem.breadth);
+    let mut limits = Limits::of(problem.breadth);
+    // Few ways lead past a place by name: more are tried.
+    if !net.past.is_empty() {
+        (limits.nodes, limits.ends) = (limits.nodes.max(PAST_NODES), limits.ends.max(PAST_ENDS));
+    }
     let scene = Scene { net, proposal: problem.proposal, layout: problem.layout, crowded: false, limits };
     let told = &problem.told;
     let wish = Wish { via: problem.via, roomy: told.stuck, ..wish(problem.proposal, told.shorts, limits.ends) };
     let mut solutions = candidates(&scene, &wish);
     if solutions.is_empty() {
         solutions = candidates(&Scene { crowded: true, ..scene }, &wish);
+    }
+    if named_way::is_asked(problem.proposal) {
+        solutions.retain(|solution| named_way::keeps(net, problem.proposal, &solution.route.nodes));
     }
     solutions.sort_by(|a, b| b.score.total_cmp(&a.score).then_with(|| a.route.nodes.cmp(&b.route.nodes)));
     solutions

@@ -97,6 +97,8 @@ pub(crate) fn proposal(place: PlaceClass, relations: &[Relation]) -> Proposal {
         role: "visitor".into(),
         behavior: "does something".into(),
         relation: *relation,
+        side: None,
+        facing: None,
         rules: Vec::new(),
         group: None,
         speed_mps: None,

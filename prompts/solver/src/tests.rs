@@ -2,7 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use socrates_model::{Breadth, Door, DoorKind, Location, NodeId, PlaceClass, Point, Proposal, Relation};
+use socrates_model::proposal::WayPart;
+use socrates_model::{
+    Breadth, Clause, ClauseRole, Door, DoorKind, Location, NodeId, PlaceClass, Point, Predicate, Proposal, Relation,
+    Side,
+};
 
 use crate::testing::{block, corridor, door, map, node, proposal};
 use crate::{Layout, Miss, Problem, Solved, impossible, solve};
@@ -317,4 +321,77 @@ fn a_wide_search_leads_people_from_more_sides_and_plays_in_more_places() {
     let open = Problem::of(&proposal, &location, "test".into());
     let ways = |breadth| drawn(&open, breadth).1.len();
     assert!(ways(Breadth::Wide) > ways(Breadth::Usual), "{} {}", ways(Breadth::Wide), ways(Breadth::Usual));
+}
+
+#[test]
+fn who_crosses_comes_from_the_side_that_is_asked_for_or_there_is_no_way() {
+    let location = block("INTERSECTION");
+    let at = |id: &NodeId| location.graph.node(id).map(|node| node.at).unwrap();
+    for side in [Side::Left, Side::Right] {
+        let mut proposal = proposal(PlaceClass::Intersection, &[Relation::Crossing]);
+        proposal.humans[0].side = Some(side);
+        for draw in 0..10 {
+            let paths = solved(&Problem { draw, ..Problem::of(&proposal, &location, "test".into()) }).paths;
+            let meet = &paths.encounters[0].node;
+            let before = |way: &[NodeId]| {
+                let index = way.iter().position(|node| node == meet).unwrap();
+                at(&way[index - 1])
+            };
+            let own = paths.humans.values().next().unwrap();
+            let left_m = (at(meet) - before(&paths.robot)).perp(&(before(own) - at(meet)));
+            assert!(side.sign() * left_m > 0.5, "{side:?}: {paths:?}");
+        }
+    }
+    // Between these ends the only place of that kind has its third way on one side.
+    let mut asked = proposal(PlaceClass::Intersection, &[Relation::Crossing]);
+    let sided: Vec<Result<Solved, Miss>> = [Side::Left, Side::Right]
+        .into_iter()
+        .map(|side| {
+            asked.humans[0].side = Some(side);
+            solve(&between(&asked, &location, "b0", "b6"))
+        })
+        .collect();
+    for found in sided {
+        if let Err(miss) = found {
+            let Miss::Side { .. } = miss else { panic!("{miss}") };
+            assert!(miss.to_string().contains("human_1 (`crossing`, `"), "{miss}");
+        }
+    }
+}
+
+#[test]
+fn a_corridor_too_narrow_for_a_side_is_refused_with_the_side() {
+    for (width_m, fits) in [(2.0, true), (1.3, false)] {
+        let location = corridor(width_m);
+        let mut proposal = proposal(PlaceClass::Corridor, &[Relation::Static]);
+        proposal.humans[0].side = Some(Side::Left);
+        let problem = Problem::of(&proposal, &location, "test".into());
+        let miss = impossible(&problem).map(|miss| miss.to_string());
+        assert_eq!(miss.is_none(), fits, "{width_m}: {miss:?}");
+        assert!(miss.is_none_or(|miss| miss.contains("human_1 (`static`, `left`)")));
+    }
+}
+
+#[test]
+fn the_way_leads_past_a_place_by_name_and_keeps_out_of_another_or_is_refused() {
+    let location = block("CORRIDOR");
+    let clause = |part, name: &str| Clause {
+        id: "c1".into(),
+        text: "by name".into(),
+        role: ClauseRole::Setup,
+        must: true,
+        source: String::new(),
+        predicate: Predicate::RobotWay { part, nodes: ids(&[name]) },
+    };
+    let mut asked = proposal(PlaceClass::Corridor, &[Relation::Frontal]);
+    asked.expected_events = vec![clause(WayPart::Via, "t3")];
+    let past = solved(&between(&asked, &location, "b0", "b6")).paths.robot;
+    assert!(past.contains(&node("t3")), "{past:?}");
+    asked.expected_events = vec![clause(WayPart::Avoid, "b3")];
+    let round = solved(&between(&asked, &location, "b0", "b6")).paths.robot;
+    assert!(!round.contains(&node("b3")) && round.contains(&node("t3")), "{round:?}");
+    asked.expected_events = vec![clause(WayPart::Avoid, "b6"), clause(WayPart::Goal, "b6")];
+    let problem = between(&asked, &location, "b0", "b6");
+    let miss = impossible(&problem).or_else(|| solve(&problem).err()).map(|miss| miss.to_string()).unwrap();
+    assert!(miss.contains("`b6`"), "{miss}");
 }

@@ -85,6 +85,9 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::Meets { .. }
         | Predicate::MeetsAgain { .. }
         | Predicate::HeadOn { .. }
+        | Predicate::OnSide { .. }
+        | Predicate::Faces { .. }
+        | Predicate::RobotWay { .. }
         | Predicate::Crosses { .. }
         | Predicate::Ahead { .. }
         | Predicate::Overtakes { .. }

@@ -33,6 +33,8 @@ pub(crate) fn proposal(humans: u32, clauses: Vec<Clause>) -> Proposal {
                 role: "person".into(),
                 behavior: "walks".into(),
                 relation: Relation::Frontal,
+                side: None,
+                facing: None,
                 rules: vec![],
                 group: None,
                 speed_mps: None,

@@ -60,6 +60,8 @@ fn proposal() -> Proposal {
             role: "nurse".into(),
             behavior: String::new(),
             relation: Relation::Crossing,
+            side: None,
+            facing: None,
             rules: vec![rule],
             group: None,
             speed_mps: Some(1.0),

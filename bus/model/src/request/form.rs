@@ -8,14 +8,14 @@ use super::read::{Door, GESTURES, Section};
 use super::tree::{Kind, Node};
 use super::{Expect, GROUP_SIZES, MAX_HUMANS};
 use crate::form::{
-    Deed, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep, Step,
-    When,
+    Deed, FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment,
+    RobotStep, Step, When,
 };
 use crate::place::PlaceClass;
-use crate::proposal::Relation;
+use crate::proposal::{Relation, Side};
 
-const HUMAN_KEYS: [&str; 11] =
-    ["id", "count", "role", "relation", "place", "start", "goal", "pace", "group", "does", "reacts"];
+const HUMAN_KEYS: [&str; 13] =
+    ["id", "count", "role", "relation", "side", "facing", "place", "start", "goal", "pace", "group", "does", "reacts"];
 const STEP_KEYS: [&str; 4] = ["when", "act", "for_s", "say"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
@@ -50,6 +50,7 @@ impl Door<'_> {
         let orders = self.tables(top, "order").into_iter().filter_map(|node| self.order(node, &mut names)).collect();
         let form = Form { humans, groups, orders };
         self.alike(&form, top);
+        self.faced(&form, top);
         (form, names)
     }
 
@@ -83,6 +84,39 @@ impl Door<'_> {
             self.bad("human.relation", node.at, "is missing", RELATIONS);
         }
         let relation = self.maybe::<Relation>(&section, "relation", RELATIONS);
+        let side = self.maybe::<Side>(&section, "side", "left, right");
+        if let (Some(side), Some(Relation::Staying)) = (side, relation) {
+            let found = format!("`{}` of somebody who stays inside", side.name());
+            self.bad(
+                "human.side",
+                at("side"),
+                found,
+                "leave it out: whoever stays inside is on no side of the robot's way",
+            );
+        }
+        let facing = section.get("facing").and_then(|_| self.word(&section, "facing")).map(FacingWord::from);
+        if let (Some(facing), Some(relation)) = (&facing, relation) {
+            let stands = matches!(relation, Relation::Static | Relation::Staying);
+            if !stands || section.get("group").is_some() {
+                let found = if stands {
+                    format!("`{facing}` of somebody in a group")
+                } else {
+                    format!("`{facing}` of somebody who is `{}`", relation.name())
+                };
+                self.bad("human.facing", at("facing"), found, "who is static or staying, alone, can face something");
+            }
+        }
+        let (does, reacts) = (
+            self.steps(&section, ("does", "human.does."), names),
+            self.steps(&section, ("reacts", "human.reacts."), names),
+        );
+        let follows = |step: &Step| matches!(step.act, Some(Deed::FollowRobot | Deed::FollowHuman(_)));
+        if let Some(side) = side
+            && does.iter().chain(&reacts).any(follows)
+        {
+            let found = format!("`{}` of somebody who follows", side.name());
+            self.bad("human.side", at("side"), found, "leave it out: whoever follows walks behind, on no side");
+        }
         let pace = self.maybe::<Pace>(&section, "pace", Pace::ALLOWED);
         if let Some(Pace::Mps(mps)) = pace.filter(|pace| pace.mps().is_some_and(|mps| !(0.2..=1.8).contains(&mps))) {
             self.bad("human.pace", at("pace"), format!("{mps} m/s is out of range"), Pace::ALLOWED);
@@ -93,11 +127,13 @@ impl Door<'_> {
             start: self.place(&section, "start"),
             goal: self.place(&section, "goal"),
             group: self.word(&section, "group"),
-            does: self.steps(&section, ("does", "human.does."), names),
-            reacts: self.steps(&section, ("reacts", "human.reacts."), names),
+            does,
+            reacts,
             id,
             count,
             pace,
+            side,
+            facing,
             relation: relation?,
         })
     }
@@ -126,6 +162,24 @@ impl Door<'_> {
             Some(_) => self.word(section, name).map(PlaceWord::from),
             None => None,
         }
+    }
+
+    /// Places: one, or a list.
+    pub(super) fn places(&mut self, section: &Section<'_>, name: &'static str) -> Vec<PlaceWord> {
+        let Some(node) = section.get(name) else { return Vec::new() };
+        let nodes: Vec<&Node> = if let Kind::List(nodes) = &node.kind { nodes.iter().collect() } else { vec![node] };
+        let key = section.key(name);
+        let mut found = Vec::new();
+        for node in nodes {
+            let Some(text) = self.typed::<String>(&key, node, PLACE) else { continue };
+            let text = text.trim();
+            if text.is_empty() || text.chars().count() > MOST_CHARS || text.chars().any(char::is_control) {
+                self.bad(key.clone(), node.at, format!("`{}` is no name of a place", text.escape_debug()), PLACE);
+            } else {
+                found.push(PlaceWord::from(text.to_owned()));
+            }
+        }
+        found
     }
 
     fn steps<'n>(
@@ -386,6 +440,24 @@ impl Door<'_> {
                 self.bad("order", at, found, "remove one of the orders");
             }
             after.entry(&order.first).or_default().push(&order.then);
+        }
+    }
+
+    /// Who faces several people, or themselves.
+    fn faced(&mut self, form: &Form, top: &Section<'_>) {
+        for (index, human) in form.humans.iter().enumerate() {
+            let Some(FacingWord::Name(name)) = &human.facing else { continue };
+            let at = match top.get("human").map(|node| &node.kind) {
+                Some(Kind::List(nodes)) => nodes.get(index).and_then(|node| node.at),
+                _ => None,
+            };
+            let found = form.named(name).len();
+            if human.id.as_ref() == Some(name) {
+                self.bad("human.facing", at, format!("`{name}` faces themselves"), "somebody else, or a place");
+            } else if found > 1 {
+                let hint = format!("one of them: {name}_1");
+                self.bad("human.facing", at, format!("`{name}` is {found} people"), hint);
+            }
         }
     }
 

@@ -57,6 +57,21 @@ fn a_request_with_a_form_is_written_and_read_again() {
 fn everything_that_is_wrong_with_a_form_is_said_at_once() {
     let human = "[[human]]\nrelation = \"static\"\n";
     for (more, wanted) in [
+        ("[[human]]\nrelation = \"static\"\nside = \"north\"\n", "my.toml:5:8 `human.side`"),
+        (
+            "[[human]]\nrelation = \"frontal\"\nfacing = \"away\"\n",
+            "my.toml:5:10 `human.facing`: `away` of somebody who is `frontal`",
+        ),
+        (
+            "[[human]]\nid = \"a\"\ncount = 2\nrelation = \"static\"\n[[human]]\nrelation = \"static\"\nfacing = \"a\"\n",
+            "`human.facing`: `a` is 2 people",
+        ),
+        ("[[human]]\nid = \"a\"\nrelation = \"static\"\nfacing = \"a\"\n", "`human.facing`: `a` faces themselves"),
+        ("[[human]]\nrelation = \"staying\"\nside = \"left\"\n", "`human.side`: `left` of somebody who stays inside"),
+        (
+            "[[human]]\nrelation = \"behind\"\nside = \"left\"\nreacts = [{ when = \"always\", act = \"follow_robot\" }]\n",
+            "`human.side`: `left` of somebody who follows",
+        ),
         ("[[human]]\nrole = \"nurse\"\n", "my.toml:3:1 `human.relation`: is missing"),
         ("[[human]]\nrelation = \"sideways\"\n", "my.toml:4:12 `human.relation`: unknown variant `sideways`"),
         ("[[human]]\nrelation = \"static\"\ncolor = \"red\"\n", "my.toml:5:1 `human.color`: is not a key"),

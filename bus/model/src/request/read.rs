@@ -257,7 +257,7 @@ impl Door<'_> {
     }
 
     fn robot<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> RobotRequest {
-        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "does"];
+        let keys = ["model", "planners", "waypoints", "gestures", "start", "goal", "via", "avoid", "does"];
         let section = self.section(node, "robot.", &keys);
         let unset = RobotRequest::default();
         RobotRequest {
@@ -268,6 +268,7 @@ impl Door<'_> {
             start: self.place(&section, "start"),
             goal: self.place(&section, "goal"),
             via: self.place(&section, "via"),
+            avoid: self.places(&section, "avoid"),
             does: self.robot_steps(&section, names),
         }
     }

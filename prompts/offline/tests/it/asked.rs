@@ -2,6 +2,7 @@
 //! what was lost without a word. See `tests/asked/README.md`.
 
 use serde::Deserialize;
+use socrates_model::proposal::Facing;
 use socrates_model::reading::ReadHuman;
 use socrates_model::statement::TextKey;
 use socrates_model::{FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Statement};
@@ -82,11 +83,36 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
         ["robot", "says", gesture] => {
             gesture.parse::<Gesture>().ok().map(|gesture| kinds().any(|kind| *kind == FactKind::RobotSays(gesture)))
         }
+        ["robot", part @ ("start" | "goal" | "via" | "avoid"), ref place @ ..]
+            if place.len() > 1 || place.iter().any(|word| class(word).is_none()) =>
+        {
+            let name = place.join(" ").to_lowercase();
+            let named = |kind: &FactKind| {
+                matches!(kind, FactKind::RobotAt { part: own, name: said, .. }
+                    if own.name() == part && said.to_lowercase().trim_start_matches("the ") == name)
+            };
+            Some(kinds().any(named))
+        }
         ["robot", "start", place] => class(place).map(|class| kinds().any(|kind| *kind == FactKind::RobotStart(class))),
         ["robot", "goal", place] => class(place).map(|class| kinds().any(|kind| *kind == FactKind::RobotGoal(class))),
         [who, "says", gesture] => {
             gesture.parse::<Gesture>().ok()?;
             Some(corpus::holds(&format!("{who} says {gesture}"), reading))
+        }
+        [who, "side", side] if number(who) => {
+            let (id, side) = (HumanId::new(who.parse().ok()?), serde_json::from_value(serde_json::json!(side)).ok()?);
+            Some(kinds().any(|kind| *kind == FactKind::Side { human: id, side }))
+        }
+        [who, "facing", what] if number(who) => {
+            let id = HumanId::new(who.parse().ok()?);
+            let facing = match what {
+                "robot" => Facing::Robot,
+                "away" => Facing::Away,
+                "left" => Facing::Left,
+                "right" => Facing::Right,
+                other => Facing::Human(HumanId::new(other.parse().ok()?)),
+            };
+            Some(kinds().any(|kind| *kind == FactKind::Facing { human: id, facing: facing.clone() }))
         }
         [who, "crosses"] => {
             let id = HumanId::new(who.parse().ok()?);

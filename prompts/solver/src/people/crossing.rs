@@ -6,6 +6,7 @@ use socrates_model::{HumanProposal, PlaceClass};
 use super::{Taken, Way, extend, ideal_m, onward, onward_m};
 use crate::edit::LEAST_HUMAN_M;
 use crate::robot_way::Route;
+use crate::sides;
 
 /// Cost of a way that ends right after the meeting.
 const SHORT_TAIL: f64 = 3.0;
@@ -36,7 +37,8 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
     let ideal = ideal_m(human, net, route);
     let into = used.first().copied().flatten()?;
     let mut best: Option<Way> = None;
-    let entries = taken.entry.map_or_else(|| free.clone(), |entry| vec![entry]);
+    let mut entries = taken.entry.map_or_else(|| free.clone(), |entry| vec![entry]);
+    entries.retain(|entry| sides::enters(net, route, human, *entry));
     for entry in &entries {
         let own_entry = used.contains(&Some(*entry));
         // Somebody who comes along the way that the robot goes on by comes from farther on there.

@@ -5,6 +5,7 @@ use socrates_model::{HumanProposal, PlaceClass};
 use super::{HUMAN_MPS, ROBOT_MPS, Taken, Way, before_m, extend, onward, sources};
 use crate::inside::{self, same_door};
 use crate::robot_way::Route;
+use crate::sides;
 
 /// Longest wait behind a door before somebody comes out, s: people are held for 10 s at most, and a little is needed for the rest.
 const WAITS_S: f64 = 8.0;
@@ -35,6 +36,7 @@ pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Op
         .into_iter()
         .filter(|node| {
             same(*node)
+                && sides::lies(net, route, human, *node)
                 && tree.length_m(*node) >= 1.0
                 && tree.length_m(*node) <= if car { 8.0 } else { 12.0 }
                 && (car || Some(*node) != last)

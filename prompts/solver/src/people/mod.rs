@@ -6,6 +6,7 @@ use crate::Ends;
 use crate::graph::Net;
 use crate::inside;
 use crate::robot_way::Route;
+use crate::sides;
 
 mod ahead;
 mod behind;
@@ -108,18 +109,21 @@ impl Taken<'_> {
 
 /// The way of a human, if the robot's way has room for it.
 pub(crate) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>, along: bool) -> Option<Way> {
+    if sides::walks_along(human.relation) && !sides::has_floor(taken.net, route, human, route.meet) {
+        return None;
+    }
     match human.relation {
         Relation::Frontal => frontal::way(human, route, taken),
         Relation::Crossing => crossing::way(human, route, taken),
         Relation::Behind => behind::way(human, route, taken, along),
         Relation::Ahead | Relation::Abreast => ahead::way(human, route, taken),
         Relation::Static if boarding::boards(human) => {
-            boarding::way(human, route, taken).or_else(|| standing::way(route, taken))
+            boarding::way(human, route, taken).or_else(|| standing::way(human, route, taken))
         }
         Relation::Static if walks_later(human) => {
-            standing::way(route, taken).map(|way| standing::walking_on(way, route, taken))
+            standing::way(human, route, taken).map(|way| standing::walking_on(way, route, taken))
         }
-        Relation::Static => standing::way(route, taken),
+        Relation::Static => standing::way(human, route, taken),
         Relation::Leaving => leaving::way(human, route, taken),
         Relation::Staying => staying::way(human, route, taken),
     }

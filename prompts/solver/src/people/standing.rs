@@ -1,10 +1,11 @@
 //! Standing: on the robot's way or at its end; who goes on later has a way for that.
 
-use socrates_model::PlaceClass;
+use socrates_model::{HumanProposal, PlaceClass};
 
 use super::{Taken, Way};
 use crate::Ends;
 use crate::robot_way::Route;
+use crate::sides;
 
 /// The robot starts at least so far from those who stand at a place by name, so that it comes to them, m.
 const SEEN_M: f64 = 6.0;
@@ -13,9 +14,13 @@ const SEEN_M: f64 = 6.0;
 const NOWHERE: usize = usize::MAX;
 
 /// Standing: at the meeting node, or at the free node of the robot's way nearest to it; at a place by name with the others.
-pub(super) fn way(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+pub(super) fn way(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
+    // With the robot at one end of its way they are on no side of it.
+    if human.side.is_some() && taken.ends != Ends::Past {
+        return None;
+    }
     match taken.ends {
-        Ends::Past if !taken.meant.is_empty() => return together(route, taken),
+        Ends::Past if !taken.meant.is_empty() => return together(human, route, taken),
         Ends::Past => {}
         Ends::With => {
             let at = *route.nodes.last()?;
@@ -26,7 +31,9 @@ pub(super) fn way(route: &Route, taken: &Taken<'_>) -> Option<Way> {
     let last = route.nodes.len().checked_sub(1)?;
     let mut places: Vec<usize> = (1..last).collect();
     places.sort_by_key(|i| (i.abs_diff(route.meet), *i));
-    let at = places.into_iter().filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
+    let floor = |i: &usize| sides::has_floor(taken.net, route, human, *i);
+    let at =
+        places.into_iter().filter(floor).filter_map(|i| route.nodes.get(i).copied()).find(|node| taken.free(*node))?;
     Some(Way { nodes: vec![at], meet: at, cost: 0.0 })
 }
 
@@ -52,9 +59,11 @@ pub(super) fn walking_on(mut way: Way, route: &Route, taken: &Taken<'_>) -> Way 
 }
 
 /// At the node of a place by name that has the fewest people so far.
-fn together(route: &Route, taken: &Taken<'_>) -> Option<Way> {
+fn together(human: &HumanProposal, route: &Route, taken: &Taken<'_>) -> Option<Way> {
     let net = taken.net;
-    let there = |i: &usize| route.nodes.get(*i).is_some_and(|node| taken.meant.contains(node));
+    let there = |i: &usize| {
+        route.nodes.get(*i).is_some_and(|node| taken.meant.contains(node)) && sides::has_floor(net, route, human, *i)
+    };
     // Where the robot's way ends they are last: it has to pass the others to get to them.
     let rank = |i: &usize| {
         let node = route.nodes.get(*i);

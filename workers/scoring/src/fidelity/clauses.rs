@@ -13,7 +13,9 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
-use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
+use crate::fidelity::{
+    acts, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring, robot, setting, sides,
+};
 use crate::temporal::{Signal, Within};
 
 /// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
@@ -294,6 +296,9 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::MeetsAgain { human, nth, within_m } => meeting::meets(signals, *human, *nth, *within_m),
         Predicate::HeadOn { human } => meeting::head_on(signals, *human),
         Predicate::Crosses { human, gap_s } => meeting::crosses(signals, *human, *gap_s),
+        Predicate::OnSide { human, side } => sides::on_side(signals, *human, *side),
+        Predicate::Faces { human, facing } => faces::faces(signals, *human, facing),
+        Predicate::RobotWay { part, nodes } => named_way::robot_way(signals, *part, nodes),
         Predicate::Ahead { human, within_m, for_s } => meeting::ahead(signals, *human, *within_m, *for_s),
         Predicate::Overtakes { human } => meeting::passes(signals, *human, true),
         Predicate::RobotPasses { human } => meeting::passes(signals, *human, false),

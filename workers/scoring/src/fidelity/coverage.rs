@@ -64,6 +64,8 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
         | FactKind::MeetsTimes { .. }
+        | FactKind::Side { .. }
+        | FactKind::Facing { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_) => true,
         FactKind::Humans(_)
@@ -72,6 +74,7 @@ const fn asks(kind: &FactKind) -> bool {
         | FactKind::RobotSays(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => false,
     }
 }
@@ -84,7 +87,9 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => {
             named && about(clause, *human, None, u32::MAX)
         }
-        FactKind::MeetsTimes { .. } | FactKind::Before { .. } => false,
+        FactKind::MeetsTimes { .. } | FactKind::Side { .. } | FactKind::Facing { .. } | FactKind::Before { .. } => {
+            false
+        }
         FactKind::Group { group, members } => members
             .first()
             .is_some_and(|first| about(clause, *first, Some(*group), u32::MAX) && clause.predicate.group().is_some()),
@@ -95,6 +100,7 @@ fn covers(clause: &Clause, fact: &Fact) -> bool {
         | FactKind::RobotSays(_)
         | FactKind::RobotStart(_)
         | FactKind::RobotGoal(_)
+        | FactKind::RobotAt { .. }
         | FactKind::Pattern(_) => named,
     };
     shows || says(&clause.predicate, &fact.kind)
@@ -112,6 +118,15 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         }
         Predicate::MeetsAgain { human, nth, .. } => {
             matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
+        }
+        Predicate::OnSide { human, side } => {
+            matches!(fact, FactKind::Side { human: who, side: asked } if (who, asked) == (human, side))
+        }
+        Predicate::Faces { human, facing } => {
+            matches!(fact, FactKind::Facing { human: who, facing: asked } if (who, asked) == (human, facing))
+        }
+        Predicate::RobotWay { part, nodes } => {
+            matches!(fact, FactKind::RobotAt { part: own, nodes: asked, .. } if (own, asked) == (part, nodes))
         }
         Predicate::Before { first, then, at_door } => {
             matches!(fact, FactKind::Before { first: one, then: other, at_door: door } if (one, other, door) == (first, then, at_door))

@@ -6,7 +6,10 @@
 
 mod early;
 mod edit;
+mod facing;
 mod harmless;
+mod named_way;
+mod sides;
 mod spoil;
 
 use socrates_model::Recording;

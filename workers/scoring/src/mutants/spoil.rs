@@ -58,6 +58,9 @@ pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
     }
     case_lists(evidence, &mut add);
     super::early::early(evidence, &mut add);
+    super::sides::sides(evidence, &mut add);
+    super::facing::facing(evidence, &mut add);
+    super::named_way::named_way(evidence, &mut add);
     let mut seen = std::collections::BTreeSet::new();
     found.retain(|mutant| seen.insert((mutant.kind, mutant.about.clone())));
     found

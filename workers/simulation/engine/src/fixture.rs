@@ -78,6 +78,8 @@ pub(crate) fn setup(location: Location, robot: &[&str], cast: &[Cast<'_>], meet:
             role: "person".into(),
             behavior: String::new(),
             relation: *relation,
+            side: None,
+            facing: None,
             rules: rules.clone(),
             group: None,
             speed_mps: None,

@@ -1,8 +1,9 @@
 //! One human of the run: body, way, tree.
 
 use socrates_bt::{Tree, TreeState};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
+use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Side, Vector};
 
+use crate::gaze::Gaze;
 use crate::make_room::Facing;
 use crate::models::Walks;
 use crate::near::Notice;
@@ -56,6 +57,10 @@ pub(crate) struct Human {
     pub(crate) standing: bool,
     /// Place beside the middle of a walking group, m to the left.
     pub(crate) lane_m: f64,
+    /// Where it faces at first, if the proposal says so.
+    pub(crate) gaze: Option<Gaze>,
+    /// Side of the robot's way on which it is to be.
+    pub(crate) side: Option<Side>,
     /// From the middle of its walking group to the outermost member, m; 0 for who walks alone.
     pub(crate) flank_m: f64,
     /// Whether it has come to its end behind others who stand there.

@@ -31,6 +31,7 @@ mod drive;
 mod ending;
 mod ends;
 mod gathering;
+mod gaze;
 mod human;
 mod make_room;
 mod meetings;

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::f64::consts::TAU;
 
-use socrates_model::{GroupId, GroupProposal, HumanId, Point, Polyline, Pose, Relation, Vector};
+use socrates_model::{GroupId, GroupProposal, HumanId, Point, Polyline, Pose, Relation, Side, Vector};
 
 use crate::floor::Floor;
 use crate::gathering::{self, Around};
@@ -90,7 +90,11 @@ fn spot(
     let home = human.route.point(0.0);
     let ahead = human.route.direction(0.0);
     let left = Vector::new(-ahead.y, ahead.x);
-    let wished = if human.route.length_m() > 0.0 {
+    let beside = human.side.zip(robot).filter(|_| human.relation == Relation::Static);
+    let beside = beside.map(|(side, (_, route))| Beside { side, route });
+    let wished = if let Some(beside) = &beside {
+        beside.wished(&home) + Vector::new(human.sway.0, human.sway.1)
+    } else if human.route.length_m() > 0.0 {
         home + left * human.lane_m + ahead * human.sway.1
     } else {
         home + Vector::new(human.sway.0, human.sway.1)
@@ -105,6 +109,7 @@ fn spot(
         };
         !taken.iter().any(close)
             && goal.is_none_or(|goal| (at - goal).norm() >= GOAL_FREE_M)
+            && beside.as_ref().is_none_or(|beside| beside.left_m(at) >= BESIDE_LEAST_M)
             && floor.clearance_m(at) >= human.radius_m + MARGIN_M
     };
     let mut best: Option<(f64, Point)> = None;
@@ -151,6 +156,37 @@ fn spot(
     Some((at, facing(human, &at, door)))
 }
 
+/// Who stands on a side of the robot's way is at least so far beside it as it is planned, m.
+const BESIDE_LEAST_M: f64 = 0.4;
+/// The direction of the way at a place is taken over so much of it before and behind, m.
+const ALONG_M: f64 = 1.0;
+
+/// A side of the robot's way.
+struct Beside<'a> {
+    side: Side,
+    route: &'a Polyline,
+}
+
+impl Beside<'_> {
+    /// The way's direction about a point of it.
+    fn along(&self, s: f64) -> Vector {
+        let line = self.route.point(s + ALONG_M) - self.route.point(s - ALONG_M);
+        if line.norm() > 1e-9 { line / line.norm() } else { self.route.direction(s) }
+    }
+
+    /// Where somebody stands on that side of a place.
+    fn wished(&self, home: &Point) -> Point {
+        let along = self.along(self.route.project(home).0);
+        home + Vector::new(-along.y, along.x) * (self.side.sign() * Side::BESIDE_M)
+    }
+
+    /// How far a place is on that side of the way, m; negative on the other.
+    fn left_m(&self, at: &Point) -> f64 {
+        let (s, _) = self.route.project(at);
+        self.side.sign() * self.along(s).perp(&(at - self.route.point(s)))
+    }
+}
+
 /// The free place to which fewest steps lead from `home`.
 fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> bool) -> Option<Point> {
     let point = |(right, up): (i32, i32)| home + Vector::new(f64::from(right), f64::from(up)) * WALK_STEP_M;
@@ -172,6 +208,9 @@ fn farther(floor: &Floor, home: &Point, radius_m: f64, free: &dyn Fn(&Point) -> 
 }
 
 fn facing(human: &Human, at: &Point, door: Option<&Point>) -> f64 {
+    if let Some(gaze) = human.gaze {
+        return gaze.yaw(at);
+    }
     let ahead = human.route.direction(0.0);
     let toward = match door {
         Some(door) => door - at,
@@ -209,7 +248,9 @@ fn lanes(humans: &mut [Human], group: &GroupProposal) {
             #[expect(clippy::cast_precision_loss, reason = "at most three")]
             let row = (place % ABREAST) as f64;
             human.flank_m = flank_of(count);
-            human.lane_m = row * LANE_M - human.flank_m + human.sway.0;
+            // A side of the robot's way is that of their middle: the lane of each has it already.
+            let beside_m = if human.side.is_some() { human.lane_m } else { human.sway.0 };
+            human.lane_m = row * LANE_M - human.flank_m + beside_m;
         }
     }
 }
@@ -236,7 +277,8 @@ fn stand(
         gathering::at_end(&home, route).and_then(|ends| gathering::rim(&home, members.len(), ring, ends, &around))
     };
     // Where there is no room for them together each finds a place alone.
-    let places = places.or_else(|| formation(&home, members.len(), body, floor, route, taken));
+    let beside = first.side.zip(route).map(|(side, route)| Beside { side, route });
+    let places = places.or_else(|| formation(&home, (members.len(), beside), body, floor, route, taken));
     let Some(places) = places else { return };
     for (member, (at, yaw)) in members.iter().zip(places) {
         if let Some(human) = humans.get_mut(*member) {
@@ -261,10 +303,14 @@ fn ring_m(count: usize) -> f64 {
     if count < 2 { 0.0 } else { (NEIGHBOR_M / (2.0 * libm::sin(std::f64::consts::PI / n))).min(1.45) }
 }
 
+/// A circle is tried so many steps of 0.25 m beside the way; on a side of it, all of it has to be there.
+const WIDEST: i32 = 5;
+const WIDEST_BESIDE: i32 = 9;
+
 /// Places and headings of a circle near `home`, or of people who stand together as they can; `None` where there is no room.
 fn formation(
     home: &Point,
-    count: usize,
+    (count, beside): (usize, Option<Beside<'_>>),
     body: f64,
     floor: &Floor,
     route: Option<&Polyline>,
@@ -280,8 +326,9 @@ fn formation(
     let heading = libm::atan2(along.y, along.x);
     let on_way = route.map_or(*home, |route| route.point(s));
     let mut best: Option<(f64, Vec<(Point, f64)>)> = None;
+    let widest = if beside.is_some() { WIDEST_BESIDE } else { WIDEST };
     for ahead in -6..=6_i32 {
-        for aside in -5..=5_i32 {
+        for aside in -widest..=widest {
             let offset = along * (0.25 * f64::from(ahead)) + Vector::new(-along.y, along.x) * (0.25 * f64::from(aside));
             let center = on_way + offset;
             for turn in 0..4_u32 {
@@ -292,7 +339,12 @@ fn formation(
                         && floor.straight(&center, at, body.min(0.2))
                         && taken.iter().all(|(other, least)| (at - other).norm() >= *least)
                 });
-                if !free || route.is_some_and(|route| route.project(&center).1 > 1.45) {
+                let near = |route: &Polyline| route.project(&center).1 <= 1.45;
+                let there = match &beside {
+                    Some(beside) => places.iter().all(|(at, _)| beside.left_m(at) >= BESIDE_LEAST_M),
+                    None => route.is_none_or(near),
+                };
+                if !free || !there {
                     continue;
                 }
                 let wide = way_round(floor, &center, ring + body, heading);

@@ -12,12 +12,13 @@ use socrates_model::seeds::{self, derive_seed};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
     Action, AgentId, Clause, Command, Fault, FaultCode, GroupId, HumanId, HumanProposal, NodeId, Point, Polyline, Pose,
-    Predicate, RecordingHeader, Relation, Trigger, Vector, Where,
+    Predicate, RecordingHeader, Relation, Side, Trigger, Vector, Where,
 };
 
 use crate::block::blockers;
 use crate::ends;
 use crate::floor::Floor;
+use crate::gaze;
 use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
 use crate::make_room::Facing;
 use crate::meetings::{self, Marks};
@@ -240,7 +241,9 @@ fn human(
         role: proposal.role.clone(),
         relation: proposal.relation,
         group: proposal.group,
-        lane_m: if proposal.relation == Relation::Abreast { -1.0 } else { SWAY_WALKING * sway.0 },
+        side: proposal.side,
+        gaze: gaze::of(setup, proposal, meetings.first(), robot_way),
+        lane_m: lane_m(proposal, SWAY_WALKING * sway.0),
         blockers: blockers(setup, proposal),
         sway,
         route,
@@ -250,6 +253,22 @@ fn human(
         yaw: facing,
         speed_mps,
         ..bare(proposal.id, tree, state, at)
+    }
+}
+
+/// Companions walk so far beside the robot, m.
+const COMPANION_M: f64 = 1.0;
+
+/// How far to the left of the middle of their way somebody walks, m: beside the robot's on the side that is theirs, else as they sway.
+fn lane_m(proposal: &HumanProposal, sway_m: f64) -> f64 {
+    // Beside the robot people are to the right of it unless they are to be on the left.
+    let left = |side: Option<Side>| side.map(Side::sign);
+    match proposal.relation {
+        Relation::Abreast => COMPANION_M * left(proposal.side).unwrap_or(-1.0),
+        // What is left of the robot is right of those who come towards it.
+        Relation::Frontal => left(proposal.side).map_or(sway_m, |left| sway_m - left * Side::BESIDE_M),
+        Relation::Behind | Relation::Ahead => left(proposal.side).map_or(sway_m, |left| sway_m + left * Side::BESIDE_M),
+        Relation::Crossing | Relation::Static | Relation::Leaving | Relation::Staying => sway_m,
     }
 }
 
@@ -266,6 +285,8 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         relation: Relation::Static,
         group: None,
         standing: false,
+        side: None,
+        gaze: None,
         lane_m: 0.0,
         flank_m: 0.0,
         lined_up: false,

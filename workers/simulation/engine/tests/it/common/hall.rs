@@ -79,6 +79,8 @@ pub fn crowd(n: u32, secs: f64) -> Setup {
             role: "person".into(),
             behavior: String::new(),
             relation: Relation::Crossing,
+            side: None,
+            facing: None,
             rules: rules(),
             group: None,
             speed_mps: None,

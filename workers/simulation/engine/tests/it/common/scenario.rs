@@ -46,6 +46,8 @@ pub fn scenario(
             role: "person".into(),
             behavior: String::new(),
             relation,
+            side: None,
+            facing: None,
             rules,
             group: standing.then_some(GroupId(1)),
             speed_mps: None,
