@@ -45,7 +45,14 @@ pub(crate) fn proposal() -> Proposal {
         role: "visitor".into(),
         behavior: "comes along and reacts to the robot".into(),
         relation: Relation::Crossing,
-        rules: vec![Rule { when: vec![Trigger::RobotNear(3.0)], act, gesture: None, for_s: None, latched: false }],
+        rules: vec![Rule {
+            when: vec![Trigger::RobotNear(3.0)],
+            act,
+            gesture: None,
+            for_s: None,
+            latched: false,
+            ..Rule::default()
+        }],
         group: None,
         speed_mps: Some(1.1),
         start: None,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::rule::{Action, Trigger};
+use crate::rule::{Action, Rule, Trigger};
 
 /// Whom a clause judges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -199,6 +199,16 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
+    /// A step of the human's sequence is done as its rule says: it begins within `within_s` of the time at which all its triggers
+    /// first hold, and not before; it is done for at least 60 % of its time; and it is over within 2 s of what ends it.
+    Step {
+        /// Who.
+        human: HumanId,
+        /// What the step says.
+        rule: Rule,
+        /// Largest delay.
+        within_s: f64,
+    },
     /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m.
     Gestures {
         /// Who.
@@ -370,6 +380,7 @@ impl Predicate {
             | Self::RunsAway { human, .. }
             | Self::GivesWay { human }
             | Self::Reacts { human, .. }
+            | Self::Step { human, .. }
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
             | Self::Enters { human, .. }
@@ -437,6 +448,7 @@ impl Predicate {
             | Self::RunsAway { .. }
             | Self::GivesWay { .. }
             | Self::Reacts { .. }
+            | Self::Step { .. }
             | Self::Gestures { .. }
             | Self::Leaves { .. }
             | Self::StaysInside { .. }

@@ -227,6 +227,13 @@ fn act(rule: &Rule, near: &dyn Fn(&Trigger, f64) -> Time) -> (String, Vec<Time>)
             }
             // Ids are numbers: who it is, the gesture says.
             Trigger::HumanSays(_, gesture) => words.push(format!("a human says {gesture}")),
+            // Whose step it is and which, the order of the rules says.
+            Trigger::Did(..) => words.push("once a step is over".to_owned()),
+            Trigger::Done(_) => words.push("once somebody is done".to_owned()),
+            Trigger::StoppedFor(s) => {
+                words.push("the robot has stood".to_owned());
+                times.push(Time::told(*s));
+            }
             Trigger::Always
             | Trigger::RobotVisible(_)
             | Trigger::RobotNear(_)

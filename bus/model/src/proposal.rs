@@ -76,6 +76,14 @@ pub struct HumanProposal {
     pub goal: Option<PlaceClass>,
 }
 
+impl HumanProposal {
+    /// How many steps its sequence has.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        self.rules.iter().filter_map(|rule| rule.step).max().unwrap_or(0)
+    }
+}
+
 /// A group of the proposal.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

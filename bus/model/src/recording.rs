@@ -152,6 +152,13 @@ pub enum EventKind {
         /// Name of the leaf, such as `FollowRobot`.
         leaf: String,
     },
+    /// A step of a human's sequence has ended.
+    StepEnded {
+        /// Who.
+        human: HumanId,
+        /// Which step, from 1.
+        step: u32,
+    },
     /// A human sees the robot for the first time, or again after 2 s without sight.
     Sees {
         /// Who.

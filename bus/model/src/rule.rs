@@ -34,13 +34,21 @@ pub enum Trigger {
     AtEncounter,
     /// So many seconds after the start of the run.
     AfterSecs(f64),
+    /// The robot has moved before and has stood for so many seconds.
+    StoppedFor(f64),
+    /// The step of this number, from 1, of a human's sequence has ended.
+    Did(HumanId, u32),
+    /// All steps of a human have ended. Somebody without steps is done at the end of their way, or once where they meet the robot is
+    /// [`Trigger::DONE_M`] behind them.
+    Done(HumanId),
 }
 
 /// What a human can do. Exactly one motion at a time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Action {
     /// Walks on along the path.
+    #[default]
     Navigate,
     /// Follows the robot at 1 to 2 m.
     FollowRobot,
@@ -99,6 +107,8 @@ impl Trigger {
     pub const PASSED_WITHIN_M: f64 = 4.0;
     /// So much farther away than it was at its nearest, it has passed, m.
     pub const PASSED_BY_M: f64 = 1.0;
+    /// So far beyond where they meet the robot somebody without steps is done, m.
+    pub const DONE_M: f64 = 1.5;
 
     /// Whether a robot that is `distance_m` away and was `nearest_m` away at its nearest has passed.
     #[must_use]
@@ -121,7 +131,10 @@ impl Trigger {
             | Self::RobotPassed
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => None,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => None,
         }
     }
 
@@ -138,7 +151,10 @@ impl Trigger {
             | Self::HumanSays(..)
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => None,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => None,
         }
     }
 
@@ -157,7 +173,35 @@ impl Trigger {
             | Self::HumanSays(..)
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => self,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => self,
+        }
+    }
+
+    /// What holds, as a clause: `the robot is within 2 m`.
+    #[must_use]
+    pub fn clause(&self) -> String {
+        match self {
+            Self::Always => "at once".to_owned(),
+            Self::GoalReached => "they are at their goal".to_owned(),
+            Self::AtEncounter => "they are at the encounter".to_owned(),
+            Self::AfterSecs(s) => format!("{s} s have passed"),
+            Self::RobotVisible(_)
+            | Self::RobotNear(_)
+            | Self::RobotBlocking(_)
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::RobotPassed
+            | Self::RobotSays(_)
+            | Self::HumanSays(..)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => {
+                let phrase = self.phrase();
+                phrase.split_once(' ').map_or_else(|| phrase.clone(), |(_, rest)| rest.to_owned())
+            }
         }
     }
 
@@ -177,13 +221,16 @@ impl Trigger {
             Self::GoalReached => "at their goal".to_owned(),
             Self::AtEncounter => "at the encounter".to_owned(),
             Self::AfterSecs(s) => format!("after {s} s"),
+            Self::StoppedFor(s) => format!("when the robot has stood for {s} s"),
+            Self::Did(id, step) => format!("once step {step} of {id} is over"),
+            Self::Done(id) => format!("once {id} is done"),
         }
     }
 }
 
 /// One rule of a human: when all triggers hold, do this. Earlier rules win over later ones;
 /// without a rule that holds, a human walks its path (or stands, if the path is one node).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rule {
     /// All of these must hold.
@@ -203,6 +250,12 @@ pub struct Rule {
     /// Once started, goes on even when the triggers no longer hold (until `for_s`, or the end).
     #[serde(default)]
     pub latched: bool,
+    /// Its number in the human's sequence of steps, from 1: once it has ended it never begins again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<u32>,
+    /// A step ends when all of these hold.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub until: Vec<Trigger>,
 }
 
 impl Rule {

@@ -101,7 +101,9 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
         EventKind::Door { door, open } => mark(0, "door", format!("{door} {}", if *open { "opens" } else { "closes" })),
         EventKind::RobotArrived => mark(0, "goal", "the robot is at its goal".to_owned()),
         EventKind::Stuck { agent } => mark(agent.number(), "stuck", format!("{agent} is stuck")),
-        EventKind::Gesture { .. } | EventKind::Node { .. } | EventKind::End { .. } => None,
+        EventKind::Gesture { .. } | EventKind::StepEnded { .. } | EventKind::Node { .. } | EventKind::End { .. } => {
+            None
+        }
     }
 }
 

@@ -157,6 +157,7 @@ fn words(kind: &EventKind) -> Option<String> {
         EventKind::Gesture { agent, gesture: Some(gesture) } => format!("{agent} gestures {gesture}"),
         EventKind::Gesture { agent, .. } => format!("{agent} ends the gesture"),
         EventKind::Leaf { human, leaf } => format!("{human}: {leaf}"),
+        EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot, {distance_m:.2} m away"),
         EventKind::Encounter { human, node, gap_s, .. } => {
             let order = if *gap_s < 0.0 { "before" } else { "after" };

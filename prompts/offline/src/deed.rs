@@ -363,7 +363,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         },
     };
     let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
-    let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
+    let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched, ..Rule::default() };
     let stated = around.trigger.is_some() || around.distance_m.is_some();
     let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;
     let read = ReadRule {
@@ -424,14 +424,15 @@ pub(crate) fn settle_going_on(person: &mut Person) {
     }
     let last = person.rules.last().map(|last| last.rule.when.clone());
     let when = last.unwrap_or_else(|| vec![Trigger::RobotVisible(5.0)]);
-    let rule = Rule { when, act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    let rule = Rule { when, act: Action::Navigate, gesture: None, for_s: None, latched: true, ..Rule::default() };
     person.rules.push(ReadRule { rule, quote, stated: false, exact: false, then: true, lasts: false });
 }
 
 /// From a trigger on it walks on, whatever it did before.
 pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
-    let rule = Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    let rule =
+        Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true, ..Rule::default() };
     let read = ReadRule { rule, quote: quote.to_owned(), stated: true, exact: true, then: false, lasts: false };
     // Earlier rules win: what ends the others stands before them.
     if !person.rules.contains(&read) {
@@ -555,6 +556,7 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
         gesture: Some(gesture),
         for_s: Some(around.lasts_s.unwrap_or(lasts)),
         latched: true,
+        ..Rule::default()
     };
     person.rules.push(ReadRule {
         rule,

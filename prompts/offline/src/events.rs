@@ -46,7 +46,10 @@ impl List {
             std::mem::discriminant(&other.predicate) == std::mem::discriminant(&predicate)
                 && other.predicate.human() == predicate.human()
                 && (predicate.human().is_some()
-                    && !matches!(predicate, Predicate::Gestures { .. } | Predicate::Reacts { .. })
+                    && !matches!(
+                        predicate,
+                        Predicate::Gestures { .. } | Predicate::Reacts { .. } | Predicate::Step { .. }
+                    )
                     || other.predicate == predicate)
         };
         if let Some(known) = self.0.iter_mut().find(|other| other.role == role && same(other)) {
@@ -231,9 +234,29 @@ fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, propo
     }
 }
 
+/// A step begins so long after its reason at most, s.
+const STEP_S: f64 = 3.0;
+
+/// What must be seen of a step of a sequence: its own beginning and end, and what it does.
+fn of_step(list: &mut List, source: &str, human: &HumanProposal, (rule, number): (&Rule, u32)) {
+    let id = human.id;
+    // Who walks on goes their way, as everybody does.
+    if rule.act == Action::Navigate
+        && rule.gesture.is_none()
+        && rule.when.iter().all(|when| matches!(when, Trigger::Always | Trigger::Did(..)))
+    {
+        return;
+    }
+    let text = format!("{id}, step {number}: {}", rule.phrase());
+    list.setup(true, source, text, Predicate::Step { human: id, rule: rule.clone(), within_s: STEP_S });
+}
+
 /// What must be seen where a rule has played its part.
 fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, stated: bool) {
     let id = human.id;
+    if let Some(number) = rule.step {
+        of_step(list, source, human, (rule, number));
+    }
     let text = format!("{id} {}", done(&rule.act));
     let lasts = |most: f64| rule.for_s.map_or(most, |secs| (secs * 0.6).min(most));
     let seen = match &rule.act {

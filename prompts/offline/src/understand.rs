@@ -427,7 +427,14 @@ fn again_and_again(rough: &str, story: &mut Story) {
     };
     for (yields_m, blocks_m) in TURNS_M {
         for (act, m, secs) in [(Action::GiveWay, yields_m, YIELDS_S), (Action::Block, blocks_m, BLOCKS_S)] {
-            let rule = Rule { when: vec![Trigger::RobotNear(m)], act, gesture: None, for_s: Some(secs), latched: true };
+            let rule = Rule {
+                when: vec![Trigger::RobotNear(m)],
+                act,
+                gesture: None,
+                for_s: Some(secs),
+                latched: true,
+                ..Rule::default()
+            };
             person.rules.push(ReadRule { rule, stated: true, then: true, ..first.clone() });
         }
     }

@@ -76,7 +76,14 @@ pub(crate) fn proposal() -> Proposal {
         role: "visitor".into(),
         behavior: "crosses the corridor".into(),
         relation: Relation::Crossing,
-        rules: vec![Rule { when: vec![Trigger::RobotNear(3.0)], act, gesture: None, for_s: None, latched: false }],
+        rules: vec![Rule {
+            when: vec![Trigger::RobotNear(3.0)],
+            act,
+            gesture: None,
+            for_s: None,
+            latched: false,
+            ..Rule::default()
+        }],
         group: None,
         speed_mps: None,
         start: None,

@@ -27,6 +27,20 @@ pub trait World {
     fn robot_passed(&self) -> bool {
         false
     }
+    /// For how long the robot has stood, s; 0 while it moves and before it has set off.
+    fn robot_stood_s(&self) -> f64 {
+        0.0
+    }
+    /// How many steps of somebody's sequence have ended. Its own steps are seen in the tick in which they end.
+    fn steps_ended(&self, _id: HumanId) -> u32 {
+        0
+    }
+    /// Whether somebody is done ([`Trigger::Done`](socrates_model::Trigger::Done)).
+    fn is_done(&self, _id: HumanId) -> bool {
+        false
+    }
+    /// A step of this human's sequence has ended.
+    fn end_step(&mut self, _step: u32) {}
     /// The gesture another human makes.
     fn human_gesture(&self, id: HumanId) -> Option<Gesture>;
     /// Whether this human is at the present goal of its path.

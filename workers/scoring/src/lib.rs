@@ -48,6 +48,8 @@ mod meetings;
 mod reasons;
 #[cfg(test)]
 mod scenarios;
+#[cfg(test)]
+mod steps;
 
 pub use doubts::doubts;
 pub use evidence::Evidence;

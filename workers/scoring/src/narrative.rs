@@ -87,6 +87,7 @@ fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
             None if Action::FollowHuman(*human).is_leaf(leaf) => format!("{human} follows {}", leader(signals, *human)),
             None => format!("{human} runs {leaf}"),
         },
+        EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
         EventKind::Encounter { .. } => return signals.evidence.recording.encounter_words(event),
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),

@@ -69,6 +69,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
             (FaultCode::DNoMeet, Stage::Paths)
         }
         Predicate::Reacts { .. }
+        | Predicate::Step { .. }
         | Predicate::Blocks { .. }
         | Predicate::Looks { .. }
         | Predicate::StandsStill { .. }

@@ -3,10 +3,12 @@
 mod again;
 mod always;
 mod at_encounter;
+mod end_step;
 mod follow_human;
 mod force;
 mod foreign;
 mod goal_reached;
+mod has_ended;
 mod has_time_passed;
 mod human_says;
 mod hunav_1;
@@ -28,6 +30,7 @@ mod robot_moved;
 mod robot_nearby;
 mod robot_passed;
 mod robot_says;
+mod robot_stood;
 mod robot_stopped;
 mod robot_visible;
 mod run_once;
@@ -104,8 +107,12 @@ pub const CATALOG: &[&NodeSheet] = &[
     &motion::STAND_STILL,
 ];
 
-/// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.
+/// Nodes that are read and ticked, but offered to nobody: of BehaviorTree.CPP, and those by which the steps of a form are played.
 pub const RARE: &[&NodeSheet] = &[
+    &end_step::SHEET,
+    &has_ended::STEP,
+    &has_ended::ALL,
+    &robot_stood::SHEET,
     &in_order::ASYNC_SEQUENCE,
     &in_order::ASYNC_FALLBACK,
     &scripted::PRECONDITION,
@@ -179,7 +186,9 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
         }
     });
     let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
-    ours.chain(RARE.iter().copied()).chain(theirs)
+    let rare =
+        RARE.iter().copied().filter(move |sheet| library == Library::Native || sheet.library == Library::BuiltIn);
+    ours.chain(rare).chain(theirs)
 }
 
 /// Sheets a library knows, in catalog order: what a prompt may offer.

@@ -303,7 +303,7 @@ fn listeners(signals: &Signals<'_>, speaker: HumanId, gesture: Gesture) -> Vec<H
 }
 
 /// Marks of an action as the motion alone shows it, with the time for which it must be kept.
-fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
+pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
     let moments = signals.of(human);
     let follow = |leader: AgentId| -> Vec<Mark> {
         match (signals.track(leader), signals.tracks.human(human)) {

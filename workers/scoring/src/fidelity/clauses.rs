@@ -13,7 +13,9 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
-use crate::fidelity::{acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting};
+use crate::fidelity::{
+    acts, company, coverage, crowd, doorway, groups, meeting, reactions, ring, robot, setting, steps,
+};
 use crate::temporal::{Signal, Within};
 
 /// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
@@ -280,7 +282,10 @@ fn keeps_walk(rule: &Rule) -> bool {
         | Trigger::RobotStopped
         | Trigger::RobotSays(_)
         | Trigger::HumanSays(..)
-        | Trigger::AfterSecs(_) => false,
+        | Trigger::AfterSecs(_)
+        | Trigger::StoppedFor(_)
+        | Trigger::Did(..)
+        | Trigger::Done(_) => false,
     };
     rule.act == Action::Navigate || rule.when.iter().any(met)
 }
@@ -312,6 +317,7 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::RunsAway { human, by_m } => acts::runs_away(signals, *human, *by_m),
         Predicate::GivesWay { human } => acts::gives_way(signals, *human),
         Predicate::Reacts { human, when, act, within_s } => reactions::reacts(signals, *human, when, act, *within_s),
+        Predicate::Step { human, rule, within_s } => steps::step(signals, *human, rule, *within_s),
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),
         Predicate::StaysInside { human, door } => either(doorway::stays_inside(signals, *human, door)),
@@ -377,7 +383,14 @@ mod tests {
 
     #[test]
     fn only_what_is_done_before_the_meeting_keeps_somebody_from_being_on_time() {
-        let rule = |when, act| Rule { when: vec![when], act, gesture: None, for_s: Some(3.0), latched: true };
+        let rule = |when, act| Rule {
+            when: vec![when],
+            act,
+            gesture: None,
+            for_s: Some(3.0),
+            latched: true,
+            ..Rule::default()
+        };
         for (when, act, keeps) in [
             (Trigger::RobotNear(4.0), Action::StandStill, false),
             (Trigger::RobotVisible(3.0), Action::LookAtRobot, false),

@@ -110,6 +110,11 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
             matches!(fact, FactKind::Gestures { human, gesture: asked }
                 if *agent == AgentId::Human(*human) && asked == gesture)
         }
+        Predicate::Step { human, rule, .. } => match fact {
+            FactKind::Reacts { human: who, rule: asked } => who == human && asked.act == rule.act,
+            FactKind::Gestures { human: who, gesture } => who == human && rule.gesture == Some(*gesture),
+            _ => false,
+        },
         Predicate::MeetsAgain { human, nth, .. } => {
             matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
         }

@@ -68,6 +68,7 @@ fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
         }
         EventKind::Gesture { .. }
         | EventKind::Leaf { .. }
+        | EventKind::StepEnded { .. }
         | EventKind::Sees { .. }
         | EventKind::Encounter { .. }
         | EventKind::Contact { .. }

@@ -68,7 +68,7 @@ pub(super) fn with_states(
 fn moved(event: &Event, agent: AgentId, own: &impl Fn(f64) -> Option<f64>) -> Option<Event> {
     let (about, keeps) = match &event.kind {
         EventKind::Gesture { agent: who, .. } => (*who == agent, true),
-        EventKind::Leaf { human, .. } => (AgentId::Human(*human) == agent, true),
+        EventKind::Leaf { human, .. } | EventKind::StepEnded { human, .. } => (AgentId::Human(*human) == agent, true),
         EventKind::Sees { human, .. } | EventKind::Encounter { human, .. } => (AgentId::Human(*human) == agent, false),
         EventKind::Contact { a, b, .. } => (*a == agent || *b == agent, false),
         EventKind::WallContact { agent: who, .. }

@@ -8,6 +8,7 @@ mod early;
 mod edit;
 mod harmless;
 mod spoil;
+mod steps;
 
 use socrates_model::Recording;
 

@@ -58,6 +58,7 @@ pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
     }
     case_lists(evidence, &mut add);
     super::early::early(evidence, &mut add);
+    super::steps::steps(evidence, &mut add);
     let mut seen = std::collections::BTreeSet::new();
     found.retain(|mutant| seen.insert((mutant.kind, mutant.about.clone())));
     found

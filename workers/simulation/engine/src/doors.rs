@@ -69,6 +69,7 @@ impl Raised {
             EventKind::Door { door, open: false } => (format!("door {door} closes"), None),
             EventKind::RobotArrived => ("robot arrived".to_owned(), None),
             EventKind::Sees { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Encounter { .. }
             | EventKind::Contact { .. }
             | EventKind::WallContact { .. }

@@ -1,7 +1,7 @@
 //! One human of the run: body, way, tree.
 
 use socrates_bt::{Tree, TreeState};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Vector};
+use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Trigger, Vector};
 
 use crate::make_room::Facing;
 use crate::models::Walks;
@@ -99,6 +99,9 @@ pub(crate) struct Human {
     pub(crate) facing: Facing,
     /// How near the robot has been to it, m.
     pub(crate) nearest_robot_m: f64,
+    /// How many steps its sequence has, and how many of them have ended.
+    pub(crate) steps: u32,
+    pub(crate) steps_ended: u32,
     /// Whether it ever walked.
     pub(crate) started: bool,
     /// Where it walked, a point every decimeter.
@@ -131,6 +134,15 @@ impl Human {
                 || left < reach && self.s > self.route.length_m() - 0.6
                 || beside && self.s > self.route.length_m() - 1.2
         })
+    }
+
+    /// Whether all its steps have ended; without steps, whether its walk has led it past where it meets the robot, or to its end.
+    pub(crate) fn is_done(&self) -> bool {
+        if self.steps > 0 {
+            return self.steps_ended >= self.steps;
+        }
+        let past = self.meetings.last().is_some_and(|meeting| self.s > meeting.human_s + Trigger::DONE_M);
+        past || self.at_goal()
     }
 
     /// Whether it is beyond the door that it waits for to go in; of anybody else it is not asked.

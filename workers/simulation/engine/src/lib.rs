@@ -60,6 +60,8 @@ mod meeting_runs;
 #[cfg(test)]
 mod model_runs;
 #[cfg(test)]
+mod step_runs;
+#[cfg(test)]
 mod tests;
 
 pub use contacts::{Body, Touch, resolve};

@@ -4,8 +4,7 @@ use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, Gesture, HumanId, Recording, RecordingHeader, RobotDriver,
-    SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, Recording, RecordingHeader, RobotDriver, SimTime,
 };
 
 use crate::advance::Desk;
@@ -19,7 +18,7 @@ use crate::rendezvous::{self, Timing};
 use crate::robot::Robot;
 use crate::script::Script;
 use crate::setup::{self, Setup};
-use crate::view::{RobotSeen, View};
+use crate::view::{RobotSeen, Shown, View};
 use crate::{meetings, start, walk};
 
 /// Nearer than this to the end of its way the robot is at its goal, m.
@@ -208,21 +207,32 @@ impl Engine {
             at: robot.at(),
             speed_mps: robot.velocity.norm(),
             has_moved: robot.has_moved,
+            stood_s: robot.stood_s,
             gesture: robot.gesture,
         });
-        let gestures: Vec<(HumanId, Option<Gesture>)> =
-            self.humans.iter().map(|human| (human.id, human.gesture)).collect();
+        let show = |human: &Human| Shown {
+            id: human.id,
+            gesture: human.gesture,
+            steps_ended: human.steps_ended,
+            done: human.is_done(),
+        };
+        let shown: Vec<Shown> = self.humans.iter().map(show).collect();
         for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
             if let Some(robot) = robot.filter(|_| human.present()) {
                 human.nearest_robot_m = human.nearest_robot_m.min((robot.at - human.at).norm());
             }
             // Out of the human while its tree looks at it.
             let mut state = std::mem::take(&mut human.state);
-            let mut view = View::of(human, &self.floor, now, robot, &gestures);
+            let mut view = View::of(human, &self.floor, now, robot, &shown);
             human.tree.tick(&mut state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
+            let ended = view.steps_ended;
             human.notice.robot_seen = view.looked();
             human.state = state;
+            for step in human.steps_ended + 1..=ended {
+                recorder.tell(EventKind::StepEnded { human: human.id, step });
+            }
+            human.steps_ended = ended;
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
             }

@@ -81,6 +81,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         omega: 0.0,
         velocity: Vector::zeros(),
         has_moved: false,
+        stood_s: 0.0,
         command: Command::default(),
         calls: 0,
         gesture: None,
@@ -249,6 +250,7 @@ fn human(
         doors,
         yaw: facing,
         speed_mps,
+        steps: proposal.steps(),
         ..bare(proposal.id, tree, state, at)
     }
 }
@@ -296,6 +298,8 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         yields_until_s: 0.0,
         facing: Facing::default(),
         nearest_robot_m: f64::INFINITY,
+        steps: 0,
+        steps_ended: 0,
         started: false,
         trail: Polyline::default(),
         notice: Notice::default(),

@@ -25,7 +25,19 @@ pub(crate) struct RobotSeen {
     pub(crate) speed_mps: f64,
     /// Whether it has moved in this run.
     pub(crate) has_moved: bool,
+    /// For how long it has stood, s.
+    pub(crate) stood_s: f64,
     pub(crate) gesture: Option<Gesture>,
+}
+
+/// What somebody shows the others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shown {
+    pub(crate) id: HumanId,
+    pub(crate) gesture: Option<Gesture>,
+    /// How many of their steps have ended, and whether they are done.
+    pub(crate) steps_ended: u32,
+    pub(crate) done: bool,
 }
 
 /// One human's view of the start of a tick.
@@ -33,14 +45,16 @@ pub(crate) struct View<'a> {
     pub(crate) floor: &'a Floor,
     pub(crate) now: SimTime,
     pub(crate) robot: Option<RobotSeen>,
-    /// Gestures of all humans, in the order of ids.
-    pub(crate) gestures: &'a [(HumanId, Option<Gesture>)],
+    /// What all humans show, in the order of ids.
+    pub(crate) shown: &'a [Shown],
     human: &'a Human,
     sight: Cell<Option<bool>>,
     /// What the tree asked for.
     pub(crate) act: Option<Action>,
     /// What it says from now on; the inner none takes an earlier gesture back.
     pub(crate) say: Option<Option<Gesture>>,
+    /// The last step of its own that has ended, this tick included.
+    pub(crate) steps_ended: u32,
 }
 
 impl<'a> View<'a> {
@@ -49,9 +63,15 @@ impl<'a> View<'a> {
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
-        gestures: &'a [(HumanId, Option<Gesture>)],
+        shown: &'a [Shown],
     ) -> Self {
-        Self { floor, now, robot, gestures, human, sight: Cell::new(human.notice.robot_seen), act: None, say: None }
+        let sight = Cell::new(human.notice.robot_seen);
+        Self { floor, now, robot, shown, human, sight, act: None, say: None, steps_ended: human.steps_ended }
+    }
+
+    fn shown(&self, id: HumanId) -> Option<&Shown> {
+        let place = self.shown.binary_search_by_key(&id, |shown| shown.id).ok()?;
+        self.shown.get(place)
     }
 
     /// Whether a way lies in the field of view.
@@ -126,8 +146,23 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
-        let place = self.gestures.binary_search_by_key(&id, |(human, _)| *human);
-        place.ok().and_then(|place| self.gestures.get(place)).and_then(|(_, gesture)| *gesture)
+        self.shown(id).and_then(|shown| shown.gesture)
+    }
+
+    fn robot_stood_s(&self) -> f64 {
+        self.robot.map_or(0.0, |robot| robot.stood_s)
+    }
+
+    fn steps_ended(&self, id: HumanId) -> u32 {
+        if id == self.human.id { self.steps_ended } else { self.shown(id).map_or(0, |shown| shown.steps_ended) }
+    }
+
+    fn is_done(&self, id: HumanId) -> bool {
+        self.shown(id).is_some_and(|shown| shown.done)
+    }
+
+    fn end_step(&mut self, step: u32) {
+        self.steps_ended = self.steps_ended.max(step);
     }
 
     fn goal_reached(&self) -> bool {
