@@ -99,7 +99,11 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             vec![meters("within_m", *within_m, (0.1, 4.0))]
         }
         // Whoever stops on the way leaves a long gap.
-        Predicate::Crosses { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 12.0))],
+        // Whoever is let through is there long before a robot that waits for them.
+        Predicate::Crosses { human, gap_s } => {
+            let most = if proposal.is_let_through(*human) { 40.0 } else { 12.0 };
+            vec![secs("gap_s", *gap_s, (0.2, most))]
+        }
         Predicate::OnTime { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 10.0))],
         Predicate::Ahead { within_m, for_s: time, .. } => {
             vec![meters("within_m", *within_m, (0.5, 12.0)), for_s(*time)]
@@ -175,7 +179,11 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::RobotEntersLast
         | Predicate::RobotLeavesFirst
         | Predicate::RobotJoins { .. }
+        | Predicate::GesturesTo { .. }
+        | Predicate::TurnsBack { .. }
+        | Predicate::GoesTo { .. }
         | Predicate::RobotLeavesGroup { .. } => Vec::new(),
+        Predicate::ChangesPace { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::request::MAX_HUMANS;
-use socrates_model::{Action, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger, Where};
+use socrates_model::{Action, AgentId, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger, Where};
 use socrates_model::{HumanProposal, Relation};
 
 use crate::lexicon::{ABILITIES, humans_named, impossible};
@@ -169,10 +169,15 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
             | Trigger::AtEncounter => {}
         }
     }
-    if let Action::FollowHuman(id) = rule.act
+    if let Action::FollowHuman(id) | Action::LookAt(id) = rule.act
         && !known(id)
     {
-        wrong.push(format!("follows {id}; allowed: {}", others()));
+        wrong.push(format!("{}; allowed: {}", rule.act.phrase(), others()));
+    }
+    if let Some(AgentId::Human(id)) = rule.to
+        && !known(id)
+    {
+        wrong.push(format!("makes a sign to {id}; allowed: {}", others()));
     }
     if let Some(s) = rule.for_s.filter(|s| !(*s > 0.0 && *s <= 600.0)) {
         wrong.push(format!("lasts {s} s; allowed: more than 0 and at most 600 s"));
@@ -185,6 +190,8 @@ fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     let tied = |id: HumanId| {
         let by_rule = human.rules.iter().any(|rule| {
             rule.act == Action::FollowHuman(id)
+                || rule.act == Action::LookAt(id)
+                || rule.to == Some(AgentId::Human(id))
                 || rule.when.iter().chain(&rule.until).any(|trigger| {
                     matches!(trigger,
                     Trigger::HumanSays(other, _) | Trigger::Did(other, _) | Trigger::Done(other) if *other == id)

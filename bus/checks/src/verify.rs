@@ -97,6 +97,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         FactKind::Group { .. }
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
+        | FactKind::GesturesTo { .. }
         | FactKind::MeetsTimes { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_)
@@ -112,9 +113,10 @@ const fn needs_clause(kind: &FactKind) -> bool {
 
 const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::MeetsTimes { human, .. } => {
-            Some(*human)
-        }
+        FactKind::Reacts { human, .. }
+        | FactKind::Gestures { human, .. }
+        | FactKind::GesturesTo { human, .. }
+        | FactKind::MeetsTimes { human, .. } => Some(*human),
         FactKind::Humans(_)
         | FactKind::Before { .. }
         | FactKind::Group { .. }

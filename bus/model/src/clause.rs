@@ -216,6 +216,35 @@ pub enum Predicate {
         /// Which.
         gesture: Gesture,
     },
+    /// The human makes the gesture to somebody: stands within 8 m of them and faces them (20°) for 60 % of the time of the gesture;
+    /// the robot does not stop by a gesture that is made to somebody else.
+    GesturesTo {
+        /// Who.
+        human: HumanId,
+        /// Which.
+        gesture: Gesture,
+        /// To whom.
+        to: AgentId,
+    },
+    /// The human walks back: for at least 2 m, with the heading turned by 150° or more from that before.
+    TurnsBack {
+        /// Who.
+        human: HumanId,
+    },
+    /// After the reason for it the human comes within 1 m of one of the nodes, from farther away.
+    GoesTo {
+        /// Who.
+        human: HumanId,
+        /// The nodes of the place.
+        nodes: Vec<NodeId>,
+    },
+    /// The human walks at another speed than before: the mean over 3 s of walking differs by 25 % or more, toward the speed asked for.
+    ChangesPace {
+        /// Who.
+        human: HumanId,
+        /// The speed from then on, m/s.
+        mps: f64,
+    },
     /// The human starts inside the door and crosses its line outward exactly once.
     Leaves {
         /// Who.
@@ -381,6 +410,10 @@ impl Predicate {
             | Self::GivesWay { human }
             | Self::Reacts { human, .. }
             | Self::Step { human, .. }
+            | Self::GesturesTo { human, .. }
+            | Self::TurnsBack { human }
+            | Self::GoesTo { human, .. }
+            | Self::ChangesPace { human, .. }
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
             | Self::Enters { human, .. }
@@ -449,6 +482,10 @@ impl Predicate {
             | Self::GivesWay { .. }
             | Self::Reacts { .. }
             | Self::Step { .. }
+            | Self::GesturesTo { .. }
+            | Self::TurnsBack { .. }
+            | Self::GoesTo { .. }
+            | Self::ChangesPace { .. }
             | Self::Gestures { .. }
             | Self::Leaves { .. }
             | Self::StaysInside { .. }

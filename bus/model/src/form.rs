@@ -243,6 +243,8 @@ pub enum RobotDeed {
     Say(Gesture),
     /// Stands for so many s, 0.1 to 60.
     HoldS(f64),
+    /// Stands until this comes, for 60 s at most.
+    HoldUntil(RobotMoment),
     /// Waits until everybody who leaves has left.
     WaitForLeavers(bool),
     /// Follows somebody.
@@ -257,11 +259,13 @@ pub enum RobotDeed {
 
 impl RobotDeed {
     /// Keys of the deeds.
-    pub const KEYS: [&str; 7] = ["say", "hold_s", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
+    pub const KEYS: [&str; 8] =
+        ["say", "hold_s", "hold_until", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
     /// The deeds with how each is written, for messages.
     pub(crate) const WORDS: &[(&str, &str)] = &[
         ("say", "say = \"WAIT\""),
         ("hold_s", "hold_s = 3.0"),
+        ("hold_until", "hold_until = { human_says = \"PROCEED\" }"),
         ("wait_for_leavers", "wait_for_leavers = true"),
         ("follow", "follow = \"nurse\""),
         ("beside", "beside = \"nurse\""),
@@ -269,12 +273,13 @@ impl RobotDeed {
         ("lead_m", "lead_m = 4.0"),
     ];
     /// The deeds, for messages.
-    pub const ALLOWED: &str = "one of say = \"WAIT\", hold_s = 3.0, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
+    pub const ALLOWED: &str = "one of say = \"WAIT\", hold_s = 3.0, hold_until = { human_says = \"PROCEED\" }, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
 
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
         match self {
             Self::HoldS(s) => Some((*s, [0.1, 60.0], "s")),
             Self::LeadM(m) => Some((*m, [1.0, 15.0], "m")),
+            Self::HoldUntil(moment) => moment.number(),
             Self::Say(_) | Self::WaitForLeavers(_) | Self::Follow(_) | Self::Beside(_) | Self::Overtake(_) => None,
         }
     }
@@ -282,6 +287,7 @@ impl RobotDeed {
     pub(crate) const fn names(&self) -> Option<&String> {
         match self {
             Self::Follow(id) | Self::Beside(id) | Self::Overtake(id) => Some(id),
+            Self::HoldUntil(moment) => moment.names(),
             Self::Say(_) | Self::HoldS(_) | Self::WaitForLeavers(_) | Self::LeadM(_) => None,
         }
     }
@@ -410,6 +416,7 @@ impl Form {
             Some(match deed {
                 RobotDeed::Say(gesture) => RobotDo::Say(*gesture),
                 RobotDeed::HoldS(s) => RobotDo::Hold(*s),
+                RobotDeed::HoldUntil(moment) => RobotDo::HoldUntil(when(moment)?),
                 RobotDeed::WaitForLeavers(_) => RobotDo::WaitForLeavers,
                 RobotDeed::Follow(name) => RobotDo::Follow(self.one(name)?),
                 RobotDeed::Beside(name) => RobotDo::Abreast(self.one(name)?),

@@ -144,6 +144,9 @@ pub enum EventKind {
         #[serde(with = "crate::gesture::or_none")]
         #[schemars(with = "String")]
         gesture: Option<Gesture>,
+        /// To whom, where it is made to one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to: Option<AgentId>,
     },
     /// Another leaf of a human's tree runs.
     Leaf {

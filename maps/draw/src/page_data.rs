@@ -88,8 +88,9 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
     let secs = event.time.secs();
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
     match &event.kind {
-        EventKind::Gesture { agent, gesture: Some(gesture) } => {
-            mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
+        EventKind::Gesture { agent, gesture: Some(gesture), to } => {
+            let to = to.map_or_else(String::new, |to| format!(" to {to}"));
+            mark(agent.number(), "gesture", format!("{agent} says {gesture}{to}"))
         }
         EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),
         EventKind::Sees { human, distance_m } => {

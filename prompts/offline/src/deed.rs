@@ -39,6 +39,9 @@ pub(crate) struct Around {
 pub(crate) const STARTLED_S: f64 = 8.0;
 /// Who follows and then walks on follows for so long, s.
 const FOLLOWS_S: f64 = 8.0;
+/// Paces of whoever slows down and of whoever speeds up, m/s.
+const SLOW_MPS: f64 = 0.6;
+const FAST_MPS: f64 = 1.7;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -53,6 +56,9 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
         Act::Approach => (Action::Approach, Trigger::RobotVisible(5.0), Some(8.0), true),
         Act::Follow => (Action::FollowRobot, Trigger::RobotVisible(8.0), None, true),
         Act::Stop => (Action::StandStill, Trigger::RobotVisible(3.0), Some(5.0), true),
+        Act::TurnBack => (Action::TurnBack, Trigger::RobotVisible(4.0), None, true),
+        Act::SlowDown => (Action::ChangePace(SLOW_MPS), Trigger::RobotVisible(5.0), None, true),
+        Act::SpeedUp => (Action::ChangePace(FAST_MPS), Trigger::RobotVisible(5.0), None, true),
         Act::Toward
         | Act::Overtake
         | Act::Behind
@@ -106,6 +112,9 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
         Act::Lead => "leads".into(),
         Act::GoOn => "walks on".into(),
         Act::Pass | Act::Walk => "walks".into(),
+        Act::TurnBack => "turns back".into(),
+        Act::SlowDown => "slows down".into(),
+        Act::SpeedUp => "speeds up".into(),
     }
 }
 

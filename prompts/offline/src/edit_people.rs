@@ -561,6 +561,7 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     let of = |kind: &FactKind| {
         if let FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
+        | FactKind::GesturesTo { human, .. }
         | FactKind::Relates { human, .. }
         | FactKind::MeetsTimes { human, .. } = kind
         {

@@ -39,6 +39,7 @@ mod refer;
 mod topic;
 
 mod actors;
+mod addressee;
 mod arrows;
 mod labels;
 mod notes;

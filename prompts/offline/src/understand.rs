@@ -290,7 +290,11 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
                 continue;
             }
             match read.rule.gesture {
-                Some(gesture) => facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture })),
+                Some(gesture) => {
+                    facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture }));
+                    let to = read.rule.to.map(|to| FactKind::GesturesTo { human: id(i), gesture, to });
+                    facts.extend(to.map(|kind| (read.quote.clone(), kind)));
+                }
                 None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),
             }
         }

@@ -18,6 +18,9 @@ pub(crate) fn check(human: HumanId, rules: &[Rule]) -> Vec<Fault> {
         if rule.act == Action::FollowHuman(human) {
             faults.push(Fault::new(FaultCode::BRange, &at, format!("{human} cannot follow itself")));
         }
+        if rule.act == Action::LookAt(human) || rule.to == Some(human.into()) {
+            faults.push(Fault::new(FaultCode::BRange, &at, format!("{human} cannot turn to itself")));
+        }
         if let Some(secs) = rule.for_s
             && !(secs > 0.0 && secs <= MAX_SECS)
         {

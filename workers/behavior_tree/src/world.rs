@@ -1,6 +1,6 @@
 //! What a tree sees and what it can do.
 
-use socrates_model::{Action, Gesture, HumanId, SimTime};
+use socrates_model::{Action, AgentId, Gesture, HumanId, SimTime};
 
 use crate::leaf::LeafCall;
 use crate::status::Status;
@@ -50,6 +50,10 @@ pub trait World {
     fn path_done(&self) -> bool {
         self.goal_reached()
     }
+    /// Whether this human is at the end of a way that its present act has taken.
+    fn has_arrived(&self) -> bool {
+        self.path_done()
+    }
     /// Takes the next goal of the path; at the last one nothing changes.
     fn next_goal(&mut self);
     /// Whether this human is at the node where it meets the robot; of several, the first.
@@ -63,6 +67,12 @@ pub trait World {
     fn act(&mut self, action: &Action, leaf: u16);
     /// Makes a gesture that lasts until the next one; none takes an earlier one back.
     fn gesture(&mut self, gesture: Option<Gesture>);
+
+    /// Makes a gesture to somebody, which lasts until the next one. In a world that does not tell listeners apart everybody
+    /// notices it.
+    fn gesture_to(&mut self, gesture: Gesture, _to: AgentId) {
+        self.gesture(Some(gesture));
+    }
 
     /// Ticks a leaf of the catalog in this world's own meaning; `None` leaves it to the native one. In trees read
     /// with [`Meaning::World`](crate::Meaning::World) it is asked for every condition and action, timers included,

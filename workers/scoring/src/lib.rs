@@ -49,6 +49,8 @@ mod reasons;
 #[cfg(test)]
 mod scenarios;
 #[cfg(test)]
+mod signs;
+#[cfg(test)]
 mod steps;
 
 pub use doubts::doubts;

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Form, FormHuman};
+use super::{Form, FormHuman, Pace, PaceWord, PlaceWord};
 use crate::gesture::Gesture;
-use crate::ids::HumanId;
+use crate::ids::{AgentId, HumanId};
 use crate::rule::{Action, Rule, Trigger};
 
 /// One step of `does`, or one rule of `reacts`.
@@ -27,6 +27,12 @@ pub struct Step {
     /// Gesture made with it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub say: Option<Gesture>,
+    /// To whom: a person, `robot`, or `all`. Default: whoever notices it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<String>,
+    /// How fast they walk from then on, for `change_pace`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pace: Option<Pace>,
 }
 
 /// A trigger of a form: as [`Trigger`], with people by name.
@@ -147,6 +153,14 @@ pub enum Deed {
     Block,
     /// Goes up to the robot.
     Approach,
+    /// Stops and turns to somebody else.
+    LookAt(String),
+    /// Turns and walks back the way they came.
+    TurnBack,
+    /// Leaves their way and goes to a place.
+    GoTo(PlaceWord),
+    /// Walks on, from then on at another pace.
+    ChangePace,
 }
 
 impl Deed {
@@ -161,6 +175,10 @@ impl Deed {
         ("give_way", "\"give_way\""),
         ("block", "\"block\""),
         ("approach", "\"approach\""),
+        ("look_at", "{ look_at = \"nurse\" }"),
+        ("turn_back", "\"turn_back\""),
+        ("go_to", "{ go_to = \"corridor\" }"),
+        ("change_pace", "\"change_pace\""),
     ];
 
     /// The acts, for messages.
@@ -171,13 +189,27 @@ impl Deed {
 
     /// The person whom it names, with the key by which it does.
     pub(crate) const fn names(&self) -> Option<(&String, &'static str)> {
-        if let Self::FollowHuman(id) = self { Some((id, "follow_human")) } else { None }
+        match self {
+            Self::FollowHuman(id) => Some((id, "follow_human")),
+            Self::LookAt(id) => Some((id, "look_at")),
+            Self::Navigate
+            | Self::StandStill
+            | Self::LookAtRobot
+            | Self::FollowRobot
+            | Self::RunAway
+            | Self::GiveWay
+            | Self::Block
+            | Self::Approach
+            | Self::TurnBack
+            | Self::GoTo(_)
+            | Self::ChangePace => None,
+        }
     }
 
     /// What ends it where nothing is said of that.
     const fn ends(&self) -> Option<Trigger> {
         match self {
-            Self::Navigate => Some(Trigger::GoalReached),
+            Self::Navigate | Self::TurnBack | Self::GoTo(_) => Some(Trigger::GoalReached),
             Self::GiveWay => Some(Trigger::RobotPassed),
             Self::StandStill
             | Self::LookAtRobot
@@ -185,19 +217,31 @@ impl Deed {
             | Self::FollowHuman(_)
             | Self::RunAway
             | Self::Block
-            | Self::Approach => None,
+            | Self::Approach
+            | Self::LookAt(_)
+            | Self::ChangePace => None,
         }
+    }
+
+    /// Whether somebody stands for it, so that they can turn to whomever a sign is made to.
+    pub(crate) const fn stands(&self) -> bool {
+        matches!(self, Self::StandStill | Self::LookAtRobot | Self::LookAt(_))
     }
 }
 
 impl Step {
     /// A sign without an act lasts so long, s.
     pub const SIGN_S: f64 = 2.0;
+    /// Another pace is taken up in so much time, s; it stays.
+    pub const PACE_S: f64 = 1.0;
+    /// Usual walking speed, m/s: what `normal` means for a pace that changes.
+    const NORMAL_MPS: f64 = 1.2;
 
     /// For how long it lasts at most, s: as stated; a sign for a moment where nothing else is said.
     fn lasts_s(&self) -> Option<f64> {
         let sign = self.act.is_none() && self.say.is_some() && self.until.is_empty();
-        self.for_s.or_else(|| sign.then_some(Self::SIGN_S))
+        let pace = self.act == Some(Deed::ChangePace) && self.until.is_empty();
+        self.for_s.or_else(|| sign.then_some(Self::SIGN_S)).or_else(|| pace.then_some(Self::PACE_S))
     }
 
     /// What ends it by itself.
@@ -235,8 +279,19 @@ impl Form {
     fn rule(&self, step: &Step) -> Option<Rule> {
         let when = self.triggers(&step.when)?;
         let when = if when.is_empty() { vec![Trigger::Always] } else { when };
-        let act = step.act.as_ref().map_or(Some(Action::StandStill), |deed| self.action(deed))?;
-        Some(Rule { when, act, gesture: step.say, for_s: step.lasts_s(), ..Rule::default() })
+        let to = step.to.as_deref().filter(|_| step.say.is_some()).and_then(|name| self.agents(name).first().copied());
+        let act = match (&step.act, to) {
+            (Some(Deed::ChangePace), _) => {
+                let normal = step.pace.is_some_and(|pace| pace == Pace::Word(PaceWord::Normal));
+                Action::ChangePace(step.pace?.mps().or_else(|| normal.then_some(Step::NORMAL_MPS))?)
+            }
+            // A sign is made facing whomever it is made to.
+            (None | Some(Deed::StandStill), Some(AgentId::Human(id))) => Action::LookAt(id),
+            (None | Some(Deed::StandStill), Some(AgentId::Robot)) => Action::LookAtRobot,
+            (None, None) => Action::StandStill,
+            (Some(deed), _) => self.action(deed)?,
+        };
+        Some(Rule { when, act, gesture: step.say, to, for_s: step.lasts_s(), ..Rule::default() })
     }
 
     fn triggers(&self, when: &[When]) -> Option<Vec<Trigger>> {
@@ -275,6 +330,12 @@ impl Form {
             Deed::GiveWay => Action::GiveWay,
             Deed::Block => Action::Block,
             Deed::Approach => Action::Approach,
+            Deed::LookAt(name) => Action::LookAt(self.one(name)?),
+            Deed::TurnBack => Action::TurnBack,
+            // Its nodes are those of a map.
+            Deed::GoTo(place) => Action::GoTo { place: place.to_string().replace('_', " "), nodes: Vec::new() },
+            // With its pace: see `rule`.
+            Deed::ChangePace => return None,
         })
     }
 }

@@ -217,6 +217,10 @@ impl Door<'_> {
 
     /// What a line of the robot's part does.
     fn robot_deed(&mut self, key: &str, value: &Node) -> Option<RobotDeed> {
+        if key == "hold_until" {
+            // A moment of its own, with its own words.
+            return self.word_of::<RobotMoment>("robot.does.hold_until", value, &MOMENTS).map(RobotDeed::HoldUntil);
+        }
         let entry = (key.to_owned(), value.at, value.clone());
         let node = Node { at: value.at, kind: Kind::Table(vec![entry]) };
         self.word_of(&format!("robot.does.{key}"), &node, &DEEDS)

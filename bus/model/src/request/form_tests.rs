@@ -185,3 +185,51 @@ fn a_list_of_words_is_named_in_full_once() {
     assert_eq!(problems.iter().filter(|problem| problem.contains("{ after_secs = 5.0 }")).count(), 1, "{problems:#?}");
     assert!(problems.iter().all(|problem| !problem.contains("variant")), "{problems:#?}");
 }
+
+#[test]
+fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
+    let form = form(
+        "[[human]]\nid = \"guard\"\nrelation = \"static\"\ndoes = [{ when = { robot_near = 4 }, say = \"WAIT\", to = \"visitor\" }]\n\
+         [[human]]\nid = \"visitor\"\nrelation = \"frontal\"\ndoes = [{ act = \"change_pace\", pace = \"slow\" },\n\
+         { when = { human_says = [\"guard\", \"WAIT\"] }, act = { look_at = \"guard\" }, for_s = 2 }, { act = \"turn_back\" },\n\
+         { act = { go_to = \"ward 2\" } }]\n",
+    );
+    let (guard, visitor) = (HumanId::new(1), HumanId::new(2));
+    let people = form.people();
+    assert_eq!(
+        (people[0].rules[0].to, &people[0].rules[0].act),
+        (Some(AgentId::Human(visitor)), &Action::LookAt(visitor))
+    );
+    let acts: Vec<&Action> = people[1].rules.iter().map(|rule| &rule.act).collect();
+    let place = Action::GoTo { place: "ward 2".into(), nodes: Vec::new() };
+    assert_eq!(acts, [&Action::ChangePace(0.6), &Action::LookAt(guard), &Action::TurnBack, &place]);
+    assert_eq!((people[1].rules[0].for_s, &people[1].rules[2].until[..]), (Some(1.0), &[Trigger::GoalReached][..]));
+}
+
+#[test]
+fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
+    let human = "[[human]]\nid = \"a\"\nrelation = \"static\"\n";
+    for (more, wanted) in [
+        ("does = [{ say = \"WAIT\", to = \"bob\" }]\n", "my.toml:6:30 `to`: `bob` is nobody (a)"),
+        ("does = [{ act = \"block\", to = \"all\" }]\n", "`human.does.to`: is said of a step without a sign"),
+        ("does = [{ say = \"WAIT\", to = \"a\" }]\n", "`human.does`: is done to themselves"),
+        ("does = [{ say = \"WAIT\", act = \"block\", to = \"robot\" }]\n", "is said of a sign that is made walking"),
+        ("does = [{ say = \"WAITT\" }]\n", "`WAITT` is no sign (nearest: WAIT; signs: WAIT, PROCEED"),
+        ("does = [{ act = \"turn_back\" }]\n", "`human.does.act`: walks, but stands by its relation"),
+        ("does = [{ act = \"change_pace\" }]\n", "`human.does.pace`: is missing for change_pace"),
+        ("does = [{ act = \"block\", pace = \"slow\" }]\n", "`human.does.pace`: belongs to act"),
+        ("reacts = [{ when = \"always\", act = { go_to = \"room\" } }]\n", "changes the way or the pace for good"),
+        (
+            "does = [{ say = \"WAIT\", to = \"robot\" }]\n[[human]]\nrelation = \"frontal\"\n\
+             does = [{ when = { human_says = [\"a\", \"WAIT\"] }, act = \"block\" }]\n",
+            "WAIT of `a` is made to somebody else",
+        ),
+        (
+            "[robot]\ndoes = [{ hold_until = \"human_says\" }]\n",
+            "`human_says` is not written as \"human_says\" (write { human_says = \"WAIT\" })",
+        ),
+    ] {
+        let problems = read(&format!("{human}{more}")).err().unwrap_or_else(|| panic!("{more} is taken"));
+        assert!(problems.iter().any(|problem| problem.contains(wanted)), "{wanted}\n{problems:#?}");
+    }
+}

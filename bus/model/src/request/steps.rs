@@ -4,16 +4,28 @@ use super::form::{Names, Naming};
 use super::read::{Door, GESTURES, Section};
 use super::tree::{Kind, Node, TextPlace};
 use super::words::Words;
-use crate::form::{Deed, Form, FormHuman, Step, When};
+use crate::form::{Deed, Form, FormHuman, Pace, Step, When};
+use crate::gesture::Gesture;
 use crate::proposal::Relation;
 
-const STEP_KEYS: [&str; 5] = ["when", "act", "for_s", "until", "say"];
+const STEP_KEYS: [&str; 7] = ["when", "act", "for_s", "until", "say", "to", "pace"];
 /// Steps of `does`, and of `reacts`.
 const MOST_STEPS: usize = 12;
 /// Longest time of a step, s.
 const MOST_S: f64 = 600.0;
 
 const TRIGGERS: Words = Words { what: "trigger", all: When::WORDS, more: ", or a list of them" };
+const SIGNS: Words = Words {
+    what: "sign",
+    all: &[
+        ("WAIT", "WAIT"),
+        ("PROCEED", "PROCEED"),
+        ("ACKNOWLEDGED", "ACKNOWLEDGED"),
+        ("EXCUSE_ME", "EXCUSE_ME"),
+        ("FOLLOW_ME", "FOLLOW_ME"),
+    ],
+    more: "",
+};
 const ACTS: Words = Words { what: "act", all: Deed::WORDS, more: "" };
 
 impl Door<'_> {
@@ -67,7 +79,7 @@ impl Door<'_> {
             let at = section.get("for_s").and_then(|node| node.at);
             self.bad(section.key("for_s"), at, format!("{secs} s is out of range"), "0.1 to 600 (s)");
         }
-        let say = self.maybe(&section, "say", GESTURES);
+        let say = section.get("say").and_then(|node| self.word_of::<Gesture>(&section.key("say"), node, &SIGNS));
         if section.get("act").is_none() && section.get("say").is_none() {
             self.bad(
                 path.trim_end_matches('.'),
@@ -76,7 +88,51 @@ impl Door<'_> {
                 format!("act: {}; say: {GESTURES}", Deed::allowed()),
             );
         }
-        Some(Step { when, act, for_s, until, say })
+        let to = self.to(&section, (act.as_ref(), say.is_some()), names);
+        let pace = self.step_pace(&section, act.as_ref());
+        Some(Step { when, act, for_s, until, say, to, pace })
+    }
+
+    /// To whom a sign is made.
+    fn to<'n>(
+        &mut self,
+        section: &Section<'n>,
+        (act, says): (Option<&Deed>, bool),
+        names: &mut Names<'n>,
+    ) -> Option<String> {
+        let node = section.get("to")?;
+        let to = self.maybe::<String>(section, "to", "\"robot\", \"all\" or the name of a person")?;
+        if !says {
+            self.bad(section.key("to"), node.at, "is said of a step without a sign", format!("say: {GESTURES}"));
+        } else if to != "all" && act.is_some_and(|act| !act.stands()) {
+            let hint = "people stand and turn to whomever they make a sign to: leave `act` out, or leave `to` out";
+            self.bad(section.key("to"), node.at, "is said of a sign that is made walking", hint);
+        }
+        if to != "all" {
+            names.push(Naming { who: to.clone(), key: "to", node: Some(node), robot: true, several: false });
+        }
+        Some(to)
+    }
+
+    /// The pace of `change_pace`, which needs one; no other act has it.
+    fn step_pace(&mut self, section: &Section<'_>, act: Option<&Deed>) -> Option<Pace> {
+        let changes = act == Some(&Deed::ChangePace);
+        let pace = self.maybe::<Pace>(section, "pace", Pace::ALLOWED);
+        let at = section.get("pace").or_else(|| section.get("act")).and_then(|node| node.at);
+        if changes && section.get("pace").is_none() {
+            self.bad(section.key("pace"), at, "is missing for change_pace", Pace::ALLOWED);
+        } else if !changes && section.get("pace").is_some() {
+            self.bad(
+                section.key("pace"),
+                at,
+                "belongs to act = \"change_pace\"",
+                "the pace from the start on stands in [[human]]",
+            );
+        }
+        if let Some(mps) = pace.and_then(Pace::mps).filter(|mps| !(0.2..=1.8).contains(mps)) {
+            self.bad(section.key("pace"), at, format!("{mps} m/s is out of range"), Pace::ALLOWED);
+        }
+        pace
     }
 
     fn whens<'n>(&mut self, section: &Section<'n>, key: &'static str, names: &mut Names<'n>) -> Vec<When> {
@@ -101,7 +157,33 @@ impl Door<'_> {
         if nodes.len() != form.humans.len() {
             return;
         }
-        for (human, node) in form.humans.iter().zip(nodes) {
+        for (who, (human, node)) in form.humans.iter().zip(nodes).enumerate() {
+            let stands = matches!(human.relation, Relation::Static | Relation::Staying) && human.goal.is_none();
+            for (number, step) in human.does.iter().enumerate() {
+                let at = place(node, "does", number);
+                if stands && matches!(step.act, Some(Deed::TurnBack | Deed::ChangePace)) {
+                    let hint = "`frontal`, `crossing`, `leaving` or another relation of somebody who walks";
+                    self.bad("human.does.act", at, "walks, but stands by its relation", hint);
+                }
+                let own = |name: &&String| meant(form, name).contains(&who) && human.count == 1;
+                if step.to.as_ref().filter(own).is_some()
+                    || step.act.as_ref().and_then(Deed::names).map(|(name, _)| name).filter(own).is_some()
+                {
+                    self.bad("human.does", at, "is done to themselves", "the name of somebody else");
+                }
+            }
+            for rule in human
+                .reacts
+                .iter()
+                .filter(|rule| matches!(rule.act, Some(Deed::TurnBack | Deed::GoTo(_) | Deed::ChangePace)))
+            {
+                let at = human
+                    .reacts
+                    .iter()
+                    .position(|other| other == rule)
+                    .and_then(|number| place(node, "reacts", number));
+                self.bad("human.reacts.act", at, "changes the way or the pace for good", "a step of `does`");
+            }
             for (key, steps) in [("does", &human.does), ("reacts", &human.reacts)] {
                 for (number, step) in steps.iter().enumerate() {
                     for (part, when) in [("when", &step.when), ("until", &step.until)] {
@@ -114,6 +196,7 @@ impl Door<'_> {
                 }
             }
         }
+        self.unheard(form, nodes);
         let starts: Vec<(usize, usize)> = (0..form.humans.len())
             .flat_map(|who| (0..form.humans.get(who).map_or(0, |human| human.does.len())).map(move |step| (who, step)))
             .collect();
@@ -133,6 +216,36 @@ impl Door<'_> {
             );
             let at = nodes.get(start.0).and_then(|node| place(node, "does", start.1));
             self.bad("human.does.when", at, found, "remove one of the triggers `did` and `done`");
+        }
+    }
+}
+
+impl Door<'_> {
+    /// Gestures that are waited for, and that are made to somebody else alone.
+    fn unheard(&mut self, form: &Form, nodes: &[Node]) {
+        for (who, (human, node)) in form.humans.iter().zip(nodes).enumerate() {
+            for (key, steps) in [("does", &human.does), ("reacts", &human.reacts)] {
+                for (number, step) in steps.iter().enumerate() {
+                    for trigger in step.when.iter().chain(&step.until) {
+                        let When::HumanSays(name, gesture) = trigger else { continue };
+                        let speakers = meant(form, name).into_iter().filter_map(|who| form.humans.get(who));
+                        let made: Vec<&Step> = speakers
+                            .flat_map(|speaker| speaker.does.iter().chain(&speaker.reacts))
+                            .filter(|step| step.say == Some(*gesture))
+                            .collect();
+                        let heard = |step: &&&Step| match step.to.as_deref() {
+                            None | Some("all") => true,
+                            Some("robot") => false,
+                            Some(to) => meant(form, to).contains(&who),
+                        };
+                        if !made.is_empty() && made.iter().find(heard).is_none() {
+                            let found = format!("{gesture} of `{name}` is made to somebody else");
+                            let hint = "to = \"all\", or this person's name, at the sign";
+                            self.bad(format!("human.{key}"), place(node, key, number), found, hint);
+                        }
+                    }
+                }
+            }
         }
     }
 }
@@ -172,30 +285,24 @@ fn meant(form: &Form, name: &str) -> Vec<usize> {
 /// What is wrong with waiting for somebody's steps.
 fn never_ends(form: &Form, trigger: &When) -> Option<(String, String)> {
     let (When::Did(name, _) | When::Done(name)) = trigger else { return None };
-    let humans = meant(form, name).into_iter().filter_map(|who| form.humans.get(who));
-    humans.into_iter().find_map(|human| {
-        let steps = human.does.len();
-        match trigger {
-            When::Did(_, number) => {
-                let place = usize::try_from(*number).ok().and_then(|number| number.checked_sub(1));
-                let step = place.and_then(|place| human.does.get(place));
-                let Some(step) = step else {
-                    let hint = if steps == 0 { "none in `does`".to_owned() } else { format!("1 to {steps}") };
-                    return Some((format!("`{name}` has no step {number}"), hint));
-                };
-                let hint = "give that step an end: for_s = 5.0, or until = \"robot_passed\"";
-                step.is_endless().then(|| (format!("step {number} of `{name}` never ends"), hint.to_owned()))
-            }
-            _ if human.does.last().is_some_and(Step::is_endless) => {
-                let hint = "give that step an end: for_s = 5.0, or until = \"robot_passed\"";
-                Some((format!("the last step of `{name}` never ends"), hint.to_owned()))
-            }
-            _ => never_done(human).then(|| {
-                let hint = "say what they do, as steps of `does`";
-                (format!("`{name}` stands and has no steps, and is never done"), hint.to_owned())
-            }),
+    let end = || "give that step an end: for_s = 5.0, or until = \"robot_passed\"".to_owned();
+    let wrong = |human: &FormHuman| {
+        if let When::Did(_, number) = trigger {
+            let place = usize::try_from(*number).ok().and_then(|number| number.checked_sub(1));
+            let steps = human.does.len();
+            let Some(step) = place.and_then(|place| human.does.get(place)) else {
+                let hint = if steps == 0 { "none in `does`".to_owned() } else { format!("1 to {steps}") };
+                return Some((format!("`{name}` has no step {number}"), hint));
+            };
+            return step.is_endless().then(|| (format!("step {number} of `{name}` never ends"), end()));
         }
-    })
+        if human.does.last().is_some_and(Step::is_endless) {
+            return Some((format!("the last step of `{name}` never ends"), end()));
+        }
+        let hint = "say what they do, as steps of `does`".to_owned();
+        never_done(human).then(|| (format!("`{name}` stands and has no steps, and is never done"), hint))
+    };
+    meant(form, name).into_iter().filter_map(|who| form.humans.get(who)).find_map(wrong)
 }
 
 fn never_done(human: &FormHuman) -> bool {

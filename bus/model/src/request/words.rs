@@ -26,7 +26,7 @@ impl Words {
     /// The word that is spelled most like another one, with its example.
     fn nearest(&self, wrong: &str) -> Option<(&'static str, &'static str)> {
         let wrong = wrong.to_lowercase();
-        self.all.iter().copied().min_by_key(|(word, _)| distance(&wrong, word))
+        self.all.iter().copied().min_by_key(|(word, _)| distance(&wrong, &word.to_lowercase()))
     }
 }
 

@@ -62,9 +62,8 @@ impl World for CaseWorld<'_> {
         self.true_numbers(stood).fold(0.0, f64::max)
     }
     fn steps_ended(&self, id: HumanId) -> u32 {
-        let ended = |atom: &Atom| match atom {
-            Atom::World(Trigger::Did(who, step)) if *who == id => Some(*step),
-            _ => None,
+        let ended = |atom: &Atom| {
+            if let Atom::World(Trigger::Did(who, step)) = atom { (*who == id).then_some(*step) } else { None }
         };
         self.atoms
             .iter()

@@ -8,6 +8,7 @@ mod follow_human;
 mod force;
 mod foreign;
 mod goal_reached;
+mod has_arrived;
 mod has_ended;
 mod has_time_passed;
 mod human_says;
@@ -20,6 +21,7 @@ mod inverter;
 mod keep_running;
 mod latch;
 mod make_gesture;
+mod make_gesture_to;
 mod memory_sequence;
 mod motion;
 mod parallel;
@@ -37,6 +39,7 @@ mod run_once;
 mod script;
 mod scripted;
 mod set_blackboard;
+mod step_acts;
 mod subtree;
 mod switch;
 mod time_delay;
@@ -107,12 +110,22 @@ pub const CATALOG: &[&NodeSheet] = &[
     &motion::STAND_STILL,
 ];
 
-/// Nodes that are read and ticked, but offered to nobody: of BehaviorTree.CPP, and those by which the steps of a form are played.
-pub const RARE: &[&NodeSheet] = &[
+/// Nodes by which the steps of a form are played; offered to nobody.
+pub const STEPS: &[&NodeSheet] = &[
     &end_step::SHEET,
     &has_ended::STEP,
     &has_ended::ALL,
+    &has_arrived::SHEET,
     &robot_stood::SHEET,
+    &make_gesture_to::SHEET,
+    &step_acts::WATCH_HUMAN,
+    &step_acts::TURN_BACK,
+    &step_acts::GO_TO,
+    &step_acts::CHANGE_PACE,
+];
+
+/// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.
+pub const RARE: &[&NodeSheet] = &[
     &in_order::ASYNC_SEQUENCE,
     &in_order::ASYNC_FALLBACK,
     &scripted::PRECONDITION,
@@ -142,6 +155,7 @@ pub fn sheet_in(tag: &str, library: Library) -> Option<&'static NodeSheet> {
 pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
     CATALOG
         .iter()
+        .chain(STEPS)
         .chain(RARE)
         .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets.iter()))
         .copied()
@@ -186,9 +200,8 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
         }
     });
     let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
-    let rare =
-        RARE.iter().copied().filter(move |sheet| library == Library::Native || sheet.library == Library::BuiltIn);
-    ours.chain(rare).chain(theirs)
+    let steps = STEPS.iter().copied().filter(move |_| library == Library::Native);
+    ours.chain(steps).chain(RARE.iter().copied()).chain(theirs)
 }
 
 /// Sheets a library knows, in catalog order: what a prompt may offer.

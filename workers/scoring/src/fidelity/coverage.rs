@@ -63,6 +63,7 @@ const fn asks(kind: &FactKind) -> bool {
         FactKind::Group { .. }
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
+        | FactKind::GesturesTo { .. }
         | FactKind::MeetsTimes { .. }
         | FactKind::Before { .. }
         | FactKind::Place(_) => true,
@@ -81,7 +82,7 @@ const fn asks(kind: &FactKind) -> bool {
 fn covers(clause: &Clause, fact: &Fact) -> bool {
     let named = clause.source == fact.id;
     let shows = match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => {
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::GesturesTo { human, .. } => {
             named && about(clause, *human, None, u32::MAX)
         }
         FactKind::MeetsTimes { .. } | FactKind::Before { .. } => false,
@@ -110,11 +111,16 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
             matches!(fact, FactKind::Gestures { human, gesture: asked }
                 if *agent == AgentId::Human(*human) && asked == gesture)
         }
-        Predicate::Step { human, rule, .. } => match fact {
-            FactKind::Reacts { human: who, rule: asked } => who == human && asked.act == rule.act,
-            FactKind::Gestures { human: who, gesture } => who == human && rule.gesture == Some(*gesture),
-            _ => false,
-        },
+        Predicate::GesturesTo { human, gesture, to } => {
+            matches!(fact, FactKind::Gestures { human: who, gesture: asked } if (who, asked) == (human, gesture))
+                || matches!(fact, FactKind::GesturesTo { human: who, gesture: asked, to: whom }
+                    if (who, asked, whom) == (human, gesture, to))
+        }
+        Predicate::Step { human, rule, .. } => {
+            matches!(fact, FactKind::Reacts { human: who, rule: asked } if who == human && asked.act == rule.act)
+                || matches!(fact, FactKind::Gestures { human: who, gesture }
+                    if who == human && rule.gesture == Some(*gesture))
+        }
         Predicate::MeetsAgain { human, nth, .. } => {
             matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
         }
@@ -160,6 +166,9 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         | Predicate::RobotLeavesFirst
         | Predicate::RobotJoins { .. }
         | Predicate::RobotLeavesGroup { .. }
+        | Predicate::TurnsBack { .. }
+        | Predicate::GoesTo { .. }
+        | Predicate::ChangesPace { .. }
         | Predicate::RobotObeys { .. } => false,
     }
 }

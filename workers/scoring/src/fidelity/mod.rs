@@ -5,6 +5,7 @@
 //! ```
 
 mod acts;
+mod addressed;
 mod clauses;
 mod company;
 mod coverage;
@@ -28,6 +29,7 @@ mod signals;
 mod since;
 mod steps;
 mod times;
+mod turns;
 mod verdict;
 mod windows;
 

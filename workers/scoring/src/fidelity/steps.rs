@@ -60,10 +60,15 @@ pub(super) fn stood_s(signals: &Signals<'_>, t: f64) -> f64 {
 /// For how long an act has to be seen at most, s: getting to where it can be seen takes its time.
 const fn most_s(act: &Action) -> f64 {
     match act {
-        Action::StandStill | Action::LookAtRobot => f64::INFINITY,
+        Action::StandStill | Action::LookAtRobot | Action::LookAt(_) => f64::INFINITY,
         Action::Block => 2.5,
         Action::FollowRobot | Action::FollowHuman(_) => 1.5,
-        Action::Navigate | Action::RunAway | Action::Approach => 0.5,
+        Action::Navigate
+        | Action::RunAway
+        | Action::Approach
+        | Action::TurnBack
+        | Action::GoTo { .. }
+        | Action::ChangePace(_) => 0.5,
         Action::GiveWay => 0.3,
     }
 }
@@ -161,7 +166,9 @@ fn does(signals: &Signals<'_>, human: HumanId, rule: &Rule, reason_s: f64) -> Re
     // What is done before it for another reason goes on.
     let goes_on = || all.iter().any(|(from, to)| *from < reason_s && *to > reason_s + EARLY_SECS);
     let early = all.iter().find(|(from, _)| *from < reason_s - EARLY_SECS).map(|(from, _)| *from);
-    let by_other = others(signals, human, rule).any(|other| other.act == rule.act);
+    // A leaf does not tell whom, where to or how fast.
+    let same = |act: &Action| std::mem::discriminant(act) == std::mem::discriminant(&rule.act);
+    let by_other = others(signals, human, rule).any(|other| same(&other.act));
     let stands = matches!(rule.act, Action::StandStill | Action::Navigate);
     if let Some(early) = early.filter(|_| has_onset(&rule.act) && !by_other && signals.tells_leaves) {
         return Err(early);
@@ -184,7 +191,8 @@ fn others<'a>(signals: &Signals<'a>, human: HumanId, rule: &'a Rule) -> impl Ite
 fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Result<String, (f64, String)> {
     let own = matches!(
         (&rule.act, rule.until.as_slice()),
-        (Action::GiveWay, [Trigger::RobotPassed]) | (Action::Navigate, [Trigger::GoalReached])
+        (Action::GiveWay, [Trigger::RobotPassed])
+            | (Action::Navigate | Action::TurnBack | Action::GoTo { .. }, [Trigger::GoalReached])
     );
     let (until_s, over_s) = over(signals, human, rule, begun_s);
     if !rule.until.is_empty() && until_s.is_none() && rule.for_s.is_none() && !own {

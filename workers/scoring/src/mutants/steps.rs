@@ -11,6 +11,8 @@ use crate::tracks::Tracks;
 const LATE_SECS: f64 = 8.0;
 /// Somebody who walks on instead of standing does so at this speed, m/s.
 const WALKS_MPS: f64 = 0.4;
+/// Who does not do what they should stand still so soon after it began, s.
+const STEPS_SECS: f64 = 0.2;
 /// A step that lasts less is no test, s.
 const LEAST_SECS: f64 = 2.5;
 /// After the end of a step that should have come so much has to be left of the run, s.
@@ -39,7 +41,12 @@ pub(super) fn steps(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             let late = gestures_from(run, agent, gesture, ticks_of(run, begun_s + LATE_SECS));
             add("N: step's sign late", about.clone(), late);
         }
-        if others().any(|other| other.act == rule.act) || !matches!(rule.act, Action::StandStill | Action::LookAtRobot)
+        if matches!(rule.act, Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_)) {
+            add("N: step without its effect", about, stays_on(run, human, begun_s + STEPS_SECS));
+            continue;
+        }
+        if others().any(|other| other.act == rule.act)
+            || !matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_))
         {
             continue;
         }

@@ -84,6 +84,12 @@ pub(crate) struct Human {
     pub(crate) speed_mps: f64,
     pub(crate) action: Action,
     pub(crate) gesture: Option<Gesture>,
+    /// To whom it is made, where that is one.
+    pub(crate) gesture_to: Option<AgentId>,
+    /// Its speed since it changed its pace, m/s.
+    pub(crate) pace_mps: Option<f64>,
+    /// Whether it has left its path, to go back or to another place.
+    pub(crate) diverted: bool,
     pub(crate) errand: Errand,
     /// Where it was at tick 0.
     pub(crate) home: Point,
@@ -116,6 +122,11 @@ impl Human {
     /// As an agent.
     pub(crate) const fn agent(&self) -> AgentId {
         AgentId::Human(self.id)
+    }
+
+    /// Whether it gets on along its way.
+    pub(crate) const fn gets_on(&self) -> bool {
+        matches!(self.action, Action::Navigate | Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_))
     }
 
     /// The first of its meetings: what trees and scripts call the encounter.
@@ -193,7 +204,7 @@ impl Human {
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
         self.route.length_m() < 0.05
-            || matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
+            || !self.diverted && matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
     }
 }
 
@@ -209,6 +220,10 @@ pub(crate) const fn leaf_name(action: &Action) -> &'static str {
         Action::LookAtRobot => "LookAtRobot",
         Action::Approach => "ApproachRobot",
         Action::StandStill => "StandStill",
+        Action::LookAt(_) => "WatchHuman",
+        Action::TurnBack => "TurnBack",
+        Action::GoTo { .. } => "GoToPlace",
+        Action::ChangePace(_) => "ChangePace",
     }
 }
 
@@ -226,7 +241,10 @@ pub(crate) const LEAVES: [&str; 10] = [
     "StandStill",
 ];
 
-/// Number of the leaf of an action in [`LEAVES`].
+/// Leaves of acts that only steps of a form have; in a header they come after those of recorded people.
+pub(crate) const STEP_LEAVES: [&str; 4] = ["WatchHuman", "TurnBack", "ChangePace", "GoToPlace"];
+
+/// Number of the leaf of an action in [`LEAVES`], or among [`STEP_LEAVES`] behind them and the two of recorded people.
 pub(crate) const fn leaf_number(action: &Action) -> u16 {
     match action {
         Action::Navigate => 1,
@@ -238,6 +256,10 @@ pub(crate) const fn leaf_number(action: &Action) -> u16 {
         Action::LookAtRobot => 7,
         Action::Approach => 8,
         Action::StandStill => 9,
+        Action::LookAt(_) => 12,
+        Action::TurnBack => 13,
+        Action::ChangePace(_) => 14,
+        Action::GoTo { .. } => 15,
     }
 }
 

@@ -41,6 +41,7 @@ mod rendezvous;
 mod robot;
 mod script;
 mod start;
+mod turning;
 mod view;
 mod walk;
 mod walls;

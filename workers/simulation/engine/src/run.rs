@@ -19,7 +19,7 @@ use crate::robot::Robot;
 use crate::script::Script;
 use crate::setup::{self, Setup};
 use crate::view::{RobotSeen, Shown, View};
-use crate::{meetings, start, walk};
+use crate::{meetings, start, turning, walk};
 
 /// Nearer than this to the end of its way the robot is at its goal, m.
 const AT_GOAL_M: f64 = 0.35;
@@ -193,7 +193,7 @@ impl Engine {
     fn passers(&self) -> Vec<Passer> {
         let humans = self.humans.iter().filter(|human| human.present()).map(|human| {
             // Somebody who waits at a door on its way still means to go through.
-            let on_way = human.started && human.action == Action::Navigate && !human.at_goal();
+            let on_way = human.started && human.gets_on() && !human.at_goal();
             let velocity = if on_way { human.route.direction(human.s + 0.1) * 0.5 } else { human.velocity };
             Passer { at: human.at, velocity, robot: false }
         });
@@ -213,6 +213,7 @@ impl Engine {
         let show = |human: &Human| Shown {
             id: human.id,
             gesture: human.gesture,
+            gesture_to: human.gesture_to,
             steps_ended: human.steps_ended,
             done: human.is_done(),
         };
@@ -226,6 +227,7 @@ impl Engine {
             let mut view = View::of(human, &self.floor, now, robot, &shown);
             human.tree.tick(&mut state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
+            let to = view.say_to;
             let ended = view.steps_ended;
             human.notice.robot_seen = view.looked();
             human.state = state;
@@ -248,10 +250,11 @@ impl Engine {
                 human.errand = crate::human::Errand::default();
                 human.notice.stale = true;
                 human.action = act;
+                turning::begin(human, &self.setup, &self.floor);
             }
-            if let Some(gesture) = say.filter(|gesture| *gesture != human.gesture) {
-                human.gesture = gesture;
-                recorder.tell(EventKind::Gesture { agent: human.agent(), gesture });
+            if let Some(gesture) = say.filter(|gesture| (*gesture, to) != (human.gesture, human.gesture_to)) {
+                (human.gesture, human.gesture_to) = (gesture, to);
+                recorder.tell(EventKind::Gesture { agent: human.agent(), gesture, to });
             }
         }
     }
@@ -329,7 +332,7 @@ impl Engine {
         let mut walkers = Vec::with_capacity(self.humans.len());
         for human in &self.humans {
             let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
-            let walks = human.action == Action::Navigate;
+            let walks = human.gets_on();
             done &= human.stays() || there || !walks && speed_mps < 0.05;
             walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
         }

@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use socrates_bt::{Tree, TreeState};
 use socrates_maps::openings::Enclosures;
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
-use socrates_model::recording::AgentInfo;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::seeds::{self, derive_seed};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
@@ -18,10 +18,10 @@ use socrates_model::{
 use crate::block::blockers;
 use crate::ends;
 use crate::floor::Floor;
-use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
+use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting, STEP_LEAVES};
 use crate::make_room::Facing;
 use crate::meetings::{self, Marks};
-use crate::models::Walks;
+use crate::models::{TRACK_LEAF, Walks};
 use crate::near::Notice;
 use crate::placing;
 use crate::robot::Robot;
@@ -291,6 +291,9 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         speed_mps: SPEED.0,
         action: Action::Navigate,
         gesture: None,
+        gesture_to: None,
+        pace_mps: None,
+        diverted: false,
         errand: Errand::default(),
         anchor: None,
         aside_m: 0.0,
@@ -381,6 +384,14 @@ fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
     (sway(), sway())
 }
 
+/// Names of leaves; those of steps only where somebody has such a step.
+fn leaves(setup: &Setup) -> Vec<String> {
+    let mut rules = setup.proposal.humans.iter().flat_map(|human| &human.rules);
+    let steps = if rules.any(|rule| rule.act.is_of_steps()) { &STEP_LEAVES[..] } else { &[] };
+    let recorded = if steps.is_empty() { &[][..] } else { &[TRACK_LEAF, ABSENT_LEAF] };
+    LEAVES.iter().chain(recorded).chain(steps).map(|leaf| (*leaf).to_owned()).collect()
+}
+
 /// The header of the run.
 pub(crate) fn header(setup: &Setup, humans: &[Human], robot: Option<&Robot>) -> RecordingHeader {
     let mut agents = Vec::new();
@@ -406,6 +417,6 @@ pub(crate) fn header(setup: &Setup, humans: &[Human], robot: Option<&Robot>) -> 
         profile: "native".to_owned(),
         step_s: STEP_SECS,
         agents,
-        leaves: LEAVES.iter().map(|leaf| (*leaf).to_owned()).collect(),
+        leaves: leaves(setup),
     }
 }

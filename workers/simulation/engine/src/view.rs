@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use socrates_bt::World;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, Gesture, HumanId, Point, SimTime, Trigger, Vector};
+use socrates_model::{Action, AgentId, Gesture, HumanId, Point, SimTime, Trigger, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
@@ -35,6 +35,7 @@ pub(crate) struct RobotSeen {
 pub(crate) struct Shown {
     pub(crate) id: HumanId,
     pub(crate) gesture: Option<Gesture>,
+    pub(crate) gesture_to: Option<AgentId>,
     /// How many of their steps have ended, and whether they are done.
     pub(crate) steps_ended: u32,
     pub(crate) done: bool,
@@ -53,6 +54,8 @@ pub(crate) struct View<'a> {
     pub(crate) act: Option<Action>,
     /// What it says from now on; the inner none takes an earlier gesture back.
     pub(crate) say: Option<Option<Gesture>>,
+    /// To whom, where that is one.
+    pub(crate) say_to: Option<AgentId>,
     /// The last step of its own that has ended, this tick included.
     pub(crate) steps_ended: u32,
 }
@@ -66,7 +69,18 @@ impl<'a> View<'a> {
         shown: &'a [Shown],
     ) -> Self {
         let sight = Cell::new(human.notice.robot_seen);
-        Self { floor, now, robot, shown, human, sight, act: None, say: None, steps_ended: human.steps_ended }
+        Self {
+            floor,
+            now,
+            robot,
+            shown,
+            human,
+            sight,
+            act: None,
+            say: None,
+            say_to: None,
+            steps_ended: human.steps_ended,
+        }
     }
 
     fn shown(&self, id: HumanId) -> Option<&Shown> {
@@ -146,7 +160,9 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
-        self.shown(id).and_then(|shown| shown.gesture)
+        // A sign to somebody else is none for this one.
+        let me = AgentId::Human(self.human.id);
+        self.shown(id).filter(|shown| shown.gesture_to.is_none_or(|to| to == me)).and_then(|shown| shown.gesture)
     }
 
     fn robot_stood_s(&self) -> f64 {
@@ -167,6 +183,13 @@ impl World for View<'_> {
 
     fn goal_reached(&self) -> bool {
         self.human.at_goal()
+    }
+
+    fn has_arrived(&self) -> bool {
+        // A step that begins in this very tick has not set off yet.
+        let begins = self.steps_ended > self.human.steps_ended;
+        let leads = matches!(self.human.action, Action::TurnBack | Action::GoTo { .. });
+        leads && !begins && self.human.at_goal()
     }
 
     fn next_goal(&mut self) {
@@ -194,6 +217,10 @@ impl World for View<'_> {
     }
 
     fn gesture(&mut self, gesture: Option<Gesture>) {
-        self.say = Some(gesture);
+        (self.say, self.say_to) = (Some(gesture), None);
+    }
+
+    fn gesture_to(&mut self, gesture: Gesture, to: AgentId) {
+        (self.say, self.say_to) = (Some(Some(gesture)), Some(to));
     }
 }
