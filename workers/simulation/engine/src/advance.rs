@@ -51,13 +51,7 @@ impl Engine {
         let Self { humans, robot, near, .. } = &mut *self;
         let people = humans.iter().filter(|human| human.present()).map(Other::from);
         let anew = near.fill(people.chain(robot.iter().map(Other::from))) | doors_moved;
-        let led: Vec<HumanId> =
-            self.humans
-                .iter()
-                .filter_map(|human| {
-                    if let Action::FollowHuman(id) | Action::LookAt(id) = human.action { Some(id) } else { None }
-                })
-                .collect();
+        let led: Vec<HumanId> = self.humans.iter().filter_map(watched).collect();
         let trails = self
             .humans
             .iter()
@@ -236,6 +230,11 @@ impl Engine {
             }
         }
     }
+}
+
+/// Whom somebody follows or looks at.
+const fn watched(human: &Human) -> Option<HumanId> {
+    if let Action::FollowHuman(id) | Action::LookAt(id) = human.action { Some(id) } else { None }
 }
 
 /// Of several people before the robot the nearest, and its group: whoever comes alone is passed, and nobody waits.
