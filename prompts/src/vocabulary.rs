@@ -122,6 +122,7 @@ pub(crate) fn fact(kind: &FactKind) -> String {
             format!("{first} before {then}{}", if *at_door { " through the door" } else { "" })
         }
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
+        FactKind::GesturesTo { human, gesture, to } => format!("{human} says {gesture} to {to}"),
         FactKind::Place(class) => format!("place {}", class.name()),
         FactKind::RobotTask(task) => format!("task: {task}"),
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),

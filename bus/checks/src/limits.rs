@@ -99,7 +99,11 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             vec![meters("within_m", *within_m, (0.1, 4.0))]
         }
         // Whoever stops on the way leaves a long gap.
-        Predicate::Crosses { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 12.0))],
+        // Whoever is let through is there long before a robot that waits for them.
+        Predicate::Crosses { human, gap_s } => {
+            let most = if proposal.is_let_through(*human) { 40.0 } else { 12.0 };
+            vec![secs("gap_s", *gap_s, (0.2, most))]
+        }
         Predicate::OnTime { gap_s, .. } => vec![secs("gap_s", *gap_s, (0.2, 10.0))],
         Predicate::Ahead { within_m, for_s: time, .. } => {
             vec![meters("within_m", *within_m, (0.5, 12.0)), for_s(*time)]
@@ -142,6 +146,7 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             meters("gap_m, largest less smallest,", most - least, (0.0, 3.0)),
         ],
         Predicate::RunsAway { by_m, .. } => vec![meters("by_m", *by_m, (0.3, 10.0))],
+        Predicate::Step { within_s, .. } => vec![secs("within_s", *within_s, (0.1, REACTS_S))],
         Predicate::Reacts { human, when, within_s, .. } => {
             let mut found = vec![secs("within_s", *within_s, (0.1, REACTS_S + busy_s(*human, proposal)))];
             found.extend(when.iter().filter_map(Trigger::distance_m).map(|m| meters("when, distance,", m, DISTANCE_M)));
@@ -177,7 +182,11 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
         | Predicate::RobotEntersLast
         | Predicate::RobotLeavesFirst
         | Predicate::RobotJoins { .. }
+        | Predicate::GesturesTo { .. }
+        | Predicate::TurnsBack { .. }
+        | Predicate::GoesTo { .. }
         | Predicate::RobotLeavesGroup { .. } => Vec::new(),
+        Predicate::ChangesPace { mps, .. } => vec![plain("mps", *mps, (0.2, 1.8))],
     }
 }
 

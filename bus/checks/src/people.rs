@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use socrates_model::request::MAX_HUMANS;
-use socrates_model::{Action, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger, Where};
+use socrates_model::{Action, AgentId, Fault, FaultCode, HumanId, Predicate, Proposal, Rule, Trigger, Where};
 use socrates_model::{HumanProposal, Relation};
 
 use crate::lexicon::{ABILITIES, humans_named, impossible};
@@ -132,16 +132,27 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
     }
     let known = |id: HumanId| id != own && proposal.human(id).is_some();
     let others = || list(proposal.humans.iter().map(|human| human.id).filter(|id| *id != own));
-    for trigger in &rule.when {
+    for trigger in rule.when.iter().chain(&rule.until) {
         match trigger {
             Trigger::RobotVisible(m) | Trigger::RobotNear(m) | Trigger::RobotBlocking(m) => {
                 if !(DISTANCE_M.0..=DISTANCE_M.1).contains(m) {
                     wrong.push(format!("has a distance of {m} m; allowed: {} to {} m", DISTANCE_M.0, DISTANCE_M.1));
                 }
             }
-            Trigger::AfterSecs(s) => {
+            Trigger::AfterSecs(s) | Trigger::StoppedFor(s) => {
                 if !(0.0..=600.0).contains(s) {
                     wrong.push(format!("waits {s} s; allowed: 0 to 600 s"));
+                }
+            }
+            Trigger::Did(id, step) => {
+                let steps = proposal.human(*id).map_or(0, HumanProposal::steps);
+                if *step == 0 || *step > steps {
+                    wrong.push(format!("waits for step {step} of {id}, who has {steps} steps"));
+                }
+            }
+            Trigger::Done(id) => {
+                if !known(*id) {
+                    wrong.push(format!("waits for {id}; allowed: {}", others()));
                 }
             }
             Trigger::HumanSays(id, _) => {
@@ -158,10 +169,15 @@ fn rule_faults(own: HumanId, rule: &Rule, proposal: &Proposal) -> Vec<String> {
             | Trigger::AtEncounter => {}
         }
     }
-    if let Action::FollowHuman(id) = rule.act
+    if let Action::FollowHuman(id) | Action::LookAt(id) = rule.act
         && !known(id)
     {
-        wrong.push(format!("follows {id}; allowed: {}", others()));
+        wrong.push(format!("{}; allowed: {}", rule.act.phrase(), others()));
+    }
+    if let Some(AgentId::Human(id)) = rule.to
+        && !known(id)
+    {
+        wrong.push(format!("makes a sign to {id}; allowed: {}", others()));
     }
     if let Some(s) = rule.for_s.filter(|s| !(*s > 0.0 && *s <= 600.0)) {
         wrong.push(format!("lasts {s} s; allowed: more than 0 and at most 600 s"));
@@ -174,7 +190,12 @@ fn others(human: &HumanProposal, proposal: &Proposal) -> Vec<Fault> {
     let tied = |id: HumanId| {
         let by_rule = human.rules.iter().any(|rule| {
             rule.act == Action::FollowHuman(id)
-                || rule.when.iter().any(|trigger| matches!(trigger, Trigger::HumanSays(other, _) if *other == id))
+                || rule.act == Action::LookAt(id)
+                || rule.to == Some(AgentId::Human(id))
+                || rule.when.iter().chain(&rule.until).any(|trigger| {
+                    matches!(trigger,
+                    Trigger::HumanSays(other, _) | Trigger::Did(other, _) | Trigger::Done(other) if *other == id)
+                })
         });
         let by_group = human.group.is_some() && proposal.human(id).is_some_and(|other| other.group == human.group);
         by_rule || by_group || human.relation == Relation::Staying

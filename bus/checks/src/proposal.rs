@@ -170,7 +170,8 @@ fn script_line(line: &RobotRule, proposal: &Proposal) -> Vec<String> {
     }
     match &line.act {
         RobotDo::Follow(id) | RobotDo::Abreast(id) | RobotDo::Overtake(id) => known(id),
-        RobotDo::Say(_) | RobotDo::Hold(_) | RobotDo::WaitForLeavers | RobotDo::Lead(_) => {}
+        RobotDo::HoldUntil(RobotWhen::AtEncounter(id)) => known(id),
+        RobotDo::Say(_) | RobotDo::Hold(_) | RobotDo::HoldUntil(_) | RobotDo::WaitForLeavers | RobotDo::Lead(_) => {}
     }
     let number = match (&line.when, &line.act) {
         (_, RobotDo::Hold(s)) if !(*s > 0.0 && *s <= 60.0) => Some(("hold", *s, "0 to 60 s")),

@@ -118,6 +118,7 @@ pub(crate) fn crossing_proposal() -> Proposal {
         gesture: None,
         for_s: Some(3.0),
         latched: false,
+        ..Rule::default()
     };
     let (first, second) = (HumanId::new(1), HumanId::new(2));
     Proposal {

@@ -97,6 +97,7 @@ const fn needs_clause(kind: &FactKind) -> bool {
         FactKind::Group { .. }
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
+        | FactKind::GesturesTo { .. }
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
@@ -117,6 +118,7 @@ const fn human_of(fact: &Fact) -> Option<HumanId> {
     match &fact.kind {
         FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
+        | FactKind::GesturesTo { human, .. }
         | FactKind::MeetsTimes { human, .. }
         | FactKind::Side { human, .. }
         | FactKind::Facing { human, .. } => Some(*human),

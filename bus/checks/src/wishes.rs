@@ -103,6 +103,14 @@ fn missing(fact: &Fact, proposal: &Proposal) -> Option<Fault> {
                 rough((*human).into(), format!("has no rule with the gesture {gesture}"))
             }
         }
+        FactKind::GesturesTo { human, gesture, to } => {
+            let found = proposal.human(*human)?;
+            if found.rules.iter().any(|rule| rule.gesture == Some(*gesture) && rule.to == Some(*to)) {
+                None
+            } else {
+                rough((*human).into(), format!("has no rule with the gesture {gesture} to {to}"))
+            }
+        }
         FactKind::Place(class) => {
             let clause = proposal
                 .expected_events

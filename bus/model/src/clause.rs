@@ -7,7 +7,7 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
 use crate::proposal::{Facing, Side, WayPart};
-use crate::rule::{Action, Trigger};
+use crate::rule::{Action, Rule, Trigger};
 
 /// Whom a clause judges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -219,12 +219,51 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
+    /// A step of the human's sequence is done as its rule says: it begins within `within_s` of the time at which all its triggers
+    /// first hold, and not before; it is done for at least 60 % of its time; and it is over within 2 s of what ends it.
+    Step {
+        /// Who.
+        human: HumanId,
+        /// What the step says.
+        rule: Rule,
+        /// Largest delay.
+        within_s: f64,
+    },
     /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m.
     Gestures {
         /// Who.
         agent: AgentId,
         /// Which.
         gesture: Gesture,
+    },
+    /// The human makes the gesture to somebody: stands within 8 m of them and faces them (20°) for 60 % of the time of the gesture;
+    /// the robot does not stop by a gesture that is made to somebody else.
+    GesturesTo {
+        /// Who.
+        human: HumanId,
+        /// Which.
+        gesture: Gesture,
+        /// To whom.
+        to: AgentId,
+    },
+    /// The human walks back: for at least 2 m, with the heading turned by 150° or more from that before.
+    TurnsBack {
+        /// Who.
+        human: HumanId,
+    },
+    /// After the reason for it the human comes within 1 m of one of the nodes, from farther away.
+    GoesTo {
+        /// Who.
+        human: HumanId,
+        /// The nodes of the place.
+        nodes: Vec<NodeId>,
+    },
+    /// The human walks at another speed than before: the mean over 3 s of walking differs by 25 % or more, toward the speed asked for.
+    ChangesPace {
+        /// Who.
+        human: HumanId,
+        /// The speed from then on, m/s.
+        mps: f64,
     },
     /// The human starts inside the door and crosses its line outward exactly once.
     Leaves {
@@ -400,6 +439,11 @@ impl Predicate {
             | Self::RunsAway { human, .. }
             | Self::GivesWay { human }
             | Self::Reacts { human, .. }
+            | Self::Step { human, .. }
+            | Self::GesturesTo { human, .. }
+            | Self::TurnsBack { human }
+            | Self::GoesTo { human, .. }
+            | Self::ChangesPace { human, .. }
             | Self::Leaves { human, .. }
             | Self::StaysInside { human, .. }
             | Self::Enters { human, .. }
@@ -470,6 +514,11 @@ impl Predicate {
             | Self::RunsAway { .. }
             | Self::GivesWay { .. }
             | Self::Reacts { .. }
+            | Self::Step { .. }
+            | Self::GesturesTo { .. }
+            | Self::TurnsBack { .. }
+            | Self::GoesTo { .. }
+            | Self::ChangesPace { .. }
             | Self::Gestures { .. }
             | Self::Leaves { .. }
             | Self::StaysInside { .. }

@@ -10,7 +10,11 @@ use crate::gesture::Gesture;
 use crate::ids::{AgentId, GroupId, HumanId};
 use crate::place::PlaceClass;
 use crate::proposal::{Relation, Side};
-use crate::rule::{Action, RobotDo, RobotRule, RobotWhen, Rule, Trigger};
+use crate::rule::{RobotDo, RobotRule, RobotWhen, Rule};
+
+mod step;
+
+pub use step::{Deed, Step, When};
 
 mod words;
 
@@ -79,116 +83,6 @@ const fn is_one(count: &u32) -> bool {
     *count == 1
 }
 
-/// One step of `does`, or one rule of `reacts`.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Step {
-    /// All of these must hold for it to begin; empty in `does`: as soon as the step before has ended.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub when: Vec<When>,
-    /// What is done. Default `stand_still` where something is said.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub act: Option<Deed>,
-    /// For how long, s; without: as long as it takes, or to the end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub for_s: Option<f64>,
-    /// Gesture made with it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub say: Option<Gesture>,
-}
-
-/// A trigger of a form: as [`Trigger`], with people by name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum When {
-    /// From the start.
-    Always,
-    /// The robot is seen within so many m.
-    RobotVisible(f64),
-    /// The robot is within so many m.
-    RobotNear(f64),
-    /// The robot stands in their way within so many m.
-    RobotBlocking(f64),
-    /// The robot moves.
-    RobotMoving,
-    /// The robot stands.
-    RobotStopped,
-    /// The robot has passed.
-    RobotPassed,
-    /// The robot makes this gesture.
-    RobotSays(Gesture),
-    /// Somebody else makes this gesture.
-    HumanSays(String, Gesture),
-    /// They are at the end of their way.
-    GoalReached,
-    /// They are where they meet the robot.
-    AtEncounter,
-    /// Time after the start, s.
-    AfterSecs(f64),
-}
-
-impl When {
-    /// The triggers, for messages.
-    pub const ALLOWED: &str = "\"always\", { robot_visible = 5.0 }, { robot_near = 2.0 }, { robot_blocking = 2.0 }, \"robot_moving\", \
-        \"robot_stopped\", \"robot_passed\", { robot_says = \"EXCUSE_ME\" }, { human_says = [\"nurse\", \"WAIT\"] }, \"goal_reached\", \
-        \"at_encounter\", { after_secs = 5.0 }, or a list of them";
-
-    /// Its number, with what it counts and what it may be.
-    pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
-        match self {
-            Self::RobotVisible(m) | Self::RobotNear(m) | Self::RobotBlocking(m) => Some((*m, [0.3, 15.0], "m")),
-            Self::AfterSecs(s) => Some((*s, [0.1, 600.0], "s")),
-            Self::Always
-            | Self::RobotMoving
-            | Self::RobotStopped
-            | Self::RobotPassed
-            | Self::RobotSays(_)
-            | Self::HumanSays(..)
-            | Self::GoalReached
-            | Self::AtEncounter => None,
-        }
-    }
-
-    /// The person whom it names.
-    pub(crate) const fn names(&self) -> Option<&String> {
-        if let Self::HumanSays(id, _) = self { Some(id) } else { None }
-    }
-}
-
-/// What somebody does: as [`Action`], with people by name.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case", deny_unknown_fields)]
-pub enum Deed {
-    /// Walks on along their way.
-    Navigate,
-    /// Stands still.
-    StandStill,
-    /// Stops and turns to the robot.
-    LookAtRobot,
-    /// Follows the robot.
-    FollowRobot,
-    /// Follows somebody else.
-    FollowHuman(String),
-    /// Hurries away from the robot.
-    RunAway,
-    /// Steps out of the robot's way.
-    GiveWay,
-    /// Stays in front of the robot.
-    Block,
-    /// Goes up to the robot.
-    Approach,
-}
-
-impl Deed {
-    /// The acts, for messages.
-    pub const ALLOWED: &str = "navigate, stand_still, look_at_robot, follow_robot, { follow_human = \"nurse\" }, run_away, give_way, block, approach";
-
-    /// The person whom it names.
-    pub(crate) const fn names(&self) -> Option<&String> {
-        if let Self::FollowHuman(id) = self { Some(id) } else { None }
-    }
-}
-
 /// How a group stands or walks.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -255,9 +149,15 @@ pub enum RobotMoment {
 }
 
 impl RobotMoment {
-    /// The moments, for messages.
-    pub const ALLOWED: &str = "\"start\", { blocked = 2.0 }, { human_near = 3.0 }, { human_says = \"WAIT\" }, { at_encounter = \"nurse\" }, \
-        { after_secs = 5.0 }";
+    /// The moments with how each is written, for messages.
+    pub(crate) const WORDS: &[(&str, &str)] = &[
+        ("start", "\"start\""),
+        ("blocked", "{ blocked = 2.0 }"),
+        ("human_near", "{ human_near = 3.0 }"),
+        ("human_says", "{ human_says = \"WAIT\" }"),
+        ("at_encounter", "{ at_encounter = \"nurse\" }"),
+        ("after_secs", "{ after_secs = 5.0 }"),
+    ];
 
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
         match self {
@@ -281,6 +181,8 @@ pub enum RobotDeed {
     Say(Gesture),
     /// Stands for so many s, 0.1 to 60.
     HoldS(f64),
+    /// Stands until this comes, for 60 s at most.
+    HoldUntil(RobotMoment),
     /// Waits until everybody who leaves has left.
     WaitForLeavers(bool),
     /// Follows somebody.
@@ -295,14 +197,27 @@ pub enum RobotDeed {
 
 impl RobotDeed {
     /// Keys of the deeds.
-    pub const KEYS: [&str; 7] = ["say", "hold_s", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
+    pub const KEYS: [&str; 8] =
+        ["say", "hold_s", "hold_until", "wait_for_leavers", "follow", "beside", "overtake", "lead_m"];
+    /// The deeds with how each is written, for messages.
+    pub(crate) const WORDS: &[(&str, &str)] = &[
+        ("say", "say = \"WAIT\""),
+        ("hold_s", "hold_s = 3.0"),
+        ("hold_until", "hold_until = { human_says = \"PROCEED\" }"),
+        ("wait_for_leavers", "wait_for_leavers = true"),
+        ("follow", "follow = \"nurse\""),
+        ("beside", "beside = \"nurse\""),
+        ("overtake", "overtake = \"nurse\""),
+        ("lead_m", "lead_m = 4.0"),
+    ];
     /// The deeds, for messages.
-    pub const ALLOWED: &str = "one of say = \"WAIT\", hold_s = 3.0, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
+    pub const ALLOWED: &str = "one of say = \"WAIT\", hold_s = 3.0, hold_until = { human_says = \"PROCEED\" }, wait_for_leavers = true, follow = \"nurse\", beside = \"nurse\", overtake = \"nurse\", lead_m = 4.0";
 
     pub(crate) const fn number(&self) -> Option<(f64, [f64; 2], &'static str)> {
         match self {
             Self::HoldS(s) => Some((*s, [0.1, 60.0], "s")),
             Self::LeadM(m) => Some((*m, [1.0, 15.0], "m")),
+            Self::HoldUntil(moment) => moment.number(),
             Self::Say(_) | Self::WaitForLeavers(_) | Self::Follow(_) | Self::Beside(_) | Self::Overtake(_) => None,
         }
     }
@@ -310,6 +225,7 @@ impl RobotDeed {
     pub(crate) const fn names(&self) -> Option<&String> {
         match self {
             Self::Follow(id) | Self::Beside(id) | Self::Overtake(id) => Some(id),
+            Self::HoldUntil(moment) => moment.names(),
             Self::Say(_) | Self::HoldS(_) | Self::WaitForLeavers(_) | Self::LeadM(_) => None,
         }
     }
@@ -403,62 +319,13 @@ impl Form {
         let person = |number: u32, human| FormPerson {
             id: HumanId::new(number),
             human,
-            rules: self.rules(human),
+            rules: self.rules(HumanId::new(number), human),
             group: group(human),
         };
         self.numbered()
             .flat_map(|(first, human)| (first..first + human.count).map(move |number| (number, human)))
             .map(|(number, human)| person(number, human))
             .collect()
-    }
-
-    /// `does` and `reacts` as rules. A step of `does` goes on once it has begun; the next has the same triggers, and its turn comes
-    /// when the time of the one before is over.
-    fn rules(&self, human: &FormHuman) -> Vec<Rule> {
-        let mut rules: Vec<Rule> = human.reacts.iter().filter_map(|step| self.rule(step, &step.when, false)).collect();
-        let begins = human.does.first().map(|step| step.when.clone()).unwrap_or_default();
-        rules.extend(human.does.iter().filter_map(|step| self.rule(step, &begins, true)));
-        rules
-    }
-
-    fn rule(&self, step: &Step, when: &[When], latched: bool) -> Option<Rule> {
-        let when: Option<Vec<Trigger>> = when.iter().map(|when| self.trigger(when)).collect();
-        let when = when.map(|when| if when.is_empty() { vec![Trigger::Always] } else { when })?;
-        let act = step.act.as_ref().map_or(Some(Action::StandStill), |deed| self.action(deed))?;
-        // A sign lasts a moment where nothing else is said.
-        let for_s = step.for_s.or_else(|| (step.act.is_none() && step.say.is_some()).then_some(Step::SIGN_S));
-        Some(Rule { when, act, gesture: step.say, for_s, latched })
-    }
-
-    fn trigger(&self, when: &When) -> Option<Trigger> {
-        Some(match when {
-            When::Always => Trigger::Always,
-            When::RobotVisible(m) => Trigger::RobotVisible(*m),
-            When::RobotNear(m) => Trigger::RobotNear(*m),
-            When::RobotBlocking(m) => Trigger::RobotBlocking(*m),
-            When::RobotMoving => Trigger::RobotMoving,
-            When::RobotStopped => Trigger::RobotStopped,
-            When::RobotPassed => Trigger::RobotPassed,
-            When::RobotSays(gesture) => Trigger::RobotSays(*gesture),
-            When::HumanSays(name, gesture) => Trigger::HumanSays(self.one(name)?, *gesture),
-            When::GoalReached => Trigger::GoalReached,
-            When::AtEncounter => Trigger::AtEncounter,
-            When::AfterSecs(s) => Trigger::AfterSecs(*s),
-        })
-    }
-
-    fn action(&self, deed: &Deed) -> Option<Action> {
-        Some(match deed {
-            Deed::Navigate => Action::Navigate,
-            Deed::StandStill => Action::StandStill,
-            Deed::LookAtRobot => Action::LookAtRobot,
-            Deed::FollowRobot => Action::FollowRobot,
-            Deed::FollowHuman(name) => Action::FollowHuman(self.one(name)?),
-            Deed::RunAway => Action::RunAway,
-            Deed::GiveWay => Action::GiveWay,
-            Deed::Block => Action::Block,
-            Deed::Approach => Action::Approach,
-        })
     }
 
     /// The agents whom a name of an order means.
@@ -487,6 +354,7 @@ impl Form {
             Some(match deed {
                 RobotDeed::Say(gesture) => RobotDo::Say(*gesture),
                 RobotDeed::HoldS(s) => RobotDo::Hold(*s),
+                RobotDeed::HoldUntil(moment) => RobotDo::HoldUntil(when(moment)?),
                 RobotDeed::WaitForLeavers(_) => RobotDo::WaitForLeavers,
                 RobotDeed::Follow(name) => RobotDo::Follow(self.one(name)?),
                 RobotDeed::Beside(name) => RobotDo::Abreast(self.one(name)?),
@@ -500,9 +368,4 @@ impl Form {
         };
         steps.iter().filter_map(line).collect()
     }
-}
-
-impl Step {
-    /// A sign without an act lasts so long, s.
-    pub const SIGN_S: f64 = 2.0;
 }

@@ -27,6 +27,10 @@ impl Action {
             Self::LookAtRobot => &["lookatrobot", "lookat", "surprised"],
             Self::Approach => &["approach", "curious"],
             Self::StandStill => &["standstill", "stand", "stop", "wait"],
+            Self::LookAt(_) => &["watchhuman"],
+            Self::TurnBack => &["turnback"],
+            Self::GoTo { .. } => &["gotoplace"],
+            Self::ChangePace(_) => &["changepace"],
         }
     }
 
@@ -42,6 +46,7 @@ impl Action {
             "LookAtRobot" => Self::LookAtRobot,
             "ApproachRobot" => Self::Approach,
             "StandStill" => Self::StandStill,
+            "TurnBack" => Self::TurnBack,
             _ => return None,
         })
     }

@@ -227,6 +227,13 @@ fn act(rule: &Rule, near: &dyn Fn(&Trigger, f64) -> Time) -> (String, Vec<Time>)
             }
             // Ids are numbers: who it is, the gesture says.
             Trigger::HumanSays(_, gesture) => words.push(format!("a human says {gesture}")),
+            // Whose step it is and which, the order of the rules says.
+            Trigger::Did(..) => words.push("once a step is over".to_owned()),
+            Trigger::Done(_) => words.push("once somebody is done".to_owned()),
+            Trigger::StoppedFor(s) => {
+                words.push("the robot has stood".to_owned());
+                times.push(Time::told(*s));
+            }
             Trigger::Always
             | Trigger::RobotVisible(_)
             | Trigger::RobotNear(_)
@@ -242,8 +249,13 @@ fn act(rule: &Rule, near: &dyn Fn(&Trigger, f64) -> Time) -> (String, Vec<Time>)
             }
         }
     }
-    let whom = matches!(rule.act, Action::FollowHuman(_));
-    let done = if whom { "follow a human".to_owned() } else { rule.act.they() };
+    let done = if matches!(rule.act, Action::FollowHuman(_)) {
+        "follow a human".to_owned()
+    } else if matches!(rule.act, Action::LookAt(_)) {
+        "look at a human".to_owned()
+    } else {
+        rule.act.they()
+    };
     let gesture = rule.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
     (format!("{}: {done}{gesture}", words.join(" and ")), times)
 }
@@ -260,7 +272,7 @@ fn scripted(when: &RobotWhen, act: &RobotDo) -> (String, Option<f64>) {
     };
     let done = match act {
         RobotDo::Say(gesture) => format!("says {gesture}"),
-        RobotDo::Hold(_) => "holds".to_owned(),
+        RobotDo::Hold(_) | RobotDo::HoldUntil(_) => "holds".to_owned(),
         RobotDo::WaitForLeavers => "waits for leavers".to_owned(),
         RobotDo::Follow(_) => "follows".to_owned(),
         RobotDo::Abreast(_) => "goes beside".to_owned(),

@@ -4,9 +4,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::clause::Clause;
+use crate::gesture::Gesture;
 use crate::ids::{GroupId, HumanId, NodeId};
 use crate::place::PlaceClass;
-use crate::rule::{RobotRule, Rule};
+use crate::rule::{Action, RobotRule, Rule, Trigger};
 
 /// How a human stands to the robot's way.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -195,6 +196,43 @@ pub struct HumanProposal {
     /// Class of the place where it goes, where that matters.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<PlaceClass>,
+}
+
+impl HumanProposal {
+    /// How many steps its sequence has.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        self.rules.iter().filter_map(|rule| rule.step).max().unwrap_or(0)
+    }
+}
+
+impl Proposal {
+    /// Whether somebody else has the robot wait until this human is through: by a sign to wait, and one to go on when they are done.
+    #[must_use]
+    pub fn is_let_through(&self, id: HumanId) -> bool {
+        let waits_for = |trigger: &Trigger| matches!(trigger, Trigger::Done(who) | Trigger::Did(who, _) if *who == id);
+        self.humans.iter().filter(|human| human.id != id).any(|human| {
+            let says = |gesture: Gesture, rule: &&Rule| rule.gesture == Some(gesture) && rule.to != Some(id.into());
+            let stops = human.rules.iter().any(|rule| says(Gesture::Wait, &rule));
+            stops
+                && human
+                    .rules
+                    .iter()
+                    .filter(|rule| says(Gesture::Proceed, rule))
+                    .any(|rule| rule.when.iter().any(waits_for))
+        })
+    }
+
+    /// Whether a human leaves their path, for good, when the robot is still some way off.
+    #[must_use]
+    pub fn is_leaving_path(&self, id: HumanId) -> bool {
+        let leaves = |rule: &Rule| {
+            let off =
+                rule.when.iter().any(|trigger| trigger.distance_m().is_some() || matches!(trigger, Trigger::Did(..)));
+            off && matches!(rule.act, Action::TurnBack | Action::GoTo { .. })
+        };
+        self.human(id).is_some_and(|human| human.rules.iter().any(leaves))
+    }
 }
 
 /// A group of the proposal.

@@ -92,6 +92,15 @@ pub enum FactKind {
         /// Which.
         gesture: Gesture,
     },
+    /// A human makes a gesture to somebody: to the robot, or to another human.
+    GesturesTo {
+        /// Who.
+        human: HumanId,
+        /// Which.
+        gesture: Gesture,
+        /// To whom.
+        to: AgentId,
+    },
     /// It happens at a place of this class.
     Place(PlaceClass),
     /// The robot has to do this.

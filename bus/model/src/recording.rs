@@ -144,6 +144,9 @@ pub enum EventKind {
         #[serde(with = "crate::gesture::or_none")]
         #[schemars(with = "String")]
         gesture: Option<Gesture>,
+        /// To whom, where it is made to one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        to: Option<AgentId>,
     },
     /// Another leaf of a human's tree runs.
     Leaf {
@@ -151,6 +154,13 @@ pub enum EventKind {
         human: HumanId,
         /// Name of the leaf, such as `FollowRobot`.
         leaf: String,
+    },
+    /// A step of a human's sequence has ended.
+    StepEnded {
+        /// Who.
+        human: HumanId,
+        /// Which step, from 1.
+        step: u32,
     },
     /// A human sees the robot for the first time, or again after 2 s without sight.
     Sees {

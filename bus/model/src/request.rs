@@ -8,8 +8,10 @@ mod form;
 #[cfg(test)]
 mod form_tests;
 mod read;
+mod steps;
 mod tree;
 mod values;
+mod words;
 
 use std::fmt;
 

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::gesture::Gesture;
-use crate::ids::{AgentId, HumanId};
+use crate::ids::{AgentId, HumanId, NodeId};
 
 /// Something a human can notice. Distances are center to center, m.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -34,13 +34,21 @@ pub enum Trigger {
     AtEncounter,
     /// So many seconds after the start of the run.
     AfterSecs(f64),
+    /// The robot has moved before and has stood for so many seconds.
+    StoppedFor(f64),
+    /// The step of this number, from 1, of a human's sequence has ended.
+    Did(HumanId, u32),
+    /// All steps of a human have ended. Somebody without steps is done at the end of their way, or once where they meet the robot is
+    /// [`Trigger::DONE_M`] behind them.
+    Done(HumanId),
 }
 
 /// What a human can do. Exactly one motion at a time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Action {
     /// Walks on along the path.
+    #[default]
     Navigate,
     /// Follows the robot at 1 to 2 m.
     FollowRobot,
@@ -58,9 +66,28 @@ pub enum Action {
     Approach,
     /// Stands still.
     StandStill,
+    /// Stops and turns to another human.
+    LookAt(HumanId),
+    /// Turns and walks back along the path to where it began.
+    TurnBack,
+    /// Leaves the path, goes to the nearest of some nodes, and stays there.
+    GoTo {
+        /// The place in words.
+        place: String,
+        /// Its nodes.
+        nodes: Vec<NodeId>,
+    },
+    /// Walks on along the path, from then on at this speed, m/s.
+    ChangePace(f64),
 }
 
 impl Action {
+    /// Whether it is one of those that only steps of a form have.
+    #[must_use]
+    pub const fn is_of_steps(&self) -> bool {
+        matches!(self, Self::LookAt(_) | Self::TurnBack | Self::GoTo { .. } | Self::ChangePace(_))
+    }
+
     /// The action in words: `follows the robot`.
     #[must_use]
     pub fn phrase(&self) -> String {
@@ -74,6 +101,10 @@ impl Action {
             Self::LookAtRobot => "stops and looks at the robot".to_owned(),
             Self::Approach => "comes up to the robot".to_owned(),
             Self::StandStill => "stands still".to_owned(),
+            Self::LookAt(id) => format!("stops and looks at {id}"),
+            Self::TurnBack => "turns and walks back".to_owned(),
+            Self::GoTo { place, .. } => format!("goes to the {place}"),
+            Self::ChangePace(mps) => format!("walks on at {mps} m/s"),
         }
     }
 
@@ -90,6 +121,10 @@ impl Action {
             Self::LookAtRobot => "stop and look at the robot".to_owned(),
             Self::Approach => "come up to the robot".to_owned(),
             Self::StandStill => "stand still".to_owned(),
+            Self::LookAt(id) => format!("stop and look at {id}"),
+            Self::TurnBack => "turn and walk back".to_owned(),
+            Self::GoTo { place, .. } => format!("go to the {place}"),
+            Self::ChangePace(mps) => format!("walk on at {mps} m/s"),
         }
     }
 }
@@ -99,6 +134,8 @@ impl Trigger {
     pub const PASSED_WITHIN_M: f64 = 4.0;
     /// So much farther away than it was at its nearest, it has passed, m.
     pub const PASSED_BY_M: f64 = 1.0;
+    /// So far beyond where they meet the robot somebody without steps is done, m.
+    pub const DONE_M: f64 = 1.5;
 
     /// Whether a robot that is `distance_m` away and was `nearest_m` away at its nearest has passed.
     #[must_use]
@@ -121,7 +158,10 @@ impl Trigger {
             | Self::RobotPassed
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => None,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => None,
         }
     }
 
@@ -138,7 +178,10 @@ impl Trigger {
             | Self::HumanSays(..)
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => None,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => None,
         }
     }
 
@@ -157,7 +200,35 @@ impl Trigger {
             | Self::HumanSays(..)
             | Self::GoalReached
             | Self::AtEncounter
-            | Self::AfterSecs(_) => self,
+            | Self::AfterSecs(_)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => self,
+        }
+    }
+
+    /// What holds, as a clause: `the robot is within 2 m`.
+    #[must_use]
+    pub fn clause(&self) -> String {
+        match self {
+            Self::Always => "at once".to_owned(),
+            Self::GoalReached => "they are at their goal".to_owned(),
+            Self::AtEncounter => "they are at the encounter".to_owned(),
+            Self::AfterSecs(s) => format!("{s} s have passed"),
+            Self::RobotVisible(_)
+            | Self::RobotNear(_)
+            | Self::RobotBlocking(_)
+            | Self::RobotMoving
+            | Self::RobotStopped
+            | Self::RobotPassed
+            | Self::RobotSays(_)
+            | Self::HumanSays(..)
+            | Self::StoppedFor(_)
+            | Self::Did(..)
+            | Self::Done(_) => {
+                let phrase = self.phrase();
+                phrase.split_once(' ').map_or_else(|| phrase.clone(), |(_, rest)| rest.to_owned())
+            }
         }
     }
 
@@ -177,13 +248,16 @@ impl Trigger {
             Self::GoalReached => "at their goal".to_owned(),
             Self::AtEncounter => "at the encounter".to_owned(),
             Self::AfterSecs(s) => format!("after {s} s"),
+            Self::StoppedFor(s) => format!("when the robot has stood for {s} s"),
+            Self::Did(id, step) => format!("once step {step} of {id} is over"),
+            Self::Done(id) => format!("once {id} is done"),
         }
     }
 }
 
 /// One rule of a human: when all triggers hold, do this. Earlier rules win over later ones;
 /// without a rule that holds, a human walks its path (or stands, if the path is one node).
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Rule {
     /// All of these must hold.
@@ -197,12 +271,21 @@ pub struct Rule {
         deserialize_with = "crate::gesture::or_none::deserialize"
     )]
     pub gesture: Option<Gesture>,
+    /// To whom the gesture is made, where that is one: nobody else reacts to it. Without: to whoever notices it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to: Option<AgentId>,
     /// Seconds for which it is done, counted while it is done; without: as long as the triggers hold.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub for_s: Option<f64>,
     /// Once started, goes on even when the triggers no longer hold (until `for_s`, or the end).
     #[serde(default)]
     pub latched: bool,
+    /// Its number in the human's sequence of steps, from 1: once it has ended it never begins again.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub step: Option<u32>,
+    /// A step ends when all of these hold.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub until: Vec<Trigger>,
 }
 
 impl Rule {
@@ -210,7 +293,8 @@ impl Rule {
     #[must_use]
     pub fn phrase(&self) -> String {
         let when: Vec<String> = self.when.iter().map(Trigger::phrase).collect();
-        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}"));
+        let to = self.to.map_or_else(String::new, |to| format!(" to {to}"));
+        let gesture = self.gesture.map_or_else(String::new, |gesture| format!(" and say {gesture}{to}"));
         format!("{} they {}{gesture}", when.join(" and "), self.act.they())
     }
 }
@@ -234,6 +318,19 @@ pub enum RobotWhen {
 }
 
 impl RobotWhen {
+    /// The moment in words: `when a human is within 2 m`.
+    #[must_use]
+    pub fn phrase(&self) -> String {
+        match self {
+            Self::Start => "from the start".to_owned(),
+            Self::Blocked(s) => format!("when it was blocked for {s} s"),
+            Self::HumanNear(m) => format!("when a human is within {m} m"),
+            Self::HumanSays(gesture) => format!("when a human says {gesture}"),
+            Self::AtEncounter(human) => format!("at the encounter with {human}"),
+            Self::AfterSecs(s) => format!("after {s} s"),
+        }
+    }
+
     /// Within this distance ahead of the robot a human blocks it, m: it stops more than a meter before whoever stands in its way.
     pub const BLOCKED_M: f64 = 1.6;
     /// Up to this angle from where it faces a human is ahead of it, rad.
@@ -254,6 +351,8 @@ pub enum RobotDo {
     Say(Gesture),
     /// Stands still for so many seconds.
     Hold(f64),
+    /// Stands still until this comes, for [`RobotDo::HOLD_MOST_S`] at most.
+    HoldUntil(RobotWhen),
     /// Waits outside a door until everybody who leaves has left.
     WaitForLeavers,
     /// Follows this human.
@@ -264,6 +363,11 @@ pub enum RobotDo {
     Overtake(HumanId),
     /// Waits for its followers when they fall more than this far behind, m.
     Lead(f64),
+}
+
+impl RobotDo {
+    /// Longest time for which the robot waits for something, s.
+    pub const HOLD_MOST_S: f64 = 60.0;
 }
 
 /// One line of the robot script.
@@ -280,17 +384,11 @@ impl RobotRule {
     /// The line in words: `when a human is within 2 m: says EXCUSE_ME`.
     #[must_use]
     pub fn phrase(&self) -> String {
-        let when = match &self.when {
-            RobotWhen::Start => "from the start".to_owned(),
-            RobotWhen::Blocked(s) => format!("when it was blocked for {s} s"),
-            RobotWhen::HumanNear(m) => format!("when a human is within {m} m"),
-            RobotWhen::HumanSays(gesture) => format!("when a human says {gesture}"),
-            RobotWhen::AtEncounter(human) => format!("at the encounter with {human}"),
-            RobotWhen::AfterSecs(s) => format!("after {s} s"),
-        };
+        let when = self.when.phrase();
         let act = match &self.act {
             RobotDo::Say(gesture) => format!("says {gesture}"),
             RobotDo::Hold(s) => format!("stands still for {s} s"),
+            RobotDo::HoldUntil(until) => format!("stands still until: {}", until.phrase()),
             RobotDo::WaitForLeavers => "waits until everybody who leaves has left".to_owned(),
             RobotDo::Follow(human) => format!("follows {human}"),
             RobotDo::Abreast(human) => format!("goes beside {human}"),

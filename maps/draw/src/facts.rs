@@ -21,6 +21,7 @@ pub fn fact_words(kind: &FactKind) -> String {
         }
         FactKind::Relates { human, relation } => format!("{human} {}", relation_words(*relation)),
         FactKind::Gestures { human, gesture } => format!("{human} says {gesture}"),
+        FactKind::GesturesTo { human, gesture, to } => format!("{human} says {gesture} to {to}"),
         FactKind::Place(place) => format!("place: {}", place_words(*place)),
         FactKind::RobotTask(task) => format!("task of the robot: {task}"),
         FactKind::RobotSays(gesture) => format!("the robot says {gesture}"),

@@ -130,6 +130,7 @@ fn meeting(run: &Recording) -> Option<(f64, f64)> {
         EventKind::Gesture { gesture, .. } => gesture.is_some(),
         EventKind::Leaf { leaf, .. } => event.time.secs() >= FIRST_SECS && reacts(leaf),
         EventKind::Sees { .. }
+        | EventKind::StepEnded { .. }
         | EventKind::WallContact { .. }
         | EventKind::Door { .. }
         | EventKind::Node { .. }

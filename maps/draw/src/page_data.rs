@@ -92,8 +92,9 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
     let secs = event.time.secs();
     let mark = |lane: u32, what: &str, words: String| Some(json!([secs, lane, what, words]));
     match &event.kind {
-        EventKind::Gesture { agent, gesture: Some(gesture) } => {
-            mark(agent.number(), "gesture", format!("{agent} says {gesture}"))
+        EventKind::Gesture { agent, gesture: Some(gesture), to } => {
+            let to = to.map_or_else(String::new, |to| format!(" to {to}"));
+            mark(agent.number(), "gesture", format!("{agent} says {gesture}{to}"))
         }
         EventKind::Leaf { human, leaf } => mark(human.number(), "leaf", format!("{human} {}", spoken(leaf))),
         EventKind::Sees { human, distance_m } => {
@@ -105,7 +106,9 @@ fn mark(recording: &Recording, event: &Event) -> Option<Value> {
         EventKind::Door { door, open } => mark(0, "door", format!("{door} {}", if *open { "opens" } else { "closes" })),
         EventKind::RobotArrived => mark(0, "goal", "the robot is at its goal".to_owned()),
         EventKind::Stuck { agent } => mark(agent.number(), "stuck", format!("{agent} is stuck")),
-        EventKind::Gesture { .. } | EventKind::Node { .. } | EventKind::End { .. } => None,
+        EventKind::Gesture { .. } | EventKind::StepEnded { .. } | EventKind::Node { .. } | EventKind::End { .. } => {
+            None
+        }
     }
 }
 

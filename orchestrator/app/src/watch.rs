@@ -154,9 +154,12 @@ fn tick_object(tick: u64, states: &[AgentState]) -> Value {
 /// An event in words; nothing for what only programs want to know.
 fn words(kind: &EventKind) -> Option<String> {
     Some(match kind {
-        EventKind::Gesture { agent, gesture: Some(gesture) } => format!("{agent} gestures {gesture}"),
+        EventKind::Gesture { agent, gesture: Some(gesture), to } => {
+            format!("{agent} gestures {gesture}{}", to.map_or_else(String::new, |to| format!(" to {to}")))
+        }
         EventKind::Gesture { agent, .. } => format!("{agent} ends the gesture"),
         EventKind::Leaf { human, leaf } => format!("{human}: {leaf}"),
+        EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot, {distance_m:.2} m away"),
         EventKind::Encounter { human, node, gap_s, .. } => {
             let order = if *gap_s < 0.0 { "before" } else { "after" };

@@ -83,6 +83,9 @@ pub(crate) fn subject_of(
         act,
         Act::Pass
             | Act::Walk
+            | Act::TurnBack
+            | Act::SlowDown
+            | Act::SpeedUp
             | Act::Stop
             | Act::Follow
             | Act::Lead

@@ -206,6 +206,7 @@ impl RoleRule {
             gesture: self.gesture,
             for_s: self.for_s.map(|range| draw.tenths(range)),
             latched: self.latched,
+            ..Rule::default()
         }
     }
 }

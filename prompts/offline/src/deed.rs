@@ -39,6 +39,9 @@ pub(crate) struct Around {
 pub(crate) const STARTLED_S: f64 = 8.0;
 /// Who follows and then walks on follows for so long, s.
 const FOLLOWS_S: f64 = 8.0;
+/// Paces of whoever slows down and of whoever speeds up, m/s.
+const SLOW_MPS: f64 = 0.6;
+const FAST_MPS: f64 = 1.7;
 /// Who stops and then looks stands so long before it looks, s.
 const HALT_S: f64 = 2.0;
 
@@ -53,6 +56,9 @@ pub(crate) fn manner(act: Act) -> Option<(Action, Trigger, Option<f64>, bool)> {
         Act::Approach => (Action::Approach, Trigger::RobotVisible(5.0), Some(8.0), true),
         Act::Follow => (Action::FollowRobot, Trigger::RobotVisible(8.0), None, true),
         Act::Stop => (Action::StandStill, Trigger::RobotVisible(3.0), Some(5.0), true),
+        Act::TurnBack => (Action::TurnBack, Trigger::RobotVisible(4.0), None, true),
+        Act::SlowDown => (Action::ChangePace(SLOW_MPS), Trigger::RobotVisible(5.0), None, true),
+        Act::SpeedUp => (Action::ChangePace(FAST_MPS), Trigger::RobotVisible(5.0), None, true),
         Act::Toward
         | Act::Overtake
         | Act::Behind
@@ -106,6 +112,9 @@ pub(crate) fn words(act: Act, around: &Around) -> String {
         Act::Lead => "leads".into(),
         Act::GoOn => "walks on".into(),
         Act::Pass | Act::Walk => "walks".into(),
+        Act::TurnBack => "turns back".into(),
+        Act::SlowDown => "slows down".into(),
+        Act::SpeedUp => "speeds up".into(),
     }
 }
 
@@ -363,7 +372,7 @@ pub(crate) fn apply(cast: &mut Cast, who: usize, act: Act, around: &Around) -> O
         },
     };
     let lasts = around.lasts_s.or(if around.startled { Some(STARTLED_S) } else { lasts });
-    let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched };
+    let rule = Rule { when: vec![when], act: action, gesture: None, for_s: lasts, latched, ..Rule::default() };
     let stated = around.trigger.is_some() || around.distance_m.is_some();
     let exact = around.distance_m.is_some() || around.trigger.is_some() && !around.vague;
     let read = ReadRule {
@@ -424,14 +433,15 @@ pub(crate) fn settle_going_on(person: &mut Person) {
     }
     let last = person.rules.last().map(|last| last.rule.when.clone());
     let when = last.unwrap_or_else(|| vec![Trigger::RobotVisible(5.0)]);
-    let rule = Rule { when, act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    let rule = Rule { when, act: Action::Navigate, gesture: None, for_s: None, latched: true, ..Rule::default() };
     person.rules.push(ReadRule { rule, quote, stated: false, exact: false, then: true, lasts: false });
 }
 
 /// From a trigger on it walks on, whatever it did before.
 pub(crate) fn walk_on(cast: &mut Cast, who: usize, when: Trigger, quote: &str) {
     let Some(person) = cast.people.get_mut(who) else { return };
-    let rule = Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true };
+    let rule =
+        Rule { when: vec![when], act: Action::Navigate, gesture: None, for_s: None, latched: true, ..Rule::default() };
     let read = ReadRule { rule, quote: quote.to_owned(), stated: true, exact: true, then: false, lasts: false };
     // Earlier rules win: what ends the others stands before them.
     if !person.rules.contains(&read) {
@@ -555,6 +565,7 @@ fn gesture(person: &mut Person, around: &Around) -> Option<usize> {
         gesture: Some(gesture),
         for_s: Some(around.lasts_s.unwrap_or(lasts)),
         latched: true,
+        ..Rule::default()
     };
     person.rules.push(ReadRule {
         rule,

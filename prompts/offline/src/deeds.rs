@@ -181,7 +181,10 @@ pub(crate) fn deeds(stretch: &mut Stretch, found: &mut Found, taken: &mut [bool]
         | Act::Stand
         | Act::Ignore
         | Act::Gesture
-        | Act::Lead => true,
+        | Act::Lead
+        | Act::TurnBack
+        | Act::SlowDown
+        | Act::SpeedUp => true,
     };
     let kept = found.deeds.iter().copied().filter(keep).collect();
     found.deeds = kept;

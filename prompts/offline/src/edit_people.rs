@@ -563,6 +563,7 @@ fn renumber(desk: &mut Desk, gone: &[HumanId]) {
     let of = |kind: &FactKind| {
         if let FactKind::Reacts { human, .. }
         | FactKind::Gestures { human, .. }
+        | FactKind::GesturesTo { human, .. }
         | FactKind::Relates { human, .. }
         | FactKind::Side { human, .. }
         | FactKind::Facing { human, .. }

@@ -96,6 +96,7 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
             FactKind::Place(class) => *class = proposal.place,
             FactKind::Group { .. }
             | FactKind::Gestures { .. }
+            | FactKind::GesturesTo { .. }
             | FactKind::MeetsTimes { .. }
             | FactKind::Side { .. }
             | FactKind::Facing { .. }
@@ -112,6 +113,9 @@ fn facts(proposal: &Proposal, reading: &mut Reading) {
     reading.facts.retain(|fact| match &fact.kind {
         FactKind::Reacts { human, rule } => rules(human).contains(rule),
         FactKind::Gestures { human, gesture } => rules(human).iter().any(|rule| rule.gesture == Some(*gesture)),
+        FactKind::GesturesTo { human, gesture, to } => {
+            rules(human).iter().any(|rule| rule.gesture == Some(*gesture) && rule.to == Some(*to))
+        }
         FactKind::Group { members, .. } => proposal.groups.iter().any(|group| group.members == *members),
         FactKind::Before { first, then, at_door } => {
             let clause = Predicate::Before { first: *first, then: *then, at_door: *at_door };

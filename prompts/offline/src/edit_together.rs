@@ -229,7 +229,7 @@ fn made(gesture: Gesture, meters: Option<f64>) -> Rule {
         Gesture::Wait | Gesture::ExcuseMe | Gesture::FollowMe => (Action::Navigate, SHOWN_S),
     };
     let when = vec![Trigger::RobotVisible(meters.unwrap_or(SEEN_M))];
-    Rule { when, act, gesture: Some(gesture), for_s: Some(lasts), latched: true }
+    Rule { when, act, gesture: Some(gesture), for_s: Some(lasts), latched: true, ..Rule::default() }
 }
 
 /// Who waited for the one gesture waits for the other.

@@ -46,7 +46,15 @@ impl List {
             std::mem::discriminant(&other.predicate) == std::mem::discriminant(&predicate)
                 && other.predicate.human() == predicate.human()
                 && (predicate.human().is_some()
-                    && !matches!(predicate, Predicate::Gestures { .. } | Predicate::Reacts { .. })
+                    && !matches!(
+                        predicate,
+                        Predicate::Gestures { .. }
+                            | Predicate::GesturesTo { .. }
+                            | Predicate::Reacts { .. }
+                            | Predicate::Step { .. }
+                            | Predicate::GoesTo { .. }
+                            | Predicate::ChangesPace { .. }
+                    )
                     || other.predicate == predicate)
         };
         if let Some(known) = self.0.iter_mut().find(|other| other.role == role && same(other)) {
@@ -132,6 +140,7 @@ pub(crate) fn of_human(human: &HumanProposal, proposal: &Proposal, reading: &Rea
     let own = |fact: &&Fact| {
         if let FactKind::Reacts { human: who, .. }
         | FactKind::Gestures { human: who, .. }
+        | FactKind::GesturesTo { human: who, .. }
         | FactKind::MeetsTimes { human: who, .. }
         | FactKind::Side { human: who, .. }
         | FactKind::Facing { human: who, .. }
@@ -198,7 +207,17 @@ fn of_fact(
                 list.setup(true, &fact.id, text, Predicate::EncounterAt { place: *class, nodes: Vec::new() });
             }
         }
-        FactKind::Gestures { human, gesture } => says(list, &fact.id, (*human).into(), *gesture),
+        FactKind::Gestures { human, gesture } => {
+            let to = proposal.human(*human).and_then(|who| {
+                let mut made = who.rules.iter().filter(|rule| rule.gesture == Some(*gesture));
+                made.clone().all(|rule| rule.to.is_some()).then(|| made.next().and_then(|rule| rule.to)).flatten()
+            });
+            match to {
+                Some(to) => says_to(list, &fact.id, *human, (*gesture, to)),
+                None => says(list, &fact.id, (*human).into(), *gesture),
+            }
+        }
+        FactKind::GesturesTo { human, gesture, to } => says_to(list, &fact.id, *human, (*gesture, *to)),
         FactKind::RobotSays(gesture) => says(list, &fact.id, AgentId::Robot, *gesture),
         FactKind::Place(class) => {
             let text = format!("it happens at {}", place::an(*class));
@@ -233,6 +252,11 @@ fn says(list: &mut List, source: &str, agent: AgentId, gesture: Gesture) {
     list.setup(true, source, format!("{agent} gestures {gesture}"), Predicate::Gestures { agent, gesture });
 }
 
+fn says_to(list: &mut List, source: &str, human: HumanId, (gesture, to): (Gesture, AgentId)) {
+    let text = format!("{human} gestures {gesture} to {to}");
+    list.setup(true, source, text, Predicate::GesturesTo { human, gesture, to });
+}
+
 fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, proposal: &Proposal) {
     let Some(found) = proposal.groups.iter().find(|other| other.id == group) else { return };
     let line = crate::card::card(&proposal.pattern).is_some_and(|card| card.roles.iter().any(|role| role.line));
@@ -245,9 +269,31 @@ fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, propo
     }
 }
 
+/// Largest difference of arrival where the robot waits for whoever crosses, s.
+const THROUGH_GAP_S: f64 = 40.0;
+/// A step begins so long after its reason at most, s.
+const STEP_S: f64 = 3.0;
+
+/// What must be seen of a step of a sequence: its own beginning and end, and what it does.
+fn of_step(list: &mut List, source: &str, human: &HumanProposal, (rule, number): (&Rule, u32)) {
+    let id = human.id;
+    // Who walks on goes their way, as everybody does.
+    if rule.act == Action::Navigate
+        && rule.gesture.is_none()
+        && rule.when.iter().all(|when| matches!(when, Trigger::Always | Trigger::Did(..)))
+    {
+        return;
+    }
+    let text = format!("{id}, step {number}: {}", rule.phrase());
+    list.setup(true, source, text, Predicate::Step { human: id, rule: rule.clone(), within_s: STEP_S });
+}
+
 /// What must be seen where a rule has played its part.
 fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, stated: bool) {
     let id = human.id;
+    if let Some(number) = rule.step {
+        of_step(list, source, human, (rule, number));
+    }
     let text = format!("{id} {}", done(&rule.act));
     let lasts = |most: f64| rule.for_s.map_or(most, |secs| (secs * 0.6).min(most));
     let seen = match &rule.act {
@@ -259,10 +305,16 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         Action::LookAtRobot => Some(Predicate::Looks { human: id, for_s: lasts(2.0) }),
         Action::Approach => Some(Predicate::Meets { human: id, within_m: 2.0 }),
         Action::StandStill => Some(Predicate::StandsStill { human: id, for_s: lasts(2.0) }),
-        Action::Navigate => None,
+        Action::TurnBack => Some(Predicate::TurnsBack { human: id }),
+        Action::GoTo { nodes, .. } => Some(Predicate::GoesTo { human: id, nodes: nodes.clone() }),
+        Action::ChangePace(mps) => Some(Predicate::ChangesPace { human: id, mps: *mps }),
+        // That they look at somebody, the clause of the step says.
+        Action::Navigate | Action::LookAt(_) => None,
     };
-    if let Some(gesture) = rule.gesture {
-        says(list, "", id.into(), gesture);
+    match (rule.gesture, rule.to) {
+        (Some(gesture), Some(to)) => says_to(list, "", id, (gesture, to)),
+        (Some(gesture), None) => says(list, "", id.into(), gesture),
+        (None, _) => {}
     }
     // Who walks on after what it did does what everybody does: nothing more is to be seen.
     let before = human.rules.iter().position(|own| own == rule).and_then(|at| at.checked_sub(1));
@@ -319,7 +371,11 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
     let stands = does(&Action::StandStill) || does(&Action::LookAtRobot) || does(&Action::Block);
     // Who is told to wait leaves a long gap, but whoever tells it and walks on crosses all the same.
     let halts = stands || human.rules.iter().any(|rule| rule.gesture == Some(Gesture::Wait));
+    // Somebody else has the robot wait until they are through, or they go elsewhere before it comes.
+    let through = proposal.is_let_through(id);
+    let elsewhere = through || proposal.is_leaving_path(id);
     let meets = |list: &mut List, must: bool, within_m: f64| {
+        let must = must && !elsewhere;
         // Whoever reacts at a distance need not come nearer than that.
         let early = human
             .rules
@@ -351,7 +407,13 @@ fn of_relation(list: &mut List, source: &str, human: &HumanProposal, proposal: &
         }
         Relation::Crossing => {
             meets(list, true, 3.0);
-            let gap_s = if halts { 10.0 } else { usual_gap_s };
+            let gap_s = if through {
+                THROUGH_GAP_S
+            } else if halts {
+                10.0
+            } else {
+                usual_gap_s
+            };
             list.setup(
                 said && !stands,
                 source,

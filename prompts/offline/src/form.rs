@@ -8,10 +8,10 @@
 
 use std::collections::BTreeMap;
 
-use socrates_model::form::{Deed, FacingWord, Form, FormHuman, Formation, PlaceWord, RobotDeed};
+use socrates_model::form::{Deed, FacingWord, Form, FormHuman, Formation, PlaceWord, RobotDeed, Step};
 use socrates_model::proposal::Facing;
 use socrates_model::{
-    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Side, Trigger,
+    Action, Fault, FaultCode, HumanId, Location, NodeId, PlaceClass, Reading, Relation, Request, Rule, Side, Trigger,
 };
 
 use crate::bind::QUEUES;
@@ -94,6 +94,13 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
         let steps = human.reacts.iter().map(|step| (step, "reacts", true));
         let does = human.does.iter().enumerate().map(|(place, step)| (step, "does", place == 0));
         for (rule, (step, key, first)) in person.rules.iter().zip(steps.chain(does)) {
+            let rule = &bound_to(rule, step, location);
+            if let Action::GoTo { nodes, .. } = &rule.act
+                && nodes.is_empty()
+                && let Some(Deed::GoTo(place)) = &step.act
+            {
+                story.problems.push(no_place("human.does.act", place, location));
+            }
             let timed = rule.when != [Trigger::Always];
             let deed = step.act.as_ref().unwrap_or(&Deed::StandStill);
             let said = step.say.map_or_else(String::new, |say| format!(", say {say}"));
@@ -122,6 +129,19 @@ pub(crate) fn story(request: &Request, location: &Location) -> Story {
     let count = form.headcount();
     story.cast.count_quote = Some(format!("[[human]]: {count}"));
     story
+}
+
+/// The rule with the nodes of the place that it names.
+fn bound_to(rule: &Rule, step: &Step, location: &Location) -> Rule {
+    let mut rule = rule.clone();
+    if let (Action::GoTo { nodes, .. }, Some(Deed::GoTo(place))) = (&mut rule.act, &step.act)
+        && let Some(found) = bound(place, location)
+    {
+        let all = location.graph.nodes().iter().map(|node| &node.id);
+        let class = || all.filter(|id| location.graph.node_is(id, found.class)).cloned().collect();
+        *nodes = if found.nodes.is_empty() { class() } else { found.nodes };
+    }
+    rule
 }
 
 /// The act as the form writes it.
@@ -324,7 +344,11 @@ pub(crate) fn robot_part(request: &Request) -> Option<&'static str> {
         RobotDeed::Follow(_) => Some("robot_following"),
         RobotDeed::LeadM(_) => Some("leading"),
         RobotDeed::Overtake(_) => Some("robot_overtaking"),
-        RobotDeed::Beside(_) | RobotDeed::Say(_) | RobotDeed::HoldS(_) | RobotDeed::WaitForLeavers(_) => None,
+        RobotDeed::Beside(_)
+        | RobotDeed::Say(_)
+        | RobotDeed::HoldS(_)
+        | RobotDeed::HoldUntil(_)
+        | RobotDeed::WaitForLeavers(_) => None,
     })
 }
 

@@ -38,6 +38,11 @@ pub(crate) enum Act {
     /// Walks on after something else.
     GoOn,
     Walk,
+    /// Walks back the way they came.
+    TurnBack,
+    /// Walks at another pace from then on.
+    SlowDown,
+    SpeedUp,
 }
 
 /// What somebody notices, as the text says it.

@@ -40,6 +40,7 @@ mod refer;
 mod topic;
 
 mod actors;
+mod addressee;
 mod arrows;
 mod labels;
 mod notes;

@@ -30,7 +30,13 @@ const fn reach_m(act: &Action, gesture: Option<Gesture>) -> Option<(f64, [f64; 2
         Action::Approach => Some((5.0, [3.3, 8.4])),
         Action::StandStill => Some((3.0, [2.5, 5.9])),
         Action::Navigate if gesture.is_some() => Some((5.0, [2.5, 9.3])),
-        Action::Navigate | Action::FollowRobot | Action::FollowHuman(_) => None,
+        Action::Navigate
+        | Action::FollowRobot
+        | Action::FollowHuman(_)
+        | Action::LookAt(_)
+        | Action::TurnBack
+        | Action::GoTo { .. }
+        | Action::ChangePace(_) => None,
     }
 }
 

@@ -5,8 +5,8 @@ use socrates_model::reading::ReadHuman;
 use socrates_model::request::RobotGesture;
 use socrates_model::rule::{RobotDo, RobotRule, RobotWhen};
 use socrates_model::{
-    Action, Breadth, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location, PlaceClass,
-    Predicate, Proposal, Reading, Relation, Request, RobotProposal, Rule, Trigger,
+    Action, AgentId, Breadth, FORMAT, FactKind, Gesture, GroupId, GroupProposal, HumanId, HumanProposal, Location,
+    PlaceClass, Predicate, Proposal, Reading, Relation, Request, RobotProposal, Rule, Trigger,
 };
 use socrates_prompts::Question;
 
@@ -283,9 +283,16 @@ fn robot(
         }
     }
     script.extend(request.robot.gestures.iter().map(RobotGesture::line));
-    let stops = humans.iter().flat_map(|human| &human.rules).any(|rule| rule.gesture == Some(Gesture::Wait));
+    // A sign to somebody else is none for the robot.
+    let told = |rule: &&Rule| !matches!(rule.to, Some(AgentId::Human(_)));
+    let signs = || humans.iter().flat_map(|human| &human.rules).filter(told);
+    let stops = signs().any(|rule| rule.gesture == Some(Gesture::Wait));
     if stops && !script.iter().any(|line| line.when == RobotWhen::HumanSays(Gesture::Wait)) {
-        script.push(RobotRule { when: RobotWhen::HumanSays(Gesture::Wait), act: RobotDo::Hold(4.0) });
+        // Whoever tells it to wait, and by a later step to go on, has it wait until then.
+        let goes = signs().any(|rule| rule.gesture == Some(Gesture::Proceed) && rule.step.is_some_and(|step| step > 1));
+        let until = RobotDo::HoldUntil(RobotWhen::HumanSays(Gesture::Proceed));
+        let act = if goes { until } else { RobotDo::Hold(4.0) };
+        script.push(RobotRule { when: RobotWhen::HumanSays(Gesture::Wait), act });
     }
     let leaves = humans.iter().any(|human| human.relation == Relation::Leaving)
         && goal.is_some_and(|class| matches!(class, PlaceClass::Elevator | PlaceClass::Room));

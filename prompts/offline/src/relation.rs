@@ -31,7 +31,10 @@ pub(crate) fn relation(act: Act) -> Option<Relation> {
         | Act::Lead
         | Act::Pass
         | Act::GoOn
-        | Act::Walk => return None,
+        | Act::Walk
+        | Act::TurnBack
+        | Act::SlowDown
+        | Act::SpeedUp => return None,
     })
 }
 

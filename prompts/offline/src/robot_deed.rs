@@ -76,11 +76,24 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         | Act::Ignore
         | Act::Pass
         | Act::GoOn
-        | Act::Walk => {}
+        | Act::Walk
+        | Act::TurnBack
+        | Act::SlowDown
+        | Act::SpeedUp => {}
     }
     let its_own = matches!(
         act,
-        Act::Stop | Act::GoOn | Act::GiveWay | Act::Stay | Act::RunAway | Act::Block | Act::Ignore | Act::Look
+        Act::Stop
+            | Act::GoOn
+            | Act::GiveWay
+            | Act::Stay
+            | Act::RunAway
+            | Act::Block
+            | Act::Ignore
+            | Act::Look
+            | Act::TurnBack
+            | Act::SlowDown
+            | Act::SpeedUp
     );
     if its_own {
         story.cast.leave_out(quote, UP_TO_PLANNER);

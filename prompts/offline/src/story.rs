@@ -2,6 +2,7 @@
 
 use socrates_model::{Fault, FaultCode, Gesture, Payload, PlaceClass, Trigger};
 
+use crate::addressee;
 use crate::again;
 use crate::around::{also_called, answers, done_by_robot, excepted, excepts, only_says, supposes};
 use crate::bind::{people_deed, subject_of};
@@ -554,7 +555,10 @@ fn read_clause(story: &mut Story, thread: &mut Thread, stretch: &mut Stretch, te
                 {
                     around.push((stretch.words.len(), stretch.words.len(), led.clone()));
                 }
-                people_deed(story, thread, (act, at, to), people, &found, &around, stretch, quote)
+                people_deed(story, thread, (act, at, to), people, &found, &around, stretch, quote);
+                if act == Act::Gesture && !passive && !found.robots.iter().any(|robot| *robot > at) {
+                    addressee::settle(&mut story.cast, people, &object);
+                }
             }
             Subject::Nobody if found.mentions.iter().any(|mention| mention.who == Who::Nobody) => {
                 for who in 0..story.cast.people.len() {

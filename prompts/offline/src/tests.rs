@@ -353,6 +353,7 @@ fn sound(name: &str, ask: &Question, proposal: &Proposal, paths: &Paths) {
             fact.kind,
             FactKind::Reacts { .. }
                 | FactKind::Gestures { .. }
+                | FactKind::GesturesTo { .. }
                 | FactKind::Group { .. }
                 | FactKind::Place(_)
                 | FactKind::RobotSays(_)

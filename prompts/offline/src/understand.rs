@@ -330,7 +330,11 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
                 continue;
             }
             match read.rule.gesture {
-                Some(gesture) => facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture })),
+                Some(gesture) => {
+                    facts.push((read.quote.clone(), FactKind::Gestures { human: id(i), gesture }));
+                    let to = read.rule.to.map(|to| FactKind::GesturesTo { human: id(i), gesture, to });
+                    facts.extend(to.map(|kind| (read.quote.clone(), kind)));
+                }
                 None => facts.push((read.quote.clone(), FactKind::Reacts { human: id(i), rule: read.rule.clone() })),
             }
         }
@@ -481,7 +485,14 @@ fn again_and_again(rough: &str, story: &mut Story) {
     };
     for (yields_m, blocks_m) in TURNS_M {
         for (act, m, secs) in [(Action::GiveWay, yields_m, YIELDS_S), (Action::Block, blocks_m, BLOCKS_S)] {
-            let rule = Rule { when: vec![Trigger::RobotNear(m)], act, gesture: None, for_s: Some(secs), latched: true };
+            let rule = Rule {
+                when: vec![Trigger::RobotNear(m)],
+                act,
+                gesture: None,
+                for_s: Some(secs),
+                latched: true,
+                ..Rule::default()
+            };
             person.rules.push(ReadRule { rule, stated: true, then: true, ..first.clone() });
         }
     }

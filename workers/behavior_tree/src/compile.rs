@@ -68,7 +68,10 @@ pub fn describe(human: HumanId, rules: &[Rule]) -> String {
         if let Some(secs) = rule.for_s {
             sentence.push_str(&format!(" for {secs} s"));
         }
-        if rule.latched && rules::asked(rule).next().is_some() {
+        if !rule.until.is_empty() {
+            sentence.push_str(&format!(", until {}", rules::until(rule)));
+        }
+        if rule.latched && rule.step.is_none() && rules::asked(rule).next().is_some() {
             sentence.push_str(", and goes on when that has passed");
         }
         sentences.push(format!("{sentence}."));

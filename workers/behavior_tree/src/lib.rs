@@ -39,7 +39,7 @@ pub use compile::{compile, describe};
 pub use convert::{Note, convert};
 pub use draw::{draw_svg, draw_text};
 pub use leaf::{LeafCall, LeafValue};
-pub use nodes::{CATALOG, DIALECTS, RARE};
+pub use nodes::{CATALOG, DIALECTS, RARE, STEPS};
 pub use parse::{Includes, Meaning, Options, REGULAR_NAV, REGULAR_NAV_PATH};
 pub use sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet};
 pub use spec::{NodeSpec, TreeSpec, WALK};

@@ -101,7 +101,7 @@ impl NodeSpec {
 }
 
 fn sheet(tag: &str) -> Option<&'static NodeSheet> {
-    crate::nodes::CATALOG.iter().find(|sheet| sheet.is_called(tag)).copied()
+    crate::nodes::CATALOG.iter().chain(crate::nodes::STEPS).find(|sheet| sheet.is_called(tag)).copied()
 }
 
 /// The value of a port that its writer leaves out. The timer of a reaction runs once and counts in ticks.
@@ -184,15 +184,38 @@ fn steps(rule: &Rule, speaks: bool) -> Vec<NodeSpec> {
     if rule.latched && !steps.is_empty() {
         steps = vec![NodeSpec::of("Latch", "", vec![NodeSpec::of("Sequence", "triggers", steps)])];
     }
-    if let Some(secs) = rule.for_s {
-        let timer = NodeSpec::new("TimeExpiredCondition").port("seconds", secs);
-        steps.push(NodeSpec::of("Inverter", "", vec![timer]));
+    if let Some(end) = end(rule) {
+        steps.push(NodeSpec::of("Inverter", "", vec![end]));
     }
     if speaks {
-        steps.push(says(rule.gesture));
+        steps.push(match (rule.gesture, rule.to) {
+            (Some(gesture), Some(to)) => {
+                NodeSpec::new("MakeGestureTo").port("message", gesture.code()).port("to", to.number())
+            }
+            (gesture, _) => says(gesture),
+        });
     }
     steps.push(motion(&rule.act));
     steps
+}
+
+/// What ends a rule: its time, and for a step what it waits for; a step is then over for good.
+fn end(rule: &Rule) -> Option<NodeSpec> {
+    let timer = rule.for_s.map(|secs| NodeSpec::new("TimeExpiredCondition").port("seconds", secs));
+    let Some(number) = rule.step else { return timer };
+    // Somebody who goes back, or to another place, is at the end of their path before.
+    let leads = matches!(rule.act, Action::TurnBack | Action::GoTo { .. });
+    let ends = |trigger: &Trigger| {
+        if leads && *trigger == Trigger::GoalReached { Some(NodeSpec::new("HasArrived")) } else { condition(trigger) }
+    };
+    let mut until: Vec<NodeSpec> = rule.until.iter().filter_map(ends).collect();
+    let until = if until.len() > 1 { Some(NodeSpec::of("Sequence", "until", until)) } else { until.pop() };
+    let mut ends: Vec<NodeSpec> = until.into_iter().chain(timer).collect();
+    let end = if ends.len() > 1 { Some(NodeSpec::of("Fallback", "ends", ends)) } else { ends.pop() };
+    end.map(|end| NodeSpec {
+        ports: vec![("step".to_owned(), number.to_string())],
+        ..NodeSpec::of("EndStep", "", vec![end])
+    })
 }
 
 /// The node that makes a gesture, or takes an earlier one back.
@@ -218,6 +241,9 @@ fn condition(trigger: &Trigger) -> Option<NodeSpec> {
         Trigger::GoalReached => NodeSpec::new("IsPathDone"),
         Trigger::AtEncounter => NodeSpec::new("IsAtEncounter"),
         Trigger::AfterSecs(secs) => NodeSpec::new("HasTimePassed").port("seconds", secs),
+        Trigger::StoppedFor(secs) => NodeSpec::new("HasRobotStoodFor").port("seconds", secs),
+        Trigger::Did(id, step) => NodeSpec::new("HasStepEnded").port("target_id", id.number()).port("step", step),
+        Trigger::Done(id) => NodeSpec::new("IsDone").port("target_id", id.number()),
     })
 }
 
@@ -232,6 +258,13 @@ fn motion(action: &Action) -> NodeSpec {
         Action::LookAtRobot => "LookAtRobot",
         Action::Approach => "ApproachRobot",
         Action::StandStill => "StandStill",
+        Action::LookAt(id) => return NodeSpec::new("WatchHuman").port("target_id", id.number()),
+        Action::TurnBack => "TurnBack",
+        Action::GoTo { place, nodes } => {
+            let nodes: Vec<&str> = nodes.iter().map(socrates_model::NodeId::as_str).collect();
+            return NodeSpec::new("GoToPlace").port("place", place).port("nodes", nodes.join(","));
+        }
+        Action::ChangePace(mps) => return NodeSpec::new("ChangePace").port("speed", mps),
     })
 }
 

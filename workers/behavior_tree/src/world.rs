@@ -1,6 +1,6 @@
 //! What a tree sees and what it can do.
 
-use socrates_model::{Action, Gesture, HumanId, SimTime};
+use socrates_model::{Action, AgentId, Gesture, HumanId, SimTime};
 
 use crate::leaf::LeafCall;
 use crate::status::Status;
@@ -27,6 +27,20 @@ pub trait World {
     fn robot_passed(&self) -> bool {
         false
     }
+    /// For how long the robot has stood, s; 0 while it moves and before it has set off.
+    fn robot_stood_s(&self) -> f64 {
+        0.0
+    }
+    /// How many steps of somebody's sequence have ended. Its own steps are seen in the tick in which they end.
+    fn steps_ended(&self, _id: HumanId) -> u32 {
+        0
+    }
+    /// Whether somebody is done ([`Trigger::Done`](socrates_model::Trigger::Done)).
+    fn is_done(&self, _id: HumanId) -> bool {
+        false
+    }
+    /// A step of this human's sequence has ended.
+    fn end_step(&mut self, _step: u32) {}
     /// The gesture another human makes.
     fn human_gesture(&self, id: HumanId) -> Option<Gesture>;
     /// Whether this human is at the present goal of its path.
@@ -35,6 +49,10 @@ pub trait World {
     /// need not say more than [`World::goal_reached`].
     fn path_done(&self) -> bool {
         self.goal_reached()
+    }
+    /// Whether this human is at the end of a way that its present act has taken.
+    fn has_arrived(&self) -> bool {
+        self.path_done()
     }
     /// Takes the next goal of the path; at the last one nothing changes.
     fn next_goal(&mut self);
@@ -49,6 +67,12 @@ pub trait World {
     fn act(&mut self, action: &Action, leaf: u16);
     /// Makes a gesture that lasts until the next one; none takes an earlier one back.
     fn gesture(&mut self, gesture: Option<Gesture>);
+
+    /// Makes a gesture to somebody, which lasts until the next one. In a world that does not tell listeners apart everybody
+    /// notices it.
+    fn gesture_to(&mut self, gesture: Gesture, _to: AgentId) {
+        self.gesture(Some(gesture));
+    }
 
     /// Ticks a leaf of the catalog in this world's own meaning; `None` leaves it to the native one. In trees read
     /// with [`Meaning::World`](crate::Meaning::World) it is asked for every condition and action, timers included,

@@ -20,7 +20,14 @@ fn found<'a>(report: &'a Report, id: &str) -> &'a socrates_model::ClauseResult {
 /// Somebody stands beside the robot's way; the robot asks to pass, and it is to step aside then.
 fn asked_to_give_way() -> Case {
     let when = vec![Trigger::RobotSays(Gesture::ExcuseMe)];
-    let rule = Rule { when: when.clone(), act: Action::GiveWay, gesture: None, for_s: Some(3.0), latched: true };
+    let rule = Rule {
+        when: when.clone(),
+        act: Action::GiveWay,
+        gesture: None,
+        for_s: Some(3.0),
+        latched: true,
+        ..Rule::default()
+    };
     let reacts = Predicate::Reacts { human: H1, when, act: Action::GiveWay, within_s: 3.0 };
     let mut plan = proposal(
         1,
@@ -257,6 +264,7 @@ fn the_story_tells_when_somebody_goes_whom_it_follows_and_who_is_come_to() {
         gesture: None,
         for_s: None,
         latched: false,
+        ..Rule::default()
     }];
     plan.humans[2].relation = Relation::Static;
     let ways = paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m"), (&["b", "m", "a"], ""), (&["m"], "m")]);

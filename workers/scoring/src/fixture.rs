@@ -139,6 +139,10 @@ pub(crate) fn recording(walks: &[Walk], seconds: f64, step_s: f64) -> Recording 
             "BlockRobot",
             "GiveWaytoRobot",
             "StandStill",
+            "WatchHuman",
+            "TurnBack",
+            "ChangePace",
+            "GoToPlace",
         ]
         .map(String::from)
         .to_vec(),

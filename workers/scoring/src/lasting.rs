@@ -46,7 +46,7 @@ fn who_is_to_stand_while_the_robot_moves_stands_for_most_of_that_time() {
     let act = Action::StandStill;
     let stands = Predicate::Reacts { human: H1, when: when.clone(), act: act.clone(), within_s: 3.0 };
     let mut case = case(1, vec![stands]);
-    let rule = Rule { when, act, gesture: None, for_s: Some(5.0), latched: false };
+    let rule = Rule { when, act, gesture: None, for_s: Some(5.0), latched: false, ..Rule::default() };
     // A rule before it that has no reason does not excuse who just walks.
     let walks = Rule { when: vec![Trigger::RobotStopped], act: Action::Navigate, for_s: None, ..rule.clone() };
     case.plan.humans[0].rules = vec![walks, rule.clone()];

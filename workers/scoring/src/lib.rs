@@ -48,6 +48,10 @@ mod meetings;
 mod reasons;
 #[cfg(test)]
 mod scenarios;
+#[cfg(test)]
+mod signs;
+#[cfg(test)]
+mod steps;
 
 pub use doubts::doubts;
 pub use evidence::Evidence;

@@ -81,12 +81,18 @@ fn goes_at(signals: &Signals<'_>, human: HumanId, from_s: f64, to_s: f64) -> Opt
 fn told(signals: &Signals<'_>, event: &Event) -> Option<String> {
     Some(match &event.kind {
         EventKind::Gesture { gesture: None, .. } | EventKind::Node { .. } => return None,
-        EventKind::Gesture { agent, gesture: Some(gesture) } => format!("{agent} says {gesture}"),
+        EventKind::Gesture { agent, gesture: Some(gesture), to } => {
+            format!("{agent} says {gesture}{}", to.map_or_else(String::new, |to| format!(" to {to}")))
+        }
         EventKind::Leaf { human, leaf } => match phrase(leaf) {
             Some(words) => format!("{human} {words}"),
+            None if leaf == "GoToPlace" => format!("{human} goes to another place"),
+            None if Action::ChangePace(0.0).is_leaf(leaf) => format!("{human} changes pace"),
+            None if Action::LookAt(*human).is_leaf(leaf) => format!("{human} stops and looks at another human"),
             None if Action::FollowHuman(*human).is_leaf(leaf) => format!("{human} follows {}", leader(signals, *human)),
             None => format!("{human} runs {leaf}"),
         },
+        EventKind::StepEnded { human, step } => format!("step {step} of {human} is over"),
         EventKind::Sees { human, distance_m } => format!("{human} sees the robot at {distance_m:.1} m"),
         EventKind::Encounter { .. } => return signals.evidence.recording.encounter_words(event),
         EventKind::Contact { a, b, depth_m } => format!("{a} and {b} touch, {:.0} mm deep", depth_m * 1e3),
@@ -116,6 +122,7 @@ fn phrase(leaf: &str) -> Option<String> {
         Action::Approach,
         Action::StandStill,
         Action::Navigate,
+        Action::TurnBack,
     ];
     if leaf.is_empty() {
         return None;

@@ -20,7 +20,7 @@ fn clause<'a>(report: &'a Report, id: &str) -> &'a ClauseResult {
 }
 
 fn rule(when: Trigger, act: Action, gesture: Option<Gesture>) -> Rule {
-    Rule { when: vec![when], act, gesture, for_s: Some(3.0), latched: true }
+    Rule { when: vec![when], act, gesture, for_s: Some(3.0), latched: true, ..Rule::default() }
 }
 
 /// Somebody comes towards the robot and is to do something for a reason on the way.

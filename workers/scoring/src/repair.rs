@@ -69,6 +69,10 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
             (FaultCode::DNoMeet, Stage::Paths)
         }
         Predicate::Reacts { .. }
+        | Predicate::Step { .. }
+        | Predicate::TurnsBack { .. }
+        | Predicate::GoesTo { .. }
+        | Predicate::ChangesPace { .. }
         | Predicate::Blocks { .. }
         | Predicate::Looks { .. }
         | Predicate::StandsStill { .. }
@@ -76,7 +80,7 @@ fn fault_of(clause: &Clause, finding: &Finding) -> (Stage, Fault) {
         | Predicate::GivesWay { .. }
         | Predicate::Follows { .. }
         | Predicate::Abreast { .. } => (FaultCode::DNoTrig, Stage::Behaviors),
-        Predicate::Gestures { .. } => (FaultCode::DNoGest, Stage::Behaviors),
+        Predicate::Gestures { .. } | Predicate::GesturesTo { .. } => (FaultCode::DNoGest, Stage::Behaviors),
         Predicate::Formation { .. } | Predicate::WalksTogether { .. } | Predicate::Queues { .. } => {
             (FaultCode::DGroup, Stage::Paths)
         }

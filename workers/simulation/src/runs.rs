@@ -89,6 +89,7 @@ fn troubles(recording: &Recording, met: usize, loose_s: f64) -> Vec<String> {
             EventKind::Stuck { agent } => found.push(format!("{agent} stuck at {}", event.time)),
             EventKind::Gesture { .. }
             | EventKind::Leaf { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Sees { .. }
             | EventKind::Encounter { .. }
             | EventKind::WallContact { .. }
@@ -212,6 +213,7 @@ fn startled() -> Rule {
         gesture: None,
         for_s: Some(8.0),
         latched: true,
+        ..Rule::default()
     }
 }
 

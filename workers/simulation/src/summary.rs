@@ -71,6 +71,7 @@ impl Summary {
             EventKind::End { reason } => self.end.clone_from(reason),
             EventKind::Gesture { .. }
             | EventKind::Leaf { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Sees { .. }
             | EventKind::WallContact { .. }
             | EventKind::Door { .. }

@@ -48,6 +48,7 @@ fn proposal() -> Proposal {
         gesture: None,
         for_s: Some(3.0),
         latched: true,
+        ..Rule::default()
     };
     Proposal {
         format: FORMAT,

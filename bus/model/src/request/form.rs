@@ -2,44 +2,45 @@
 
 use std::collections::BTreeMap;
 
-use serde_json::Value;
-
-use super::read::{Door, GESTURES, Section};
+use super::read::{Door, Section};
 use super::tree::{Kind, Node};
+use super::words::Words;
 use super::{Expect, GROUP_SIZES, MAX_HUMANS};
 use crate::form::{
-    Deed, FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment,
-    RobotStep, Step, When,
+    FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep,
 };
 use crate::place::PlaceClass;
 use crate::proposal::{Relation, Side};
 
 const HUMAN_KEYS: [&str; 13] =
     ["id", "count", "role", "relation", "side", "facing", "place", "start", "goal", "pace", "group", "does", "reacts"];
-const STEP_KEYS: [&str; 4] = ["when", "act", "for_s", "say"];
 const RELATIONS: &str = "frontal, behind, ahead, crossing, static, leaving, staying, abreast";
 const PLACE: &str = "a place class or a place of this map: \"corridor\", \"packing area\"";
+const MOMENTS: Words = Words { what: "moment", all: RobotMoment::WORDS, more: "" };
+const DEEDS: Words = Words { what: "deed of the robot", all: RobotDeed::WORDS, more: "" };
 /// People of one `[[human]]`.
 const MOST_ALIKE: u32 = 30;
-/// Steps of `does`, and of `reacts`.
-const MOST_STEPS: usize = 12;
-/// Longest time of a step, s.
-const MOST_S: f64 = 600.0;
 /// Characters of a name, a role or a place.
 const MOST_CHARS: usize = 60;
 
 /// A name in the form, where it stands, and what it is for.
-struct Naming<'n> {
-    who: String,
-    key: &'static str,
-    node: Option<&'n Node>,
+pub(super) struct Naming<'n> {
+    pub(super) who: String,
+    pub(super) key: &'static str,
+    pub(super) node: Option<&'n Node>,
     /// Whether `robot` is somebody here, and whether several may be meant.
-    robot: bool,
-    several: bool,
+    pub(super) robot: bool,
+    pub(super) several: bool,
 }
 
 /// The names of a form that have to be somebody's.
 pub(super) struct Names<'n>(Vec<Naming<'n>>);
+
+impl<'n> Names<'n> {
+    pub(super) fn push(&mut self, naming: Naming<'n>) {
+        self.0.push(naming);
+    }
+}
 
 impl Door<'_> {
     /// The form of a request with the names that it uses.
@@ -51,6 +52,7 @@ impl Door<'_> {
         let form = Form { humans, groups, orders };
         self.alike(&form, top);
         self.faced(&form, top);
+        self.waits(&form, top);
         (form, names)
     }
 
@@ -182,94 +184,7 @@ impl Door<'_> {
         found
     }
 
-    fn steps<'n>(
-        &mut self,
-        section: &Section<'n>,
-        (key, path): (&'static str, &'static str),
-        names: &mut Names<'n>,
-    ) -> Vec<Step> {
-        let Some(node) = section.get(key) else { return Vec::new() };
-        let Kind::List(nodes) = &node.kind else {
-            let hint = "a list: [{ when = { robot_near = 2.0 }, act = \"give_way\" }]";
-            self.bad(section.key(key), node.at, format!("is {}", node.kind.name()), hint);
-            return Vec::new();
-        };
-        if nodes.len() > MOST_STEPS {
-            self.bad(section.key(key), node.at, format!("has {} steps", nodes.len()), format!("at most {MOST_STEPS}"));
-        }
-        let mut steps: Vec<Step> = Vec::new();
-        for node in nodes {
-            let Some(step) = self.step(node, path, names) else { continue };
-            let when = format!("{path}when");
-            if path == "human.reacts." && step.when.is_empty() {
-                self.bad(when, node.at, "is missing", When::ALLOWED);
-            } else if path == "human.does." && !steps.is_empty() && !step.when.is_empty() {
-                let hint = "it begins when the step before has ended; what waits for something else stands in `reacts`";
-                self.bad(when, node.at, "belongs to the first step only", hint);
-            } else if path == "human.does." && steps.last().is_some_and(is_endless) {
-                let hint = "give the step before an end: for_s = 5.0";
-                self.bad(path.trim_end_matches('.'), node.at, "a step comes after one that never ends", hint);
-            }
-            steps.push(step);
-        }
-        steps
-    }
-
-    fn step<'n>(&mut self, node: &'n Node, path: &'static str, names: &mut Names<'n>) -> Option<Step> {
-        let section = self.section(node, path, &STEP_KEYS);
-        if !matches!(node.kind, Kind::Table(_)) {
-            return None;
-        }
-        let when = self.whens(&section, names);
-        let act = self.maybe::<Deed>(&section, "act", Deed::ALLOWED);
-        if let Some(name) = act.as_ref().and_then(Deed::names) {
-            names.0.push(Naming {
-                who: name.clone(),
-                key: "follow_human",
-                node: section.get("act"),
-                robot: false,
-                several: false,
-            });
-        }
-        let for_s = self.maybe::<f64>(&section, "for_s", "0.1 to 600 (s)");
-        if let Some(secs) = for_s.filter(|secs| !(0.1..=MOST_S).contains(secs)) {
-            let at = section.get("for_s").and_then(|node| node.at);
-            self.bad(section.key("for_s"), at, format!("{secs} s is out of range"), "0.1 to 600 (s)");
-        }
-        let say = self.maybe(&section, "say", GESTURES);
-        if section.get("act").is_none() && section.get("say").is_none() {
-            self.bad(
-                path.trim_end_matches('.'),
-                node.at,
-                "does nothing",
-                format!("act: {}; say: {GESTURES}", Deed::ALLOWED),
-            );
-        }
-        Some(Step { when, act, for_s, say })
-    }
-
-    fn whens<'n>(&mut self, section: &Section<'n>, names: &mut Names<'n>) -> Vec<When> {
-        let Some(node) = section.get("when") else { return Vec::new() };
-        let nodes: Vec<&Node> = if let Kind::List(nodes) = &node.kind { nodes.iter().collect() } else { vec![node] };
-        let mut found = Vec::new();
-        for node in nodes {
-            let Some(when) = self.typed::<When>(&section.key("when"), node, When::ALLOWED) else { continue };
-            self.number(&section.key("when"), node, when.number());
-            if let Some(name) = when.names() {
-                names.0.push(Naming {
-                    who: name.clone(),
-                    key: "human_says",
-                    node: Some(node),
-                    robot: false,
-                    several: false,
-                });
-            }
-            found.push(when);
-        }
-        found
-    }
-
-    fn number(&mut self, key: &str, node: &Node, number: Option<(f64, [f64; 2], &'static str)>) {
+    pub(super) fn number(&mut self, key: &str, node: &Node, number: Option<(f64, [f64; 2], &'static str)>) {
         if let Some((value, [least, most], unit)) = number
             && !(least..=most).contains(&value)
         {
@@ -329,7 +244,7 @@ impl Door<'_> {
                 continue;
             }
             let when = section.get("when").and_then(|node| {
-                let moment = self.typed::<RobotMoment>("robot.does.when", node, RobotMoment::ALLOWED)?;
+                let moment = self.word_of::<RobotMoment>("robot.does.when", node, &MOMENTS)?;
                 self.number("robot.does.when", node, moment.number());
                 Some(moment)
             });
@@ -340,14 +255,7 @@ impl Door<'_> {
                 self.bad("robot.does", node.at, found, RobotDeed::ALLOWED);
                 continue;
             };
-            let table = Value::Object([(key.to_owned(), value.value())].into_iter().collect());
-            let act = match serde_json::from_value::<RobotDeed>(table) {
-                Ok(act) => act,
-                Err(why) => {
-                    self.bad(format!("robot.does.{key}"), value.at, why.to_string(), RobotDeed::ALLOWED);
-                    continue;
-                }
-            };
+            let Some(act) = self.robot_deed(key, value) else { continue };
             self.number(&format!("robot.does.{key}"), value, act.number());
             let named = [
                 (act.names(), "robot.does", Some(value)),
@@ -359,6 +267,17 @@ impl Door<'_> {
             steps.push(RobotStep { when, act });
         }
         steps
+    }
+
+    /// What a line of the robot's part does.
+    fn robot_deed(&mut self, key: &str, value: &Node) -> Option<RobotDeed> {
+        if key == "hold_until" {
+            // A moment of its own, with its own words.
+            return self.word_of::<RobotMoment>("robot.does.hold_until", value, &MOMENTS).map(RobotDeed::HoldUntil);
+        }
+        let entry = (key.to_owned(), value.at, value.clone());
+        let node = Node { at: value.at, kind: Kind::Table(vec![entry]) };
+        self.word_of(&format!("robot.does.{key}"), &node, &DEEDS)
     }
 
     /// What is wrong with names: two people or groups of one name, groups that are too small, too many people.
@@ -524,9 +443,4 @@ impl Door<'_> {
             self.bad("expect.place", at("expect"), found, "leave it out, or correct one of the two");
         }
     }
-}
-
-/// Whether nothing ends a step but the end of the run: only a time does, and a sign is over by itself.
-const fn is_endless(step: &Step) -> bool {
-    step.for_s.is_none() && step.act.is_some()
 }

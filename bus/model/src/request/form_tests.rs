@@ -33,12 +33,15 @@ fn a_form_is_read_into_people_who_are_counted_out() {
     assert_eq!(form.agents("robot"), [AgentId::Robot]);
     assert_eq!(people[0].human.place, Some(PlaceWord::Class(PlaceClass::Elevator)));
     assert_eq!(people[2].human.place, Some(PlaceWord::Name("packing area".to_owned())));
-    // Reactions come first, and win; steps of a sequence wait for what its first step waits for.
+    // Reactions come first, and win; a step of a sequence waits for the one before it.
     let rules = &people[2].rules;
     assert_eq!(rules[0].act, Action::FollowHuman(HumanId::new(1)));
     assert_eq!((&rules[1].act, rules[1].for_s), (&Action::StandStill, Some(2.0)));
-    assert_eq!(rules[2].when, [Trigger::RobotNear(2.0)]);
+    assert_eq!(rules[1].when, [Trigger::RobotNear(2.0)]);
+    assert_eq!(rules[2].when, [Trigger::Did(HumanId::new(3), 1)]);
+    assert_eq!(rules[2].until, [Trigger::RobotPassed]);
     assert!(rules[2].latched && !rules[0].latched);
+    assert_eq!([rules[0].step, rules[1].step, rules[2].step], [None, Some(1), Some(2)]);
 }
 
 #[test]
@@ -90,14 +93,44 @@ fn everything_that_is_wrong_with_a_form_is_said_at_once() {
             "a step comes after one that never ends",
         ),
         (
-            &format!(
-                "{human}does = [{{ act = \"block\", for_s = 2 }}, {{ when = \"robot_passed\", act = \"navigate\" }}]\n"
-            ),
-            "belongs to the first step only",
+            &format!("{human}does = [{{ when = {{ robot_neer = 2 }}, act = \"block\" }}]\n"),
+            "`robot_neer` is no trigger (nearest: { robot_near = 2.0 }; triggers: \"always\", { robot_visible = 5.0 }",
         ),
         (
-            &format!("{human}does = [{{ act = \"give_way\" }}, {{ act = \"navigate\" }}]\n"),
-            "a step comes after one that never ends",
+            &format!("{human}does = [{{ when = \"robot_near\", act = \"block\" }}]\n"),
+            "`robot_near` is not written as \"robot_near\" (write { robot_near = 2.0 })",
+        ),
+        (
+            &format!("{human}does = [{{ act = \"bloc\" }}]\n"),
+            "`bloc` is no act (nearest: \"block\"; acts: \"navigate\"",
+        ),
+        (
+            &format!("{human}[robot]\ndoes = [{{ when = \"robot_near\", say = \"WAIT\" }}]\n"),
+            "`robot_near` is no moment (nearest: { human_near = 3.0 }",
+        ),
+        (
+            &format!("{human}reacts = [{{ when = \"always\", act = \"block\", until = \"robot_passed\" }}]\n"),
+            "`human.reacts.until`: belongs to steps of `does`",
+        ),
+        (
+            &format!("{human}does = [{{ when = {{ did = [\"human_1\", 3] }}, act = \"block\" }}]\n"),
+            "`human_1` has no step 3 (1 to 1)",
+        ),
+        (
+            &format!(
+                "{human}[[human]]\nrelation = \"frontal\"\ndoes = [{{ when = {{ done = \"human_1\" }}, act = \"block\" }}]\n"
+            ),
+            "my.toml:7:9 `human.does.when`: `human_1` stands and has no steps, and is never done",
+        ),
+        (
+            "[[human]]\nid = \"a\"\nrelation = \"static\"\ndoes = [{ act = \"block\" }]\n\
+             [[human]]\nrelation = \"frontal\"\nreacts = [{ when = { did = [\"a\", 1] }, act = \"block\" }]\n",
+            "step 1 of `a` never ends",
+        ),
+        (
+            "[[human]]\nid = \"a\"\nrelation = \"static\"\ndoes = [{ when = { done = \"b\" }, say = \"WAIT\" }]\n\
+             [[human]]\nid = \"b\"\nrelation = \"frontal\"\ndoes = [{ act = \"stand_still\", until = { did = [\"a\", 1] } }]\n",
+            "step 1 of a waits for itself: step 1 of a waits for step 1 of b waits for step 1 of a",
         ),
         (&format!("{human}does = [{{ for_s = 2 }}]\n"), "`human.does`: does nothing"),
         (&format!("{human}does = [{{ act = \"block\", for_s = -1 }}]\n"), "-1 s is out of range (0.1 to 600 (s))"),
@@ -140,4 +173,78 @@ fn without_a_form_the_social_context_has_to_be_there() {
     let problems = read("").unwrap_err();
     assert!(problems[0].contains("`social_context`: is missing"), "{problems:?}");
     assert_eq!(form("[[human]]\nrelation = \"static\"\n").headcount(), 1);
+}
+
+#[test]
+fn a_step_has_a_reason_and_an_end_of_its_own() {
+    let form = form(
+        "[[human]]\nid = \"guard\"\nrelation = \"static\"\n\
+         does = [{ when = { robot_near = 4.0 }, say = \"WAIT\" }, { when = { done = \"visitor\" }, say = \"PROCEED\" },\n\
+         { act = \"stand_still\", until = [{ stopped_for = 3.0 }, \"robot_stopped\"] }]\n\
+         [[human]]\nid = \"visitor\"\ncount = 2\nrelation = \"crossing\"\n",
+    );
+    let rules = &form.people()[0].rules;
+    let (me, one, other) = (HumanId::new(1), HumanId::new(2), HumanId::new(3));
+    assert_eq!(rules[1].when, [Trigger::Did(me, 1), Trigger::Done(one), Trigger::Done(other)]);
+    assert_eq!(rules[2].when, [Trigger::Did(me, 2)]);
+    assert_eq!(rules[2].until, [Trigger::StoppedFor(3.0), Trigger::RobotStopped]);
+    assert_eq!((rules[0].for_s, rules[2].for_s), (Some(2.0), None));
+}
+
+#[test]
+fn a_list_of_words_is_named_in_full_once() {
+    let problems = read(
+        "[[human]]\nrelation = \"static\"\ndoes = [{ when = \"robot_neer\", act = \"block\", for_s = 1 }, { when = \"robot_farr\", act = \"block\" }]\n",
+    )
+    .unwrap_err();
+    assert_eq!(problems.iter().filter(|problem| problem.contains("{ after_secs = 5.0 }")).count(), 1, "{problems:#?}");
+    assert!(problems.iter().all(|problem| !problem.contains("variant")), "{problems:#?}");
+}
+
+#[test]
+fn a_sign_is_made_to_somebody_and_an_act_changes_the_way() {
+    let form = form(
+        "[[human]]\nid = \"guard\"\nrelation = \"static\"\ndoes = [{ when = { robot_near = 4 }, say = \"WAIT\", to = \"visitor\" }]\n\
+         [[human]]\nid = \"visitor\"\nrelation = \"frontal\"\ndoes = [{ act = \"change_pace\", pace = \"slow\" },\n\
+         { when = { human_says = [\"guard\", \"WAIT\"] }, act = { look_at = \"guard\" }, for_s = 2 }, { act = \"turn_back\" },\n\
+         { act = { go_to = \"ward 2\" } }]\n",
+    );
+    let (guard, visitor) = (HumanId::new(1), HumanId::new(2));
+    let people = form.people();
+    assert_eq!(
+        (people[0].rules[0].to, &people[0].rules[0].act),
+        (Some(AgentId::Human(visitor)), &Action::LookAt(visitor))
+    );
+    let acts: Vec<&Action> = people[1].rules.iter().map(|rule| &rule.act).collect();
+    let place = Action::GoTo { place: "ward 2".into(), nodes: Vec::new() };
+    assert_eq!(acts, [&Action::ChangePace(0.6), &Action::LookAt(guard), &Action::TurnBack, &place]);
+    assert_eq!((people[1].rules[0].for_s, &people[1].rules[2].until[..]), (Some(1.0), &[Trigger::GoalReached][..]));
+}
+
+#[test]
+fn a_sign_to_nobody_and_an_act_that_cannot_be_are_errors_with_their_line() {
+    let human = "[[human]]\nid = \"a\"\nrelation = \"static\"\n";
+    for (more, wanted) in [
+        ("does = [{ say = \"WAIT\", to = \"bob\" }]\n", "my.toml:6:30 `to`: `bob` is nobody (a)"),
+        ("does = [{ act = \"block\", to = \"all\" }]\n", "`human.does.to`: is said of a step without a sign"),
+        ("does = [{ say = \"WAIT\", to = \"a\" }]\n", "`human.does`: is done to themselves"),
+        ("does = [{ say = \"WAIT\", act = \"block\", to = \"robot\" }]\n", "is said of a sign that is made walking"),
+        ("does = [{ say = \"WAITT\" }]\n", "`WAITT` is no sign (nearest: WAIT; signs: WAIT, PROCEED"),
+        ("does = [{ act = \"turn_back\" }]\n", "`human.does.act`: walks, but stands by its relation"),
+        ("does = [{ act = \"change_pace\" }]\n", "`human.does.pace`: is missing for change_pace"),
+        ("does = [{ act = \"block\", pace = \"slow\" }]\n", "`human.does.pace`: belongs to act"),
+        ("reacts = [{ when = \"always\", act = { go_to = \"room\" } }]\n", "changes the way or the pace for good"),
+        (
+            "does = [{ say = \"WAIT\", to = \"robot\" }]\n[[human]]\nrelation = \"frontal\"\n\
+             does = [{ when = { human_says = [\"a\", \"WAIT\"] }, act = \"block\" }]\n",
+            "WAIT of `a` is made to somebody else",
+        ),
+        (
+            "[robot]\ndoes = [{ hold_until = \"human_says\" }]\n",
+            "`human_says` is not written as \"human_says\" (write { human_says = \"WAIT\" })",
+        ),
+    ] {
+        let problems = read(&format!("{human}{more}")).err().unwrap_or_else(|| panic!("{more} is taken"));
+        assert!(problems.iter().any(|problem| problem.contains(wanted)), "{wanted}\n{problems:#?}");
+    }
 }

@@ -74,7 +74,7 @@ impl Request {
 }
 
 fn of_node(node: &Node, planners: Option<&[&str]>) -> Result<Request, Vec<BadRequest>> {
-    let mut door = Door { problems: Vec::new(), planners };
+    let mut door = Door { problems: Vec::new(), planners, listed: Vec::new() };
     let request = door.request(node);
     let Door { mut problems, .. } = door;
     problems.sort_by_key(|bad| bad.at);
@@ -109,9 +109,20 @@ impl<'n> Section<'n> {
 pub(super) struct Door<'p> {
     problems: Vec<BadRequest>,
     planners: Option<&'p [&'p str]>,
+    /// Lists of words that a problem has named in full.
+    listed: Vec<&'static str>,
 }
 
 impl Door<'_> {
+    /// Whether a list has been named in full; from now on it has.
+    pub(super) fn is_listed(&mut self, what: &'static str) -> bool {
+        let known = self.listed.contains(&what);
+        if !known {
+            self.listed.push(what);
+        }
+        known
+    }
+
     pub(super) fn bad(
         &mut self,
         key: impl Into<String>,

@@ -17,7 +17,7 @@ fn recording() -> Recording {
     let mut recording = crate::csv::read_tracks(&text).unwrap();
     let gesture = |tick, gesture| Event {
         time: SimTime::at_tick(tick),
-        kind: EventKind::Gesture { agent: AgentId::Robot, gesture },
+        kind: EventKind::Gesture { agent: AgentId::Robot, gesture, to: None },
     };
     recording.events = vec![
         gesture(3, Some(Gesture::Wait)),

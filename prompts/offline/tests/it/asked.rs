@@ -5,7 +5,7 @@ use serde::Deserialize;
 use socrates_model::proposal::Facing;
 use socrates_model::reading::ReadHuman;
 use socrates_model::statement::TextKey;
-use socrates_model::{FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Statement};
+use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Statement};
 
 use crate::corpus;
 
@@ -141,9 +141,28 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
             };
             Some(human(who).is_some_and(speaks))
         }
+        [who, "says", gesture, "to", other] => {
+            let (gesture, other) = (gesture.parse::<Gesture>().ok()?, other.parse::<u32>().ok()?);
+            let human = HumanId::new(who.parse().ok()?);
+            let wanted = FactKind::GesturesTo { human, gesture, to: HumanId::new(other).into() };
+            Some(kinds().any(|kind| *kind == wanted))
+        }
+        // From then on they walk at another pace, whichever.
+        [who, "change_pace", ..] if who.ends_with(':') => {
+            let waits = |rule: &Rule| match words[2..] {
+                [] => Some(true),
+                ["when", ..] if words[3] != "done" => Some(corpus::waits(&words[3..], rule)),
+                ["at", m] => m.parse().ok().map(|m: f64| rule.when.iter().any(|when| when.distance_m() == Some(m))),
+                _ => None,
+            };
+            waits(&Rule::default())?;
+            let changes = |rule: &Rule| matches!(rule.act, Action::ChangePace(_)) && waits(rule) == Some(true);
+            Some(human(who).is_some_and(|human| human.rules.iter().any(changes)))
+        }
         [_, "follow_human", other, ..] if !number(other) => None,
         [who, act, ..] if who.ends_with(':') => {
-            const ACTS: [&str; 9] = [
+            const ACTS: [&str; 10] = [
+                "turn_back",
                 "navigate",
                 "stand_still",
                 "look_at_robot",

@@ -102,7 +102,7 @@ fn with_rules(ask: &Question, rules: Vec<Rule>) -> Question {
 }
 
 fn rule(when: Trigger, act: Action, for_s: Option<f64>) -> Rule {
-    Rule { when: vec![when], act, gesture: None, for_s, latched: true }
+    Rule { when: vec![when], act, gesture: None, for_s, latched: true, ..Rule::default() }
 }
 
 #[test]

@@ -65,6 +65,7 @@ fn unverified(answer: &mut Value, question: &Question, draw: u64) -> Option<()> 
                 FactKind::Group { .. }
                     | FactKind::Reacts { .. }
                     | FactKind::Gestures { .. }
+                    | FactKind::GesturesTo { .. }
                     | FactKind::Place(_)
                     | FactKind::RobotSays(_)
             )
@@ -123,14 +124,18 @@ fn dropped(answer: &mut Value, question: &Question, draw: u64) -> Option<()> {
         .filter(|kind| {
             matches!(
                 kind,
-                FactKind::Reacts { .. } | FactKind::Gestures { .. } | FactKind::Relates { .. } | FactKind::Group { .. }
+                FactKind::Reacts { .. }
+                    | FactKind::Gestures { .. }
+                    | FactKind::GesturesTo { .. }
+                    | FactKind::Relates { .. }
+                    | FactKind::Group { .. }
             )
         })
         .collect();
     let of = |proposal: &Proposal, id: HumanId| proposal.humans.iter().position(|human| human.id == id);
     #[expect(clippy::wildcard_enum_match_arm, reason = "only these were chosen above")]
     match wishes.get(pick(draw, wishes.len())?)? {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => {
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::GesturesTo { human, .. } => {
             let place = of(&proposal, *human)?;
             proposal.humans.get_mut(place)?.rules.clear();
         }

@@ -63,7 +63,7 @@ pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
                 Atom::World(if trigger == Trigger::RobotStopped { Trigger::RobotMoving } else { trigger })
             }),
             Role::Timer => ports.real(0).map(|secs| Atom::Timer(index, secs)),
-            Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce") => Some(Atom::Memory(index)),
+            Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce" | "EndStep") => Some(Atom::Memory(index)),
             Role::World | Role::Foreign => Some(Atom::Answer(node.leaf)),
             Role::Flow | Role::Moves(_) | Role::Says | Role::Quiet => None,
         };
@@ -78,12 +78,13 @@ pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
 
 /// Whether the first truth forces the second.
 fn implies(a: &Trigger, b: &Trigger) -> bool {
-    use Trigger::{AfterSecs, RobotBlocking, RobotNear, RobotVisible};
+    use Trigger::{AfterSecs, Did, RobotBlocking, RobotNear, RobotVisible, StoppedFor};
     match (a, b) {
         (RobotVisible(near), RobotVisible(far) | RobotNear(far))
         | (RobotNear(near), RobotNear(far))
         | (RobotBlocking(near), RobotBlocking(far) | RobotVisible(far) | RobotNear(far)) => near <= far,
-        (AfterSecs(late), AfterSecs(early)) => late >= early,
+        (AfterSecs(late), AfterSecs(early)) | (StoppedFor(late), StoppedFor(early)) => late >= early,
+        (Did(who, later), Did(whom, step)) => who == whom && later >= step,
         _ => false,
     }
 }
@@ -93,6 +94,8 @@ fn excludes(a: &Trigger, b: &Trigger) -> bool {
     match (a, b) {
         (Trigger::RobotSays(one), Trigger::RobotSays(other)) => one != other,
         (Trigger::HumanSays(who, one), Trigger::HumanSays(whom, other)) => who == whom && one != other,
+        // Standing is asked as moving.
+        (Trigger::StoppedFor(_), Trigger::RobotMoving) | (Trigger::RobotMoving, Trigger::StoppedFor(_)) => true,
         _ => false,
     }
 }

@@ -57,6 +57,25 @@ impl World for CaseWorld<'_> {
     fn robot_passed(&self) -> bool {
         self.holds(&Trigger::RobotPassed)
     }
+    fn robot_stood_s(&self) -> f64 {
+        let stood = |trigger: &Trigger| if let Trigger::StoppedFor(secs) = trigger { Some(*secs) } else { None };
+        self.true_numbers(stood).fold(0.0, f64::max)
+    }
+    fn steps_ended(&self, id: HumanId) -> u32 {
+        let ended = |atom: &Atom| {
+            if let Atom::World(Trigger::Did(who, step)) = atom { (*who == id).then_some(*step) } else { None }
+        };
+        self.atoms
+            .iter()
+            .zip(self.truth)
+            .filter(|(_, holds)| **holds)
+            .filter_map(|(atom, _)| ended(atom))
+            .max()
+            .unwrap_or(0)
+    }
+    fn is_done(&self, id: HumanId) -> bool {
+        self.holds(&Trigger::Done(id))
+    }
     fn robot_gesture(&self) -> Option<Gesture> {
         self.gesture_of(Trigger::RobotSays)
     }

@@ -30,7 +30,7 @@ pub(super) fn check(tree: &Tree, ctx: &CheckContext<'_>) -> Vec<Fault> {
                 }
             }
             Role::Moves(means) => {
-                if let Some(Action::FollowHuman(id)) = means(&ports) {
+                if let Some(Action::FollowHuman(id) | Action::LookAt(id)) = means(&ports) {
                     target(id, node, ctx, &mut faults);
                 }
             }

@@ -150,12 +150,13 @@ fn holds(cases: &Cases<'_>, trigger: &Trigger, truth: &[bool]) -> Option<bool> {
 }
 
 fn same(a: &Trigger, b: &Trigger) -> bool {
-    use Trigger::{AfterSecs, RobotBlocking, RobotNear, RobotVisible};
+    use Trigger::{AfterSecs, RobotBlocking, RobotNear, RobotVisible, StoppedFor};
     match (a, b) {
         (RobotVisible(x), RobotVisible(y))
         | (RobotNear(x), RobotNear(y))
         | (RobotBlocking(x), RobotBlocking(y))
-        | (AfterSecs(x), AfterSecs(y)) => (x - y).abs() < SAME,
+        | (AfterSecs(x), AfterSecs(y))
+        | (StoppedFor(x), StoppedFor(y)) => (x - y).abs() < SAME,
         _ => a == b,
     }
 }

@@ -3,10 +3,13 @@
 mod again;
 mod always;
 mod at_encounter;
+mod end_step;
 mod follow_human;
 mod force;
 mod foreign;
 mod goal_reached;
+mod has_arrived;
+mod has_ended;
 mod has_time_passed;
 mod human_says;
 mod hunav_1;
@@ -18,6 +21,7 @@ mod inverter;
 mod keep_running;
 mod latch;
 mod make_gesture;
+mod make_gesture_to;
 mod memory_sequence;
 mod motion;
 mod parallel;
@@ -28,12 +32,14 @@ mod robot_moved;
 mod robot_nearby;
 mod robot_passed;
 mod robot_says;
+mod robot_stood;
 mod robot_stopped;
 mod robot_visible;
 mod run_once;
 mod script;
 mod scripted;
 mod set_blackboard;
+mod step_acts;
 mod subtree;
 mod switch;
 mod time_delay;
@@ -104,6 +110,20 @@ pub const CATALOG: &[&NodeSheet] = &[
     &motion::STAND_STILL,
 ];
 
+/// Nodes by which the steps of a form are played; offered to nobody.
+pub const STEPS: &[&NodeSheet] = &[
+    &end_step::SHEET,
+    &has_ended::STEP,
+    &has_ended::ALL,
+    &has_arrived::SHEET,
+    &robot_stood::SHEET,
+    &make_gesture_to::SHEET,
+    &step_acts::WATCH_HUMAN,
+    &step_acts::TURN_BACK,
+    &step_acts::GO_TO,
+    &step_acts::CHANGE_PACE,
+];
+
 /// Nodes of BehaviorTree.CPP that are read and ticked, but offered to nobody.
 pub const RARE: &[&NodeSheet] = &[
     &in_order::ASYNC_SEQUENCE,
@@ -135,6 +155,7 @@ pub fn sheet_in(tag: &str, library: Library) -> Option<&'static NodeSheet> {
 pub fn sheet_of(tag: &str) -> Option<&'static NodeSheet> {
     CATALOG
         .iter()
+        .chain(STEPS)
         .chain(RARE)
         .chain(DIALECTS.iter().rev().flat_map(|(_, sheets)| sheets.iter()))
         .copied()
@@ -179,7 +200,8 @@ fn sheets_of(library: Library) -> impl Iterator<Item = &'static NodeSheet> {
         }
     });
     let theirs = DIALECTS.iter().filter(move |(of, _)| *of == library).flat_map(|(_, sheets)| sheets.iter().copied());
-    ours.chain(RARE.iter().copied()).chain(theirs)
+    let steps = STEPS.iter().copied().filter(move |_| library == Library::Native);
+    ours.chain(steps).chain(RARE.iter().copied()).chain(theirs)
 }
 
 /// Sheets a library knows, in catalog order: what a prompt may offer.

@@ -43,6 +43,7 @@ fn look() -> Rule {
         gesture: None,
         for_s: None,
         latched: false,
+        ..Rule::default()
     }
 }
 

@@ -11,5 +11,6 @@ mod reference;
 mod robust;
 mod rules;
 mod shipped;
+mod steps;
 mod tools;
 mod trace;

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use socrates_bt::{CATALOG, DIALECTS, NodeSheet, RARE};
+use socrates_bt::{CATALOG, DIALECTS, NodeSheet, RARE, STEPS};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/README.md");
 const FROM: &str = "<!-- catalog: as the test `readme` writes it -->\n";
@@ -44,6 +44,8 @@ fn rows(sheets: &[&NodeSheet], text: &mut String) {
 fn catalog() -> String {
     let mut text = String::from("\n### Ours: BehaviorTree.CPP, the SocRATES fork, and our own nodes\n\n");
     rows(CATALOG, &mut text);
+    text.push_str("\n### Nodes by which the steps of a form are played, offered to nobody\n\n");
+    rows(STEPS, &mut text);
     text.push_str("\n### Rare nodes of BehaviorTree.CPP, read and ticked but offered to nobody\n\n");
     rows(RARE, &mut text);
     for (library, sheets) in DIALECTS {

@@ -61,6 +61,7 @@ fn rules(dice: &mut Dice) -> Vec<Rule> {
             gesture: dice.pick(&[None, None, Some(Gesture::Wait), Some(Gesture::Proceed)]),
             for_s: dice.pick(&[None, Some(2.0), Some(7.5)]),
             latched: dice.below(3) == 0,
+            ..Rule::default()
         })
         .collect()
 }
@@ -123,6 +124,7 @@ fn no_broken_document_is_taken_without_an_answer() {
         gesture: Some(Gesture::Wait),
         for_s: Some(5.0),
         latched: true,
+        ..Rule::default()
     };
     let rules = [rule];
     let v3 = compile(HumanId::new(1), &rules).unwrap();

@@ -5,7 +5,7 @@ use socrates_bt::{Library, Tree, compile, describe};
 use socrates_model::{Action, FaultCode, Gesture, HumanId, Rule, Trigger};
 
 fn rule(when: &[Trigger], act: Action) -> Rule {
-    Rule { when: when.to_vec(), act, gesture: None, for_s: None, latched: false }
+    Rule { when: when.to_vec(), act, gesture: None, for_s: None, latched: false, ..Rule::default() }
 }
 
 fn me() -> HumanId {
@@ -35,6 +35,9 @@ fn every_trigger_and_every_action_gives_a_tree_without_faults() {
         Trigger::GoalReached,
         Trigger::AtEncounter,
         Trigger::AfterSecs(12.5),
+        Trigger::StoppedFor(3.0),
+        Trigger::Did(HumanId::new(2), 1),
+        Trigger::Done(HumanId::new(2)),
     ];
     let actions = [
         Action::Navigate,
@@ -52,8 +55,14 @@ fn every_trigger_and_every_action_gives_a_tree_without_faults() {
             for for_s in [None, Some(4.0)] {
                 for latched in [false, true] {
                     for gesture in [None, Some(Gesture::Wait)] {
-                        let rules =
-                            [Rule { when: vec![trigger.clone()], act: action.clone(), gesture, for_s, latched }];
+                        let rules = [Rule {
+                            when: vec![trigger.clone()],
+                            act: action.clone(),
+                            gesture,
+                            for_s,
+                            latched,
+                            ..Rule::default()
+                        }];
                         let tree = tree(&rules);
                         assert!(tree.actions().contains(action));
                     }

@@ -2,6 +2,7 @@
 
 use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
 
+use crate::fidelity::addressed;
 use crate::fidelity::company::follow_marks;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::follow::gaps;
@@ -222,7 +223,9 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
         .recording
         .events
         .iter()
-        .filter(|event| event.kind == (EventKind::Gesture { agent, gesture: Some(gesture) }))
+        .filter(|event| {
+            matches!(&event.kind, EventKind::Gesture { agent: who, gesture: Some(made), .. } if (*who, *made) == (agent, gesture))
+        })
         .map(|event| event.time.secs())
         .collect();
     times.extend(track.samples.iter().find(|sample| sample.gesture == Some(gesture)).map(|sample| sample.t));
@@ -303,7 +306,7 @@ fn listeners(signals: &Signals<'_>, speaker: HumanId, gesture: Gesture) -> Vec<H
 }
 
 /// Marks of an action as the motion alone shows it, with the time for which it must be kept.
-fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
+pub(super) fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>, f64) {
     let moments = signals.of(human);
     let follow = |leader: AgentId| -> Vec<Mark> {
         match (signals.track(leader), signals.tracks.human(human)) {
@@ -329,6 +332,8 @@ fn motion(signals: &Signals<'_>, human: HumanId, action: &Action) -> (Vec<Mark>,
         }
         Action::Block => (moments.iter().map(block_mark).collect(), 0.5),
         Action::LookAtRobot => (look_marks(moments, |_| true), 0.5),
+        Action::LookAt(id) => (addressed::watch_marks(signals, human, AgentId::Human(*id)), 0.5),
+        Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_) => (speeds(|speed| speed - 0.1), 0.5),
         Action::Approach => {
             let marks = moments.iter().map(|m| {
                 let nearing = -m.human.velocity.dot(&m.away()) - 0.2;

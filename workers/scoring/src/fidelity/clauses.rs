@@ -5,8 +5,8 @@ use std::convert::identity;
 
 use socrates_model::report::Standing;
 use socrates_model::{
-    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Relation, Rule, Trigger, ordinal,
-    rule::RobotDo,
+    Action, AgentId, Clause, ClauseResult, ClauseRole, FactKind, HumanId, Predicate, Proposal, Relation, Rule, Trigger,
+    ordinal, rule::RobotDo,
 };
 
 use crate::fidelity::finding::Finding;
@@ -14,7 +14,8 @@ use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
 use crate::fidelity::signals::Signals;
 use crate::fidelity::{
-    acts, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring, robot, setting, sides,
+    acts, addressed, company, coverage, crowd, doorway, faces, groups, meeting, named_way, reactions, ring, robot,
+    setting, sides, steps, turns,
 };
 use crate::temporal::{Signal, Within};
 
@@ -195,7 +196,8 @@ fn demanded(signals: &Signals<'_>, given: &[Clause]) -> Vec<Clause> {
         for encounter in &paths.encounters {
             let human = encounter.human;
             let shown = only_follows(signals, given, human) || made_way(signals, human);
-            if shown || !stands_for_queue(signals, given, human) {
+            let apart = |plan: &Proposal| plan.is_let_through(human) || plan.is_leaving_path(human);
+            if shown || signals.evidence.proposal.is_some_and(apart) || !stands_for_queue(signals, given, human) {
                 continue;
             }
             let nth = met.entry(human).and_modify(|nth| *nth += 1).or_insert(1);
@@ -282,7 +284,10 @@ fn keeps_walk(rule: &Rule) -> bool {
         | Trigger::RobotStopped
         | Trigger::RobotSays(_)
         | Trigger::HumanSays(..)
-        | Trigger::AfterSecs(_) => false,
+        | Trigger::AfterSecs(_)
+        | Trigger::StoppedFor(_)
+        | Trigger::Did(..)
+        | Trigger::Done(_) => false,
     };
     rule.act == Action::Navigate || rule.when.iter().any(met)
 }
@@ -317,6 +322,11 @@ fn monitor(signals: &Signals<'_>, predicate: &Predicate, flaws: &[Flaw], found: 
         Predicate::RunsAway { human, by_m } => acts::runs_away(signals, *human, *by_m),
         Predicate::GivesWay { human } => acts::gives_way(signals, *human),
         Predicate::Reacts { human, when, act, within_s } => reactions::reacts(signals, *human, when, act, *within_s),
+        Predicate::GesturesTo { human, gesture, to } => addressed::gestures_to(signals, *human, *gesture, *to),
+        Predicate::TurnsBack { human } => turns::turns_back(signals, *human),
+        Predicate::GoesTo { human, nodes } => turns::goes_to(signals, *human, nodes),
+        Predicate::ChangesPace { human, mps } => turns::changes_pace(signals, *human, *mps),
+        Predicate::Step { human, rule, within_s } => steps::step(signals, *human, rule, *within_s),
         Predicate::Gestures { agent, gesture } => acts::gestures(signals, *agent, *gesture),
         Predicate::Leaves { human, door } => either(doorway::leaves(signals, *human, door)),
         Predicate::StaysInside { human, door } => either(doorway::stays_inside(signals, *human, door)),
@@ -382,7 +392,14 @@ mod tests {
 
     #[test]
     fn only_what_is_done_before_the_meeting_keeps_somebody_from_being_on_time() {
-        let rule = |when, act| Rule { when: vec![when], act, gesture: None, for_s: Some(3.0), latched: true };
+        let rule = |when, act| Rule {
+            when: vec![when],
+            act,
+            gesture: None,
+            for_s: Some(3.0),
+            latched: true,
+            ..Rule::default()
+        };
         for (when, act, keeps) in [
             (Trigger::RobotNear(4.0), Action::StandStill, false),
             (Trigger::RobotVisible(3.0), Action::LookAtRobot, false),

@@ -63,6 +63,7 @@ const fn asks(kind: &FactKind) -> bool {
         FactKind::Group { .. }
         | FactKind::Reacts { .. }
         | FactKind::Gestures { .. }
+        | FactKind::GesturesTo { .. }
         | FactKind::MeetsTimes { .. }
         | FactKind::Side { .. }
         | FactKind::Facing { .. }
@@ -84,7 +85,7 @@ const fn asks(kind: &FactKind) -> bool {
 fn covers(clause: &Clause, fact: &Fact) -> bool {
     let named = clause.source == fact.id;
     let shows = match &fact.kind {
-        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } => {
+        FactKind::Reacts { human, .. } | FactKind::Gestures { human, .. } | FactKind::GesturesTo { human, .. } => {
             named && about(clause, *human, None, u32::MAX)
         }
         FactKind::MeetsTimes { .. } | FactKind::Side { .. } | FactKind::Facing { .. } | FactKind::Before { .. } => {
@@ -115,6 +116,16 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         Predicate::Gestures { agent, gesture } => {
             matches!(fact, FactKind::Gestures { human, gesture: asked }
                 if *agent == AgentId::Human(*human) && asked == gesture)
+        }
+        Predicate::GesturesTo { human, gesture, to } => {
+            matches!(fact, FactKind::Gestures { human: who, gesture: asked } if (who, asked) == (human, gesture))
+                || matches!(fact, FactKind::GesturesTo { human: who, gesture: asked, to: whom }
+                    if (who, asked, whom) == (human, gesture, to))
+        }
+        Predicate::Step { human, rule, .. } => {
+            matches!(fact, FactKind::Reacts { human: who, rule: asked } if who == human && asked.act == rule.act)
+                || matches!(fact, FactKind::Gestures { human: who, gesture }
+                    if who == human && rule.gesture == Some(*gesture))
         }
         Predicate::MeetsAgain { human, nth, .. } => {
             matches!(fact, FactKind::MeetsTimes { human: who, times, .. } if who == human && times == nth)
@@ -170,6 +181,9 @@ fn says(predicate: &Predicate, fact: &FactKind) -> bool {
         | Predicate::RobotLeavesFirst
         | Predicate::RobotJoins { .. }
         | Predicate::RobotLeavesGroup { .. }
+        | Predicate::TurnsBack { .. }
+        | Predicate::GoesTo { .. }
+        | Predicate::ChangesPace { .. }
         | Predicate::RobotObeys { .. } => false,
     }
 }

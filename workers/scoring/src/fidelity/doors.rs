@@ -31,6 +31,7 @@ impl<'a> Doors<'a> {
                     EventKind::Door { .. }
                     | EventKind::Gesture { .. }
                     | EventKind::Leaf { .. }
+                    | EventKind::StepEnded { .. }
                     | EventKind::Sees { .. }
                     | EventKind::Encounter { .. }
                     | EventKind::Contact { .. }

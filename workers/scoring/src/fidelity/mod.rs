@@ -5,6 +5,7 @@
 //! ```
 
 mod acts;
+mod addressed;
 mod clauses;
 mod company;
 mod coverage;
@@ -29,7 +30,9 @@ mod setting;
 mod sides;
 mod signals;
 mod since;
+mod steps;
 mod times;
+mod turns;
 mod verdict;
 mod windows;
 
@@ -43,4 +46,5 @@ pub use verdict::{Ruling, rule};
 pub use gaps::Gaps;
 pub(crate) use gaps::{by_name, encounter_gaps};
 pub(crate) use since::since;
+pub(crate) use steps::step_times;
 pub(crate) use verdict::ruling_of_played;

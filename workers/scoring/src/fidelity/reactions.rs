@@ -9,6 +9,7 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::kept::kept;
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::{Moment, Signals};
+use crate::fidelity::steps;
 use crate::fidelity::windows::{Mark, best, first};
 use crate::tracks::MOVING_MPS;
 
@@ -75,6 +76,9 @@ fn trigger_mark(
                 .encounter(human)
                 .map_or(-1.0, |(_, at)| AT_ENCOUNTER_M + slack_m - (moment.human.at - at).norm()),
             Trigger::AfterSecs(s) => moment.t + slack_m - s,
+            Trigger::StoppedFor(s) => steps::stood_s(signals, moment.t) + slack_m - s,
+            Trigger::Did(id, step) => flag(steps::ended_s(signals, *id, *step).is_some_and(|t| t <= moment.t)),
+            Trigger::Done(id) => flag(steps::done_s(signals, *id).is_some_and(|t| t <= moment.t)),
         }
     };
     Mark::new(moment.t, when.iter().map(one).fold(f64::INFINITY, f64::min))
@@ -97,6 +101,11 @@ pub(super) fn first_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigge
         Some(mark) => Ok(mark.t),
         None => Err(best(loose).unwrap_or(Mark::new(0.0, -1.0))),
     }
+}
+
+/// When all triggers first hold from a time on.
+pub(super) fn first_since(signals: &Signals<'_>, human: HumanId, when: &[Trigger], since_s: f64) -> Option<f64> {
+    first(marks(signals, human, when, 0.0).into_iter().filter(|mark| mark.t >= since_s)).map(|mark| mark.t)
 }
 
 /// Whether all triggers hold at a moment of a human.
@@ -238,7 +247,7 @@ fn other_reason(signals: &Signals<'_>, human: HumanId, when: &[Trigger], act: &A
 }
 
 /// The clock of a reaction starts when no earlier rule of the same human runs any more: earlier rules win.
-fn busy_until(signals: &Signals<'_>, human: HumanId, act: &Action, trigger_s: f64) -> f64 {
+pub(super) fn busy_until(signals: &Signals<'_>, human: HumanId, act: &Action, trigger_s: f64) -> f64 {
     let Some(proposal) = signals.evidence.proposal.and_then(|proposal| proposal.human(human)) else { return trigger_s };
     let earlier: Vec<&Action> = proposal.rules.iter().map(|rule| &rule.act).take_while(|other| *other != act).collect();
     let mut start = trigger_s;

@@ -63,11 +63,12 @@ pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
 /// When and by whom a gesture is made.
 fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
     let by_event = signals.evidence.recording.events.iter().filter_map(|event| match &event.kind {
-        EventKind::Gesture { agent: AgentId::Human(id), gesture: Some(made) } if *made == gesture => {
+        EventKind::Gesture { agent: AgentId::Human(id), gesture: Some(made), .. } if *made == gesture => {
             Some((event.time.secs(), AgentId::Human(*id)))
         }
         EventKind::Gesture { .. }
         | EventKind::Leaf { .. }
+        | EventKind::StepEnded { .. }
         | EventKind::Sees { .. }
         | EventKind::Encounter { .. }
         | EventKind::Contact { .. }
@@ -94,6 +95,14 @@ pub(super) fn held_on_request_s(signals: &Signals<'_>, from_s: f64, to_s: f64) -
             // A line of the script is played once.
             let asked = said(signals, *gesture).into_iter().map(|(t, _)| t).min_by(f64::total_cmp)?;
             Some((asked.max(from_s), (asked + secs).min(to_s)))
+        }
+        (RobotWhen::HumanSays(gesture), RobotDo::HoldUntil(RobotWhen::HumanSays(goes))) => {
+            let first = |gesture: Gesture, from: f64| {
+                said(signals, gesture).into_iter().map(|(t, _)| t).filter(|t| *t >= from).min_by(f64::total_cmp)
+            };
+            let asked = first(*gesture, f64::NEG_INFINITY)?;
+            let over = first(*goes, asked).unwrap_or(f64::INFINITY).min(asked + RobotDo::HOLD_MOST_S);
+            Some((asked.max(from_s), over.min(to_s)))
         }
         _ => None,
     };

@@ -68,7 +68,7 @@ pub(super) fn with_states(
 fn moved(event: &Event, agent: AgentId, own: &impl Fn(f64) -> Option<f64>) -> Option<Event> {
     let (about, keeps) = match &event.kind {
         EventKind::Gesture { agent: who, .. } => (*who == agent, true),
-        EventKind::Leaf { human, .. } => (AgentId::Human(*human) == agent, true),
+        EventKind::Leaf { human, .. } | EventKind::StepEnded { human, .. } => (AgentId::Human(*human) == agent, true),
         EventKind::Sees { human, .. } | EventKind::Encounter { human, .. } => (AgentId::Human(*human) == agent, false),
         EventKind::Contact { a, b, .. } => (*a == agent || *b == agent, false),
         EventKind::WallContact { agent: who, .. }
@@ -203,6 +203,15 @@ pub(super) fn gestures_from(run: &Recording, agent: AgentId, gesture: Gesture, f
     let mut found = regestured(run, agent, gesture, None);
     let old = states(run, agent);
     let long = old.iter().filter(|state| state.gesture() == Some(gesture)).count();
+    let whom = run.events.iter().find_map(|event| {
+        if let EventKind::Gesture { agent: who, gesture: Some(made), to } = &event.kind
+            && (*who, *made) == (agent, gesture)
+        {
+            *to
+        } else {
+            None
+        }
+    });
     let begins = old.get(from).map_or(0.0, |state| time_of(run, state));
     let column = found.frames.iter_mut().filter(|state| state.agent == agent.number());
     for state in column.skip(from).take(long) {
@@ -210,7 +219,7 @@ pub(super) fn gestures_from(run: &Recording, agent: AgentId, gesture: Gesture, f
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "seconds of a run, not negative")]
     let time = SimTime::from_nanos(libm::round(begins.max(0.0) * 1e9) as u64);
-    found.events.push(Event { time, kind: EventKind::Gesture { agent, gesture: Some(gesture) } });
+    found.events.push(Event { time, kind: EventKind::Gesture { agent, gesture: Some(gesture), to: whom } });
     found.events.sort_by_key(|event| event.time);
     found
 }
@@ -223,7 +232,7 @@ pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Opt
         state.flags = state.flags & NO_GESTURE | (u32::from(Gesture::code_of(to)) << 8);
     }
     for event in &mut found.events {
-        if let EventKind::Gesture { agent: who, gesture } = &mut event.kind
+        if let EventKind::Gesture { agent: who, gesture, .. } = &mut event.kind
             && *who == agent
             && *gesture == Some(from)
         {

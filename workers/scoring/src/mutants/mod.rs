@@ -11,6 +11,7 @@ mod harmless;
 mod named_way;
 mod sides;
 mod spoil;
+mod steps;
 
 use socrates_model::Recording;
 

@@ -61,6 +61,7 @@ pub fn spoiled(evidence: &Evidence<'_>) -> Vec<Mutant> {
     super::sides::sides(evidence, &mut add);
     super::facing::facing(evidence, &mut add);
     super::named_way::named_way(evidence, &mut add);
+    super::steps::steps(evidence, &mut add);
     let mut seen = std::collections::BTreeSet::new();
     found.retain(|mutant| seen.insert((mutant.kind, mutant.about.clone())));
     found

@@ -51,11 +51,7 @@ impl Engine {
         let Self { humans, robot, near, .. } = &mut *self;
         let people = humans.iter().filter(|human| human.present()).map(Other::from);
         let anew = near.fill(people.chain(robot.iter().map(Other::from))) | doors_moved;
-        let led: Vec<HumanId> = self
-            .humans
-            .iter()
-            .filter_map(|human| if let Action::FollowHuman(id) = human.action { Some(id) } else { None })
-            .collect();
+        let led: Vec<HumanId> = self.humans.iter().filter_map(watched).collect();
         let trails = self
             .humans
             .iter()
@@ -84,7 +80,7 @@ impl Engine {
                     self.near.look(human, &self.floor);
                 }
                 // Who gets on goes by what it made of the others at its last look.
-                let gets_on = human.action == Action::Navigate && now_s >= human.yields_until_s && !is_held_up(human);
+                let gets_on = human.gets_on() && now_s >= human.yields_until_s && !is_held_up(human);
                 around.clear();
                 if looks || !gets_on {
                     self.near.noticed(&human.notice, around);
@@ -112,7 +108,7 @@ impl Engine {
                     continue;
                 }
                 walker.steer(human, want, pairs, &steps);
-                human.started |= human.action == Action::Navigate && want.target.is_some();
+                human.started |= human.gets_on() && want.target.is_some();
                 let yields = if want.target.is_some() { 1.0 } else { 0.02 };
                 bodies.push(Body { yields, ..body(human, human.at + human.velocity * STEP_SECS) });
             }
@@ -135,7 +131,7 @@ impl Engine {
         let there = self.humans.iter_mut().zip(&wants).filter(|(human, _)| human.present());
         for ((human, want), body) in there.zip(&bodies).filter(|((human, _), _)| !human.is_recorded()) {
             walk::settle(human, want, body.at, body.velocity);
-            if human.action == Action::Navigate {
+            if human.gets_on() {
                 walk::progress(human);
             }
         }
@@ -151,7 +147,7 @@ impl Engine {
             let (before, rest) = self.humans.split_at_mut(place);
             let Some((human, after)) = rest.split_first_mut() else { return };
             let left_m = human.route.length_m() - human.s;
-            let waits = human.started && human.action == Action::Navigate && human.velocity.norm() < LINED_UP_MPS;
+            let waits = human.started && human.gets_on() && human.velocity.norm() < LINED_UP_MPS;
             if !waits || left_m > LINE_M || human.at_goal() || !human.is_through() {
                 continue;
             }
@@ -193,11 +189,14 @@ impl Engine {
                 asked && nearest.is_some_and(|(id, group)| id == human.id || group.is_some() && group == human.group);
             let moment = Moment { now_s, dt: STEP_SECS, sight, first, door, stands_open, let_out };
             // Other actions have their own speed; the rendezvous waits meanwhile.
-            let mut pace = if human.action == Action::Navigate {
+            let mut pace = if human.gets_on() && !human.diverted {
                 rendezvous::pace(human, timing, self.robot.as_ref(), &moment).speed_mps
             } else {
                 human.speed_mps
             };
+            if let Some(mps) = human.pace_mps.filter(|_| pace > 0.0) {
+                pace = mps;
+            }
             if door.is_some_and(|(left, open)| !open && left < 0.75 && human.started) {
                 pace = 0.0;
             }
@@ -231,6 +230,11 @@ impl Engine {
             }
         }
     }
+}
+
+/// Whom somebody follows or looks at.
+const fn watched(human: &Human) -> Option<HumanId> {
+    if let Action::FollowHuman(id) | Action::LookAt(id) = human.action { Some(id) } else { None }
 }
 
 /// Of several people before the robot the nearest, and its group: whoever comes alone is passed, and nobody waits.

@@ -128,6 +128,7 @@ fn a_gesture_of_somebody_at_the_door_opens_it_and_the_same_far_away_does_not() {
         gesture: Some(Gesture::Proceed),
         for_s: Some(1.0),
         latched: true,
+        ..Rule::default()
     };
     let (recording, seen) = run(corridor(DoorOpens::OnEvent("PROCEED".into()), vec![says(8.0)]));
     everybody_agrees(&recording, &seen);

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 
 use socrates_model::{Door, DoorKind, DoorOpens, Event, EventKind, Gesture, Location, Point, Vector};
 
-use crate::human::LEAVES;
+use crate::human::{LEAVES, STEP_LEAVES};
 
 /// Nobody within this distance of the door line lets it close, m.
 const CLOSING_REACH_M: f64 = 1.0;
@@ -35,7 +35,7 @@ pub(crate) const ENCOUNTER: &str = "encounter";
 pub fn event_names(location: &Location) -> BTreeSet<String> {
     let mut names: BTreeSet<String> = [ENCOUNTER, "robot arrived"].into_iter().map(str::to_owned).collect();
     names.extend(Gesture::ALL.iter().map(ToString::to_string));
-    names.extend(LEAVES.iter().filter(|leaf| !leaf.is_empty()).map(|leaf| (*leaf).to_owned()));
+    names.extend(LEAVES.iter().chain(&STEP_LEAVES).filter(|leaf| !leaf.is_empty()).map(|leaf| (*leaf).to_owned()));
     names.extend(location.graph.nodes().iter().map(|node| format!("node {}", node.id)));
     for door in &location.doors {
         names.extend([format!("door {} opens", door.id), format!("door {} closes", door.id)]);
@@ -62,13 +62,14 @@ impl Raised {
     /// What a recorded event raises; `place` tells where an agent is.
     pub(crate) fn by(event: &Event, place: &dyn Fn(socrates_model::AgentId) -> Option<Point>) -> Option<Self> {
         let (name, at) = match &event.kind {
-            EventKind::Gesture { agent, gesture } => (Gesture::name_of(*gesture).to_owned(), place(*agent)),
+            EventKind::Gesture { agent, gesture, .. } => (Gesture::name_of(*gesture).to_owned(), place(*agent)),
             EventKind::Leaf { human, leaf } => (leaf.clone(), place(socrates_model::AgentId::Human(*human))),
             EventKind::Node { node, .. } => (format!("node {node}"), None),
             EventKind::Door { door, open: true } => (format!("door {door} opens"), None),
             EventKind::Door { door, open: false } => (format!("door {door} closes"), None),
             EventKind::RobotArrived => ("robot arrived".to_owned(), None),
             EventKind::Sees { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Encounter { .. }
             | EventKind::Contact { .. }
             | EventKind::WallContact { .. }
@@ -271,7 +272,7 @@ mod tests {
         let names = event_names(&place);
         let robot = socrates_model::AgentId::Robot;
         let kinds = [
-            EventKind::Gesture { agent: robot, gesture: Some(Gesture::Proceed) },
+            EventKind::Gesture { agent: robot, gesture: Some(Gesture::Proceed), to: None },
             EventKind::Leaf { human: socrates_model::HumanId::new(1), leaf: "RegularNav".into() },
             EventKind::Node { agent: robot, node: crate::fixture::id("car") },
             EventKind::Door { door: "d".into(), open: true },

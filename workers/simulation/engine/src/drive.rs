@@ -78,12 +78,12 @@ impl Engine {
         }
         if let Some(gesture) = gesture {
             if Some(gesture) != robot.gesture {
-                recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: Some(gesture) });
+                recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: Some(gesture), to: None });
             }
             robot.say(gesture, now_s);
         } else if robot.gesture.is_some() && now_s >= robot.gesture_until_s {
             robot.gesture = None;
-            recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: None });
+            recorder.tell(EventKind::Gesture { agent: AgentId::Robot, gesture: None, to: None });
         }
     }
 }
@@ -95,6 +95,7 @@ fn seen(human: &Human) -> SeenPerson {
         velocity: human.velocity,
         yaw: human.yaw,
         radius_m: human.radius_m,
-        gesture: human.gesture,
+        // A sign to a human is none for the robot.
+        gesture: human.gesture.filter(|_| !matches!(human.gesture_to, Some(AgentId::Human(_)))),
     }
 }

@@ -147,7 +147,7 @@ pub(crate) fn run(made: Setup) -> Recording {
 }
 
 pub(crate) fn rule(when: socrates_model::Trigger, act: Action) -> Rule {
-    Rule { when: vec![when], act, gesture: None, for_s: None, latched: false }
+    Rule { when: vec![when], act, gesture: None, for_s: None, latched: false, ..Rule::default() }
 }
 
 /// Drives along a line and stops for whoever is close ahead.

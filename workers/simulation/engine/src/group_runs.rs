@@ -32,6 +32,7 @@ fn blocks(for_s: f64) -> Rule {
         gesture: None,
         for_s: Some(for_s),
         latched: true,
+        ..Rule::default()
     }
 }
 

@@ -1,7 +1,9 @@
 //! One human of the run: body, way, tree.
 
 use socrates_bt::{Tree, TreeState};
-use socrates_model::{Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Side, Vector};
+use socrates_model::{
+    Action, AgentId, Gesture, GroupId, HumanId, NodeId, Point, Polyline, Relation, Side, Trigger, Vector,
+};
 
 use crate::gaze::Gaze;
 use crate::make_room::Facing;
@@ -89,6 +91,12 @@ pub(crate) struct Human {
     pub(crate) speed_mps: f64,
     pub(crate) action: Action,
     pub(crate) gesture: Option<Gesture>,
+    /// To whom it is made, where that is one.
+    pub(crate) gesture_to: Option<AgentId>,
+    /// Its speed since it changed its pace, m/s.
+    pub(crate) pace_mps: Option<f64>,
+    /// Whether it has left its path, to go back or to another place.
+    pub(crate) diverted: bool,
     pub(crate) errand: Errand,
     /// Where it was at tick 0.
     pub(crate) home: Point,
@@ -104,6 +112,9 @@ pub(crate) struct Human {
     pub(crate) facing: Facing,
     /// How near the robot has been to it, m.
     pub(crate) nearest_robot_m: f64,
+    /// How many steps its sequence has, and how many of them have ended.
+    pub(crate) steps: u32,
+    pub(crate) steps_ended: u32,
     /// Whether it ever walked.
     pub(crate) started: bool,
     /// Where it walked, a point every decimeter.
@@ -118,6 +129,11 @@ impl Human {
     /// As an agent.
     pub(crate) const fn agent(&self) -> AgentId {
         AgentId::Human(self.id)
+    }
+
+    /// Whether it gets on along its way.
+    pub(crate) const fn gets_on(&self) -> bool {
+        matches!(self.action, Action::Navigate | Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_))
     }
 
     /// The first of its meetings: what trees and scripts call the encounter.
@@ -136,6 +152,15 @@ impl Human {
                 || left < reach && self.s > self.route.length_m() - 0.6
                 || beside && self.s > self.route.length_m() - 1.2
         })
+    }
+
+    /// Whether all its steps have ended; without steps, whether its walk has led it past where it meets the robot, or to its end.
+    pub(crate) fn is_done(&self) -> bool {
+        if self.steps > 0 {
+            return self.steps_ended >= self.steps;
+        }
+        let past = self.meetings.last().is_some_and(|meeting| self.s > meeting.human_s + Trigger::DONE_M);
+        past || self.at_goal()
     }
 
     /// Whether it is beyond the door that it waits for to go in; of anybody else it is not asked.
@@ -186,7 +211,7 @@ impl Human {
     /// Whether it never leaves its place by itself.
     pub(crate) fn stays(&self) -> bool {
         self.route.length_m() < 0.05
-            || matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
+            || !self.diverted && matches!(self.relation, Relation::Static | Relation::Staying) && self.nodes.len() <= 1
     }
 }
 
@@ -202,6 +227,10 @@ pub(crate) const fn leaf_name(action: &Action) -> &'static str {
         Action::LookAtRobot => "LookAtRobot",
         Action::Approach => "ApproachRobot",
         Action::StandStill => "StandStill",
+        Action::LookAt(_) => "WatchHuman",
+        Action::TurnBack => "TurnBack",
+        Action::GoTo { .. } => "GoToPlace",
+        Action::ChangePace(_) => "ChangePace",
     }
 }
 
@@ -219,7 +248,10 @@ pub(crate) const LEAVES: [&str; 10] = [
     "StandStill",
 ];
 
-/// Number of the leaf of an action in [`LEAVES`].
+/// Leaves of acts that only steps of a form have; in a header they come after those of recorded people.
+pub(crate) const STEP_LEAVES: [&str; 4] = ["WatchHuman", "TurnBack", "ChangePace", "GoToPlace"];
+
+/// Number of the leaf of an action in [`LEAVES`], or among [`STEP_LEAVES`] behind them and the two of recorded people.
 pub(crate) const fn leaf_number(action: &Action) -> u16 {
     match action {
         Action::Navigate => 1,
@@ -231,6 +263,10 @@ pub(crate) const fn leaf_number(action: &Action) -> u16 {
         Action::LookAtRobot => 7,
         Action::Approach => 8,
         Action::StandStill => 9,
+        Action::LookAt(_) => 12,
+        Action::TurnBack => 13,
+        Action::ChangePace(_) => 14,
+        Action::GoTo { .. } => 15,
     }
 }
 

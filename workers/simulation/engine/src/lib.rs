@@ -42,6 +42,7 @@ mod rendezvous;
 mod robot;
 mod script;
 mod start;
+mod turning;
 mod view;
 mod walk;
 mod walls;
@@ -60,6 +61,8 @@ mod group_runs;
 mod meeting_runs;
 #[cfg(test)]
 mod model_runs;
+#[cfg(test)]
+mod step_runs;
 #[cfg(test)]
 mod tests;
 

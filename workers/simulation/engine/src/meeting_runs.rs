@@ -182,6 +182,7 @@ fn a_look_at_the_first_meeting_does_not_spoil_the_second() {
             gesture: None,
             for_s: Some(5.0),
             latched: true,
+            ..Rule::default()
         };
         let cast = [Cast(Relation::Frontal, &["e", "m", "nw", "ne", "e"], vec![look])];
         let made = setup(ring(), &["w", "w2", "m", "e", "ne"], &cast, &[(1, "m"), (1, "e")]);

@@ -11,7 +11,7 @@ use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{Fault, FaultCode, HumanId, Point, Vector};
 
-use crate::human::Human;
+use crate::human::{Human, LEAVES};
 use crate::near::Other;
 use crate::run::Engine;
 use crate::start;
@@ -94,6 +94,7 @@ impl Engine {
             return Err(faults);
         }
         if self.humans.len() > known.len() {
+            self.header.leaves.truncate(LEAVES.len());
             self.header.leaves.extend([TRACK_LEAF.to_owned(), ABSENT_LEAF.to_owned()]);
         }
         Ok(self)

@@ -100,7 +100,9 @@ pub(crate) struct Scene<'a> {
 /// The wish of one human for this tick; `pace` is the speed of the rendezvous controller.
 pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
     match human.action.clone() {
-        Action::Navigate => navigate(human, scene, pace),
+        Action::Navigate | Action::TurnBack | Action::GoTo { .. } | Action::ChangePace(_) => {
+            navigate(human, scene, pace)
+        }
         Action::StandStill if human.keeps_place() => stay(human, scene),
         Action::StandStill => match scene.robot {
             // Somebody at the end of their way stands there for no reason of their own, so they let the robot through.
@@ -115,6 +117,7 @@ pub(crate) fn want(human: &mut Human, scene: &Scene<'_>, pace: f64) -> Want {
             Some((at, velocity, trail)) => follow(human, scene, at, velocity, trail),
             None => Want::STAND,
         },
+        Action::LookAt(id) => scene.trails.get(&id).map_or(Want::STAND, |(at, ..)| Want::stand_facing(*at)),
         Action::Approach => approach(human, scene),
         Action::Block => block(human, scene),
         Action::GiveWay => give_way(human, scene),

@@ -25,6 +25,8 @@ pub(crate) struct Robot {
     pub(crate) velocity: Vector,
     /// Whether it ever moved.
     pub(crate) has_moved: bool,
+    /// For how long it has stood since it last moved, s.
+    pub(crate) stood_s: f64,
     pub(crate) command: Command,
     pub(crate) calls: u64,
     pub(crate) gesture: Option<Gesture>,
@@ -98,7 +100,9 @@ impl Robot {
             self.velocity = velocity;
             self.v = velocity.dot(&self.heading());
         }
-        self.has_moved |= self.velocity.norm() > MOVING_MPS;
+        let moves = self.velocity.norm() > MOVING_MPS;
+        self.has_moved |= moves;
+        self.stood_s = if self.has_moved && !moves { self.stood_s + STEP_SECS } else { 0.0 };
         let before = self.s;
         let (s, aside) = self.route.project_within(&at, self.s - 0.3, self.s + 3.0);
         if aside < OFF_WAY_M {

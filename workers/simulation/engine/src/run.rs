@@ -4,8 +4,7 @@ use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, Gesture, HumanId, Recording, RecordingHeader, RobotDriver,
-    SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, Recording, RecordingHeader, RobotDriver, SimTime,
 };
 
 use crate::advance::Desk;
@@ -19,8 +18,8 @@ use crate::rendezvous::{self, Timing};
 use crate::robot::Robot;
 use crate::script::Script;
 use crate::setup::{self, Setup};
-use crate::view::{RobotSeen, View};
-use crate::{meetings, start, walk};
+use crate::view::{RobotSeen, Shown, View};
+use crate::{meetings, start, turning, walk};
 
 /// Nearer than this to the end of its way the robot is at its goal, m.
 const AT_GOAL_M: f64 = 0.35;
@@ -194,7 +193,7 @@ impl Engine {
     fn passers(&self) -> Vec<Passer> {
         let humans = self.humans.iter().filter(|human| human.present()).map(|human| {
             // Somebody who waits at a door on its way still means to go through.
-            let on_way = human.started && human.action == Action::Navigate && !human.at_goal();
+            let on_way = human.started && human.gets_on() && !human.at_goal();
             let velocity = if on_way { human.route.direction(human.s + 0.1) * 0.5 } else { human.velocity };
             Passer { at: human.at, velocity, robot: false }
         });
@@ -208,21 +207,34 @@ impl Engine {
             at: robot.at(),
             speed_mps: robot.velocity.norm(),
             has_moved: robot.has_moved,
+            stood_s: robot.stood_s,
             gesture: robot.gesture,
         });
-        let gestures: Vec<(HumanId, Option<Gesture>)> =
-            self.humans.iter().map(|human| (human.id, human.gesture)).collect();
+        let show = |human: &Human| Shown {
+            id: human.id,
+            gesture: human.gesture,
+            gesture_to: human.gesture_to,
+            steps_ended: human.steps_ended,
+            done: human.is_done(),
+        };
+        let shown: Vec<Shown> = self.humans.iter().map(show).collect();
         for human in self.humans.iter_mut().filter(|human| !human.is_recorded()) {
             if let Some(robot) = robot.filter(|_| human.present()) {
                 human.nearest_robot_m = human.nearest_robot_m.min((robot.at - human.at).norm());
             }
             // Out of the human while its tree looks at it.
             let mut state = std::mem::take(&mut human.state);
-            let mut view = View::of(human, &self.floor, now, robot, &gestures);
+            let mut view = View::of(human, &self.floor, now, robot, &shown);
             human.tree.tick(&mut state, &mut view);
             let (act, say, sight) = (view.act.take(), view.say.take(), view.sees_robot(f64::INFINITY));
+            let to = view.say_to;
+            let ended = view.steps_ended;
             human.notice.robot_seen = view.looked();
             human.state = state;
+            for step in human.steps_ended + 1..=ended {
+                recorder.tell(EventKind::StepEnded { human: human.id, step });
+            }
+            human.steps_ended = ended;
             if let Some(distance_m) = sight {
                 recorder.sight(human.id, distance_m);
             }
@@ -238,10 +250,11 @@ impl Engine {
                 human.errand = crate::human::Errand::default();
                 human.notice.stale = true;
                 human.action = act;
+                turning::begin(human, &self.setup, &self.floor);
             }
-            if let Some(gesture) = say.filter(|gesture| *gesture != human.gesture) {
-                human.gesture = gesture;
-                recorder.tell(EventKind::Gesture { agent: human.agent(), gesture });
+            if let Some(gesture) = say.filter(|gesture| (*gesture, to) != (human.gesture, human.gesture_to)) {
+                (human.gesture, human.gesture_to) = (gesture, to);
+                recorder.tell(EventKind::Gesture { agent: human.agent(), gesture, to });
             }
         }
     }
@@ -319,7 +332,7 @@ impl Engine {
         let mut walkers = Vec::with_capacity(self.humans.len());
         for human in &self.humans {
             let (there, speed_mps) = (human.at_goal(), human.velocity.norm());
-            let walks = human.action == Action::Navigate;
+            let walks = human.gets_on();
             done &= human.stays() || there || !walks && speed_mps < 0.05;
             walkers.push((human.id, human.s, walks && human.started && !there && speed_mps < 0.3));
         }

@@ -25,6 +25,7 @@ impl Script {
         let say = |rule: &RobotRule| match rule.act {
             RobotDo::Say(gesture) => Some((rule.when.clone(), gesture, 0.0, false)),
             RobotDo::Hold(_)
+            | RobotDo::HoldUntil(_)
             | RobotDo::WaitForLeavers
             | RobotDo::Follow(_)
             | RobotDo::Abreast(_)

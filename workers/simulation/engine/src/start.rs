@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use socrates_bt::{Tree, TreeState};
 use socrates_maps::openings::Enclosures;
 use socrates_model::geometry::{nearest_on_segment, segments_cross};
-use socrates_model::recording::AgentInfo;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::seeds::{self, derive_seed};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
@@ -19,10 +19,10 @@ use crate::block::blockers;
 use crate::ends;
 use crate::floor::Floor;
 use crate::gaze;
-use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting};
+use crate::human::{DoorOnWay, Errand, Human, LEAVES, Meeting, STEP_LEAVES};
 use crate::make_room::Facing;
 use crate::meetings::{self, Marks};
-use crate::models::Walks;
+use crate::models::{TRACK_LEAF, Walks};
 use crate::near::Notice;
 use crate::placing;
 use crate::robot::Robot;
@@ -82,6 +82,7 @@ pub(crate) fn robot(setup: &Setup, floor: &Floor) -> Robot {
         omega: 0.0,
         velocity: Vector::zeros(),
         has_moved: false,
+        stood_s: 0.0,
         command: Command::default(),
         calls: 0,
         gesture: None,
@@ -252,6 +253,7 @@ fn human(
         doors,
         yaw: facing,
         speed_mps,
+        steps: proposal.steps(),
         ..bare(proposal.id, tree, state, at)
     }
 }
@@ -310,6 +312,9 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         speed_mps: SPEED.0,
         action: Action::Navigate,
         gesture: None,
+        gesture_to: None,
+        pace_mps: None,
+        diverted: false,
         errand: Errand::default(),
         anchor: None,
         aside_m: 0.0,
@@ -317,6 +322,8 @@ fn bare(id: HumanId, tree: Tree, state: TreeState, at: Point) -> Human {
         yields_until_s: 0.0,
         facing: Facing::default(),
         nearest_robot_m: f64::INFINITY,
+        steps: 0,
+        steps_ended: 0,
         started: false,
         trail: Polyline::default(),
         notice: Notice::default(),
@@ -398,6 +405,14 @@ fn drawn_sway(seed: u64, human: HumanId) -> (f64, f64) {
     (sway(), sway())
 }
 
+/// Names of leaves; those of steps only where somebody has such a step.
+fn leaves(setup: &Setup) -> Vec<String> {
+    let mut rules = setup.proposal.humans.iter().flat_map(|human| &human.rules);
+    let steps = if rules.any(|rule| rule.act.is_of_steps()) { &STEP_LEAVES[..] } else { &[] };
+    let recorded = if steps.is_empty() { &[][..] } else { &[TRACK_LEAF, ABSENT_LEAF] };
+    LEAVES.iter().chain(recorded).chain(steps).map(|leaf| (*leaf).to_owned()).collect()
+}
+
 /// The header of the run.
 pub(crate) fn header(setup: &Setup, humans: &[Human], robot: Option<&Robot>) -> RecordingHeader {
     let mut agents = Vec::new();
@@ -423,6 +438,6 @@ pub(crate) fn header(setup: &Setup, humans: &[Human], robot: Option<&Robot>) -> 
         profile: "native".to_owned(),
         step_s: STEP_SECS,
         agents,
-        leaves: LEAVES.iter().map(|leaf| (*leaf).to_owned()).collect(),
+        leaves: leaves(setup),
     }
 }

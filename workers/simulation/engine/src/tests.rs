@@ -11,7 +11,7 @@ use crate::fixture::{Cast, Liner, carve, hall, id, location, rule, run, setup};
 use crate::run::Engine;
 use crate::setup::Setup;
 
-fn corridor() -> socrates_model::Location {
+pub(crate) fn corridor() -> socrates_model::Location {
     let grid = carve(30.0, 3.2, &[(0.1, 0.3, 29.9, 2.9)]);
     location(
         grid,
@@ -20,7 +20,7 @@ fn corridor() -> socrates_model::Location {
     )
 }
 
-fn crossing() -> socrates_model::Location {
+pub(crate) fn crossing() -> socrates_model::Location {
     let grid = carve(24.0, 24.0, &[(0.2, 10.7, 23.8, 13.3), (10.7, 0.2, 13.3, 23.8)]);
     location(
         grid,

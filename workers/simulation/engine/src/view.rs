@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use socrates_bt::World;
 use socrates_model::time::STEP_SECS;
-use socrates_model::{Action, Gesture, HumanId, Point, SimTime, Trigger, Vector};
+use socrates_model::{Action, AgentId, Gesture, HumanId, Point, SimTime, Trigger, Vector};
 
 use crate::floor::Floor;
 use crate::human::Human;
@@ -25,7 +25,20 @@ pub(crate) struct RobotSeen {
     pub(crate) speed_mps: f64,
     /// Whether it has moved in this run.
     pub(crate) has_moved: bool,
+    /// For how long it has stood, s.
+    pub(crate) stood_s: f64,
     pub(crate) gesture: Option<Gesture>,
+}
+
+/// What somebody shows the others.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Shown {
+    pub(crate) id: HumanId,
+    pub(crate) gesture: Option<Gesture>,
+    pub(crate) gesture_to: Option<AgentId>,
+    /// How many of their steps have ended, and whether they are done.
+    pub(crate) steps_ended: u32,
+    pub(crate) done: bool,
 }
 
 /// One human's view of the start of a tick.
@@ -33,14 +46,18 @@ pub(crate) struct View<'a> {
     pub(crate) floor: &'a Floor,
     pub(crate) now: SimTime,
     pub(crate) robot: Option<RobotSeen>,
-    /// Gestures of all humans, in the order of ids.
-    pub(crate) gestures: &'a [(HumanId, Option<Gesture>)],
+    /// What all humans show, in the order of ids.
+    pub(crate) shown: &'a [Shown],
     human: &'a Human,
     sight: Cell<Option<bool>>,
     /// What the tree asked for.
     pub(crate) act: Option<Action>,
     /// What it says from now on; the inner none takes an earlier gesture back.
     pub(crate) say: Option<Option<Gesture>>,
+    /// To whom, where that is one.
+    pub(crate) say_to: Option<AgentId>,
+    /// The last step of its own that has ended, this tick included.
+    pub(crate) steps_ended: u32,
 }
 
 impl<'a> View<'a> {
@@ -49,9 +66,26 @@ impl<'a> View<'a> {
         floor: &'a Floor,
         now: SimTime,
         robot: Option<RobotSeen>,
-        gestures: &'a [(HumanId, Option<Gesture>)],
+        shown: &'a [Shown],
     ) -> Self {
-        Self { floor, now, robot, gestures, human, sight: Cell::new(human.notice.robot_seen), act: None, say: None }
+        let sight = Cell::new(human.notice.robot_seen);
+        Self {
+            floor,
+            now,
+            robot,
+            shown,
+            human,
+            sight,
+            act: None,
+            say: None,
+            say_to: None,
+            steps_ended: human.steps_ended,
+        }
+    }
+
+    fn shown(&self, id: HumanId) -> Option<&Shown> {
+        let place = self.shown.binary_search_by_key(&id, |shown| shown.id).ok()?;
+        self.shown.get(place)
     }
 
     /// Whether a way lies in the field of view.
@@ -126,12 +160,36 @@ impl World for View<'_> {
     }
 
     fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
-        let place = self.gestures.binary_search_by_key(&id, |(human, _)| *human);
-        place.ok().and_then(|place| self.gestures.get(place)).and_then(|(_, gesture)| *gesture)
+        // A sign to somebody else is none for this one.
+        let me = AgentId::Human(self.human.id);
+        self.shown(id).filter(|shown| shown.gesture_to.is_none_or(|to| to == me)).and_then(|shown| shown.gesture)
+    }
+
+    fn robot_stood_s(&self) -> f64 {
+        self.robot.map_or(0.0, |robot| robot.stood_s)
+    }
+
+    fn steps_ended(&self, id: HumanId) -> u32 {
+        if id == self.human.id { self.steps_ended } else { self.shown(id).map_or(0, |shown| shown.steps_ended) }
+    }
+
+    fn is_done(&self, id: HumanId) -> bool {
+        self.shown(id).is_some_and(|shown| shown.done)
+    }
+
+    fn end_step(&mut self, step: u32) {
+        self.steps_ended = self.steps_ended.max(step);
     }
 
     fn goal_reached(&self) -> bool {
         self.human.at_goal()
+    }
+
+    fn has_arrived(&self) -> bool {
+        // A step that begins in this very tick has not set off yet.
+        let begins = self.steps_ended > self.human.steps_ended;
+        let leads = matches!(self.human.action, Action::TurnBack | Action::GoTo { .. });
+        leads && !begins && self.human.at_goal()
     }
 
     fn next_goal(&mut self) {
@@ -159,6 +217,10 @@ impl World for View<'_> {
     }
 
     fn gesture(&mut self, gesture: Option<Gesture>) {
-        self.say = Some(gesture);
+        (self.say, self.say_to) = (Some(gesture), None);
+    }
+
+    fn gesture_to(&mut self, gesture: Gesture, to: AgentId) {
+        (self.say, self.say_to) = (Some(Some(gesture)), Some(to));
     }
 }

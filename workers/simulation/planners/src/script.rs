@@ -32,6 +32,8 @@ pub(crate) struct Script {
     lines: Vec<(RobotRule, f64, bool)>,
     encounters: BTreeMap<HumanId, Point>,
     hold_until_s: f64,
+    /// What it waits for, with its memory of being blocked, s.
+    waits_for: Option<(RobotWhen, f64)>,
     wish: Wish,
 }
 
@@ -39,41 +41,36 @@ impl Script {
     pub(crate) fn new(rules: &[RobotRule], encounters: &BTreeMap<HumanId, Point>) -> Self {
         let lines =
             rules.iter().filter(|rule| !matches!(rule.act, RobotDo::Say(_))).map(|rule| (rule.clone(), 0.0, false));
-        Self { lines: lines.collect(), encounters: encounters.clone(), hold_until_s: 0.0, wish: Wish::default() }
+        Self {
+            lines: lines.collect(),
+            encounters: encounters.clone(),
+            hold_until_s: 0.0,
+            waits_for: None,
+            wish: Wish::default(),
+        }
     }
 
     /// One call on, `dt` seconds after the last.
     pub(crate) fn step(&mut self, seen: &Observation<'_>, dt: f64) -> Wish {
         let now = seen.time.secs();
-        let at = seen.pose.point();
+        let encounters = &self.encounters;
+        if let Some((until, held_s)) = &mut self.waits_for
+            && (holds(until, held_s, encounters, seen, dt) || now >= self.hold_until_s)
+        {
+            (self.waits_for, self.hold_until_s) = (None, now);
+        }
         for (rule, held_s, done) in &mut self.lines {
-            let near = |reach: f64| seen.people.iter().any(|person| (person.at - at).norm() <= reach);
-            let holds = match &rule.when {
-                RobotWhen::Start => true,
-                RobotWhen::Blocked(secs) => {
-                    let blocked = seen.people.iter().any(|person| {
-                        let to = person.at - at;
-                        let bearing = wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw);
-                        RobotWhen::is_blocked_by(to.norm(), bearing)
-                    });
-                    *held_s = if blocked { *held_s + dt } else { 0.0 };
-                    *held_s >= *secs
-                }
-                RobotWhen::HumanNear(reach) => near(*reach),
-                RobotWhen::HumanSays(gesture) => {
-                    seen.people.iter().any(|person| person.gesture == Some(*gesture) && (person.at - at).norm() < 10.0)
-                }
-                RobotWhen::AtEncounter(human) => {
-                    self.encounters.get(human).is_some_and(|spot| (spot - at).norm() < AT_ENCOUNTER_M)
-                }
-                RobotWhen::AfterSecs(secs) => now >= *secs,
-            };
+            let holds = holds(&rule.when, held_s, encounters, seen, dt);
             if !holds || *done {
                 continue;
             }
             *done = true;
             match &rule.act {
                 RobotDo::Hold(secs) => self.hold_until_s = self.hold_until_s.max(now + secs),
+                RobotDo::HoldUntil(until) => {
+                    self.waits_for = Some((until.clone(), 0.0));
+                    self.hold_until_s = now + RobotDo::HOLD_MOST_S;
+                }
                 RobotDo::WaitForLeavers => self.wish.wait_for_leavers = true,
                 RobotDo::Follow(human) => self.wish.follow = Some(*human),
                 RobotDo::Abreast(human) => self.wish.abreast = Some(*human),
@@ -89,5 +86,34 @@ impl Script {
     /// Everybody who leaves is out.
     pub(crate) const fn leavers_are_out(&mut self) {
         self.wish.wait_for_leavers = false;
+    }
+}
+
+/// Whether a moment has come; `held_s` is for how long the robot has been blocked.
+fn holds(
+    when: &RobotWhen,
+    held_s: &mut f64,
+    encounters: &BTreeMap<HumanId, Point>,
+    seen: &Observation<'_>,
+    dt: f64,
+) -> bool {
+    let at = seen.pose.point();
+    match when {
+        RobotWhen::Start => true,
+        RobotWhen::Blocked(secs) => {
+            let blocked = seen.people.iter().any(|person| {
+                let to = person.at - at;
+                let bearing = wrap_angle(libm::atan2(to.y, to.x) - seen.pose.yaw);
+                RobotWhen::is_blocked_by(to.norm(), bearing)
+            });
+            *held_s = if blocked { *held_s + dt } else { 0.0 };
+            *held_s >= *secs
+        }
+        RobotWhen::HumanNear(reach) => seen.people.iter().any(|person| (person.at - at).norm() <= *reach),
+        RobotWhen::HumanSays(gesture) => {
+            seen.people.iter().any(|person| person.gesture == Some(*gesture) && (person.at - at).norm() < 10.0)
+        }
+        RobotWhen::AtEncounter(human) => encounters.get(human).is_some_and(|spot| (spot - at).norm() < AT_ENCOUNTER_M),
+        RobotWhen::AfterSecs(secs) => seen.time.secs() >= *secs,
     }
 }

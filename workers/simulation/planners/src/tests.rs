@@ -175,6 +175,23 @@ fn the_script_holds_and_says_that_it_waits() {
 }
 
 #[test]
+fn the_script_holds_until_somebody_says_so_and_not_for_ever() {
+    let until = RobotDo::HoldUntil(RobotWhen::HumanSays(Gesture::Proceed));
+    let hold = || RobotRule { when: RobotWhen::AfterSecs(2.0), act: until.clone() };
+    let mut driver = make("reference", &mission(vec![hold()])).unwrap().unwrap();
+    let says = |t: f64| {
+        let gesture = (t > 5.0).then_some(Gesture::Proceed);
+        vec![SeenPerson { gesture, ..person(6.0, 4.0, 0.0, 0.0) }]
+    };
+    let way = drive(driver.as_mut(), &says, 8.0);
+    assert!(way[60].1.waiting && way[90].1.waiting && way[90].1.v.abs() < 1e-9);
+    assert!(!way[120].1.waiting && way[120].1.v > 0.3, "{:?}", way[120].1);
+    let mut driver = make("reference", &mission(vec![hold()])).unwrap().unwrap();
+    let way = drive(driver.as_mut(), &|_| vec![], 66.0);
+    assert!(way[1200].1.waiting && !way[1300].1.waiting);
+}
+
+#[test]
 fn a_blocked_reference_asks_after_three_seconds() {
     let wall =
         |_: f64| (0..6).map(|place| person(6.0, 0.6 + f64::from(place) * 0.95, 0.0, 0.0)).collect::<Vec<SeenPerson>>();

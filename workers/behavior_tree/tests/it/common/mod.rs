@@ -14,6 +14,9 @@ pub(crate) struct Room {
     pub(crate) moving: bool,
     pub(crate) robot_says: Option<Gesture>,
     pub(crate) humans_say: BTreeMap<HumanId, Gesture>,
+    pub(crate) stood_s: f64,
+    pub(crate) ended: BTreeMap<HumanId, u32>,
+    pub(crate) done: Vec<HumanId>,
     pub(crate) at_goal: bool,
     pub(crate) at_encounter: bool,
     pub(crate) tick: u64,
@@ -52,6 +55,18 @@ impl World for Room {
     }
     fn human_gesture(&self, id: HumanId) -> Option<Gesture> {
         self.humans_say.get(&id).copied()
+    }
+    fn robot_stood_s(&self) -> f64 {
+        self.stood_s
+    }
+    fn steps_ended(&self, id: HumanId) -> u32 {
+        self.ended.get(&id).copied().unwrap_or(0)
+    }
+    fn is_done(&self, id: HumanId) -> bool {
+        self.done.contains(&id)
+    }
+    fn end_step(&mut self, step: u32) {
+        self.ended.insert(HumanId::new(1), step);
     }
     fn goal_reached(&self) -> bool {
         self.at_goal

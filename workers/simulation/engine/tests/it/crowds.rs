@@ -72,6 +72,7 @@ fn some_rules(random: &mut Random, n: u32) -> Vec<Rule> {
             gesture: None,
             for_s: (random.uniform() < 0.5).then(|| random.between(1.0, 9.0)),
             latched: random.uniform() < 0.3,
+            ..Rule::default()
         })
         .collect()
 }

@@ -345,7 +345,7 @@ fn show(scene: &mut Scene, me: usize, recorder: &mut Recorder) {
     }
     agent.shown = agent.gesture;
     let gesture = meaning(agent.shown, rules.own_gesture_codes);
-    recorder.tell(EventKind::Gesture { agent: agent.agent(), gesture });
+    recorder.tell(EventKind::Gesture { agent: agent.agent(), gesture, to: None });
 }
 
 /// The gesture of a code; people of the fork have a table of their own, in which 3 is EXCUSE ME.

@@ -290,7 +290,7 @@ fn a_gesture_made_as_the_state_changes_is_lost_in_the_fork() {
         let recording = case.run(profile);
         assert!(does(&recording, 1, "LookAtRobot"), "{profile}");
         recording.events.iter().any(|event| {
-            matches!(&event.kind, EventKind::Gesture { gesture: Some(Gesture::Wait), agent: AgentId::Human(_) })
+            matches!(&event.kind, EventKind::Gesture { gesture: Some(Gesture::Wait), agent: AgentId::Human(_), .. })
         })
     };
     assert!(waits(Profile::Native));

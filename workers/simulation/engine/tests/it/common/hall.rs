@@ -42,7 +42,7 @@ fn grid(side: f64, segments: &[(Point, Point)]) -> Grid {
 
 /// Rules like those of somebody curious: two conditions, two reactions, then the way.
 fn rules() -> Vec<Rule> {
-    let rule = |when, act, for_s| Rule { when, act, gesture: None, for_s, latched: false };
+    let rule = |when, act, for_s| Rule { when, act, gesture: None, for_s, latched: false, ..Rule::default() };
     vec![
         rule(vec![Trigger::RobotVisible(1.5), Trigger::RobotMoving], Action::LookAtRobot, Some(1.0)),
         rule(vec![Trigger::RobotBlocking(1.2)], Action::GiveWay, Some(2.0)),
