@@ -7,7 +7,8 @@ use super::tree::{Kind, Node};
 use super::words::Words;
 use super::{Expect, GROUP_SIZES, MAX_HUMANS};
 use crate::form::{
-    FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment, RobotStep,
+    Deed, FacingWord, Form, FormGroup, FormHuman, FormOrder, Formation, Pace, PlaceWord, RobotDeed, RobotMoment,
+    RobotStep, Step,
 };
 use crate::place::PlaceClass;
 use crate::proposal::{Relation, Side};

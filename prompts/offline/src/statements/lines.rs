@@ -116,6 +116,10 @@ fn fact_text(kind: &FactKind, location: &Location, quote: &str) -> Option<String
         FactKind::RobotSays(gesture) => format!("robot: say = \"{gesture}\""),
         FactKind::RobotStart(class) => format!("robot: start = \"{}\"", class.name()),
         FactKind::RobotGoal(class) => format!("robot: goal = \"{}\"", class.name()),
+        FactKind::Side { human, side } => format!("{human}: side = {}", inline(side)),
+        FactKind::Facing { human, facing } => format!("{human}: facing = {}", inline(facing)),
+        FactKind::GesturesTo { human, gesture, to } => format!("{human}: say = \"{gesture}\", to = \"{to}\""),
+        FactKind::RobotAt { part, name, .. } => format!("robot: {} = \"{name}\"", inline(part).trim_matches('"')),
         FactKind::Reacts { .. }
         | FactKind::Relates { .. }
         | FactKind::Gestures { .. }
