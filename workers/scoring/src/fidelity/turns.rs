@@ -28,7 +28,7 @@ const DIFFERS: f64 = 0.25;
 /// It takes so long to take up another pace, s.
 const TAKES_SECS: f64 = 1.0;
 
-fn walking<'a>(track: &'a Track, from_s: f64, to_s: f64) -> impl DoubleEndedIterator<Item = &'a Sample> {
+fn walking(track: &Track, from_s: f64, to_s: f64) -> impl DoubleEndedIterator<Item = &Sample> {
     track.samples.iter().filter(move |s| s.there && s.t >= from_s && s.t <= to_s && s.speed() > WALKS_MPS)
 }
 
