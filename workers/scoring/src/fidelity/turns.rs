@@ -28,13 +28,14 @@ const DIFFERS: f64 = 0.25;
 /// It takes so long to take up another pace, s.
 const TAKES_SECS: f64 = 1.0;
 
-fn walking<'a>(track: &'a Track, from_s: f64, to_s: f64) -> impl DoubleEndedIterator<Item = &'a Sample> {
+fn walking(track: &Track, from_s: f64, to_s: f64) -> impl DoubleEndedIterator<Item = &Sample> {
     track.samples.iter().filter(move |s| s.there && s.t >= from_s && s.t <= to_s && s.speed() > WALKS_MPS)
 }
 
-/// Time between two samples at the rate of moments, s.
-const fn step_s() -> f64 {
-    crate::fidelity::signals::MOMENT_SECS
+/// Time between two samples of a track, s.
+fn step_s(track: &Track) -> f64 {
+    let ends = track.samples.first().zip(track.samples.last());
+    ends.map_or(0.0, |(first, last)| (last.t - first.t) / track.samples.len().saturating_sub(1).max(1) as f64)
 }
 
 /// The human walks back the way they came.
@@ -54,7 +55,7 @@ pub(super) fn turns_back(signals: &Signals<'_>, human: HumanId) -> Finding {
     let before: Vec<&Sample> =
         walking(track, 0.0, turn_s).rev().take_while(|s| s.t >= turn_s - 4.0 * BEFORE_SECS).collect();
     let way = before.iter().map(|sample| sample.velocity).fold(socrates_model::Vector::zeros(), |sum, v| sum + v);
-    if before.len() as f64 * step_s() < 0.25 * BEFORE_SECS || way.norm() < 1e-9 {
+    if before.len() as f64 * step_s(track) < 0.25 * BEFORE_SECS || way.norm() < 1e-9 {
         return Finding::fails(
             -BACK_M,
             vec![turn_s],
@@ -67,7 +68,7 @@ pub(super) fn turns_back(signals: &Signals<'_>, human: HumanId) -> Finding {
     for sample in walking(track, turn_s, f64::INFINITY) {
         let course = sample.velocity / sample.speed().max(1e-9);
         let turned = libm::acos(course.dot(&way).clamp(-1.0, 1.0)) >= BACK_RAD;
-        back_m = if turned { back_m + sample.speed() * step_s() } else { 0.0 };
+        back_m = if turned { back_m + sample.speed() * step_s(track) } else { 0.0 };
         if turned && first_s.is_none() {
             first_s = Some(sample.t);
         }
@@ -137,12 +138,12 @@ pub(super) fn changes_pace(signals: &Signals<'_>, human: HumanId, mps: f64) -> F
         return Finding::never(-DIFFERS, vec![], format!("{human} never changes their pace"));
     };
     let mean = |samples: Vec<&Sample>| {
-        let long_s = samples.len() as f64 * step_s();
+        let long_s = samples.len() as f64 * step_s(track);
         let sum: f64 = samples.iter().map(|sample| sample.speed()).sum();
         (long_s >= LEAST_SECS).then(|| sum / samples.len() as f64)
     };
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a few samples")]
-    let most = (PACE_SECS / step_s()) as usize;
+    let most = (PACE_SECS / step_s(track).max(1e-6)) as usize;
     let before = mean(walking(track, 0.0, begun_s).rev().take(most).collect());
     let after = mean(walking(track, begun_s + TAKES_SECS, f64::INFINITY).take(most).collect());
     let (Some(before), Some(after)) = (before, after) else {

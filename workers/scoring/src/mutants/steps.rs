@@ -54,7 +54,7 @@ pub(super) fn steps(evidence: &Evidence<'_>, add: &mut Add<'_>) {
             add("N: step without its effect", about.clone(), walks_on(run, agent, (begun_s, over_s)));
         }
         if !rule.until.is_empty() && over_s + AFTER_SECS < end_s {
-            add("N: step without end", about, stays_on(run, human, over_s));
+            add("N: step without end", about, stays_on(run, human, over_s - STEPS_SECS));
         }
     }
 }

@@ -195,6 +195,7 @@ pub fn look_through(recording: &Recording, met: usize, loose_s: f64) -> Findings
                 }
             }
             EventKind::Gesture { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Leaf { .. }
             | EventKind::Sees { .. }
             | EventKind::WallContact { .. }
