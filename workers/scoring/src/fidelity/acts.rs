@@ -1,6 +1,7 @@
 //! Monitors of what one human does: blocks, looks, stands, runs away, gives way, gestures.
 
-use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
+use socrates_model::geometry::wrap_angle;
+use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId, Vector};
 
 use crate::fidelity::company::follow_marks;
 use crate::fidelity::finding::Finding;
@@ -8,6 +9,7 @@ use crate::fidelity::follow::gaps;
 use crate::fidelity::leaves::LeafSpan;
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
 use crate::fidelity::reactions::said_after;
+use crate::fidelity::robot::shows;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::since::{since, since_act};
 use crate::fidelity::windows::{Mark, held, longest_s, stretches};
@@ -19,6 +21,8 @@ const LOOK_RAD: f64 = 0.349_065_850_398_866;
 const BLOCK_M: f64 = 2.5;
 /// Nearer to the robot's line than this is in its way, m.
 const IN_WAY_M: f64 = 0.6;
+/// Somebody farther than this beside the robot's intended way is not in its way, wherever it turns, m.
+const OFF_WAY_M: f64 = 1.2;
 /// How much sooner than the first sight a look may begin, s.
 const EARLY_SECS: f64 = 0.5;
 /// A look counts from this near where there is no map to tell lines of sight, m.
@@ -29,13 +33,18 @@ const GESTURE_M: f64 = 8.0;
 const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
 const ASIDE_M: f64 = 0.7;
+/// Whoever gives way goes so far off the line by themselves, m.
+const OFF_LINE_M: f64 = 0.3;
+/// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
+const STANDS_REACH_M: f64 = 15.0;
 /// Speed away from the robot that is running from it, m/s.
 const FLEE_MPS: f64 = 0.3;
 /// Time in which somebody who runs away must have gained distance, s.
 const FLEE_SECS: f64 = 6.0;
 
 fn block_mark(moment: &Moment) -> Mark {
-    Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()))
+    let beside = moment.way.map_or(f64::INFINITY, |(_, off)| OFF_WAY_M - off);
+    Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()).min(beside))
 }
 
 /// How far somebody looks at the robot at each moment: stopped and turned to it, having seen it since
@@ -100,9 +109,36 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         let caused = spans.filter(|span| Action::LookAtRobot.is_leaf(&span.name) && span.from_s >= seen_s - EARLY_SECS);
         caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
-    let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
+    let mut marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
+    if from.is_reaction() {
+        // Who stood there facing that way all the time did not stop or turn to look.
+        let idle: Vec<(f64, f64)> = stretches(marks.iter().copied(), 0.0)
+            .into_iter()
+            .filter(|span| !stops_or_turns(signals, human, *span))
+            .collect();
+        for mark in &mut marks {
+            if idle.iter().any(|(from, to)| mark.t >= *from && mark.t <= *to) {
+                mark.margin = mark.margin.min(-0.1);
+            }
+        }
+    }
     let what = format!("stopped and looking at the robot for {for_s:.1} s");
     from.told(lasting(signals, human, from.marks(marks), for_s, GESTURE_M, &what))
+}
+
+/// Somebody who was faster than this shortly before has stopped, m/s, and one who turns by more has turned, rad (15°).
+const WALKED_MPS: f64 = 0.2;
+const TURNED_RAD: f64 = 0.26;
+/// Shortly before is so long before, s.
+const BEFORE_SECS: f64 = 2.0;
+
+/// Whether a human stops for a stretch of time, or turns shortly before or in it.
+fn stops_or_turns(signals: &Signals<'_>, human: HumanId, (from, to): (f64, f64)) -> bool {
+    let Some(track) = signals.tracks.human(human) else { return false };
+    let within = |sample: &&Sample| sample.t >= from - BEFORE_SECS && sample.t <= to;
+    let Some(first) = track.present().find(within) else { return false };
+    let mut all = track.present().filter(within);
+    all.any(|sample| sample.speed() > WALKED_MPS || wrap_angle(sample.yaw - first.yaw).abs() > TURNED_RAD)
 }
 
 /// The human stands still for some time; where that is a reaction, after its reason.
@@ -122,7 +158,24 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         let margin = MOVING_MPS - sample.speed();
         Mark::new(sample.t, if walks(sample.t) { margin.min(-MOVING_MPS) } else { margin })
     };
-    let marks = from.marks(track.present().map(mark).collect());
+    let mut marks = from.marks(track.present().map(mark).collect());
+    let apart = |from: f64, to: f64| {
+        let moments = signals.of(human).iter().filter(|moment| moment.t >= from && moment.t <= to);
+        moments.map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min)
+    };
+    // Who stood before there was a reason does not stand for it, unless their tree says so.
+    let stood_before = |since: f64| {
+        let reason = from.is_reaction() && signals.leaves_of(human).is_empty();
+        reason && from.secs() >= since - EARLY_SECS && !stops_or_turns(signals, human, (since, since))
+    };
+    let robot = !signals.of(human).is_empty();
+    for (since, to) in stretches(marks.iter().copied(), 0.0) {
+        if robot && apart(since, to) > STANDS_REACH_M || stood_before(since) {
+            for mark in marks.iter_mut().filter(|mark| mark.t >= since && mark.t <= to) {
+                mark.margin = mark.margin.min(-MOVING_MPS);
+            }
+        }
+    }
     let longest = longest_s(marks.iter().copied());
     let text = format!(
         "{human} stands still (below {MOVING_MPS} m/s) for {longest:.1} s without a break ({for_s:.1} s asked)"
@@ -197,8 +250,15 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     match passing {
         Some(moment) => {
             let aside = moment.left_m.abs();
-            let text = format!("{human} {aside:.2} m beside the robot's line as it passes at {:.1} s", moment.t);
-            Finding::by_margin(aside - ASIDE_M, vec![moment.t], text)
+            // How near they were to the line on which the robot passes, from the reason on.
+            let beside = |before: &Moment| moment.robot.facing().perp(&(before.human.at - moment.robot.at)).abs();
+            let nearest = moments.iter().take_while(|before| before.t <= moment.t).map(beside).fold(aside, f64::min);
+            let text = format!(
+                "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), {nearest:.2} m before \
+                 ({OFF_LINE_M} m less asked)",
+                moment.t
+            );
+            Finding::by_margin((aside - ASIDE_M).min(aside - nearest - OFF_LINE_M), vec![moment.t], text)
         }
         None => {
             let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
@@ -224,6 +284,7 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
         .iter()
         .filter(|event| event.kind == (EventKind::Gesture { agent, gesture: Some(gesture) }))
         .map(|event| event.time.secs())
+        .filter(|t| shows(signals, agent, gesture, *t))
         .collect();
     times.extend(track.samples.iter().find(|sample| sample.gesture == Some(gesture)).map(|sample| sample.t));
     times.sort_by(f64::total_cmp);
@@ -358,14 +419,43 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }
-        return shown;
+        return shown.into_iter().filter(|span| moves_for(signals, human, action, *span)).collect();
     }
     let seen = |span: &LeafSpan| {
         let latest_s = span.to_s + AFTER_LEAF_SECS;
         let fits = |(from, to): &&(f64, f64)| *from <= latest_s && *to >= span.from_s + kept_s.min(0.3);
         shown.iter().rfind(fits).map(|(_, to)| (span.from_s, to.min(latest_s)))
     };
-    leaves.iter().filter(|span| action.is_leaf(&span.name)).filter_map(seen).collect()
+    let done = leaves.iter().filter(|span| action.is_leaf(&span.name)).filter_map(seen);
+    done.filter(|span| moves_for(signals, human, action, *span)).collect()
+}
+
+/// Whoever follows, comes up to the robot, gets away from it or out of its way goes so far for it by themselves, m.
+const FOLLOWS_M: f64 = 0.5;
+const GOES_M: f64 = 0.3;
+/// What the motion shows may begin a little sooner than what the log tells, and last longer, s.
+const AROUND_SECS: f64 = 0.5;
+
+/// Whether an act that consists of a motion has one of the human's own: what the robot does by itself is none.
+fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to): (f64, f64)) -> bool {
+    let moments =
+        || signals.of(human).iter().filter(|moment| moment.t >= from - AROUND_SECS && moment.t <= to + AROUND_SECS);
+    let way_m = || moments().zip(moments().skip(1)).map(|(a, b)| (b.human.at - a.human.at).norm()).sum::<f64>();
+    let Some(begin) = moments().next() else { return true };
+    let most = |line: Vector, either: bool| {
+        let along = moments().map(|moment| line.dot(&(moment.human.at - begin.human.at)));
+        along.map(|way| if either { way.abs() } else { way }).fold(0.0, f64::max)
+    };
+    match action {
+        Action::FollowRobot | Action::FollowHuman(_) => way_m() >= FOLLOWS_M,
+        Action::Approach => way_m() >= GOES_M,
+        Action::RunAway => most(begin.away(), false) >= GOES_M,
+        Action::GiveWay => {
+            let facing = begin.robot.facing();
+            most(Vector::new(-facing.y, facing.x), true) >= GOES_M
+        }
+        Action::Navigate | Action::StandStill | Action::Block | Action::LookAtRobot => true,
+    }
 }
 
 /// Without leaves, walking away after passing looks like fleeing: only a change of velocity away from

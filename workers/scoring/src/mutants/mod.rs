@@ -7,11 +7,13 @@
 mod early;
 mod edit;
 mod harmless;
+mod lacks;
 mod spoil;
 
 use socrates_model::Recording;
 
 pub use harmless::harmless;
+pub use lacks::{Lack, Lacking, ROWS, Row, lacking, row};
 pub use spoil::spoiled;
 
 use socrates_model::{AgentId, HumanId, Verdict};
