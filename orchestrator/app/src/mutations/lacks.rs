@@ -255,17 +255,23 @@ fn orders(base: &Base) -> Vec<Predicate> {
         _ => None,
     };
     let given = &base.proposal.expected_events;
-    let mut seen: Vec<(f64, HumanId, String)> = held(base)
-        .into_iter()
-        .filter(|(clause, _)| given.iter().any(|other| other.id == clause.id))
-        .filter_map(|(clause, found)| Some((*found.times_s.first()?, of(&clause.predicate)?, clause.id)))
+    let mut seen: Vec<(f64, HumanId, &Clause)> = held(base)
+        .iter()
+        .filter_map(|(clause, found)| {
+            Some((found.times_s.first().copied()?, of(&clause.predicate)?, clause.id.clone()))
+        })
+        .filter_map(|(t, who, id)| Some((t, who, given.iter().find(|clause| clause.id == id)?)))
         .collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (Some((early, who, first)), Some((late, other, then))) = (seen.first(), seen.last()) else { return Vec::new() };
-    if late - early < APART_SECS || who == other {
-        return Vec::new();
-    }
-    vec![Predicate::Order { first: first.clone(), then: then.clone() }]
+    let event = |clause: &Clause| !matches!(clause.predicate, Predicate::Meets { .. });
+    let later = |first: &(f64, HumanId, &Clause)| {
+        let then = seen.iter().rfind(|then| then.1 != first.1 && then.0 - first.0 >= APART_SECS)?;
+        Some(Predicate::Order { first: first.2.id.clone(), then: then.2.id.clone() })
+    };
+    // The first of all, and the first that is an event.
+    let events = seen.iter().find(|(_, _, clause)| event(clause)).and_then(later);
+    let all = seen.first().and_then(later).filter(|order| events.as_ref() != Some(order));
+    events.into_iter().chain(all).collect()
 }
 
 /// Everybody before everybody else: those of them hold that are true.

@@ -23,6 +23,8 @@ const BLOCK_M: f64 = 2.5;
 const IN_WAY_M: f64 = 0.6;
 /// Somebody farther than this beside the robot's intended way is not in its way, wherever it turns, m.
 const OFF_WAY_M: f64 = 1.2;
+/// Somebody who comes faster than this towards the robot does not stay in front of it, m/s.
+const COMES_MPS: f64 = 0.7;
 /// How much sooner than the first sight a look may begin, s.
 const EARLY_SECS: f64 = 0.5;
 /// A look counts from this near where there is no map to tell lines of sight, m.
@@ -33,7 +35,7 @@ const GESTURE_M: f64 = 8.0;
 const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
 const ASIDE_M: f64 = 0.7;
-/// Whoever gives way goes so far off the line by themselves, m.
+/// Somebody who gives way goes so far off the line by themselves, m.
 const OFF_LINE_M: f64 = 0.3;
 /// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
 const STANDS_REACH_M: f64 = 15.0;
@@ -44,7 +46,10 @@ const FLEE_SECS: f64 = 6.0;
 
 fn block_mark(moment: &Moment) -> Mark {
     let beside = moment.way.map_or(f64::INFINITY, |(_, off)| OFF_WAY_M - off);
-    Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()).min(beside))
+    // Somebody who walks up to the robot, and past it, does not stay in front of it.
+    let stays = COMES_MPS + moment.human.velocity.dot(&moment.away());
+    let in_way = (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m());
+    Mark::new(moment.t, in_way.min(beside).min(stays))
 }
 
 /// How far somebody looks at the robot at each moment: stopped and turned to it, having seen it since
@@ -110,16 +115,13 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
     let mut marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
-    if from.is_reaction() {
-        // Who stood there facing that way all the time did not stop or turn to look.
-        let idle: Vec<(f64, f64)> = stretches(marks.iter().copied(), 0.0)
-            .into_iter()
-            .filter(|span| !stops_or_turns(signals, human, *span))
-            .collect();
-        for mark in &mut marks {
-            if idle.iter().any(|(from, to)| mark.t >= *from && mark.t <= *to) {
-                mark.margin = mark.margin.min(-0.1);
-            }
+    // Somebody who stood there facing that way all the time did not stop or turn to look. By their tree they turn however little.
+    let turned_rad = if by_rule { TURNED_LITTLE_RAD } else { TURNED_RAD };
+    let mut idle = stretches(marks.iter().copied(), 0.0);
+    idle.retain(|span| !stops_or_turns(signals, human, *span, turned_rad));
+    for mark in &mut marks {
+        if idle.iter().any(|(from, to)| mark.t >= *from && mark.t <= *to) {
+            mark.margin = mark.margin.min(-0.1);
         }
     }
     let what = format!("stopped and looking at the robot for {for_s:.1} s");
@@ -129,16 +131,18 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
 /// Somebody who was faster than this shortly before has stopped, m/s, and one who turns by more has turned, rad (15°).
 const WALKED_MPS: f64 = 0.2;
 const TURNED_RAD: f64 = 0.26;
+/// Somebody who stands the right way by chance does not turn as much as this, rad (2°).
+const TURNED_LITTLE_RAD: f64 = 0.03;
 /// Shortly before is so long before, s.
 const BEFORE_SECS: f64 = 2.0;
 
 /// Whether a human stops for a stretch of time, or turns shortly before or in it.
-fn stops_or_turns(signals: &Signals<'_>, human: HumanId, (from, to): (f64, f64)) -> bool {
+fn stops_or_turns(signals: &Signals<'_>, human: HumanId, (from, to): (f64, f64), turned_rad: f64) -> bool {
     let Some(track) = signals.tracks.human(human) else { return false };
     let within = |sample: &&Sample| sample.t >= from - BEFORE_SECS && sample.t <= to;
     let Some(first) = track.present().find(within) else { return false };
     let mut all = track.present().filter(within);
-    all.any(|sample| sample.speed() > WALKED_MPS || wrap_angle(sample.yaw - first.yaw).abs() > TURNED_RAD)
+    all.any(|sample| sample.speed() > WALKED_MPS || wrap_angle(sample.yaw - first.yaw).abs() > turned_rad)
 }
 
 /// The human stands still for some time; where that is a reaction, after its reason.
@@ -163,14 +167,16 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         let moments = signals.of(human).iter().filter(|moment| moment.t >= from && moment.t <= to);
         moments.map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min)
     };
-    // Who stood before there was a reason does not stand for it, unless their tree says so.
-    let stood_before = |since: f64| {
-        let reason = from.is_reaction() && signals.leaves_of(human).is_empty();
-        reason && from.secs() >= since - EARLY_SECS && !stops_or_turns(signals, human, (since, since))
+    // Somebody who stood before there was a reason does not stand for it, unless their tree says so.
+    let stood_before = |since: f64, to: f64| {
+        let mut acts = signals.leaves_of(human).iter();
+        let by_tree = acts.any(|span| span.from_s < to && span.to_s > since);
+        let before = from.is_reaction() && from.secs() >= since - EARLY_SECS;
+        before && !by_tree && !stops_or_turns(signals, human, (since, since), TURNED_RAD)
     };
     let robot = !signals.of(human).is_empty();
     for (since, to) in stretches(marks.iter().copied(), 0.0) {
-        if robot && apart(since, to) > STANDS_REACH_M || stood_before(since) {
+        if robot && apart(since, to) > STANDS_REACH_M || stood_before(since, to) {
             for mark in marks.iter_mut().filter(|mark| mark.t >= since && mark.t <= to) {
                 mark.margin = mark.margin.min(-MOVING_MPS);
             }
@@ -231,7 +237,20 @@ pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Fin
     }
 }
 
-/// The human is beside the robot's line as the robot passes.
+/// How far a human goes by themselves until the robot passes, and how much farther from its line they are then than when they
+/// were nearest to it, m: from the line on which it passes, or from its intended way. A robot that swerves adds nothing to it.
+fn went_aside(moments: &[Moment], passing: &Moment) -> (f64, f64) {
+    let before = || moments.iter().take_while(|moment| moment.t <= passing.t);
+    let Some(begin) = moments.first() else { return (0.0, 0.0) };
+    let own_m = before().map(|moment| (moment.human.at - begin.human.at).norm()).fold(0.0, f64::max);
+    let least = |of: &dyn Fn(&Moment) -> f64| before().map(of).fold(f64::INFINITY, f64::min);
+    let line = |moment: &Moment| passing.robot.facing().perp(&(moment.human.at - passing.robot.at)).abs();
+    let way = |moment: &Moment| moment.way.map_or(0.0, |(_, off)| off);
+    let off_m = [line(passing) - least(&line), way(passing) - least(&way)];
+    (own_m, off_m.into_iter().fold(0.0, f64::max))
+}
+
+/// The human is beside the robot's line as the robot passes, and has gone there.
 pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
@@ -250,15 +269,14 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     match passing {
         Some(moment) => {
             let aside = moment.left_m.abs();
-            // How near they were to the line on which the robot passes, from the reason on.
-            let beside = |before: &Moment| moment.robot.facing().perp(&(before.human.at - moment.robot.at)).abs();
-            let nearest = moments.iter().take_while(|before| before.t <= moment.t).map(beside).fold(aside, f64::min);
+            let (own_m, off_m) = went_aside(moments, moment);
             let text = format!(
-                "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), {nearest:.2} m before \
-                 ({OFF_LINE_M} m less asked)",
+                "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), having gone {own_m:.2} m \
+                 and {off_m:.2} m off it ({OFF_LINE_M} m asked)",
                 moment.t
             );
-            Finding::by_margin((aside - ASIDE_M).min(aside - nearest - OFF_LINE_M), vec![moment.t], text)
+            let moved = own_m.min(off_m) - OFF_LINE_M;
+            Finding::by_margin((aside - ASIDE_M).min(moved), vec![moment.t], text)
         }
         None => {
             let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
@@ -430,7 +448,7 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
     done.filter(|span| moves_for(signals, human, action, *span)).collect()
 }
 
-/// Whoever follows, comes up to the robot, gets away from it or out of its way goes so far for it by themselves, m.
+/// Somebody who follows, comes up to the robot, gets away from it or out of its way goes so far for it by themselves, m.
 const FOLLOWS_M: f64 = 0.5;
 const GOES_M: f64 = 0.3;
 /// What the motion shows may begin a little sooner than what the log tells, and last longer, s.

@@ -101,7 +101,9 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
         .map(|moment| {
             let arc_m = together.to(moment.robot.at, moment.human.at);
             let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();
-            let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside);
+            // Somebody who comes the other way is beside the robot for a moment only, and does not go with it.
+            let way = if moment.human.speed() > MOVING_MPS { FRAC_PI_2 - moment.course_rad } else { aside };
+            let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside).min(way);
             Mark { t: moment.t, margin, arc_m }
         })
         .collect();

@@ -240,7 +240,7 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
                 None => return Err(Finding::not_applicable("there is no robot in the recording")),
             },
         };
-        // Whoever comes out goes through it outward, whoever goes in inward; the robot may do either.
+        // Somebody who comes out goes through it outward, whoever goes in inward; the robot may do either.
         let wanted = |crossing: &Crossing| match agent {
             AgentId::Human(id) => crossing.outward == comes_out(&id),
             AgentId::Robot => true,

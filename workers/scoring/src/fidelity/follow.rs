@@ -9,8 +9,8 @@ const TRAIL_STEP_M: f64 = 0.1;
 /// Length of the trail behind the leader that is searched, m.
 const TRAIL_REACH_M: f64 = 9.0;
 
-/// Somebody comes along who goes at least at this part of the other's pace: a half.
-const COMES_ALONG: f64 = 2.0;
+/// Somebody who comes along goes at least at a third of the other's pace.
+const COMES_ALONG: f64 = 3.0;
 
 /// Where the follower is on the leader's trail.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) struct Gap {
     pub together_m: f64,
 }
 
-/// The way that two go together: of each step the shorter of the two, where one may go half as fast as the other for a while.
+/// The way that two go together: of each step the shorter of the two, where one may go at a third of the other's pace for a while.
 /// It stands still while one of them does.
 #[derive(Debug, Default)]
 pub(super) struct Together {

@@ -219,7 +219,7 @@ fn conflict(robot: &Track, human: &Track, near: Option<Point>) -> Option<Conflic
     let mut found: Option<Conflict> = None;
     for (at, course) in steps(robot).into_iter().filter(|(at, _)| inside(at)) {
         for (other, other_course) in &theirs {
-            // Who stands at the place does not cross it.
+            // Somebody who stands at the place does not cross it.
             if *other_course == socrates_model::Vector::zeros() {
                 continue;
             }
@@ -284,7 +284,7 @@ pub(super) fn ahead(signals: &Signals<'_>, human: HumanId, within_m: f64, for_s:
     let marks = moments.iter().map(|moment| {
         let by_heading = moment.ahead_m.min(1.2 - moment.left_m.abs());
         let by_way = moment.way.map_or(f64::NEG_INFINITY, |(ahead, off)| ahead.min(1.2 - off));
-        // Who stands, or comes towards the robot, does not go ahead of it.
+        // Somebody who stands, or comes towards the robot, does not go ahead of it.
         let goes = moment.human.velocity.dot(&moment.away()) - GOES_MPS;
         Mark::new(moment.t, (within_m - moment.distance_m).min(by_heading.max(by_way)).min(goes))
     });

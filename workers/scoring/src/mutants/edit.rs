@@ -111,7 +111,13 @@ pub(super) fn delayed(run: &Recording, agent: AgentId, seconds: f64) -> Recordin
         .filter_map(|k| {
             let (from, held) =
                 if seconds >= 0.0 { (k.saturating_sub(n), k < n) } else { ((k + n).min(last), k + n > last) };
-            old.get(from).map(|state| if held { still(state) } else { *state })
+            // Somebody who waits to set off makes no sign and does nothing by their tree.
+            let waits = |state: &AgentState| AgentState { flags: state.flags & NO_GESTURE & NO_LEAF, ..still(state) };
+            old.get(from).map(|state| match (held, seconds >= 0.0) {
+                (true, true) => waits(state),
+                (true, false) => still(state),
+                (false, _) => *state,
+            })
         })
         .collect();
     let end = old.last().map_or(0.0, |state| time_of(run, state));
@@ -244,12 +250,21 @@ pub(super) fn beside(run: &Recording, agent: AgentId, leader: AgentId, left_m: f
     let lead = states(run, leader);
     let old = states(run, agent);
     let n = ticks_of(run, ahead_s);
+    // The line of a leader is that of the way behind it: one who stands may turn.
+    let back = ticks_of(run, 1.0);
+    let mut line = lead
+        .first()
+        .map_or_else(|| Vector2::new(1.0, 0.0), |state| Vector2::new(libm::cos(state.yaw), libm::sin(state.yaw)));
     let new: Vec<AgentState> = old
         .iter()
         .enumerate()
         .filter_map(|(k, now)| {
             let state = lead.get(k + n).or_else(|| lead.last())?;
-            let left = Vector2::new(-libm::sin(state.yaw), libm::cos(state.yaw)) * left_m;
+            let way = state.point() - lead.get((k + n).saturating_sub(back)).unwrap_or(state).point();
+            if way.norm() > 0.1 {
+                line = way / way.norm();
+            }
+            let left = Vector2::new(-line.y, line.x) * left_m;
             Some(AgentState {
                 flags: now.flags & NO_GESTURE & NO_LEAF,
                 x: state.x + left.x,

@@ -1,10 +1,10 @@
 //! Whether an edit takes the thing away in the run at hand: by the geometry of that run, not by the judge of the clause.
 
 use socrates_model::report::Standing;
-use socrates_model::{Action, AgentId, AgentState, Clause, Point, Predicate, Relation, Trigger};
+use socrates_model::{Action, AgentId, AgentState, Clause, Point, Predicate, Relation, Trigger, Vector};
 
 use super::Edit;
-use super::edits::{NODE_M, Scene, at_node};
+use super::edits::{NODE_M, Scene, at_node, leader};
 use crate::evidence::Evidence;
 use crate::fidelity::standing_of;
 use crate::mutants::edit::{humans, states, ticks_of, time_of};
@@ -31,12 +31,12 @@ pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
         Edit::AfterRobot => {
             at_node(scene, person).is_some_and(|(_, came)| came > 0.5) && start_is_no_place(scene, agents)
         }
-        Edit::Later => comes_to_it(scene, person),
+        Edit::Later => at_events(scene) && comes_to_it(scene, person),
         Edit::AtTheSameTime => at_events(scene) && comes_to_it(scene, person) && gap_s(scene) > 0.5,
         Edit::Sooner => comes_to_it(scene, person) && sooner_fits(scene),
         Edit::AlreadyDone => already_done(scene, person),
         Edit::Backwards => other_way_round(scene, person),
-        Edit::TurnedAbout => match scene.predicate {
+        Edit::TurnedAway => match scene.predicate {
             Predicate::Reacts { act, .. } => *act == Action::LookAtRobot,
             _ => true,
         },
@@ -47,13 +47,15 @@ pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
         Edit::DoorAtStart => outside_range(scene, 0.0),
         Edit::DoorAtEnd => outside_range(scene, scene.end_s()),
         Edit::LogAlone => agents.iter().any(|agent| matches!(agent, AgentId::Human(_) | AgentId::Robot)),
+        // Beside a leader who turns back is behind it, too.
+        Edit::BesideInstead => straight(scene, leader(scene)).is_some(),
         Edit::WalksOff => scene.from_s > 2.0,
         Edit::SwappedMidway => midway_apart(scene, person),
-        Edit::Gone
+        Edit::TurnedAbout
+        | Edit::Gone
         | Edit::GoneHalfway
         | Edit::FarAway
         | Edit::AheadInstead
-        | Edit::BesideInstead
         | Edit::Aside
         | Edit::SeenAhead
         | Edit::Swapped
@@ -192,9 +194,6 @@ fn already_done(scene: &Scene<'_>, person: AgentId) -> bool {
 /// Whether the way from the end to the start differs in the thing.
 fn other_way_round(scene: &Scene<'_>, person: AgentId) -> bool {
     match scene.predicate {
-        Predicate::Flow { angle_deg: [low, high], .. } => {
-            (180.0 - high > *high || 180.0 - low < *low) && one_stream(scene)
-        }
         Predicate::HeadOn { .. } => straight_against(scene, person),
         Predicate::StartsAt { within_m, .. } => off_named(scene, person, scene.end_s(), within_m + CLEAR_M),
         Predicate::RobotArrives => way_m(scene, AgentId::Robot) >= 1.0,
@@ -203,32 +202,27 @@ fn other_way_round(scene: &Scene<'_>, person: AgentId) -> bool {
     }
 }
 
-/// Whether everybody walks the same way.
-fn one_stream(scene: &Scene<'_>) -> bool {
-    let relations: std::collections::BTreeSet<String> =
-        humans(scene.run()).into_iter().map(|id| format!("{:?}", scene.relation(AgentId::Human(id)))).collect();
-    relations.len() == 1
-}
-
 /// Share of the way that a straight one has from end to end.
 const STRAIGHT: f64 = 0.9;
 
+/// The direction of an agent that goes straight.
+fn straight(scene: &Scene<'_>, agent: AgentId) -> Option<Vector> {
+    let all = states(scene.run(), agent);
+    let way: f64 = all.iter().zip(all.iter().skip(1)).map(|(a, b)| (b.point() - a.point()).norm()).sum();
+    let chord = all.last()?.point() - all.first()?.point();
+    (chord.norm() > STRAIGHT * way && way > 1.0).then(|| chord / chord.norm())
+}
+
 /// Whether an agent and the robot go straight against each other.
 fn straight_against(scene: &Scene<'_>, person: AgentId) -> bool {
-    let line = |agent: AgentId| {
-        let all = states(scene.run(), agent);
-        let way: f64 = all.iter().zip(all.iter().skip(1)).map(|(a, b)| (b.point() - a.point()).norm()).sum();
-        let chord = all.last()?.point() - all.first()?.point();
-        (chord.norm() > STRAIGHT * way && way > 1.0).then(|| chord / chord.norm())
-    };
-    line(person).zip(line(AgentId::Robot)).is_some_and(|(a, b)| a.dot(&b) < -STRAIGHT)
+    straight(scene, person).zip(straight(scene, AgentId::Robot)).is_some_and(|(a, b)| a.dot(&b) < -STRAIGHT)
 }
 
 /// Whether the log alone shows the act, when the agent stands where it should begin.
 fn log_stands(scene: &Scene<'_>, agents: &[AgentId]) -> bool {
     match scene.act() {
         Some(Action::StandStill | Action::Block) => false,
-        // Who faces the robot already does not have to turn.
+        // Somebody who faces the robot already does not have to turn.
         Some(Action::LookAtRobot) => agents.first().is_some_and(|agent| faces_elsewhere(scene, *agent)),
         Some(Action::Approach) => agents.first().is_some_and(|agent| {
             scene
@@ -244,7 +238,7 @@ fn log_stands(scene: &Scene<'_>, agents: &[AgentId]) -> bool {
 fn log_walks(scene: &Scene<'_>, person: AgentId) -> bool {
     match scene.act() {
         Some(Action::StandStill | Action::LookAtRobot | Action::Block | Action::RunAway) => scene.act_s.is_some(),
-        // Who walks across the robot's line leaves it.
+        // Somebody who walks across the robot's line leaves it.
         Some(Action::GiveWay) => scene.act_s.is_some() && walks_on_line(scene, person),
         Some(_) => false,
         None => matches!(scene.predicate, Predicate::RobotObeys { gesture, .. } if !gesture_goes(*gesture)),

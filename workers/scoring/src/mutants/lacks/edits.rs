@@ -18,7 +18,7 @@ use crate::mutants::edit::{
 /// Far away is so far, m.
 const FAR_M: f64 = 60.0;
 /// A step aside that leaves the robot's line free, m.
-const ASIDE_M: f64 = 1.5;
+const ASIDE_M: f64 = 2.0;
 /// Late by this much more than the limit, s.
 const MORE_SECS: f64 = 1.0;
 /// A limit missed by less than this factor is late and not wrong.
@@ -177,6 +177,7 @@ pub(super) fn edited(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> Optio
         Edit::FarAway => each(run, agents, |run, agent| shifted(run, agent, &far)),
         Edit::Backwards => each(run, agents, reversed),
         Edit::TurnedAbout => each(run, agents, turned_about),
+        Edit::TurnedAway => each(run, agents, turned_away),
         Edit::TowardsInstead => each(run, agents, |run, agent| towards(run, agent, begins_s)),
         Edit::AheadInstead => beside(run, person, leader(scene), 0.0, 2.5),
         Edit::BesideInstead => beside(run, person, leader(scene), 1.0, 0.0),
@@ -283,7 +284,7 @@ pub(super) fn at_node(scene: &Scene<'_>, person: AgentId) -> Option<(f64, f64)> 
     Some((left, time_of(run, came)))
 }
 
-fn leader(scene: &Scene<'_>) -> AgentId {
+pub(super) fn leader(scene: &Scene<'_>) -> AgentId {
     if let Predicate::Follows { leader, .. } = scene.predicate { *leader } else { AgentId::Robot }
 }
 
@@ -297,6 +298,17 @@ fn gesture(scene: &Scene<'_>) -> Option<Gesture> {
 fn turned_about(run: &Recording, agent: AgentId) -> Recording {
     let turned = |state: &AgentState| AgentState { yaw: wrap_angle(state.yaw + std::f64::consts::PI), ..*state };
     with_states(run, agent, &states(run, agent).iter().map(turned).collect::<Vec<_>>(), Some)
+}
+
+/// The agent has its back to the robot all the time.
+fn turned_away(run: &Recording, agent: AgentId) -> Recording {
+    let old = states(run, agent);
+    let away = |(state, robot): (&AgentState, &AgentState)| {
+        let line = state.point() - robot.point();
+        AgentState { yaw: libm::atan2(line.y, line.x), ..*state }
+    };
+    let robot = states(run, AgentId::Robot);
+    with_states(run, agent, &old.iter().zip(&robot).map(away).collect::<Vec<_>>(), Some)
 }
 
 /// From a time on as far the opposite way.
@@ -315,13 +327,14 @@ fn towards(run: &Recording, agent: AgentId, from_s: f64) -> Recording {
     with_states(run, agent, &old.iter().enumerate().map(opposite).collect::<Vec<_>>(), Some)
 }
 
-/// To the side of the robot's line, away from it.
+/// To the side, where the robot stays farthest off.
 fn aside(scene: &Scene<'_>, person: AgentId) -> Option<Vector> {
-    let robot = scene.at(AgentId::Robot, scene.from_s)?;
-    let me = scene.at(person, scene.from_s)?;
-    let left = Vector::new(-libm::sin(robot.yaw), libm::cos(robot.yaw));
-    let side = if left.dot(&(me.point() - robot.point())) >= 0.0 { 1.0 } else { -1.0 };
-    Some(left * (side * ASIDE_M))
+    let me = scene.at(person, scene.from_s)?.point();
+    let robot = states(scene.run(), AgentId::Robot);
+    let off = |by: &Vector| robot.iter().map(|state| (me + by - state.point()).norm()).fold(f64::INFINITY, f64::min);
+    let step = std::f64::consts::FRAC_PI_4;
+    let all = (0..8).map(|k| f64::from(k) * step).map(|yaw| Vector::new(libm::cos(yaw), libm::sin(yaw)) * ASIDE_M);
+    all.max_by(|a, b| off(a).total_cmp(&off(b)))
 }
 
 fn before_sight(scene: &Scene<'_>, person: AgentId) -> Option<(String, Recording)> {

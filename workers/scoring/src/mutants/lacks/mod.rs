@@ -94,13 +94,15 @@ pub(super) enum Edit {
     Backwards,
     /// Faces the other way.
     TurnedAbout,
+    /// Has its back to the robot.
+    TurnedAway,
     /// Goes as far the opposite way from where the act begins.
     TowardsInstead,
     /// Goes ahead of the leader, and beside it.
     AheadInstead,
     /// See [`Edit::AheadInstead`].
     BesideInstead,
-    /// Goes 1.5 m to the side of the robot's line.
+    /// Goes 2 m to the side of the robot's line.
     Aside,
     /// Everything so late that the run is over first.
     OutOfTime,
@@ -186,7 +188,7 @@ impl Row {
 pub struct Lacking {
     /// What it lacks.
     pub lack: Lack,
-    /// Who and how, in words.
+    /// Who, and how, in words.
     pub about: String,
     /// The recording.
     pub recording: Recording,

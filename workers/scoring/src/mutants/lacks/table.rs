@@ -8,12 +8,12 @@ use Edit::{
     AfterRobot, AheadInstead, AlreadyDone, Aside, AtTheSameTime, Backwards, BesideInstead, DoorAtEnd, DoorAtStart,
     DoorShut, FarAway, Gone, GoneHalfway, IntoRobot, Later, LogAlone, LogStands, LogWalks, OnRobotsWay, OutOfTime,
     SeenAhead, SkipsAhead, Sooner, StandsFromEvidence, StandsFromStart, StandsThere, Swapped, SwappedMidway,
-    SwappedPair, TowardsInstead, TurnedAbout, WalksOff, WalksToRobot,
+    SwappedPair, TowardsInstead, TurnedAbout, TurnedAway, WalksOff, WalksToRobot,
 };
 use Entry::{AsFirst, Exempt, Spoil};
 use Whose::{Everybody, LastMember, Leavers, Members, Person, Robot};
 
-const NAMES_NOBODY: Entry = Exempt("it names nobody: whoever does it counts");
+const NAMES_NOBODY: Entry = Exempt("it names nobody: anybody who does it counts");
 const ROBOT_ALONE: Entry = Exempt("the robot is the only one whom it judges");
 const EITHER_WAY: Entry = Exempt(
     "a way reflected in the robot's keeps its distance from it, and one walked backwards leads through the same place",
@@ -24,9 +24,7 @@ const NO_ACT: Entry = Exempt("it tells where people are, and needs no act of a t
 
 const PERSON_ABSENT: Entry = Spoil(&[(Person, Gone), (Person, FarAway)]);
 const PERSON_STANDS: Entry = Spoil(&[(Person, StandsFromStart)]);
-const PERSON_STOPS: Entry = Spoil(&[(Person, StandsFromStart), (Person, StandsFromEvidence)]);
-const PERSON_STANDS_THERE: Entry =
-    Spoil(&[(Person, StandsFromStart), (Person, StandsFromEvidence), (Person, StandsThere)]);
+const PERSON_STOPS: Entry = Spoil(&[(Person, StandsFromStart), (Person, StandsFromEvidence), (Person, StandsThere)]);
 const PERSON_BACKWARDS: Entry = Spoil(&[(Person, Backwards)]);
 const PERSON_TOO_LATE: Entry = Spoil(&[(Person, OutOfTime)]);
 const PERSON_OFF_TIME: Entry = Spoil(&[(Person, Later), (Person, Sooner)]);
@@ -55,25 +53,25 @@ macro_rules! rows {
 rows! {
     HUMANS "humans" Exempt("a person who stands is there as well"),
         Spoil(&[(Person, Gone), (Person, GoneHalfway)]),
-        Exempt("whoever walks backwards is there as well"),
-        Exempt("whoever sets off later is there all the same"), NAMES_NOBODY, NO_ACT;
+        Exempt("somebody who walks backwards is there as well"),
+        Exempt("somebody who sets off later is there all the same"), NAMES_NOBODY, NO_ACT;
     MEETS "meets" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, Spoil(&[(Person, AfterRobot)]), PERSON_SWAPPED, PERSON_LOG_STANDS;
     MEETS_AGAIN "meets_again" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, Spoil(&[(Person, AfterRobot)]), PERSON_SWAPPED,
         PERSON_LOG_STANDS;
-    HEAD_ON "head_on" PERSON_STANDS_THERE, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    HEAD_ON "head_on" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     CROSSES "crosses" Spoil(&[(Person, StandsFromStart), (Person, StandsThere)]), PERSON_ABSENT,
         Exempt("a way that crosses another crosses it as well when it is reflected or walked backwards"),
         PERSON_OFF_TIME, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    AHEAD "ahead" PERSON_STANDS_THERE, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    OVERTAKES "overtakes" PERSON_STANDS_THERE, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    AHEAD "ahead" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    OVERTAKES "overtakes" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     ROBOT_PASSES "robot_passes" Spoil(&[(Robot, StandsFromStart), (Robot, StandsFromEvidence)]), PERSON_ABSENT,
         Exempt("somebody is passed on either side, and whichever way they walk"),
         ROBOT_TOO_LATE, PERSON_SWAPPED, ROBOT_LOG_STANDS;
-    FOLLOWS "follows" PERSON_STANDS_THERE, PERSON_ABSENT, Spoil(&[(Person, AheadInstead), (Person, BesideInstead)]),
+    FOLLOWS "follows" PERSON_STOPS, PERSON_ABSENT, Spoil(&[(Person, AheadInstead), (Person, BesideInstead)]),
         PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    ABREAST "abreast" PERSON_STANDS_THERE, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    PARALLEL "parallel" PERSON_STANDS_THERE, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    FLOW "flow" ALL_STAND, ALL_ABSENT, Spoil(&[(Everybody, Backwards)]), ALL_TOO_LATE, NAMES_NOBODY, ALL_LOG_STANDS;
+    ABREAST "abreast" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    PARALLEL "parallel" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    FLOW "flow" ALL_STAND, ALL_ABSENT, Exempt("of two opposite streams each is the other one walked backwards"), ALL_TOO_LATE, NAMES_NOBODY, ALL_LOG_STANDS;
     DENSITY "density" ALL_STAND, ALL_ABSENT, Exempt("as many people are as dense whichever way they walk"), ALL_TOO_LATE,
         NAMES_NOBODY, ALL_LOG_STANDS;
     SURROUNDS "surrounds" ALL_STAND, ALL_ABSENT, Exempt("people round the robot may face and walk either way"), ALL_TOO_LATE,
@@ -82,15 +80,15 @@ rows! {
         Exempt("people come together as well when each comes from where they would have gone"),
         Spoil(&[(Person, Later)]), NAMES_NOBODY, PERSON_LOG_STANDS;
     BLOCKS "blocks" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, Aside)]), PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_WALKS;
-    LOOKS "looks" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAbout)]), PERSON_TOO_LATE, PERSON_SWAPPED,
+    LOOKS "looks" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAway)]), PERSON_TOO_LATE, PERSON_SWAPPED,
         Spoil(&[(Person, LogWalks), (Person, LogStands)]);
     STANDS_STILL "stands_still" PERSON_STANDS, PERSON_ABSENT, Exempt("to stand has no direction"), PERSON_TOO_LATE,
         PERSON_SWAPPED, PERSON_LOG_WALKS;
-    RUNS_AWAY "runs_away" PERSON_STANDS_THERE, PERSON_ABSENT, Spoil(&[(Person, TowardsInstead)]), PERSON_TOO_LATE, PERSON_SWAPPED,
+    RUNS_AWAY "runs_away" PERSON_STOPS, PERSON_ABSENT, Spoil(&[(Person, TowardsInstead)]), PERSON_TOO_LATE, PERSON_SWAPPED,
         Spoil(&[(Person, LogStands), (Person, LogWalks)]);
-    GIVES_WAY "gives_way" PERSON_STANDS_THERE, PERSON_ABSENT, Exempt("aside to the other side leaves the line as free"),
+    GIVES_WAY "gives_way" PERSON_STOPS, PERSON_ABSENT, Exempt("aside to the other side leaves the line as free"),
         PERSON_TOO_LATE, PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
-    REACTS "reacts" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAbout), (Person, TowardsInstead)]), PERSON_TOO_LATE,
+    REACTS "reacts" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAway), (Person, TowardsInstead)]), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
     GESTURES "gestures" PERSON_STANDS, PERSON_ABSENT, Exempt("a sign is the same to either side"), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogAlone)]);
@@ -118,7 +116,7 @@ rows! {
         Spoil(&[(Person, Later), (Person, AtTheSameTime)]), Spoil(&[(Person, SwappedPair)]), PERSON_LOG_STANDS;
     ENCOUNTER_AT "encounter_at" ALL_STAND, ALL_ABSENT, EITHER_WAY, ALL_TOO_LATE, NAMES_NOBODY, ALL_LOG_STANDS;
     REACHES "reaches" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
-    STARTS_AT "starts_at" Exempt("whoever stands at the start starts there"), PERSON_ABSENT, PERSON_BACKWARDS,
+    STARTS_AT "starts_at" Exempt("somebody who stands at the start starts there"), PERSON_ABSENT, PERSON_BACKWARDS,
         Spoil(&[(Person, AlreadyDone)]), PERSON_SWAPPED, NO_ACT;
     ON_TIME "on_time" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_OFF_TIME, PERSON_SWAPPED, PERSON_LOG_STANDS;
     PLAUSIBLE "plausible" Spoil(&[(Person, OnRobotsWay)]), Exempt("nobody touches those who are not there"),
