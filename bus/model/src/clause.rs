@@ -196,7 +196,7 @@ pub enum Predicate {
         by_m: f64,
     },
     /// The human leaves the robot's line free: at least 0.7 m beside it as the robot passes (within 3 m), having gone 0.3 m by
-    /// themselves since the reason and come 0.3 m farther from the line. Somebody who stands beside it all the time gives no way.
+    /// themselves since the reason and come 0.2 m farther from the line. Somebody who stands beside it all the time gives no way.
     GivesWay {
         /// Who.
         human: HumanId,

@@ -36,7 +36,7 @@ const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
 const ASIDE_M: f64 = 0.7;
 /// Somebody who gives way goes so far off the line by themselves, m.
-const OFF_LINE_M: f64 = 0.3;
+const OFF_LINE_M: f64 = 0.2;
 /// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
 const STANDS_REACH_M: f64 = 15.0;
 /// Speed away from the robot that is running from it, m/s.
@@ -269,13 +269,17 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     match passing {
         Some(moment) => {
             let aside = moment.left_m.abs();
-            let (own_m, off_m) = went_aside(moments, moment);
+            // What they did before their tree had them give way is none of it.
+            let by_tree = signals.leaves_of(human).iter().filter(|span| Action::GiveWay.is_leaf(&span.name));
+            let begins_s = by_tree.map(|span| span.from_s).find(|t| *t <= moment.t && since.counts(*t));
+            let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t - EARLY_SECS));
+            let (own_m, off_m) = went_aside(moments.get(begins..).unwrap_or_default(), moment);
             let text = format!(
                 "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), having gone {own_m:.2} m \
-                 and {off_m:.2} m off it ({OFF_LINE_M} m asked)",
+                 and {off_m:.2} m off it ({GOES_M} m and {OFF_LINE_M} m asked)",
                 moment.t
             );
-            let moved = own_m.min(off_m) - OFF_LINE_M;
+            let moved = (own_m - GOES_M).min(off_m - OFF_LINE_M);
             Finding::by_margin((aside - ASIDE_M).min(moved), vec![moment.t], text)
         }
         None => {

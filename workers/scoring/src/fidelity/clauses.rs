@@ -425,15 +425,15 @@ mod tests {
     }
 
     #[test]
-    fn the_margin_of_an_order_is_the_time_between_the_two() {
-        for (before, after) in [(2.5, 7.25), (7.25, 2.5), (3.0, 3.0)] {
+    fn the_margin_of_an_order_is_the_time_between_the_two_beyond_that_of_the_same_time() {
+        for (before, after) in [(2.5, 7.25), (7.25, 2.5), (3.0, 3.0), (3.0, 3.03), (3.0, 3.4)] {
             let found = BTreeMap::from([
                 ("a".to_owned(), Finding::holds(1.0, vec![before], "")),
                 ("b".to_owned(), Finding::late(0.0, vec![after], "")),
                 ("c".to_owned(), Finding::fails(-1.0, vec![], "")),
             ]);
             let finding = order(&found, "a", "b");
-            let wanted = after - before;
+            let wanted = after - before - setting::BEFORE_S;
             assert!((finding.margin - wanted).abs() < 1e-12, "{finding:?}");
             assert_eq!(finding.standing, if wanted >= 0.0 { Standing::Holds } else { Standing::Fails });
             assert_eq!(finding.shift_s, Some(finding.margin));

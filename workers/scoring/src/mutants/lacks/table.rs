@@ -94,11 +94,11 @@ rows! {
         PERSON_SWAPPED, Spoil(&[(Person, LogAlone)]);
     LEAVES "leaves" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, Spoil(&[(Person, OutOfTime), (Person, AlreadyDone)]),
         PERSON_SWAPPED, PERSON_LOG_STANDS;
-    STAYS_INSIDE "stays_inside" STANDING, PERSON_ABSENT, Exempt("inside has no direction"), ALL_THE_TIME, PERSON_SWAPPED,
+    STAYS_INSIDE "stays_inside" STANDING, PERSON_ABSENT, Exempt("inside is inside whichever way somebody faces"), ALL_THE_TIME, PERSON_SWAPPED,
         Spoil(&[(Person, WalksToRobot)]);
     ENTERS "enters" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, Spoil(&[(Person, OutOfTime), (Person, AlreadyDone)]),
         PERSON_SWAPPED, PERSON_LOG_STANDS;
-    DOOR_OPENS "door_opens" ROBOT_STANDS, Spoil(&[(Robot, DoorShut)]), Exempt("a distance has no side"),
+    DOOR_OPENS "door_opens" ROBOT_STANDS, Spoil(&[(Robot, DoorShut)]), Exempt("a distance is the same to either side"),
         Spoil(&[(Robot, DoorAtStart), (Robot, DoorAtEnd)]), NAMES_NOBODY, Exempt("a door has no tree");
     HIDDEN_UNTIL "hidden_until" PERSON_STANDS, PERSON_ABSENT, Exempt("a line of sight has no direction"),
         Spoil(&[(Person, SeenAhead)]), PERSON_SWAPPED, PERSON_LOG_STANDS;
