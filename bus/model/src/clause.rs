@@ -65,12 +65,14 @@ pub enum Predicate {
         /// Largest distance between the two.
         within_m: f64,
     },
-    /// The human moves against the robot's heading as they first come within 6 m (150–180°, closing).
+    /// The human moves against the robot's heading as they first come within 6 m: at 150° to 180°, at 0.2 m/s and more, ahead of
+    /// the robot and closing, for 0.5 s. Somebody who stands as the robot comes is not head on.
     HeadOn {
         /// Who.
         human: HumanId,
     },
-    /// The human's way crosses the robot's at 45–135° where the paths meet, both there within `gap_s`.
+    /// The human's way crosses the robot's at 45–135° where the paths meet (ways within 1 m of each other, both within 3 m of the
+    /// encounter node), both there within `gap_s`. Somebody who stands there has no way that crosses.
     Crosses {
         /// Who.
         human: HumanId,
@@ -96,7 +98,8 @@ pub enum Predicate {
         /// Where.
         facing: Facing,
     },
-    /// The human is ahead of the robot on its way, within `within_m`, for `for_s` without a break.
+    /// The human walks ahead of the robot on its way (1.2 m to either side), within `within_m` and away from it at 0.1 m/s and
+    /// more, for `for_s` without a break. Somebody who stands, or comes towards it, does not.
     Ahead {
         /// Who.
         human: HumanId,
@@ -105,17 +108,20 @@ pub enum Predicate {
         /// For how long.
         for_s: f64,
     },
-    /// The human overtakes the robot: first behind, then ahead, same way, within 3 m.
+    /// The human overtakes the robot: first 0.5 m behind, then 0.5 m ahead, walking the same way (within 45°, at 0.2 m/s and
+    /// more), within 3 m.
     Overtakes {
         /// Who.
         human: HumanId,
     },
-    /// The robot passes the human: first ahead, then behind, within 3 m.
+    /// The robot passes the human: first 0.5 m ahead of it, then 0.5 m behind, within 3 m.
     RobotPasses {
         /// Who.
         human: HumanId,
     },
-    /// The follower goes behind the leader, gap within `gap_m`, for `for_s` in one stretch.
+    /// The follower goes behind the leader, within 1.2 m of its trail, gap within `gap_m`, for `for_s` in one stretch in which the
+    /// two go together: 0.5 m and 0.1 m/s at least, the follower at a third of the leader's pace. To stand behind a leader who
+    /// drives off is not to follow.
     Follows {
         /// Who follows.
         follower: AgentId,
@@ -126,22 +132,24 @@ pub enum Predicate {
         /// For how long.
         for_s: f64,
     },
-    /// The two go side by side (±45° of abreast), 0.5 to 2 m apart, for `for_s`.
+    /// The two go side by side (±45° of abreast, courses within 90°), 0.5 to 2 m apart, for `for_s` in which they go together: 0.5 m
+    /// and 0.1 m/s at least, the human at a third of the robot's pace.
     Abreast {
         /// The human.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
-    /// The two go the same way (headings within 30°), within 4 m of each other, for `for_s` without a break.
+    /// The two go the same way (headings within 30°), within 4 m of each other, for `for_s` without a break: the human at 0.2 m/s,
+    /// the robot at 0.1 m/s and more.
     Parallel {
         /// The human.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
-    /// At least so many different humans walk near the robot with the angle between their course and its heading
-    /// in a band.
+    /// At least so many different humans walk near the robot (at 0.2 m/s and more, for 0.5 s) with the angle between their course
+    /// and its heading in a band.
     Flow {
         /// How many at least.
         count: u32,
@@ -168,47 +176,54 @@ pub enum Predicate {
         /// For how long.
         for_s: f64,
     },
-    /// All humans come from outside to within a distance of their encounter node, at about the same time.
+    /// All humans of the proposal come from outside to within a distance of their encounter node, at about the same time.
     Converges {
         /// Radius about the node.
         within_m: f64,
         /// Largest difference between the first and the last arrival.
         within_s: f64,
     },
-    /// The human is in the robot's way: within 2.5 m, less than 0.6 m from its line, for `for_s`.
+    /// The human is in the robot's way: within 2.5 m, less than 0.6 m from its line and 1.2 m from its intended way, for `for_s`,
+    /// and comes towards it at 0.7 m/s at most. Somebody who walks up to the robot and past it does not block it.
     Blocks {
         /// Who.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
-    /// The human looks at the robot (heading within 20°) while stopped, for `for_s`; it has seen it then.
+    /// The human looks at the robot (heading within 20°) while stopped, for `for_s`; it has seen it then. It has walked (0.2 m/s) or
+    /// turned by 15° in the 2 s before or meanwhile, by 2° where its tree says that it looks: whoever stands there facing that way
+    /// by chance does not look.
     Looks {
         /// Who.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
-    /// The human stands still (below 0.1 m/s) for `for_s`.
+    /// The human stands still (below 0.1 m/s) for `for_s`, with the robot within 15 m at some time of it. Where that is done for a
+    /// reason: after it, and not by standing there before it without any act.
     StandsStill {
         /// Who.
         human: HumanId,
         /// For how long.
         for_s: f64,
     },
-    /// The human gets away from the robot: distance grows by `by_m` within 6 s of the trigger.
+    /// The human gets away from the robot: distance grows by `by_m` within 6 s of the trigger, half of it by the human's own way.
     RunsAway {
         /// Who.
         human: HumanId,
         /// By how much.
         by_m: f64,
     },
-    /// The human leaves the robot's line free: at least 0.7 m beside it as the robot passes.
+    /// The human leaves the robot's line free: at least 0.7 m beside it as the robot passes (within 3 m), having gone 0.3 m by
+    /// themselves since the reason and come 0.2 m farther from the line. Somebody who stands beside it all the time gives no way.
     GivesWay {
         /// Who.
         human: HumanId,
     },
-    /// After the trigger first holds, the action is seen within `within_s`; and not before it.
+    /// After the trigger first holds, the action is seen within `within_s`; and not before it. Seen is the motion, and where the
+    /// recording tells leaves the leaf too. A motion is the human's own: 0.5 m for who follows, 0.3 m for who comes up to the
+    /// robot, gets away from it, or goes to the side of its line.
     Reacts {
         /// Who.
         human: HumanId,
@@ -229,7 +244,8 @@ pub enum Predicate {
         /// Largest delay.
         within_s: f64,
     },
-    /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m.
+    /// The agent makes the gesture, the robot (or the human it speaks to) within 8 m. What the log tells counts where the states
+    /// show it within 0.25 s.
     Gestures {
         /// Who.
         agent: AgentId,
@@ -305,14 +321,15 @@ pub enum Predicate {
         /// Distance of first sight.
         within_m: f64,
     },
-    /// The group stands in formation, spread at most `spread_m`, until the robot is within 3 m.
+    /// The group stands in formation, spread at most `spread_m`, until the robot is within 3 m: for 95 % of the time, with 80 % of
+    /// its members facing its center.
     Formation {
         /// The group.
         group: GroupId,
         /// Largest distance of a member from the center.
         spread_m: f64,
     },
-    /// The group walks together, spread at most `spread_m` for 80 % of the time before the encounter.
+    /// The group walks together, spread at most `spread_m` for 80 % of the time before the encounter, and 1 m at least.
     WalksTogether {
         /// The group.
         group: GroupId,
@@ -326,15 +343,15 @@ pub enum Predicate {
         /// Smallest and largest gap between neighbors.
         gap_m: [f64; 2],
     },
-    /// One clause is first seen before another.
+    /// One clause is first seen 0.3 s and more before another: sooner than that is at the same time.
     Order {
         /// Clause id that must come first.
         first: String,
         /// Clause id that must come after.
         then: String,
     },
-    /// One is there before the other: two humans, each at its encounter node (within 1.5 m, or nearest to it), or a human and the
-    /// robot at the human's.
+    /// One is there 0.3 s and more before the other: two humans, each at its encounter node (within 1.5 m, or nearest to it within
+    /// 3 m), or a human and the robot at the human's. At a door whoever comes out goes outward, whoever goes in inward.
     Before {
         /// Who is there first.
         first: AgentId,
@@ -344,7 +361,8 @@ pub enum Predicate {
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         at_door: bool,
     },
-    /// The encounter lies on a place of this class, or on one of the nodes where some are named.
+    /// The encounter lies on a place of this class, or on one of the nodes where some are named, and happens there: the human, the
+    /// robot and the node are once within 4 m of each other.
     EncounterAt {
         /// The class.
         place: PlaceClass,
@@ -387,7 +405,7 @@ pub enum Predicate {
     },
     /// Nobody overlaps a wall or another agent by more than 2 cm, nobody is faster than 2 m/s.
     Plausible,
-    /// The robot gets to its goal.
+    /// The robot gets to its goal: it says so within 1.5 m of it (somebody may stand there), or comes within 0.5 m from outside.
     RobotArrives,
     /// The robot keeps this surface distance from every human.
     RobotKeeps {
@@ -398,7 +416,8 @@ pub enum Predicate {
     RobotEntersLast,
     /// The robot is out of the door before anybody who enters goes in.
     RobotLeavesFirst,
-    /// The robot ends at the rim of the standing group: in its p-space, not in its o-space.
+    /// The robot ends at the rim of the standing group: in its p-space, not in its o-space. Its members stand within 6 m of each
+    /// other.
     RobotJoins {
         /// The group.
         group: GroupId,
@@ -408,7 +427,8 @@ pub enum Predicate {
         /// The group.
         group: GroupId,
     },
-    /// The robot stops within `within_s` of the gesture.
+    /// The robot stops within `within_s` of the gesture, having moved in the 5 s before it; for `PROCEED` and `FOLLOW_ME` it goes.
+    /// The states of whoever makes the gesture show it.
     RobotObeys {
         /// The gesture.
         gesture: Gesture,

@@ -105,10 +105,11 @@ impl Value {
         }
     }
 
-    /// Whether blanks surround the text; it then reads as a number in ports, but not where the whole text must be one.
+    /// Whether blanks surround the text or a plus sign begins it; it then reads as a number in ports, but not where the whole
+    /// text must be one.
     pub(crate) fn is_padded(&self) -> bool {
         match self {
-            Self::Text(written) => written.text.trim().len() != written.text.len(),
+            Self::Text(written) => written.text.trim().len() != written.text.len() || written.text.starts_with('+'),
             Self::Numeral(_) | Self::Number(_) => false,
         }
     }

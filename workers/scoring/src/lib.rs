@@ -41,6 +41,8 @@ mod crowds;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod idle;
+#[cfg(test)]
 mod lasting;
 #[cfg(test)]
 mod meetings;

@@ -370,7 +370,8 @@ pub(crate) fn elevator() -> Case {
 
 fn elevator_run(leaver: Walk, opens_s: f64) -> Recording {
     let robot = Walk::through(AgentId::Robot, &[(0., -8., 0.), (12.5, 1.5, -1.2), (19., 1.5, -1.2), (25., 5.5, 0.)]);
-    let stayer = Walk::human_through(2, &[(0., 7., 1.5)]).facing(-2.7);
+    // Turns to the door as it opens.
+    let stayer = Walk::human_through(2, &[(0., 7., 1.2), (11., 7., 1.2), (12., 7., 1.5)]).facing(-2.7);
     let mut run = recording(&[robot, leaver, stayer], 30.0, 0.01);
     event(&mut run, opens_s, EventKind::Door { door: "car".into(), open: true });
     run
@@ -479,6 +480,8 @@ fn overtaking_giving_way_and_passing_are_told_apart() {
     assert_ne!(case.verdict(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 19.0), Verdict::Realised);
     case.plan.expected_events =
         vec![must("c1", Predicate::RobotPasses { human: H1 }), must("c2", Predicate::GivesWay { human: H1 })];
-    assert_eq!(case.verdict(&[robot(), Walk::human(1, 0., 0.5, 0., 0.)], 19.0), Verdict::Realised);
+    let aside = || Walk::human_through(1, &[(0., 0., 0.), (2., 0., 0.), (3., 0., 0.5), (30., 0., 0.5)]);
+    assert_eq!(case.verdict(&[robot(), aside()], 19.0), Verdict::Realised);
+    assert_eq!(case.verdict(&[robot(), Walk::human(1, 0., 0.5, 0., 0.)], 19.0), Verdict::Contradicted, "went nowhere");
     assert_eq!(case.verdict(&[robot(), Walk::human(1, 0., 0.05, 0., 0.)], 19.0), Verdict::Contradicted);
 }

@@ -92,6 +92,9 @@ enum DevVerb {
         /// Seeds of each scenario.
         #[arg(long, default_value_t = 2)]
         seeds: u64,
+        /// First of the seeds.
+        #[arg(long, default_value_t = 1)]
+        first: u64,
         /// Print every mutant and not only what went wrong.
         #[arg(long)]
         all: bool,
@@ -156,8 +159,9 @@ impl Dev {
             DevVerb::SfmTrace { scene, out, forces } => traces::crowd(talk, scene, out, forces.as_deref()),
             DevVerb::BtTrace { tree, script, out, events } => traces::tree(talk, tree, script, out, events),
             DevVerb::Agents { file, to, out } => agents::convert(talk, file, to.as_deref(), out.as_deref()),
-            DevVerb::Mutations { requests, seeds, all } => {
-                mutations::mutations(talk, config, requests, *seeds, *all).await
+            DevVerb::Mutations { requests, seeds, first, all } => {
+                let seeds = *first..first.saturating_add(*seeds);
+                mutations::mutations(talk, config, requests, seeds, *all).await
             }
             DevVerb::Agreement { labels, bundles } => agreement::agreement(talk, labels, bundles),
             DevVerb::Golden { agents } => golden::golden(talk, config, agents).await,

@@ -85,6 +85,29 @@ fn version_4_switch_compares_whole_numbers_and_reals_version_3_texts() {
 }
 
 #[test]
+fn a_plus_sign_makes_no_number_in_a_switch_of_version_4() {
+    // Numbers are read as `std::from_chars` reads them: a minus sign is part of one, a plus sign or a blank is not.
+    for (value, case, equal) in [
+        ("3.0", "3", true),
+        ("3", "+3", false),
+        ("+3", "3", false),
+        ("3.0", "+3", false),
+        ("+3", "+3", true),
+        ("+3", "+3.0", false),
+        ("-3.0", "-3", true),
+        ("3", " 3", false),
+    ] {
+        let body = format!(
+            "<Sequence name='q'><SetBlackboard name='s' output_key='x' value='{value}'/>\
+             <Switch2 name='w' variable='{{x}}' case_1='1' case_2='{case}'>{}</Switch2></Sequence>",
+            actions("a b c")
+        );
+        let chosen = if equal { "b+ =+" } else { "c+ =+" };
+        assert_eq!(events(&document(V4, &[("T", &body)]), &[""]), [chosen], "`{value}` and `{case}`");
+    }
+}
+
+#[test]
 fn a_while_attribute_stops_a_running_node_and_leaves_it_out() {
     let body = format!(
         "<Parallel name='p' success_count='2' failure_count='2'><Script name='s' code='n := n0'/>\

@@ -1,6 +1,7 @@
 //! Monitors of what one human does: blocks, looks, stands, runs away, gives way, gestures.
 
-use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId};
+use socrates_model::geometry::wrap_angle;
+use socrates_model::{Action, AgentId, EventKind, Gesture, HumanId, Vector};
 
 use crate::fidelity::addressed;
 use crate::fidelity::company::follow_marks;
@@ -9,6 +10,7 @@ use crate::fidelity::follow::gaps;
 use crate::fidelity::leaves::LeafSpan;
 use crate::fidelity::meeting::{LATE_FACTOR, absent, lasting};
 use crate::fidelity::reactions::said_after;
+use crate::fidelity::robot::shows;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::fidelity::since::{since, since_act};
 use crate::fidelity::windows::{Mark, held, longest_s, stretches};
@@ -20,6 +22,10 @@ const LOOK_RAD: f64 = 0.349_065_850_398_866;
 const BLOCK_M: f64 = 2.5;
 /// Nearer to the robot's line than this is in its way, m.
 const IN_WAY_M: f64 = 0.6;
+/// Somebody farther than this beside the robot's intended way is not in its way, wherever it turns, m.
+const OFF_WAY_M: f64 = 1.2;
+/// Somebody who comes faster than this towards the robot does not stay in front of it, m/s.
+const COMES_MPS: f64 = 0.7;
 /// How much sooner than the first sight a look may begin, s.
 const EARLY_SECS: f64 = 0.5;
 /// A look counts from this near where there is no map to tell lines of sight, m.
@@ -30,13 +36,21 @@ const GESTURE_M: f64 = 8.0;
 const SAID_SECS: f64 = 3.0;
 /// Room beside the robot's line that lets it pass, m.
 const ASIDE_M: f64 = 0.7;
+/// Somebody who gives way goes so far off the line by themselves, m.
+const OFF_LINE_M: f64 = 0.2;
+/// Somebody is seen to stand when the robot comes this near, m: as far as anybody sees it.
+const STANDS_REACH_M: f64 = 15.0;
 /// Speed away from the robot that is running from it, m/s.
 const FLEE_MPS: f64 = 0.3;
 /// Time in which somebody who runs away must have gained distance, s.
 const FLEE_SECS: f64 = 6.0;
 
 fn block_mark(moment: &Moment) -> Mark {
-    Mark::new(moment.t, (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m()))
+    let beside = moment.way.map_or(f64::INFINITY, |(_, off)| OFF_WAY_M - off);
+    // Somebody who walks up to the robot, and past it, does not stay in front of it.
+    let stays = COMES_MPS + moment.human.velocity.dot(&moment.away());
+    let in_way = (BLOCK_M - moment.distance_m).min(IN_WAY_M - moment.off_line_m());
+    Mark::new(moment.t, in_way.min(beside).min(stays))
 }
 
 /// How far somebody looks at the robot at each moment: stopped and turned to it, having seen it since
@@ -101,9 +115,35 @@ pub(super) fn looks(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Findin
         let caused = spans.filter(|span| Action::LookAtRobot.is_leaf(&span.name) && span.from_s >= seen_s - EARLY_SECS);
         caused.into_iter().any(|span| t >= span.from_s && t <= span.to_s)
     };
-    let marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
+    let mut marks = look_marks(signals.of(human), |t| !by_rule || runs(t));
+    // Somebody who stood there facing that way all the time did not stop or turn to look. By their tree they turn however little.
+    let turned_rad = if by_rule { TURNED_LITTLE_RAD } else { TURNED_RAD };
+    let mut idle = stretches(marks.iter().copied(), 0.0);
+    idle.retain(|span| !stops_or_turns(signals, human, *span, turned_rad));
+    for mark in &mut marks {
+        if idle.iter().any(|(from, to)| mark.t >= *from && mark.t <= *to) {
+            mark.margin = mark.margin.min(-0.1);
+        }
+    }
     let what = format!("stopped and looking at the robot for {for_s:.1} s");
     from.told(lasting(signals, human, from.marks(marks), for_s, GESTURE_M, &what))
+}
+
+/// Somebody who was faster than this shortly before has stopped, m/s, and one who turns by more has turned, rad (15°).
+const WALKED_MPS: f64 = 0.2;
+const TURNED_RAD: f64 = 0.26;
+/// Somebody who stands the right way by chance does not turn as much as this, rad (2°).
+const TURNED_LITTLE_RAD: f64 = 0.03;
+/// Shortly before is so long before, s.
+const BEFORE_SECS: f64 = 2.0;
+
+/// Whether a human stops for a stretch of time, or turns shortly before or in it.
+fn stops_or_turns(signals: &Signals<'_>, human: HumanId, (from, to): (f64, f64), turned_rad: f64) -> bool {
+    let Some(track) = signals.tracks.human(human) else { return false };
+    let within = |sample: &&Sample| sample.t >= from - BEFORE_SECS && sample.t <= to;
+    let Some(first) = track.present().find(within) else { return false };
+    let mut all = track.present().filter(within);
+    all.any(|sample| sample.speed() > WALKED_MPS || wrap_angle(sample.yaw - first.yaw).abs() > turned_rad)
 }
 
 /// The human stands still for some time; where that is a reaction, after its reason.
@@ -123,7 +163,26 @@ pub(super) fn stands_still(signals: &Signals<'_>, human: HumanId, for_s: f64) ->
         let margin = MOVING_MPS - sample.speed();
         Mark::new(sample.t, if walks(sample.t) { margin.min(-MOVING_MPS) } else { margin })
     };
-    let marks = from.marks(track.present().map(mark).collect());
+    let mut marks = from.marks(track.present().map(mark).collect());
+    let apart = |from: f64, to: f64| {
+        let moments = signals.of(human).iter().filter(|moment| moment.t >= from && moment.t <= to);
+        moments.map(|moment| moment.distance_m).fold(f64::INFINITY, f64::min)
+    };
+    // Somebody who stood before there was a reason does not stand for it, unless their tree says so.
+    let stood_before = |since: f64, to: f64| {
+        let mut acts = signals.leaves_of(human).iter();
+        let by_tree = acts.any(|span| span.from_s < to && span.to_s > since);
+        let before = from.is_reaction() && from.secs() >= since - EARLY_SECS;
+        before && !by_tree && !stops_or_turns(signals, human, (since, since), TURNED_RAD)
+    };
+    let robot = !signals.of(human).is_empty();
+    for (since, to) in stretches(marks.iter().copied(), 0.0) {
+        if robot && apart(since, to) > STANDS_REACH_M || stood_before(since, to) {
+            for mark in marks.iter_mut().filter(|mark| mark.t >= since && mark.t <= to) {
+                mark.margin = mark.margin.min(-MOVING_MPS);
+            }
+        }
+    }
     let longest = longest_s(marks.iter().copied());
     let text = format!(
         "{human} stands still (below {MOVING_MPS} m/s) for {longest:.1} s without a break ({for_s:.1} s asked)"
@@ -179,7 +238,20 @@ pub(super) fn runs_away(signals: &Signals<'_>, human: HumanId, by_m: f64) -> Fin
     }
 }
 
-/// The human is beside the robot's line as the robot passes.
+/// How far a human goes by themselves until the robot passes, and how much farther from its line they are then than when they
+/// were nearest to it, m: from the line on which it passes, or from its intended way. A robot that swerves adds nothing to it.
+fn went_aside(moments: &[Moment], passing: &Moment) -> (f64, f64) {
+    let before = || moments.iter().take_while(|moment| moment.t <= passing.t);
+    let Some(begin) = moments.first() else { return (0.0, 0.0) };
+    let own_m = before().map(|moment| (moment.human.at - begin.human.at).norm()).fold(0.0, f64::max);
+    let least = |of: &dyn Fn(&Moment) -> f64| before().map(of).fold(f64::INFINITY, f64::min);
+    let line = |moment: &Moment| passing.robot.facing().perp(&(moment.human.at - passing.robot.at)).abs();
+    let way = |moment: &Moment| moment.way.map_or(0.0, |(_, off)| off);
+    let off_m = [line(passing) - least(&line), way(passing) - least(&way)];
+    (own_m, off_m.into_iter().fold(0.0, f64::max))
+}
+
+/// The human is beside the robot's line as the robot passes, and has gone there.
 pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     if let Some(found) = absent(signals, human) {
         return found;
@@ -198,8 +270,18 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
     match passing {
         Some(moment) => {
             let aside = moment.left_m.abs();
-            let text = format!("{human} {aside:.2} m beside the robot's line as it passes at {:.1} s", moment.t);
-            Finding::by_margin(aside - ASIDE_M, vec![moment.t], text)
+            // What they did before their tree had them give way is none of it.
+            let by_tree = signals.leaves_of(human).iter().filter(|span| Action::GiveWay.is_leaf(&span.name));
+            let begins_s = by_tree.map(|span| span.from_s).find(|t| *t <= moment.t && since.counts(*t));
+            let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t - EARLY_SECS));
+            let (own_m, off_m) = went_aside(moments.get(begins..).unwrap_or_default(), moment);
+            let text = format!(
+                "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), having gone {own_m:.2} m \
+                 and {off_m:.2} m off it ({GOES_M} m and {OFF_LINE_M} m asked)",
+                moment.t
+            );
+            let moved = (own_m - GOES_M).min(off_m - OFF_LINE_M);
+            Finding::by_margin((aside - ASIDE_M).min(moved), vec![moment.t], text)
         }
         None => {
             let nearest = moments.iter().min_by(|a, b| a.distance_m.total_cmp(&b.distance_m));
@@ -227,6 +309,7 @@ pub(super) fn gestures(signals: &Signals<'_>, agent: AgentId, gesture: Gesture) 
             matches!(&event.kind, EventKind::Gesture { agent: who, gesture: Some(made), .. } if (*who, *made) == (agent, gesture))
         })
         .map(|event| event.time.secs())
+        .filter(|t| shows(signals, agent, gesture, *t))
         .collect();
     times.extend(track.samples.iter().find(|sample| sample.gesture == Some(gesture)).map(|sample| sample.t));
     times.sort_by(f64::total_cmp);
@@ -363,14 +446,43 @@ pub(super) fn spans(signals: &Signals<'_>, human: HumanId, action: &Action) -> V
         if *action == Action::RunAway {
             return turns_away(signals, human, &shown);
         }
-        return shown;
+        return shown.into_iter().filter(|span| moves_for(signals, human, action, *span)).collect();
     }
     let seen = |span: &LeafSpan| {
         let latest_s = span.to_s + AFTER_LEAF_SECS;
         let fits = |(from, to): &&(f64, f64)| *from <= latest_s && *to >= span.from_s + kept_s.min(0.3);
         shown.iter().rfind(fits).map(|(_, to)| (span.from_s, to.min(latest_s)))
     };
-    leaves.iter().filter(|span| action.is_leaf(&span.name)).filter_map(seen).collect()
+    let done = leaves.iter().filter(|span| action.is_leaf(&span.name)).filter_map(seen);
+    done.filter(|span| moves_for(signals, human, action, *span)).collect()
+}
+
+/// Somebody who follows, comes up to the robot, gets away from it or out of its way goes so far for it by themselves, m.
+const FOLLOWS_M: f64 = 0.5;
+const GOES_M: f64 = 0.3;
+/// What the motion shows may begin a little sooner than what the log tells, and last longer, s.
+const AROUND_SECS: f64 = 0.5;
+
+/// Whether an act that consists of a motion has one of the human's own: what the robot does by itself is none.
+fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to): (f64, f64)) -> bool {
+    let moments =
+        || signals.of(human).iter().filter(|moment| moment.t >= from - AROUND_SECS && moment.t <= to + AROUND_SECS);
+    let way_m = || moments().zip(moments().skip(1)).map(|(a, b)| (b.human.at - a.human.at).norm()).sum::<f64>();
+    let Some(begin) = moments().next() else { return true };
+    let most = |line: Vector, either: bool| {
+        let along = moments().map(|moment| line.dot(&(moment.human.at - begin.human.at)));
+        along.map(|way| if either { way.abs() } else { way }).fold(0.0, f64::max)
+    };
+    match action {
+        Action::FollowRobot | Action::FollowHuman(_) => way_m() >= FOLLOWS_M,
+        Action::Approach => way_m() >= GOES_M,
+        Action::RunAway => most(begin.away(), false) >= GOES_M,
+        Action::GiveWay => {
+            let facing = begin.robot.facing();
+            most(Vector::new(-facing.y, facing.x), true) >= GOES_M
+        }
+        Action::Navigate | Action::StandStill | Action::Block | Action::LookAtRobot => true,
+    }
 }
 
 /// Without leaves, walking away after passing looks like fleeing: only a change of velocity away from

@@ -9,6 +9,7 @@ use socrates_model::{
     ordinal, rule::RobotDo,
 };
 
+use crate::evidence::Evidence;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::meeting::MEET_NODE_M;
 use crate::fidelity::plausible::{Flaw, flaws, plausible};
@@ -18,6 +19,7 @@ use crate::fidelity::{
     setting, sides, steps, turns,
 };
 use crate::temporal::{Signal, Within};
+use crate::tracks::{TrackFault, Tracks};
 
 /// Somebody starts at the first node of its path when this near to it, m: what a free place beside it may take.
 const START_M: f64 = 3.0;
@@ -57,22 +59,7 @@ impl Judged {
     /// The clauses as the report has them.
     #[must_use]
     pub fn results(&self) -> Vec<ClauseResult> {
-        let short = |value: f64| (value * 1e4).round() / 1e4;
-        self.clauses
-            .iter()
-            .map(|(clause, finding)| ClauseResult {
-                id: clause.id.clone(),
-                text: clause.text.clone(),
-                role: clause.role,
-                must: clause.must,
-                source: clause.source.clone(),
-                standing: finding.standing,
-                margin: short(finding.margin),
-                times_s: finding.times_s.iter().copied().map(short).collect(),
-                evidence: finding.evidence.clone(),
-                shift_s: finding.shift_s.map(short),
-            })
-            .collect()
+        self.clauses.iter().map(|(clause, finding)| result(clause, finding)).collect()
     }
 }
 
@@ -103,6 +90,52 @@ pub fn judge(signals: &Signals<'_>) -> Judged {
         .collect();
     let uncovered = coverage::uncovered(signals.evidence, &clauses);
     Judged { clauses, flaws, uncovered }
+}
+
+/// What is found of one clause alone; of an order, with the two that it puts in order.
+///
+/// # Errors
+/// What makes the recording unreadable.
+pub fn standing_of(evidence: &Evidence<'_>, clause: &Clause) -> Result<ClauseResult, TrackFault> {
+    let tracks = Tracks::read(evidence.recording)?;
+    let signals = Signals::new(evidence, &tracks);
+    let flaws = if clause.predicate == Predicate::Plausible { flaws(&signals) } else { Vec::new() };
+    let mut found = BTreeMap::new();
+    if let Predicate::Order { first, then } = &clause.predicate {
+        let all = evidence.proposal.map_or(&[][..], |proposal| &proposal.expected_events);
+        for other in all.iter().filter(|other| [first, then].contains(&&other.id)) {
+            found.insert(other.id.clone(), monitor(&signals, &other.predicate, &flaws, &found));
+        }
+    }
+    let finding = monitor(&signals, &clause.predicate, &flaws, &found);
+    Ok(result(clause, &finding))
+}
+
+/// Every clause of a run with what is found of it, those besides the proposal's own too.
+///
+/// # Errors
+/// What makes the recording unreadable.
+pub fn clauses_of(evidence: &Evidence<'_>) -> Result<Vec<(Clause, ClauseResult)>, TrackFault> {
+    let tracks = Tracks::read(evidence.recording)?;
+    let judged = judge(&Signals::new(evidence, &tracks));
+    Ok(judged.clauses.into_iter().map(|(clause, finding)| (clause.clone(), result(&clause, &finding))).collect())
+}
+
+/// A clause as the report has it.
+fn result(clause: &Clause, finding: &Finding) -> ClauseResult {
+    let short = |value: f64| (value * 1e4).round() / 1e4;
+    ClauseResult {
+        id: clause.id.clone(),
+        text: clause.text.clone(),
+        role: clause.role,
+        must: clause.must,
+        source: clause.source.clone(),
+        standing: finding.standing,
+        margin: short(finding.margin),
+        times_s: finding.times_s.iter().copied().map(short).collect(),
+        evidence: finding.evidence.clone(),
+        shift_s: finding.shift_s.map(short),
+    }
 }
 
 /// Whether the request asks for the very reaction of a clause: then it decides, whatever the proposal says of it. A run
@@ -377,7 +410,7 @@ fn order(found: &BTreeMap<String, Finding>, first: &str, then: &str) -> Finding 
             let times = [before.min(after), before.max(after)];
             let come: Signal =
                 times.map(|t| (t, if t >= after { f64::INFINITY } else { f64::NEG_INFINITY })).into_iter().collect();
-            let seen: Signal = times.map(|t| (t, t - before)).into_iter().collect();
+            let seen: Signal = times.map(|t| (t, t - before - setting::BEFORE_S)).into_iter().collect();
             let margin = come.not().until(&seen, Within::EVER).now().unwrap_or(f64::NEG_INFINITY);
             let text = format!("`{first}` at {before:.1} s, `{then}` at {after:.1} s");
             Finding::by_margin(margin, vec![after, before], text).shifted(margin)
@@ -414,15 +447,15 @@ mod tests {
     }
 
     #[test]
-    fn the_margin_of_an_order_is_the_time_between_the_two() {
-        for (before, after) in [(2.5, 7.25), (7.25, 2.5), (3.0, 3.0)] {
+    fn the_margin_of_an_order_is_the_time_between_the_two_beyond_that_of_the_same_time() {
+        for (before, after) in [(2.5, 7.25), (7.25, 2.5), (3.0, 3.0), (3.0, 3.03), (3.0, 3.4)] {
             let found = BTreeMap::from([
                 ("a".to_owned(), Finding::holds(1.0, vec![before], "")),
                 ("b".to_owned(), Finding::late(0.0, vec![after], "")),
                 ("c".to_owned(), Finding::fails(-1.0, vec![], "")),
             ]);
             let finding = order(&found, "a", "b");
-            let wanted = after - before;
+            let wanted = after - before - setting::BEFORE_S;
             assert!((finding.margin - wanted).abs() < 1e-12, "{finding:?}");
             assert_eq!(finding.standing, if wanted >= 0.0 { Standing::Holds } else { Standing::Fails });
             assert_eq!(finding.shift_s, Some(finding.margin));

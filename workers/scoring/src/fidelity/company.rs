@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use socrates_model::{AgentId, HumanId};
 
 use crate::fidelity::finding::Finding;
-use crate::fidelity::follow::{Gap, arcs, gaps};
+use crate::fidelity::follow::{Gap, Together, arcs, gaps};
 use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
 use crate::fidelity::since::since_follows;
@@ -14,7 +14,8 @@ use crate::tracks::MOVING_MPS;
 
 /// How far off the leader's trail one still follows, m.
 const TRAIL_M: f64 = 1.2;
-/// Share of the asked time for which the leader must move at 0.5 m/s: standing behind somebody is not following.
+/// The two go together at this pace over the asked time at least, and 0.5 m: to stand behind somebody, or beside them as they
+/// drive off, is neither following nor going along.
 const LEAD_MPS: f64 = 0.1;
 /// Courses nearer to each other than this are the same way, rad (30°).
 const SAME_WAY_RAD: f64 = PI / 6.0;
@@ -31,7 +32,7 @@ pub(super) fn follow_marks(gaps: &[Gap], gap_m: [f64; 2]) -> Vec<Mark> {
         .map(|gap| Mark {
             t: gap.t,
             margin: (gap.gap_m - low).min(high - gap.gap_m).min(TRAIL_M - gap.off_m),
-            arc_m: gap.arc_m,
+            arc_m: gap.together_m,
         })
         .collect()
 }
@@ -63,7 +64,7 @@ pub(super) fn follows(
         return Finding::not_applicable("the recording is empty");
     };
     let Some(found) = held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) else {
-        return Finding::never(-1.0, vec![nearest.t], format!("{what}: {leader} does not walk for so long"));
+        return Finding::never(-1.0, vec![nearest.t], format!("{what}: the two do not go together for so long"));
     };
     if let Some(from) = found.first_s {
         let spans = stretches(marks, for_s);
@@ -79,7 +80,7 @@ pub(super) fn follows(
     let longest = stretches(marks, 0.0).into_iter().map(|(a, b)| (b - a, a)).max_by(|a, b| a.0.total_cmp(&b.0));
     let text = match longest {
         Some((length, from)) if length >= for_s => {
-            format!("{what}: {length:.1} s from {from:.1} s, but {leader} hardly goes anywhere then")
+            format!("{what}: {length:.1} s from {from:.1} s, but the two hardly go anywhere then")
         }
         Some((length, from)) => format!("{what}: only {length:.1} s from {from:.1} s"),
         None if found.margin.is_infinite() => format!("{what}: it never came about"),
@@ -93,21 +94,22 @@ pub(super) fn abreast(signals: &Signals<'_>, human: HumanId, for_s: f64) -> Find
     if let Some(found) = absent(signals, human) {
         return found;
     }
-    let Some(robot) = &signals.tracks.robot else { return Finding::not_applicable("there is no robot") };
-    let ways = arcs(&robot.samples);
+    let mut together = Together::default();
     let marks: Vec<Mark> = signals
         .of(human)
         .iter()
-        .filter_map(|moment| Some((moment, *ways.get(moment.index)?)))
-        .map(|(moment, arc_m)| {
+        .map(|moment| {
+            let arc_m = together.to(moment.robot.at, moment.human.at);
             let aside = FRAC_PI_4 - (moment.robot.bearing(&moment.human.at).abs() - FRAC_PI_2).abs();
-            let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside);
+            // Somebody who comes the other way is beside the robot for a moment only, and does not go with it.
+            let way = if moment.human.speed() > MOVING_MPS { FRAC_PI_2 - moment.course_rad } else { aside };
+            let margin = (moment.distance_m - 0.5).min(2.0 - moment.distance_m).min(aside).min(way);
             Mark { t: moment.t, margin, arc_m }
         })
         .collect();
     let what = format!("{human} beside the robot at 0.5 to 2.0 m for {for_s:.1} s");
     match held(marks.iter().copied(), for_s, (LEAD_MPS * for_s).max(0.5)) {
-        None => Finding::never(-1.0, vec![], format!("{what}: the robot does not go for so long")),
+        None => Finding::never(-1.0, vec![], format!("{what}: the two do not go together for so long")),
         Some(found) => {
             let longest = longest_s(marks);
             let finding = match found.first_s {

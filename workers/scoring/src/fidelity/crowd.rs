@@ -154,6 +154,10 @@ pub(super) fn converges(signals: &Signals<'_>, within_m: f64, within_s: f64) -> 
     let mut arrivals: Vec<(f64, HumanId)> = Vec::new();
     let mut missed: Option<(f64, f64, HumanId)> = None;
     let mut there: Vec<HumanId> = Vec::new();
+    let asked = signals.evidence.proposal.map_or(&[][..], |proposal| &proposal.humans);
+    if let Some(gone) = asked.iter().find(|human| signals.tracks.human(human.id).is_none()) {
+        return Finding::fails(-1.0, vec![], format!("{} is not in the recording", gone.id));
+    }
     for track in &signals.tracks.humans {
         let Some(id) = track.human() else { continue };
         let Some(at) = goal(signals, id) else {

@@ -240,7 +240,13 @@ pub(super) fn before(signals: &Signals<'_>, first: AgentId, then: AgentId) -> Re
                 None => return Err(Finding::not_applicable("there is no robot in the recording")),
             },
         };
-        let Some((crossing, _)) = lines.crossings(&track.samples).into_iter().next() else {
+        // Somebody who comes out goes through it outward, whoever goes in inward; the robot may do either.
+        let wanted = |crossing: &Crossing| match agent {
+            AgentId::Human(id) => crossing.outward == comes_out(&id),
+            AgentId::Robot => true,
+        };
+        let mut through = lines.crossings(&track.samples).into_iter().filter(|(crossing, _)| wanted(crossing));
+        let Some((crossing, _)) = through.next() else {
             return Ok(Finding::never(-1.0, vec![], format!("{agent} never gets through the door {name}")));
         };
         times.push(crossing.t);

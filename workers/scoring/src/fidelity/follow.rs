@@ -9,6 +9,9 @@ const TRAIL_STEP_M: f64 = 0.1;
 /// Length of the trail behind the leader that is searched, m.
 const TRAIL_REACH_M: f64 = 9.0;
 
+/// Somebody who comes along goes at least at a third of the other's pace.
+const COMES_ALONG: f64 = 3.0;
+
 /// Where the follower is on the leader's trail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gap {
@@ -20,8 +23,26 @@ pub(super) struct Gap {
     pub off_m: f64,
     /// Straight distance of the two, m.
     pub distance_m: f64,
-    /// Way of the leader so far, m.
-    pub arc_m: f64,
+    /// Way that the two have gone together so far, m: see [`Together`].
+    pub together_m: f64,
+}
+
+/// The way that two go together: of each step the shorter of the two, where one may go at a third of the other's pace for a while.
+/// It stands still while one of them does.
+#[derive(Debug, Default)]
+pub(super) struct Together {
+    before: Option<(Point, Point)>,
+    way_m: f64,
+}
+
+impl Together {
+    /// The way up to here, m: of `lead`, as far as `other` comes along.
+    pub(super) fn to(&mut self, lead: Point, other: Point) -> f64 {
+        if let Some((a, b)) = self.before.replace((lead, other)) {
+            self.way_m += (lead - a).norm().min(COMES_ALONG * (other - b).norm());
+        }
+        self.way_m
+    }
 }
 
 /// Gaps at every sample. The trail is what the leader has walked so far, and straight back from its start.
@@ -38,6 +59,7 @@ pub(super) fn gaps(leader: &Track, follower: &Track) -> Vec<Gap> {
     trail.push((0.0, first.at));
     let keep = steps as usize + 2;
     let mut found = Vec::with_capacity(leader.samples.len());
+    let mut together = Together::default();
     for (lead, behind) in leader.beside(follower) {
         let (s_last, p_last) = trail.last().copied().unwrap_or((0.0, first.at));
         let step = (lead.at - p_last).norm();
@@ -53,7 +75,13 @@ pub(super) fn gaps(leader: &Track, follower: &Track) -> Vec<Gap> {
                 (off_m, at_s) = (off, *s);
             }
         }
-        found.push(Gap { t: lead.t, gap_m: arc_m - at_s, off_m, distance_m: (behind.at - lead.at).norm(), arc_m });
+        found.push(Gap {
+            t: lead.t,
+            gap_m: arc_m - at_s,
+            off_m,
+            distance_m: (behind.at - lead.at).norm(),
+            together_m: together.to(lead.at, behind.at),
+        });
     }
     found
 }

@@ -19,6 +19,8 @@ const PASS_M: f64 = 3.0;
 const KEPT_SECS: f64 = 0.5;
 /// Speed from which somebody has a direction, m/s.
 const WALKING_MPS: f64 = 0.2;
+/// Speed away from the robot from which somebody goes ahead of it, m/s.
+const GOES_MPS: f64 = 0.1;
 /// Radius of the place where two ways meet, m; arriving is entering it.
 const CONFLICT_M: f64 = 1.5;
 /// A time limit missed by at most this factor is late; by more it is not what was asked.
@@ -217,6 +219,10 @@ fn conflict(robot: &Track, human: &Track, near: Option<Point>) -> Option<Conflic
     let mut found: Option<Conflict> = None;
     for (at, course) in steps(robot).into_iter().filter(|(at, _)| inside(at)) {
         for (other, other_course) in &theirs {
+            // Somebody who stands at the place does not cross it.
+            if *other_course == socrates_model::Vector::zeros() {
+                continue;
+            }
             let apart_m = (at - other).norm();
             if found.as_ref().is_none_or(|best| apart_m < best.apart_m) {
                 found = Some(Conflict { at, apart_m, robot_course: course, human_course: *other_course });
@@ -278,7 +284,9 @@ pub(super) fn ahead(signals: &Signals<'_>, human: HumanId, within_m: f64, for_s:
     let marks = moments.iter().map(|moment| {
         let by_heading = moment.ahead_m.min(1.2 - moment.left_m.abs());
         let by_way = moment.way.map_or(f64::NEG_INFINITY, |(ahead, off)| ahead.min(1.2 - off));
-        Mark::new(moment.t, (within_m - moment.distance_m).min(by_heading.max(by_way)))
+        // Somebody who stands, or comes towards the robot, does not go ahead of it.
+        let goes = moment.human.velocity.dot(&moment.away()) - GOES_MPS;
+        Mark::new(moment.t, (within_m - moment.distance_m).min(by_heading.max(by_way)).min(goes))
     });
     let what = format!("ahead of the robot within {within_m:.1} m for {for_s:.1} s");
     lasting(signals, human, marks.collect(), for_s, within_m, &what)

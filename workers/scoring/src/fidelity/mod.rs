@@ -36,7 +36,7 @@ mod turns;
 mod verdict;
 mod windows;
 
-pub use clauses::{Judged, judge};
+pub use clauses::{Judged, clauses_of, judge, standing_of};
 pub use finding::Finding;
 pub use plausible::Flaw;
 pub use robot::{GOAL_M, goal as robot_goal};

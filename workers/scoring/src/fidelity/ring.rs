@@ -8,6 +8,8 @@ use crate::fidelity::groups::members;
 use crate::fidelity::signals::Signals;
 use crate::tracks::{MOVING_MPS, Sample, Track};
 
+/// Two who stand farther apart than this are not of one group, m.
+const APART_M: f64 = 6.0;
 /// A disc that touches the o-space by this much only is still outside, m.
 const TOUCH_M: f64 = 0.05;
 
@@ -28,7 +30,10 @@ fn beside(signals: &Signals<'_>, group: GroupId) -> Result<(Vec<Beside>, f64), F
     let moments = robot.samples.iter().enumerate().filter_map(|(index, sample)| {
         let now: Vec<&Sample> =
             tracks.iter().filter_map(|track| track.samples.get(index)).filter(|s| s.there).collect();
-        Some(Beside { t: sample.t, circle: Circle::of(&now, radius_m)?, robot: *sample })
+        // Somebody who stands somewhere else does not stand in the group.
+        let apart = |one: &&Sample| now.iter().all(|other| (one.at - other.at).norm() <= APART_M);
+        let circle = now.iter().all(apart).then(|| Circle::of(&now, radius_m)).flatten()?;
+        Some(Beside { t: sample.t, circle, robot: *sample })
     });
     Ok((moments.collect(), robot.radius_m))
 }

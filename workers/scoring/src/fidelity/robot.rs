@@ -12,6 +12,11 @@ use crate::tracks::MOVING_MPS;
 /// The robot is at its goal from this near, m.
 pub const GOAL_M: f64 = 0.5;
 
+/// A robot that says it has arrived is at most this far from its goal, m: it may wait short of it where somebody stands there.
+const ARRIVED_M: f64 = 1.5;
+/// A robot that has stood for longer than this before a gesture does not stop because of it, s.
+const MOVED_SECS: f64 = 5.0;
+
 /// The robot's goal: the last node of its path.
 pub fn goal(signals: &Signals<'_>) -> Option<Point> {
     signals.evidence.paths?.robot.last().and_then(|id| signals.node(id))
@@ -22,15 +27,28 @@ pub(super) fn arrives(signals: &Signals<'_>) -> Finding {
     let Some(robot) = &signals.full.robot else {
         return Finding::not_applicable("there is no robot in the recording");
     };
-    if let Some(t) = signals.arrived_s {
-        return Finding::holds(1.0, vec![t], format!("the robot arrives at {t:.1} s"));
-    }
     let Some(goal) = goal(signals) else {
-        return Finding::not_applicable("the robot's goal is not known");
+        return match signals.arrived_s {
+            Some(t) => Finding::holds(1.0, vec![t], format!("the robot arrives at {t:.1} s")),
+            None => Finding::not_applicable("the robot's goal is not known"),
+        };
     };
-    let nearest = robot.samples.iter().map(|s| ((s.at - goal).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
+    // What the log tells counts where the robot is: at its goal, or waiting for room there.
+    if let Some(t) = signals.arrived_s {
+        let apart_m =
+            robot.at(t).or_else(|| robot.samples.last().copied()).map_or(f64::INFINITY, |s| (s.at - goal).norm());
+        if apart_m <= ARRIVED_M {
+            return Finding::holds(1.0, vec![t], format!("the robot arrives at {t:.1} s"));
+        }
+        let text = format!("the log has the robot arrive at {t:.1} s, {apart_m:.1} m from its goal");
+        return Finding::fails(ARRIVED_M - apart_m, vec![t], text);
+    }
+    // A robot that starts at its goal gets there when it comes back.
+    let away = robot.samples.iter().position(|s| (s.at - goal).norm() > GOAL_M).unwrap_or(0);
+    let came = robot.samples.get(away..).unwrap_or_default();
+    let nearest = came.iter().map(|s| ((s.at - goal).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0));
     let (distance, t) = nearest.unwrap_or((f64::INFINITY, 0.0));
-    let first = robot.samples.iter().find(|s| (s.at - goal).norm() <= GOAL_M).map_or(t, |s| s.t);
+    let first = came.iter().find(|s| (s.at - goal).norm() <= GOAL_M).map_or(t, |s| s.t);
     let text = format!("the robot comes within {distance:.2} m of its goal at {t:.1} s (at most {GOAL_M} m)");
     Finding::by_margin(GOAL_M - distance, vec![first], text)
 }
@@ -60,11 +78,23 @@ pub(super) fn keeps(signals: &Signals<'_>, min_m: f64) -> Finding {
     }
 }
 
+/// How long after the log tells of a gesture the states show it, s.
+const SHOWN_SECS: f64 = 0.25;
+
+/// Whether the states show a gesture that the log tells of.
+pub(super) fn shows(signals: &Signals<'_>, agent: AgentId, gesture: Gesture, t: f64) -> bool {
+    let samples = signals.full.of(agent).map_or(&[][..], |track| &track.samples);
+    let from = samples.partition_point(|sample| sample.t < t - SHOWN_SECS);
+    let mut near = samples.iter().skip(from).take_while(|sample| sample.t <= t + SHOWN_SECS);
+    near.any(|sample| sample.gesture == Some(gesture))
+}
+
 /// When and by whom a gesture is made.
 fn said(signals: &Signals<'_>, gesture: Gesture) -> Vec<(f64, AgentId)> {
     let by_event = signals.evidence.recording.events.iter().filter_map(|event| match &event.kind {
         EventKind::Gesture { agent: AgentId::Human(id), gesture: Some(made), .. } if *made == gesture => {
-            Some((event.time.secs(), AgentId::Human(*id)))
+            let t = event.time.secs();
+            shows(signals, AgentId::Human(*id), *made, t).then_some((t, AgentId::Human(*id)))
         }
         EventKind::Gesture { .. }
         | EventKind::Leaf { .. }
@@ -124,6 +154,15 @@ pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> F
         return Finding::never(-within_s, vec![], format!("nobody says {gesture} to the robot"));
     };
     let goes = matches!(gesture, Gesture::Proceed | Gesture::FollowMe);
+    let moved = |t: f64| {
+        let mut before = robot.samples.iter().filter(|s| s.t >= t - MOVED_SECS && s.t <= t);
+        before.any(|s| s.speed() > MOVING_MPS)
+    };
+    if !goes && !all.iter().any(|(t, _)| moved(*t)) {
+        let text =
+            format!("{who} says {gesture} at {made:.1} s to a robot that has stood for {MOVED_SECS:.0} s and more");
+        return Finding::never(-within_s, vec![made], text);
+    }
     let done = robot.samples.iter().find(|s| s.t >= made && (s.speed() > MOVING_MPS) == goes);
     let verb = if goes { "goes" } else { "stops" };
     // Whenever it is said, it is done in time: G (said -> F[0, within] done).

@@ -6,11 +6,13 @@ use crate::fidelity::finding::Finding;
 use crate::fidelity::gaps::ARRIVED_M;
 use crate::fidelity::meeting::{LATE_FACTOR, MEET_NODE_M, absent};
 use crate::fidelity::robot::held_on_request_s;
-use crate::fidelity::signals::Signals;
+use crate::fidelity::signals::{Moment, Signals};
 use crate::tracks::{Sample, Track};
 
 /// Who is there less than this before another is there at the same time, s.
-const BEFORE_S: f64 = 0.3;
+pub(super) const BEFORE_S: f64 = 0.3;
+/// An encounter is at its place where human, robot and node are once this near to each other, m.
+const PLACE_M: f64 = 4.0;
 /// Role of somebody who walks as recorded, as the simulation writes it.
 const RECORDED: &str = "recorded";
 
@@ -54,17 +56,12 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[No
         let inside = matches!(relation, Some(Relation::Leaving | Relation::Staying));
         inside && paths.of(AgentId::Human(human)).and_then(|nodes| nodes.first()).is_some_and(lies)
     };
-    let here: Vec<&NodeId> = paths
+    let here: Vec<(HumanId, &NodeId)> = paths
         .encounters
         .iter()
         .filter(|encounter| lies(&encounter.node) || from_inside(encounter.human))
-        .map(|encounter| &encounter.node)
+        .map(|encounter| (encounter.human, &encounter.node))
         .collect();
-    let first = here.first().and_then(|node| {
-        let at = signals.node(node)?;
-        let robot = signals.tracks.robot.as_ref()?;
-        robot.samples.iter().map(|s| ((s.at - at).norm(), s.t)).min_by(|a, b| a.0.total_cmp(&b.0))
-    });
     let list = |nodes: Vec<&NodeId>| nodes.iter().map(|node| format!("`{node}`")).collect::<Vec<_>>().join(", ");
     let what = if named.is_empty() {
         format!("a place of class `{place}`")
@@ -75,7 +72,28 @@ pub(super) fn encounter_at(signals: &Signals<'_>, place: PlaceClass, named: &[No
         let all = paths.encounters.iter().map(|encounter| &encounter.node).collect();
         return Finding::fails(-1.0, vec![], format!("no encounter is at {what}: they are at {}", list(all)));
     }
-    Finding::holds(1.0, first.map(|(_, t)| t).into_iter().collect(), format!("{} is {what}", list(here)))
+    let text = format!("{} is {what}", list(here.iter().map(|(_, node)| *node).collect()));
+    if signals.tracks.robot.is_none() {
+        return Finding::not_applicable("there is no robot in the recording");
+    }
+    // A place at which nobody meets the robot is none of an encounter.
+    let met = here.iter().filter_map(|(human, node)| together(signals, *human, node));
+    match met.min_by(|a, b| a.0.total_cmp(&b.0)) {
+        Some((apart_m, t)) if apart_m <= PLACE_M => Finding::holds(1.0, vec![t], text),
+        Some((apart_m, t)) => {
+            let text = format!("{text}, but nobody meets the robot there: nearest {apart_m:.1} m at {t:.1} s");
+            Finding::never(PLACE_M - apart_m, vec![t], text)
+        }
+        None => Finding::never(-1.0, vec![], format!("{text}, but nobody meets the robot there")),
+    }
+}
+
+/// How far the human, the robot and the node of their encounter are from each other when they are nearest, m, and when that is, s.
+fn together(signals: &Signals<'_>, human: HumanId, node: &NodeId) -> Option<(f64, f64)> {
+    let at = signals.node(node)?;
+    let apart =
+        |moment: &Moment| (moment.robot.at - at).norm().max((moment.human.at - at).norm()).max(moment.distance_m);
+    signals.of(human).iter().map(|moment| (apart(moment), moment.t)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The agent comes within a distance of the node.

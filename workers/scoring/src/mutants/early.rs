@@ -132,7 +132,7 @@ fn startled(run: &Recording, id: HumanId, add: &mut Add<'_>) {
 }
 
 /// Whoever should come up suddenly stands where the robot sees it from afar.
-fn seen_ahead(evidence: &Evidence<'_>, id: HumanId, add: &mut Add<'_>) {
+pub(super) fn seen_ahead(evidence: &Evidence<'_>, id: HumanId, add: &mut Add<'_>) {
     let run = evidence.recording;
     let Some(location) = evidence.location else { return };
     // Behind a door that opens by itself nobody is seen before.

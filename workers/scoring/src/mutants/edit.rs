@@ -2,6 +2,7 @@
 
 use socrates_model::geometry::wrap_angle;
 use socrates_model::nalgebra::Vector2;
+use socrates_model::recording::{ABSENT_LEAF, AgentInfo};
 use socrates_model::time::STEP_SECS;
 use socrates_model::{AgentId, AgentState, Event, EventKind, Gesture, HumanId, Point, Recording, SimTime, Vector};
 
@@ -110,7 +111,13 @@ pub(super) fn delayed(run: &Recording, agent: AgentId, seconds: f64) -> Recordin
         .filter_map(|k| {
             let (from, held) =
                 if seconds >= 0.0 { (k.saturating_sub(n), k < n) } else { ((k + n).min(last), k + n > last) };
-            old.get(from).map(|state| if held { still(state) } else { *state })
+            // Somebody who waits to set off makes no sign and does nothing by their tree.
+            let waits = |state: &AgentState| AgentState { flags: state.flags & NO_GESTURE & NO_LEAF, ..still(state) };
+            old.get(from).map(|state| match (held, seconds >= 0.0) {
+                (true, true) => waits(state),
+                (true, false) => still(state),
+                (false, _) => *state,
+            })
         })
         .collect();
     let end = old.last().map_or(0.0, |state| time_of(run, state));
@@ -244,15 +251,29 @@ pub(super) fn regestured(run: &Recording, agent: AgentId, from: Gesture, to: Opt
 
 /// The agent goes with the robot, so much to its left and so much of time ahead, whatever it did.
 pub(super) fn beside_robot(run: &Recording, agent: AgentId, left_m: f64, ahead_s: f64) -> Recording {
-    let robot = states(run, AgentId::Robot);
+    beside(run, agent, AgentId::Robot, left_m, ahead_s)
+}
+
+/// The agent goes with another, so much to their left and so much of time ahead, whatever it did.
+pub(super) fn beside(run: &Recording, agent: AgentId, leader: AgentId, left_m: f64, ahead_s: f64) -> Recording {
+    let lead = states(run, leader);
     let old = states(run, agent);
     let n = ticks_of(run, ahead_s);
+    // The line of a leader is that of the way behind it: one who stands may turn.
+    let back = ticks_of(run, 1.0);
+    let mut line = lead
+        .first()
+        .map_or_else(|| Vector2::new(1.0, 0.0), |state| Vector2::new(libm::cos(state.yaw), libm::sin(state.yaw)));
     let new: Vec<AgentState> = old
         .iter()
         .enumerate()
         .filter_map(|(k, now)| {
-            let state = robot.get(k + n).or_else(|| robot.last())?;
-            let left = Vector2::new(-libm::sin(state.yaw), libm::cos(state.yaw)) * left_m;
+            let state = lead.get(k + n).or_else(|| lead.last())?;
+            let way = state.point() - lead.get((k + n).saturating_sub(back)).unwrap_or(state).point();
+            if way.norm() > 0.1 {
+                line = way / way.norm();
+            }
+            let left = Vector2::new(-line.y, line.x) * left_m;
             Some(AgentState {
                 flags: now.flags & NO_GESTURE & NO_LEAF,
                 x: state.x + left.x,
@@ -300,4 +321,157 @@ pub(super) fn stands_at(run: &Recording, agent: AgentId, at: &Point, yaw: f64) -
     let new: Vec<AgentState> =
         states(run, agent).iter().map(|state| AgentState { x: at.x, y: at.y, yaw, ..still(state) }).collect();
     with_states(run, agent, &new, Some)
+}
+
+/// The agent stands from a time on; the log goes on as it was, or tells nothing from then on.
+pub(super) fn stops_at(run: &Recording, agent: AgentId, from_s: f64, keeps_log: bool) -> Recording {
+    let old = states(run, agent);
+    let from = ticks_of(run, from_s).min(old.len().saturating_sub(1));
+    let Some(stand) = old.get(from).map(still) else { return run.clone() };
+    let stands = |(k, state): (usize, &AgentState)| match k {
+        k if k < from => *state,
+        _ if keeps_log => AgentState { flags: state.flags, ..stand },
+        _ => AgentState { flags: state.flags & NO_GESTURE & NO_LEAF, ..stand },
+    };
+    let new: Vec<AgentState> = old.iter().enumerate().map(stands).collect();
+    with_states(run, agent, &new, |t| Some(t).filter(|t| keeps_log || *t < from_s))
+}
+
+/// Slower than this nobody walks on, m/s.
+const WALKS_MPS: f64 = 1.0;
+
+/// The agent walks straight on from a time on, wherever that leads; the log goes on as it was.
+pub(super) fn straight_on(run: &Recording, agent: AgentId, from_s: f64) -> Recording {
+    let old = states(run, agent);
+    let from = ticks_of(run, from_s).min(old.len().saturating_sub(1));
+    let Some(begin) = old.get(from).copied() else { return run.clone() };
+    let pace = begin.speed().max(WALKS_MPS);
+    let line = if begin.speed() > 0.2 {
+        Vector2::new(begin.vx, begin.vy) / begin.speed()
+    } else {
+        Vector2::new(libm::cos(begin.yaw), libm::sin(begin.yaw))
+    };
+    let walks = |(k, state): (usize, &AgentState)| {
+        if k < from {
+            return *state;
+        }
+        let way = pace * (time_of(run, state) - time_of(run, &begin));
+        let (x, y) = (begin.x + line.x * way, begin.y + line.y * way);
+        AgentState { x, y, vx: line.x * pace, vy: line.y * pace, yaw: libm::atan2(line.y, line.x), ..*state }
+    };
+    with_states(run, agent, &old.iter().enumerate().map(walks).collect::<Vec<_>>(), Some)
+}
+
+/// The agent walks straight to a place after so many seconds and stands there; the log goes on as it was.
+pub(super) fn walks_to(run: &Recording, agent: AgentId, to: &Point, after_s: f64) -> Recording {
+    let old = states(run, agent);
+    let from = ticks_of(run, after_s).min(old.len().saturating_sub(1));
+    let Some(begin) = old.get(from).copied() else { return run.clone() };
+    let line = to - begin.point();
+    let length = line.norm();
+    let unit = if length > 1e-6 { line / length } else { Vector2::new(1.0, 0.0) };
+    let walks = |(k, state): (usize, &AgentState)| {
+        if k < from {
+            return *state;
+        }
+        let way = WALKS_MPS * (time_of(run, state) - time_of(run, &begin));
+        let pace = if way < length { WALKS_MPS } else { 0.0 };
+        let at = begin.point() + unit * way.min(length);
+        let yaw = libm::atan2(unit.y, unit.x);
+        AgentState { x: at.x, y: at.y, vx: unit.x * pace, vy: unit.y * pace, yaw, ..*state }
+    };
+    with_states(run, agent, &old.iter().enumerate().map(walks).collect::<Vec<_>>(), Some)
+}
+
+/// Two agents with each other's track and log from a time on; what the run tells of their meetings is left out.
+pub(super) fn swapped(run: &Recording, one: AgentId, other: AgentId, from_s: f64) -> Recording {
+    let (mine, theirs) = (states(run, one), states(run, other));
+    let from = ticks_of(run, from_s);
+    let part = |before: &[AgentState], after: &[AgentState]| -> Vec<AgentState> {
+        before.iter().take(from).chain(after.iter().skip(from)).copied().collect()
+    };
+    let told = |event: &Event| {
+        let exchanged = |agent: AgentId| match agent {
+            agent if agent == one => other,
+            agent if agent == other => one,
+            agent => agent,
+        };
+        let kind = match &event.kind {
+            EventKind::Gesture { agent, gesture } => EventKind::Gesture { agent: exchanged(*agent), gesture: *gesture },
+            EventKind::Leaf { human, leaf } => match exchanged(AgentId::Human(*human)) {
+                AgentId::Human(human) => EventKind::Leaf { human, leaf: leaf.clone() },
+                AgentId::Robot => return None,
+            },
+            EventKind::Sees { .. }
+            | EventKind::Encounter { .. }
+            | EventKind::Contact { .. }
+            | EventKind::WallContact { .. }
+            | EventKind::Node { .. }
+            | EventKind::Stuck { .. } => return None,
+            EventKind::Door { .. } | EventKind::RobotArrived | EventKind::End { .. } => event.kind.clone(),
+        };
+        Some(if event.time.secs() < from_s { event.clone() } else { Event { time: event.time, kind } })
+    };
+    let events = run.events.iter().filter_map(told).collect();
+    let found = with_states(run, one, &part(&mine, &theirs), Some);
+    Recording { events, ..with_states(&found, other, &part(&theirs, &mine), Some) }
+}
+
+/// The agent is not there from a time on.
+pub(super) fn gone_from(run: &Recording, agent: AgentId, from_s: f64) -> Recording {
+    let mut found = run.clone();
+    if found.header.absent().is_none() {
+        found.header.leaves.push(ABSENT_LEAF.into());
+    }
+    let leaf = found.header.absent().unwrap_or_default();
+    let from = ticks_of(run, from_s);
+    for state in found.frames.iter_mut().filter(|state| state.agent == agent.number()).skip(from) {
+        *state = AgentState { flags: AgentState::flags(agent, None, leaf), ..still(state) };
+    }
+    found
+}
+
+/// The agent is so many seconds farther on its way from one moment to the next, where it walks most; `None` where it stands.
+pub(super) fn jumped(run: &Recording, agent: AgentId, seconds: f64) -> Option<Recording> {
+    let old = states(run, agent);
+    let n = ticks_of(run, seconds);
+    let way = |k: usize| Some((old.get(k + n)?.point() - old.get(k)?.point()).norm());
+    let most = (0..old.len().saturating_sub(n))
+        .max_by(|a, b| way(*a).partial_cmp(&way(*b)).unwrap_or(std::cmp::Ordering::Equal))?;
+    way(most).filter(|way| *way > 1.0)?;
+    let last = old.len().saturating_sub(1);
+    let new: Vec<AgentState> =
+        (0..old.len()).filter_map(|k| old.get(if k < most { k } else { (k + n).min(last) }).copied()).collect();
+    Some(with_states(run, agent, &new, Some))
+}
+
+/// The log tells of an agent's gesture, and no state shows it.
+pub(super) fn silenced(run: &Recording, agent: AgentId, gesture: Gesture) -> Recording {
+    let mut found = run.clone();
+    let made = |state: &&mut AgentState| state.agent == agent.number() && state.gesture() == Some(gesture);
+    for state in found.frames.iter_mut().filter(made) {
+        state.flags &= NO_GESTURE;
+    }
+    found
+}
+
+/// The recording with one more human, who stands at a place; and who it is.
+pub(super) fn joined(run: &Recording, at: &Point) -> (Recording, AgentId) {
+    let number = humans(run).into_iter().map(|id| AgentId::Human(id).number()).max().unwrap_or_default() + 1;
+    let agent = AgentId::Human(HumanId::new(number));
+    let mut found = run.clone();
+    let agents = run.header.agents.len().max(1);
+    if let Some(like) = run.header.agents.last() {
+        found.header.agents.push(AgentInfo { agent, ..like.clone() });
+    }
+    let stands = |frame: &[AgentState]| {
+        let tick = frame.first().map_or(0, |state| state.tick);
+        let zero = frame.first().copied();
+        let flags = AgentState::flags(agent, None, 0);
+        let state =
+            zero.map(|state| AgentState { tick, agent: agent.number(), x: at.x, y: at.y, flags, ..still(&state) });
+        frame.iter().copied().chain(state).collect::<Vec<_>>()
+    };
+    found.frames = run.frames.chunks(agents).flat_map(stands).collect();
+    (found, agent)
 }

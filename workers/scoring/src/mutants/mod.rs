@@ -8,6 +8,7 @@ mod early;
 mod edit;
 mod facing;
 mod harmless;
+mod lacks;
 mod named_way;
 mod sides;
 mod spoil;
@@ -16,6 +17,7 @@ mod steps;
 use socrates_model::Recording;
 
 pub use harmless::harmless;
+pub use lacks::{Lack, Lacking, ROWS, Row, lacking, row};
 pub use spoil::spoiled;
 
 use socrates_model::{AgentId, HumanId, Verdict};
