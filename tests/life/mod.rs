@@ -7,6 +7,7 @@ mod bundles;
 mod doors;
 mod evaluations;
 mod folders;
+mod judges;
 mod leaving;
 mod libraries;
 mod live;

@@ -181,7 +181,14 @@ fn draw_agent(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64) {
 }
 
 /// Name and what is said, at the first place around the agent that is free.
-fn draw_words(svg: &mut Svg, at: (f64, f64), state: &AgentState, r: f64, look: &Look, taken: &mut Vec<(Area, f64)>) {
+pub(crate) fn draw_words(
+    svg: &mut Svg,
+    at: (f64, f64),
+    state: &AgentState,
+    r: f64,
+    look: &Look,
+    taken: &mut Vec<(Area, f64)>,
+) {
     let size = look.text_px * 0.95;
     let name =
         if look.named(state.agent) { state.agent_id().to_string().replace("human_", "h") } else { String::new() };

@@ -179,24 +179,8 @@ impl Camera {
     }
 
     /// The part of the map that is seen at a moment.
-    #[expect(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "cells of a map, clipped to its bounds"
-    )]
     pub(crate) fn part(&self, now_s: f64) -> Frame {
-        let whole = self.frame(now_s);
-        let (x0, y0, w, h) = whole.cells;
-        let span = |at: f64, start: f64, size: f64, cells: usize| {
-            let first = ((start - at) / whole.scale).floor().clamp(0.0, cells as f64) as usize;
-            let last = ((start + size - at) / whole.scale).ceil().clamp(0.0, cells as f64) as usize;
-            (first, last.saturating_sub(first))
-        };
-        let (column, columns) = span(whole.at.0, self.view.x, self.view.w, w);
-        let (row, rows) = span(whole.at.1, self.view.y, self.view.h, h);
-        let at = (whole.at.0 + column as f64 * whole.scale, whole.at.1 + row as f64 * whole.scale);
-        Frame { cells: (x0 + column, y0 + row, columns, rows), scale: whole.scale, at }
+        seen(&self.frame(now_s), &self.view)
     }
 
     /// The place of the world that stands in the middle at a moment.
@@ -209,6 +193,26 @@ impl Camera {
         let part = at.fract();
         (from.0 + (to.0 - from.0) * part, from.1 + (to.1 - from.1) * part)
     }
+}
+
+/// The part of a whole map that is seen in a part of a picture.
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "cells of a map, clipped to its bounds"
+)]
+pub(crate) fn seen(whole: &Frame, view: &Area) -> Frame {
+    let (x0, y0, w, h) = whole.cells;
+    let span = |at: f64, start: f64, size: f64, cells: usize| {
+        let first = ((start - at) / whole.scale).floor().clamp(0.0, cells as f64) as usize;
+        let last = ((start + size - at) / whole.scale).ceil().clamp(0.0, cells as f64) as usize;
+        (first, last.saturating_sub(first))
+    };
+    let (column, columns) = span(whole.at.0, view.x, view.w, w);
+    let (row, rows) = span(whole.at.1, view.y, view.h, h);
+    let at = (whole.at.0 + column as f64 * whole.scale, whole.at.1 + row as f64 * whole.scale);
+    Frame { cells: (x0 + column, y0 + row, columns, rows), scale: whole.scale, at }
 }
 
 /// Moments from one to another, s.

@@ -227,7 +227,7 @@ mod tests {
     fn every_place_of_the_template_has_a_value() {
         let names: Vec<&str> =
             TEMPLATE.split("{{").skip(1).filter_map(|rest| rest.split_once("}}")).map(|(name, _)| name).collect();
-        assert_eq!(names.len(), 13, "{names:?}");
+        assert_eq!(names.len(), 14, "{names:?}");
         assert!(!html("hall", &[run_of(1, "x")]).contains("{{"));
     }
 

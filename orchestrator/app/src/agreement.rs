@@ -10,6 +10,7 @@ use socrates_stream::csv::Table;
 use crate::bundle;
 use crate::exit::Complaint;
 use crate::files;
+use crate::labels::shown;
 use crate::output::Printer;
 
 /// A file of labels larger than this is not read.
@@ -94,10 +95,6 @@ pub fn agreement(talk: &Printer, labels: &Path, bundles: &[PathBuf]) -> Result<(
     Ok(())
 }
 
-fn shown(value: Option<f64>) -> String {
-    value.map_or_else(|| "n/a".to_owned(), |value| format!("{value:.3}"))
-}
-
 fn read(text: &str, name: &str) -> Result<Vec<Label>, Complaint> {
     let bad = |line: usize, what: String| {
         Complaint::input(
@@ -167,7 +164,7 @@ impl Row {
 fn opinion(question: &str, verdict: Verdict) -> Option<bool> {
     match question {
         "simulable" => Some(verdict != Verdict::Invalid),
-        "as_asked" => Some(matches!(verdict, Verdict::Realised | Verdict::RealisedLate)),
+        "as_asked" => Some(crate::labels::meets(verdict)),
         _ => None,
     }
 }

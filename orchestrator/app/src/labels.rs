@@ -1,12 +1,28 @@
-//! `labels page`: a page on which people label the runs of bundles by hand.
+//! `labels page` and `labels compare`: a page on which people, or blind judges, label the runs of bundles, and what came of it.
+//!
+//! ```text
+//! bundles ─┬─► page                                         ─► a table of answers ─► `dev agreement`
+//!          └─► blind: page, stills, texts, protocol, key.csv ─► tables of answers ─► compare
+//! ```
+
+mod answers;
+mod blind;
+mod compare;
+mod door;
+mod key;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
 use serde_json::json;
-use socrates_draw::LabelPage;
-use socrates_model::{Recording, ScenarioId};
+use socrates_draw::{Asks, LabelPage, Labeled};
+use socrates_model::form::{Form, PlaceWord, RobotStep};
+use socrates_model::request::RobotGesture;
+use socrates_model::{Recording, Request, ScenarioId, Verdict};
 
+pub use self::blind::Blind;
+pub use self::compare::{CompareOptions, compare};
 use crate::batch;
 use crate::bundle;
 use crate::exit::Complaint;
@@ -16,17 +32,39 @@ use crate::progress::Progress;
 /// More runs than anybody labels in one sitting, and than a browser opens at once.
 const MOST: usize = 500;
 
-/// Does a verb of `labels`.
-pub fn page(talk: &Printer, bundles: &[PathBuf], out: &Path, first: bool, title: &str) -> Result<(), Complaint> {
-    let mut page = LabelPage::default();
-    let dirs = folders(bundles)?;
+/// What `labels page` is given.
+#[derive(Debug, Clone)]
+pub struct PageOptions {
+    /// Bundles, or folders of bundles.
+    pub bundles: Vec<PathBuf>,
+    /// File of the page.
+    pub out: PathBuf,
+    /// Only the first run of each bundle.
+    pub first: bool,
+    /// Heading of the page.
+    pub title: String,
+    /// A page for blind judges.
+    pub blind: Option<Blind>,
+}
+
+/// Does `labels page`.
+pub fn page(talk: &Printer, options: &PageOptions) -> Result<(), Complaint> {
+    if let Some(blind) = &options.blind {
+        return blind::page(talk, options, blind);
+    }
+    let mut page = LabelPage::asking(Asks::Qualities);
+    let dirs = folders(&options.bundles)?;
     let names = names(&dirs)?;
     let mut shown: Vec<String> = Vec::new();
     let mut progress = Progress::new(*talk, "reading", dirs.len());
     for (index, (dir, names)) in dirs.iter().zip(&names).enumerate() {
         progress.at(index, "");
-        let bundle = bundle::read_some(dir, |index, _| !first || index == 0)?;
+        let bundle = bundle::read_some(dir, |index, _| !options.first || index == 0)?;
         let all: Vec<&Recording> = bundle.runs.iter().map(|(recording, _)| recording).collect();
+        let (location, paths) = (&bundle.location, &bundle.paths);
+        let mut texts = texts(&bundle.request);
+        let about = if location.description.is_empty() { "" } else { ": " };
+        texts.push(("Location", format!("{}{about}{}", location.name, location.description)));
         for (recording, report) in &bundle.runs {
             // Without the robot there is nothing to label: the twin run only serves comparison.
             if report.planner.is_no_robot() {
@@ -34,24 +72,96 @@ pub fn page(talk: &Printer, bundles: &[PathBuf], out: &Path, first: bool, title:
             }
             let run = report.run.to_string();
             let name = names.get(&run).unwrap_or(&run);
-            page.add(name, &bundle.request, &bundle.location, &bundle.paths, &all, recording);
+            page.add(&Labeled { name, texts: &texts, location, paths, all: &all, recording });
             shown.push(name.clone());
         }
         if page.len() > MOST {
-            return Err(Complaint::input(
-                format!("`{}` runs are too many for one page", page.len()),
-                format!("at most {MOST}; --first takes one run of each bundle, or name fewer bundles"),
-            ));
+            return Err(too_many(page.len()));
         }
     }
     drop(progress);
     if page.is_empty() {
         return Err(Complaint::input("the bundles hold no run with a robot", "`socrates run` makes one"));
     }
-    crate::files::write(out, page.html(title).as_bytes())?;
-    talk.line(&format!("wrote      {} · {} runs", out.display(), page.len()));
-    talk.result(&json!({ "page": out.display().to_string(), "runs": shown }));
+    crate::files::write(&options.out, page.html(&options.title).as_bytes())?;
+    talk.line(&format!("wrote      {} · {} runs", options.out.display(), page.len()));
+    talk.result(&json!({ "page": options.out.display().to_string(), "runs": shown }));
     Ok(())
+}
+
+fn too_many(runs: usize) -> Complaint {
+    Complaint::input(
+        format!("`{runs}` runs are too many for one page"),
+        format!("at most {MOST}; --first takes one run of each bundle, or name fewer bundles"),
+    )
+}
+
+/// What a request asks for, text by text: what it is, and its words. A form is told in its own lines.
+fn texts(request: &Request) -> Vec<(&'static str, String)> {
+    let form = form_lines(request);
+    let rough = request.rough_scenario.as_deref().map(str::trim).filter(|text| !text.is_empty());
+    let asked = rough.unwrap_or_else(|| if form.is_empty() { "nothing in particular" } else { "" });
+    [
+        ("Social context", request.social_context.trim().to_owned()),
+        ("Task of the robot", request.task.trim().to_owned()),
+        ("Asked for", asked.to_owned()),
+        ("Form", form),
+    ]
+    .into_iter()
+    .filter(|(_, text)| !text.is_empty())
+    .collect()
+}
+
+/// The part of a form about the robot.
+#[derive(Serialize)]
+struct RobotLines<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<&'a PlaceWord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    goal: Option<&'a PlaceWord>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    via: Option<&'a PlaceWord>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    does: &'a [RobotStep],
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    gestures: &'a [RobotGesture],
+}
+
+/// A form as it is written: people, groups, orders and the robot's part; nothing where nothing is stated.
+#[derive(Serialize)]
+struct FormLines<'a> {
+    #[serde(flatten)]
+    form: &'a Form,
+    robot: RobotLines<'a>,
+}
+
+fn form_lines(request: &Request) -> String {
+    let robot = &request.robot;
+    let (start, goal, via) = (robot.start.as_ref(), robot.goal.as_ref(), robot.via.as_ref());
+    let robot = RobotLines { start, goal, via, does: &robot.does, gestures: &robot.gestures };
+    let Ok(toml::Value::Table(tables)) = toml::Value::try_from(FormLines { form: &request.form, robot }) else {
+        return String::new();
+    };
+    let mut lines: Vec<String> = Vec::new();
+    for (key, value) in &tables {
+        let one = || (format!("[{key}]"), vec![value]);
+        let (head, items) = value.as_array().map_or_else(one, |items| (format!("[[{key}]]"), items.iter().collect()));
+        for table in items.into_iter().filter_map(toml::Value::as_table).filter(|table| !table.is_empty()) {
+            lines.push(head.clone());
+            lines.extend(table.iter().map(|(key, value)| format!("{key} = {value}")));
+        }
+    }
+    lines.join("\n")
+}
+
+/// Whether a verdict says that what was asked happened.
+pub(crate) const fn meets(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Realised | Verdict::RealisedLate)
+}
+
+/// A coefficient, if there is one.
+pub(crate) fn shown(value: Option<f64>) -> String {
+    value.map_or_else(|| "n/a".to_owned(), |value| format!("{value:.3}"))
 }
 
 /// What the runs of each of these bundles are called where all of them are looked at together: by their own names where no other
@@ -136,5 +246,31 @@ mod tests {
         let named: Vec<String> = apart(&folders, &runs).into_iter().flat_map(BTreeMap::into_values).collect();
         let told = ["lib-1/x-1:x-1.reference-1", "lib-2/x-1:x-1.reference-1", "x-1-2:x-1.reference-1", "y.reference-1"];
         assert_eq!(named, told);
+    }
+
+    #[test]
+    fn a_form_is_told_in_its_own_lines_and_planner_and_seeds_are_no_part_of_it() {
+        let text = "location = \"hospital\"\nsocial_context = \"\"\ntask = \"Take the elevator\"\n\
+                    [[human]]\ncount = 2\nrelation = \"leaving\"\nplace = \"elevator\"\n\
+                    does = [{ when = { robot_visible = 5.0 }, act = \"look_at_robot\", for_s = 8 }]\n\
+                    [[order]]\nfirst = \"human_1\"\nthen = \"robot\"\n\
+                    [robot]\nplanners = [\"reference\"]\ngoal = \"elevator\"\n[run]\nseeds = \"90417\"\n";
+        let request = Request::of_toml(text, None).unwrap();
+        let told = texts(&request);
+        assert_eq!(told[0], ("Task of the robot", "Take the elevator".to_owned()));
+        assert_eq!((told.len(), told[1].0), (2, "Form"));
+        for line in ["[[human]]", "count = 2", "place = \"elevator\"", "[[order]]", "first = \"human_1\"", "[robot]"] {
+            assert!(told[1].1.lines().any(|found| found == line), "{line}: {}", told[1].1);
+        }
+        assert!(told[1].1.contains("robot_visible = 5.0") && told[1].1.contains("for_s = 8.0"), "{}", told[1].1);
+        assert!(!told[1].1.contains("reference") && !told[1].1.contains("90417"), "{}", told[1].1);
+    }
+
+    #[test]
+    fn a_request_of_texts_has_no_form_and_an_unguided_one_asks_for_nothing() {
+        let text = "location = \"office\"\nsocial_context = \"An office\"\ntask = \"Deliver mail\"\n";
+        let told = |more: &str| texts(&Request::of_toml(&format!("{text}{more}"), None).unwrap());
+        assert_eq!(told("")[2], ("Asked for", "nothing in particular".to_owned()));
+        assert_eq!(told("rough_scenario = \"They pass.\"\n").last().unwrap().1, "They pass.");
     }
 }

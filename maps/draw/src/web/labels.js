@@ -2,13 +2,9 @@
   const { View, Clock, keys, word, secs, seconds } = player;
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
-  const COLUMNS = ["run", "rater", "simulable", "appropriate", "as_asked"];
-  const QUESTIONS = [
-    ["simulable", "Is it simulable?", "Everybody moves as people and robots can: nobody passes through walls or others, jumps, or is stuck."],
-    ["appropriate", "Is it appropriate?", "People, places and what happens fit the social context, the task and the location."],
-    ["as_asked", "Is it as asked?", "What the request describes is what you see: who, where, how they react, and the robot meets them."],
-  ];
-  const ANSWERS = [["yes", "y"], ["no", "n"], ["unsure", "u"]];
+  const COLUMNS = data.columns, QUESTIONS = data.questions;
+  // An answer that something was not as asked comes with the words.
+  const NAMES = COLUMNS.includes("sentence"), AGREES = "as_asked";
   const KEY = "socrates-labels-" + data.key;
   if (!data.runs.length) { at("none").hidden = false; at("stage").hidden = true; return; }
 
@@ -21,7 +17,8 @@
   let order = [], place = 0, run = null, view = null;
   const mine = () => { const own = Object.prototype.hasOwnProperty.call(answers, rater) ? answers[rater] : {}; return own; };
   const of = (r) => (Object.prototype.hasOwnProperty.call(mine(), r.name) ? mine()[r.name] : {});
-  const whole = (r) => QUESTIONS.every(([id]) => of(r)[id]);
+  const owes = (r) => NAMES && of(r).as_asked && of(r).as_asked !== AGREES;
+  const whole = (r) => QUESTIONS.every((q) => of(r)[q.id]) && (!owes(r) || Boolean(of(r).sentence));
   // Nothing in a name that would need quotes in a table.
   const clean = (name) => name.replace(/[",;\r\n\t]/g, " ").replace(/^[=+@-]+/, "").replace(/\s+/g, " ").trim();
 
@@ -31,6 +28,8 @@
     for (const c of data.key + rater) state = Math.imul(state ^ c.codePointAt(0), 16777619) >>> 0;
     const draw = () => { state = (Math.imul(state, 1664525) + 1013904223) >>> 0; return state / 4294967296; };
     order = data.runs.map((r, i) => i);
+    // Runs that are known by their numbers stay in the order of these.
+    if (data.named) return;
     for (let i = order.length - 1; i > 0; i--) { const j = Math.floor(draw() * (i + 1)); [order[i], order[j]] = [order[j], order[i]]; }
   }
 
@@ -41,33 +40,51 @@
   }, (on) => { at("play").textContent = on ? "❚❚" : "▶"; at("play").setAttribute("aria-label", on ? "pause" : "play"); });
   const go = (t) => { clock.play(false); clock.set(t); };
 
+  // Films that are too large for the page lie beside it.
+  globalThis.film = (name, parts) => { const r = data.runs.find((r) => r.name === name); if (r) Object.assign(r, parts); };
+  function fetched(r, then) {
+    if (r.agents) { then(); return; }
+    const script = document.createElement("script");
+    script.src = r.film;
+    script.addEventListener("load", then);
+    script.addEventListener("error", () => { at("number").textContent = `${r.name}: ${r.film} is not beside this page`; });
+    document.head.appendChild(script);
+  }
   function choose(index) {
     place = Math.max(0, Math.min(index, order.length - 1));
-    run = data.runs[order[place]];
+    const chosen = data.runs[order[place]];
+    fetched(chosen, () => { if (data.runs[order[place]] === chosen && chosen.agents) look(chosen); });
+  }
+  function look(chosen) {
+    run = chosen;
     view = new View(at("map"), data.places[run.place]);
     // The name of the run would tell the planner.
     view.load(run); at("map").setAttribute("aria-label", "the run, seen from above");
     clock.end = seconds(run); clock.rate = Number(at("speed").value);
     at("time").max = clock.end;
-    at("number").textContent = `Run ${place + 1} of ${order.length}`;
+    at("number").textContent = data.named ? `${run.name} · ${place + 1} of ${order.length}` : `Run ${place + 1} of ${order.length}`;
     const asked = at("asked"); asked.textContent = "";
-    for (const [name, text] of [["Social context", run.context], ["Task of the robot", run.task], ["Asked for", run.rough || "nothing in particular"], ["Location", run.location + (run.about ? ": " + run.about : "")]]) {
-      word("dt", name, asked); word("dd", text, asked, "said");
-    }
+    for (const [name, text] of run.texts) { word("dt", name, asked); word("dd", text, asked, "said"); }
     ask();
     view.lay(run.focus); clock.set(0);
     clock.play(!matchMedia("(prefers-reduced-motion: reduce)").matches);
   }
   function ask() {
+    if (!run) { progress(); return; }
     const box = at("questions"); box.textContent = "";
-    for (const [id, question, about] of QUESTIONS) {
-      const part = word("fieldset", "", box); word("legend", question, part); word("p", about, part, "quiet");
-      for (const [answer] of ANSWERS) {
-        const b = word("button", answer, part, "answer " + answer);
+    for (const { id, words, about, answers: allowed } of QUESTIONS) {
+      const part = word("fieldset", "", box); word("legend", words, part); word("p", about, part, "quiet");
+      for (const [answer] of allowed) {
+        const b = word("button", player.plain(answer), part, "answer " + answer);
         b.type = "button"; b.disabled = !rater;
         b.setAttribute("aria-pressed", String(of(run)[id] === answer));
         b.addEventListener("click", () => set(id, of(run)[id] === answer ? null : answer));
       }
+    }
+    if (owes(run)) {
+      const part = word("label", "words of the request that did not happen ", box), field = document.createElement("textarea");
+      field.rows = 3; field.id = "sentence"; field.value = of(run).sentence || ""; part.appendChild(field);
+      field.addEventListener("input", () => { note(field.value); });
     }
     if (!rater) word("p", "Write your name above first.", box, "bad");
     progress();
@@ -78,7 +95,13 @@
     const own = answers[rater];
     if (!Object.prototype.hasOwnProperty.call(own, run.name)) own[run.name] = {};
     if (answer) own[run.name][id] = answer; else delete own[run.name][id];
+    if (!owes(run)) delete own[run.name].sentence;
     keep(); ask();
+  }
+  // The words are written while they are typed; the field itself stays.
+  function note(text) {
+    mine()[run.name].sentence = text.replace(/\s+/g, " ").trim();
+    keep(); progress();
   }
   function progress() {
     const done = data.runs.filter(whole).length;
@@ -89,7 +112,7 @@
   // Runs in the order of the page, never of the rater: tables of two raters can be laid side by side.
   function csv() {
     const cell = (text) => (/[",\r\n]/.test(text) ? '"' + text.replace(/"/g, '""') + '"' : text);
-    const rows = data.runs.filter(whole).map((r) => [r.name, rater, ...QUESTIONS.map(([id]) => of(r)[id])]);
+    const rows = data.runs.filter(whole).map((r) => COLUMNS.map((column) => ({ run: r.name, rater })[column] ?? of(r)[column] ?? ""));
     return [COLUMNS, ...rows].map((row) => row.map(cell).join(",")).join("\n") + "\n";
   }
   function save() {
@@ -106,12 +129,14 @@
     }
   }
   function answer(what) {
-    const question = QUESTIONS.find(([id]) => !of(run)[id]);
-    if (question) set(question[0], what);
+    if (!run) return;
+    const question = QUESTIONS.find((q) => !of(run)[q.id]);
+    if (question) set(question.id, what);
   }
   function undo() {
-    const question = [...QUESTIONS].reverse().find(([id]) => of(run)[id]);
-    if (question) set(question[0], null);
+    if (!run) return;
+    const question = [...QUESTIONS].reverse().find((q) => of(run)[q.id]);
+    if (question) set(question.id, null);
   }
 
   at("rater").value = rater;
@@ -124,10 +149,10 @@
   at("next").addEventListener("click", () => choose(place + 1));
   at("open").addEventListener("click", open);
   at("export").addEventListener("click", save);
-  addEventListener("resize", () => { view.lay(run.focus); view.show(clock.now); });
+  addEventListener("resize", () => { if (!view) return; view.lay(run.focus); view.show(clock.now); });
   addEventListener("keydown", (e) => { if (e.key === "Enter" && !/^(BUTTON|INPUT|SUMMARY|SELECT|TEXTAREA)$/.test(e.target.tagName)) choose(place + 1); });
   keys({ " ": () => clock.toggle(), ArrowRight: () => go(clock.now + 0.5), ArrowLeft: () => go(clock.now - 0.5), Home: () => go(0), End: () => go(clock.end),
-    y: () => answer("yes"), n: () => answer("no"), u: () => answer("unsure"), x: undo, p: () => choose(place - 1) });
+    ...Object.fromEntries(QUESTIONS[0].answers.map(([what, key]) => [key, () => answer(what)])), x: undo, p: () => choose(place - 1) });
   shuffle();
   const first = order.findIndex((i) => !whole(data.runs[i]));
   choose(Math.max(0, first));

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use socrates_app::labels::{Blind, CompareOptions, PageOptions};
 use socrates_app::output::Printer;
 use socrates_app::{export_chat, labels};
 
@@ -50,26 +51,66 @@ pub(crate) struct Labels {
 #[derive(Debug, Subcommand)]
 enum LabelsVerb {
     /// Write a page on which people label runs: simulable, appropriate, as asked. It needs no network and saves a CSV.
-    Page {
-        /// Bundle folders, or folders that hold bundles.
+    Page(Page),
+    /// Compare what blind judges answered with the verdicts, with each other, and on the controls.
+    Compare {
+        /// Tables of answers (CSV) that the page saved: `run,rater,as_asked,sentence`.
         #[arg(required = true)]
+        labels: Vec<PathBuf>,
+        /// The key that `labels page --films` wrote beside the page.
+        #[arg(long, value_name = "FILE")]
+        key: PathBuf,
+        /// Bundles, or folders that hold bundles, that were on the page; those that were mixed in need not be named.
+        #[arg(long, required = true, num_args = 1.., value_name = "FOLDER")]
         bundles: Vec<PathBuf>,
-        /// File to write.
-        #[arg(long, short, default_value = "labels.html")]
-        out: PathBuf,
-        /// Only the first run of each bundle.
-        #[arg(long)]
-        first: bool,
-        /// Heading of the page.
-        #[arg(long, default_value = "What do you see?")]
-        title: String,
     },
+}
+
+/// Arguments of `labels page`.
+#[derive(Debug, Clone, Args)]
+struct Page {
+    /// Bundle folders, or folders that hold bundles.
+    #[arg(required = true)]
+    bundles: Vec<PathBuf>,
+    /// File to write; with --films its folder is also that of everything that lies beside it.
+    #[arg(long, short, default_value = "labels.html", default_value_if("films", "true", "judging/labels.html"))]
+    out: PathBuf,
+    /// Only the first run of each bundle.
+    #[arg(long)]
+    first: bool,
+    /// Heading of the page.
+    #[arg(long, default_value = "What do you see?")]
+    title: String,
+    /// For blind judges: nothing tells where a run is from; stills, texts, the protocol and the key are written beside the page.
+    #[arg(long)]
+    films: bool,
+    /// Stills of each run, from when robot and people are first within 8 m of each other to when they last are, 2 to 24.
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "films")]
+    stills: usize,
+    /// Seed of the order in which the runs are numbered.
+    #[arg(long, value_name = "S", default_value_t = 1, requires = "films")]
+    seed: u64,
+    /// Folder of bundles to mix in, unmarked: controls, of which it is known that something did not happen.
+    #[arg(long, value_name = "FOLDER", requires = "films")]
+    mixed_in: Vec<PathBuf>,
+}
+
+impl Page {
+    fn options(&self) -> PageOptions {
+        let Self { bundles, out, first, title, films, stills, seed, mixed_in } = self.clone();
+        let blind = films.then_some(Blind { stills, seed, mixed_in });
+        PageOptions { bundles, out, first, title, blind }
+    }
 }
 
 impl Labels {
     pub(super) fn act(&self, talk: &Printer) -> Outcome {
-        match &self.verb {
-            LabelsVerb::Page { bundles, out, first, title } => done(labels::page(talk, bundles, out, *first, title)),
-        }
+        done(match &self.verb {
+            LabelsVerb::Page(page) => labels::page(talk, &page.options()),
+            LabelsVerb::Compare { labels, key, bundles } => {
+                let (labels, key, bundles) = (labels.clone(), key.clone(), bundles.clone());
+                labels::compare(talk, &CompareOptions { labels, key, bundles })
+            }
+        })
     }
 }
