@@ -6,12 +6,17 @@ use socrates_model::{ClauseRole, FactKind, HumanId, HumanProposal, Predicate, Pr
 
 use crate::edit::Desk;
 use crate::edit_people::{next_id, same_act};
-use crate::{events, proposal, prose};
+use crate::{events, named_way, proposal, prose};
 
 /// What follows from the changes: prose, clauses, script, and what was asked for.
 pub(crate) fn settle(desk: &mut Desk, before: &Proposal, reading: &mut Reading) {
     reading.clone_from(&desk.question.reading);
+    // Where a person has led the robot elsewhere, its way is asked for no longer.
+    let paths = desk.draft.paths.as_ref();
     let proposal = &mut desk.draft.proposal;
+    if let Some(paths) = paths {
+        proposal.expected_events.retain(|clause| named_way::kept(&clause.predicate, paths));
+    }
     let (were, are) = (prose::headcount(before.humans.len()), prose::headcount(proposal.humans.len()));
     if were != are {
         proposal.description = proposal.description.replacen(&were, &are, 1);

@@ -3,7 +3,7 @@
 use socrates_model::form::PlaceWord;
 use socrates_model::job::Stage;
 use socrates_model::proposal::WayPart;
-use socrates_model::{Fact, FactKind, Location, Predicate, Proposal, Reading, Request};
+use socrates_model::{Fact, FactKind, Location, NodeId, Paths, Predicate, Proposal, Reading, Request};
 use socrates_prompts::Question;
 
 use crate::lexicon::lexicon;
@@ -47,7 +47,7 @@ pub(crate) fn rest(task: &Task, request: &Request, location: &Location, reading:
     }
 }
 
-fn add(reading: &mut Reading, (part, name, nodes): (WayPart, String, Vec<socrates_model::NodeId>), quote: String) {
+fn add(reading: &mut Reading, (part, name, nodes): (WayPart, String, Vec<NodeId>), quote: String) {
     let same = |fact: &Fact| matches!(&fact.kind, FactKind::RobotAt { part: own, .. } if *own == part && part != WayPart::Avoid);
     if nodes.is_empty() || reading.facts.iter().any(same) {
         return;
@@ -60,10 +60,10 @@ fn add(reading: &mut Reading, (part, name, nodes): (WayPart, String, Vec<socrate
 const LONGEST: usize = 3;
 
 /// The places by name in words that say where the robot is not to go.
-pub(crate) fn avoided_by(quote: &str, location: &Location) -> Vec<(String, Vec<socrates_model::NodeId>)> {
+pub(crate) fn avoided_by(quote: &str, location: &Location) -> Vec<(String, Vec<NodeId>)> {
     let words: Vec<&str> =
         quote.split(|c: char| !c.is_alphanumeric() && c != '\'' && c != '-').filter(|word| !word.is_empty()).collect();
-    let mut found: Vec<(String, Vec<socrates_model::NodeId>)> = Vec::new();
+    let mut found: Vec<(String, Vec<NodeId>)> = Vec::new();
     let mut at = 0;
     while at < words.len() {
         let name = |length: usize| words.get(at..at + length).map(|words| words.join(" "));
@@ -90,6 +90,20 @@ pub(crate) fn avoided_by(quote: &str, location: &Location) -> Vec<(String, Vec<s
         }
     }
     found
+}
+
+/// Whether paths do what a clause says of the robot's way by name; true of any other clause.
+pub(crate) fn kept(predicate: &Predicate, paths: &Paths) -> bool {
+    let Predicate::RobotWay { part, nodes } = predicate else { return true };
+    let own = |node: &NodeId| nodes.contains(node);
+    let (first, last) = (paths.robot.first().is_some_and(own), paths.robot.last().is_some_and(own));
+    let any = paths.robot.iter().any(own);
+    match part {
+        WayPart::Start => first,
+        WayPart::Goal => last,
+        WayPart::Via => any && !first && !last,
+        WayPart::Avoid => !any,
+    }
 }
 
 /// Demands of a text that no way of the map does are given up, the hardest first, and said so; a form is refused instead.

@@ -307,9 +307,10 @@ fn facts(story: &Story, task: &Task, request: &Request, location: &Location, rea
             facing::fact(id(i), relation, person, &mut reading.problems),
         ];
         for (quote, kind) in said.into_iter().flatten() {
-            let words = match &kind {
-                FactKind::Side { side, .. } => sides::words(relation, *side),
-                kind => facing::words(kind),
+            let words = if let FactKind::Side { side, .. } = &kind {
+                sides::words(relation, *side)
+            } else {
+                facing::words(&kind)
             };
             if let Some(human) = reading.humans.get_mut(i) {
                 human.summary.push_str(if human.summary.is_empty() { "" } else { ", " });
