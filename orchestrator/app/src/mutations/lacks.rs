@@ -246,6 +246,7 @@ async fn base(name: String, request: &Request, location: &Location, seed: u64) -
 }
 
 /// What is seen of one human before something of another.
+#[expect(clippy::wildcard_enum_match_arm, reason = "only these are put in order")]
 fn orders(base: &Base) -> Vec<Predicate> {
     let of = |predicate: &Predicate| match predicate {
         Predicate::Meets { human, .. }

@@ -273,7 +273,7 @@ pub(super) fn gives_way(signals: &Signals<'_>, human: HumanId) -> Finding {
             // What they did before their tree had them give way is none of it.
             let by_tree = signals.leaves_of(human).iter().filter(|span| Action::GiveWay.is_leaf(&span.name));
             let begins_s = by_tree.map(|span| span.from_s).find(|t| *t <= moment.t && since.counts(*t));
-            let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t - EARLY_SECS));
+            let begins = moments.partition_point(|other| begins_s.is_some_and(|t| other.t < t));
             let (own_m, off_m) = went_aside(moments.get(begins..).unwrap_or_default(), moment);
             let text = format!(
                 "{human} {aside:.2} m beside the robot's line as it passes at {:.1} s ({ASIDE_M} m asked), having gone {own_m:.2} m \
