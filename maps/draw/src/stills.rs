@@ -132,7 +132,7 @@ impl Scene<'_> {
             .filter_map(|event| {
                 let at = event.time.secs();
                 match &event.kind {
-                    EventKind::Gesture { agent, gesture: Some(gesture) } => {
+                    EventKind::Gesture { agent, gesture: Some(gesture), .. } => {
                         Some(format!("{} says {} at {at:.1} s", short(*agent), gesture.name().replace('_', " ")))
                     }
                     EventKind::Door { open, .. } => {
@@ -140,6 +140,7 @@ impl Scene<'_> {
                     }
                     EventKind::Gesture { .. }
                     | EventKind::Leaf { .. }
+                    | EventKind::StepEnded { .. }
                     | EventKind::Node { .. }
                     | EventKind::Sees { .. }
                     | EventKind::Encounter { .. }
@@ -262,7 +263,7 @@ mod tests {
         let ticks: Vec<Vec<AgentState>> = (0..=400).map(|tick_no| tick(f64::from(tick_no) / 100.0)).collect();
         let mut run = recording(&ticks.iter().map(Vec::as_slice).collect::<Vec<_>>());
         let agent = AgentId::from_number(1);
-        let kind = EventKind::Gesture { agent, gesture: Some(Gesture::Wait) };
+        let kind = EventKind::Gesture { agent, gesture: Some(Gesture::Wait), to: None };
         run.events = vec![Event { time: SimTime::from_nanos(1_300_000_000), kind }];
         let svg = sheet(&run);
         assert!(svg.contains("walk: R · stand: 1"), "{svg}");

@@ -73,7 +73,7 @@ fn somebody_who_faces_the_robot_by_chance_does_not_look_at_it() {
 fn a_sign_that_only_the_log_tells_of_is_none() {
     let case = case(Predicate::Gestures { agent: H1.into(), gesture: Gesture::Wait });
     let mut run = recording(&[robot(), Walk::human(1, 4., 0.9, 0., 0.)], 20.0, 0.01);
-    event(&mut run, 9.0, EventKind::Gesture { agent: H1.into(), gesture: Some(Gesture::Wait) });
+    event(&mut run, 9.0, EventKind::Gesture { agent: H1.into(), gesture: Some(Gesture::Wait), to: None });
     assert_eq!(standing(&case, &run).0, Standing::NotTriggered);
     let says = recording(&[robot(), Walk::human(1, 4., 0.9, 0., 0.).says(9.0, 11.0, Gesture::Wait)], 20.0, 0.01);
     assert_eq!(standing(&case, &says).0, Standing::Holds);
@@ -119,7 +119,7 @@ fn an_act_of_the_log_without_its_motion_is_no_reaction() {
         let when = vec![Trigger::RobotNear(3.0)];
         let mut case = case(Predicate::Reacts { human: H1, when: when.clone(), act: act.clone(), within_s: 3.0 });
         case.plan.humans[0].rules =
-            vec![Rule { when, act: act.clone(), gesture: None, for_s: Some(5.0), latched: true }];
+            vec![Rule { when, act: act.clone(), for_s: Some(5.0), latched: true, ..Rule::default() }];
         case.plan.humans[0].relation = Relation::Static;
         let stands = Walk::human(1, 2., 0.9, 0., 0.).leaf(0.0, 1).leaf(8.8, leaf);
         let (found, evidence) = standing(&case, &recording(&[robot(), stands], 20.0, 0.01));

@@ -32,6 +32,34 @@ const FURTHER: [(&str, &str, &str); 3] = [
         "A worker comes towards the robot in the aisle, stops for 4 seconds when the robot is near and walks on",
     ),
 ];
+/// Forms for what no text shows surely: side, facing, steps, signs to somebody, ways by name.
+const FORMS: [(&str, &str); 5] = [
+    (
+        "side",
+        "location = \"office\"\ntask = \"Deliver a parcel\"\n[[human]]\nrelation = \"crossing\"\nside = \"left\"\n",
+    ),
+    (
+        "facing",
+        "location = \"hospital\"\ntask = \"Deliver a parcel\"\n[[human]]\nrelation = \"static\"\nplace = \"corridor\"\nfacing = \"robot\"\n\
+         [[human]]\nrelation = \"frontal\"\ndoes = [{ when = { robot_near = 5.0 }, act = \"change_pace\", pace = \"slow\" }]\n",
+    ),
+    (
+        "sign to somebody",
+        "location = \"hospital\"\ntask = \"Deliver a parcel\"\n[[human]]\nid = \"guard\"\nrelation = \"static\"\nplace = \"corridor\"\n\
+         does = [{ when = { robot_near = 6.0 }, say = \"WAIT\", to = \"visitor\" }]\n\
+         [[human]]\nid = \"visitor\"\nrelation = \"frontal\"\nplace = \"corridor\"\n",
+    ),
+    (
+        "turns back",
+        "location = \"office\"\ntask = \"Deliver a parcel\"\n[[human]]\nrelation = \"frontal\"\nplace = \"corridor\"\n\
+         does = [{ when = { robot_visible = 6.0 }, act = \"turn_back\" }]\n",
+    ),
+    (
+        "ways by name",
+        "location = \"hospital\"\ntask = \"Deliver a parcel\"\n[robot]\nstart = \"pharmacy\"\ngoal = \"ward 2\"\navoid = \"ward 1\"\n\
+         [[human]]\nrelation = \"static\"\nplace = \"corridor\"\n",
+    ),
+];
 /// Two things this near in time are in no order, s.
 const APART_SECS: f64 = 0.5;
 /// Somebody who ends this near to a node has reached it, m.
@@ -223,6 +251,9 @@ fn further(config: &Config) -> Result<Vec<Prepared>, Complaint> {
             "location = \"{place}\"\nsocial_context = \"An ordinary day\"\ntask = \"Deliver a parcel\"\nrough_scenario = \"{rough}\"\n"
         );
         found.push(prepare_text(name, &text, name, Path::new("."), None, config)?);
+    }
+    for (name, text) in FORMS {
+        found.push(prepare_text(name, text, name, Path::new("."), None, config)?);
     }
     Ok(found)
 }

@@ -481,7 +481,13 @@ fn moves_for(signals: &Signals<'_>, human: HumanId, action: &Action, (from, to):
             let facing = begin.robot.facing();
             most(Vector::new(-facing.y, facing.x), true) >= GOES_M
         }
-        Action::Navigate | Action::StandStill | Action::Block | Action::LookAtRobot => true,
+        Action::TurnBack | Action::GoTo { .. } => way_m() >= GOES_M,
+        Action::Navigate
+        | Action::StandStill
+        | Action::Block
+        | Action::LookAtRobot
+        | Action::LookAt(_)
+        | Action::ChangePace { .. } => true,
     }
 }
 

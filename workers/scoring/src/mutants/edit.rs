@@ -397,7 +397,9 @@ pub(super) fn swapped(run: &Recording, one: AgentId, other: AgentId, from_s: f64
             agent => agent,
         };
         let kind = match &event.kind {
-            EventKind::Gesture { agent, gesture } => EventKind::Gesture { agent: exchanged(*agent), gesture: *gesture },
+            EventKind::Gesture { agent, gesture, to } => {
+                EventKind::Gesture { agent: exchanged(*agent), gesture: *gesture, to: to.map(exchanged) }
+            }
             EventKind::Leaf { human, leaf } => match exchanged(AgentId::Human(*human)) {
                 AgentId::Human(human) => EventKind::Leaf { human, leaf: leaf.clone() },
                 AgentId::Robot => return None,

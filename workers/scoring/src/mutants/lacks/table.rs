@@ -1,6 +1,7 @@
 //! What is taken away from each clause, and what has no meaning for it and why: a row per predicate.
 
 use socrates_model::Predicate;
+use socrates_model::proposal::WayPart;
 
 use super::{Edit, Entry, Row, Whose};
 
@@ -62,6 +63,8 @@ rows! {
     CROSSES "crosses" Spoil(&[(Person, StandsFromStart), (Person, StandsThere)]), PERSON_ABSENT,
         Exempt("a way that crosses another crosses it as well when it is reflected or walked backwards"),
         PERSON_OFF_TIME, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    ON_SIDE "on_side" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    FACES "faces" STANDING, PERSON_ABSENT, Spoil(&[(Person, TurnedAbout)]), ALL_THE_TIME, PERSON_SWAPPED, NO_ACT;
     AHEAD "ahead" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     OVERTAKES "overtakes" PERSON_STOPS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     ROBOT_PASSES "robot_passes" Spoil(&[(Robot, StandsFromStart), (Robot, StandsFromEvidence)]), PERSON_ABSENT,
@@ -90,6 +93,19 @@ rows! {
         PERSON_TOO_LATE, PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
     REACTS "reacts" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAway), (Person, TowardsInstead)]), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
+    STEP "step" Exempt("many steps are done standing"), PERSON_ABSENT, Exempt("a step may go either way"), PERSON_TOO_LATE,
+        PERSON_SWAPPED, PERSON_LOG_WALKS;
+    GESTURES_TO "gestures_to" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAbout)]), PERSON_TOO_LATE, PERSON_SWAPPED,
+        Spoil(&[(Person, LogAlone)]);
+    TURNS_BACK "turns_back" PERSON_STANDS, PERSON_ABSENT, Exempt("a way there and back is the same walked backwards"),
+        PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    GOES_TO "goes_to" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    CHANGES_PACE "changes_pace" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
+    ROBOT_WAY "robot_way" ROBOT_STANDS, Spoil(&[(Robot, FarAway)]), EITHER_WAY, ROBOT_TOO_LATE, ROBOT_ALONE, ROBOT_LOG_STANDS;
+    ROBOT_STARTS "robot_starts" Exempt("a robot that stands at its start starts there"), Spoil(&[(Robot, FarAway)]),
+        Spoil(&[(Robot, Backwards)]), Exempt("it starts there whenever it sets off"), ROBOT_ALONE, NO_ACT;
+    ROBOT_AVOIDS "robot_avoids" Exempt("a robot that stands enters nothing"), Exempt("a robot that is far away enters nothing"), EITHER_WAY,
+        Exempt("it tells what the robot does at no time"), ROBOT_ALONE, Exempt("it tells what the robot does not do");
     GESTURES "gestures" PERSON_STANDS, PERSON_ABSENT, Exempt("a sign is the same to either side"), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogAlone)]);
     LEAVES "leaves" PERSON_STANDS, PERSON_ABSENT, PERSON_BACKWARDS, Spoil(&[(Person, OutOfTime), (Person, AlreadyDone)]),
@@ -149,6 +165,16 @@ pub const fn row(predicate: &Predicate) -> &'static Row {
         Predicate::MeetsAgain { .. } => &MEETS_AGAIN,
         Predicate::HeadOn { .. } => &HEAD_ON,
         Predicate::Crosses { .. } => &CROSSES,
+        Predicate::OnSide { .. } => &ON_SIDE,
+        Predicate::Faces { .. } => &FACES,
+        Predicate::Step { .. } => &STEP,
+        Predicate::GesturesTo { .. } => &GESTURES_TO,
+        Predicate::TurnsBack { .. } => &TURNS_BACK,
+        Predicate::GoesTo { .. } => &GOES_TO,
+        Predicate::ChangesPace { .. } => &CHANGES_PACE,
+        Predicate::RobotWay { part: WayPart::Start, .. } => &ROBOT_STARTS,
+        Predicate::RobotWay { part: WayPart::Avoid, .. } => &ROBOT_AVOIDS,
+        Predicate::RobotWay { .. } => &ROBOT_WAY,
         Predicate::Ahead { .. } => &AHEAD,
         Predicate::Overtakes { .. } => &OVERTAKES,
         Predicate::RobotPasses { .. } => &ROBOT_PASSES,
