@@ -36,12 +36,39 @@ pub async fn demo(talk: &Printer, config: &Config, options: &RunOptions) -> Resu
     single_or_batch(talk, config, options, vec![prepared]).await
 }
 
-/// Prints how a request is read, and runs nothing.
-pub fn read(talk: &Printer, config: &Config, request: &Path) -> Result<(), Complaint> {
+/// Prints how a request is read, and runs nothing; with `write`, puts what was read as a form under the text.
+pub fn read(talk: &Printer, config: &Config, request: &Path, write: bool) -> Result<(), Complaint> {
     let prepared = prepare(request, None, config)?;
     print_reading(talk, &prepared);
-    talk.result(&json!({ "reading": prepared.reading }));
+    let form = write.then(|| write_form(talk, request, &prepared)).transpose()?;
+    talk.result(&json!({ "reading": prepared.reading, "form": form }));
     Ok(())
+}
+
+/// Puts the form of the text at the end of the request file.
+fn write_form(talk: &Printer, file: &Path, prepared: &Prepared) -> Result<String, Complaint> {
+    let shown = file.display().to_string();
+    if !prepared.request.form.is_empty() {
+        let what = format!("the request `{shown}` states its people already");
+        return Err(Complaint::input(what, "correct its [[human]] tables, or take them out to write them anew"));
+    }
+    if prepared.reading.humans.is_empty() {
+        let what = format!("the request `{shown}` names nobody of whom a form could be written");
+        return Err(Complaint::input(what, "say in rough_scenario who is there; docs/form.md shows the tables"));
+    }
+    let form = socrates_offline::form_of(&prepared.request, &prepared.location);
+    let text = crate::files::text(file, u64::MAX, "a request")?;
+    let whole = format!("{}\n{form}", text.trim_end());
+    // What is written must be a request, or it is not written.
+    socrates_model::Request::of_toml(&whole, None).map_err(|problems| {
+        let mut complaint =
+            Complaint::input("the form of this text is no request", "state it by hand, see docs/form.md");
+        complaint.causes = problems.iter().map(|bad| bad.told(&shown)).collect();
+        complaint.with_code(Code::Ours)
+    })?;
+    crate::files::write(file, whole.as_bytes())?;
+    talk.line(&format!("wrote      {shown} · the form under its text; what it states wins over the text"));
+    Ok(form)
 }
 
 /// Runs request files.

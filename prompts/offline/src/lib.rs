@@ -175,6 +175,13 @@ pub fn understood(request: &Request, location: &Location) -> Reading {
     understand::understand(request, location).reading
 }
 
+/// What a text was read as, as the tables of a form: it can stand under the text in the request, be corrected there, and then wins
+/// over it. How somebody stands to the robot's way, where the text leaves it open, is chosen as the author would.
+#[must_use]
+pub fn form_of(request: &Request, location: &Location) -> String {
+    statements::form(request, location)
+}
+
 /// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.
 #[must_use]
 pub fn settled_by(request: &Request, location: &Location) -> Vec<&'static str> {

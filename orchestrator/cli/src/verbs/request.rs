@@ -30,10 +30,13 @@ impl New {
 pub(crate) struct Read {
     /// Request file.
     request: PathBuf,
+    /// Write what was read as a form under the text, to be corrected there; it then wins over the text.
+    #[arg(long)]
+    write: bool,
 }
 
 impl Read {
     pub(super) fn act(&self, talk: &Printer, config: &Config) -> Outcome {
-        done(run::read(talk, config, &self.request))
+        done(run::read(talk, config, &self.request, self.write))
     }
 }

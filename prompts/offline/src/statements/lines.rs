@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use socrates_model::{FactKind, HumanId, Location, Reading, Rule, Trigger};
 
+use super::written::inline;
 use crate::spot;
 use crate::story::Story;
 use crate::task::{self, Task};
@@ -161,9 +162,4 @@ fn moment(when: &Trigger, exact: bool) -> String {
         Some(_) if !exact => inline(&when.clone().at_distance(0.0)).replace("0.0", "…"),
         Some(_) | None => inline(when),
     }
-}
-
-/// A value of the model as it stands within a line of TOML.
-fn inline<T: serde::Serialize>(value: &T) -> String {
-    toml::Value::try_from(value).map(|value| value.to_string()).unwrap_or_default()
 }

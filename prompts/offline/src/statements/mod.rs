@@ -15,6 +15,7 @@ mod lines;
 mod rewording;
 mod text;
 mod words;
+mod written;
 
 use socrates_model::fault::Span;
 use socrates_model::statement::{Background, Became, Statement, TextKey};
@@ -26,6 +27,7 @@ use influence::Influence;
 pub(crate) use lines::{Line, lines};
 use text::Token;
 use words::Kind;
+pub(crate) use written::form;
 
 /// Something that was understood, and is not played as it was said.
 #[derive(Debug, Clone, PartialEq)]

@@ -405,6 +405,7 @@ pub(super) fn swapped(run: &Recording, one: AgentId, other: AgentId, from_s: f64
                 AgentId::Robot => return None,
             },
             EventKind::Sees { .. }
+            | EventKind::StepEnded { .. }
             | EventKind::Encounter { .. }
             | EventKind::Contact { .. }
             | EventKind::WallContact { .. }
