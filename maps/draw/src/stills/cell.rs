@@ -235,5 +235,5 @@ fn told_of_all(scene: &Scene<'_>, times: &[f64]) -> (String, [String; 2]) {
     let after = scene.happened(times.last().copied().unwrap_or(0.0), f64::INFINITY);
     let after = if after.is_empty() { String::new() } else { format!("after the last picture: {}", after.join(", ")) };
     let head = format!("all ways, 0 to {:.1} s", scene.end_s());
-    (head, ["white: where they start; dark: where they end; dots: at the times of the pictures".to_owned(), after])
+    (head, ["white: start; dark: end; dots: at the times of the pictures".to_owned(), after])
 }

@@ -79,12 +79,12 @@ fn draw_signs(svg: &mut Svg, top: f64) {
     x = words(svg, (x + 30.0, top), "the tip shows where they face");
     svg.line((x, y), (x + 26.0, y), &format!("stroke=\"{ink}\" stroke-width=\"3\""));
     draw_arrow(svg, (x + 26.0, y), 0.0, ink);
-    x = words(svg, (x + 42.0, top), "walks: the way of the next second; without an arrow: stands");
+    x = words(svg, (x + 42.0, top), "walks: their next second; no arrow: stands");
     svg.line((x, y), (x + 34.0, y), &format!("stroke=\"{ink}\" stroke-width=\"3\" stroke-opacity=\"0.6\""));
     for dot in [0.0, 17.0, 34.0] {
         svg.circle((x + dot, y), 2.6, &format!("fill=\"{ink}\""));
     }
-    x = words(svg, (x + 44.0, top), "way since the picture before, a dot each second");
+    x = words(svg, (x + 44.0, top), "way since the last picture, a dot each second");
     svg.line((x, y), (x + 26.0, y), &format!("stroke=\"{}\" stroke-width=\"4\"", palette::DOOR));
     x = words(svg, (x + 34.0, top), "closed door");
     svg.rect((x, y - 9.0), (46.0, 18.0), "rx=\"4\" fill=\"#fff4d6\" stroke=\"#b07a00\" stroke-width=\"1.5\"");

@@ -286,7 +286,7 @@ impl Figures {
             ));
         }
         for (words, runs) in &self.sentences {
-            talk.line(&format!("missing    {} times \"{words}\" ({})", runs.len(), runs.join(", ")));
+            talk.line(&format!("missing    {}× \"{words}\" ({})", runs.len(), runs.join(", ")));
         }
         self.say_controls(talk);
     }
