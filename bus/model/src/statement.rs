@@ -5,7 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::fault::Span;
+use crate::fault::{Message, Span};
 
 /// A text of the request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
@@ -92,7 +92,7 @@ pub enum Became {
     /// It was understood, and is not played.
     NotPlayed {
         /// Why, and what is played instead.
-        why: String,
+        why: Message,
     },
     /// It was not understood.
     NotRead {
@@ -157,7 +157,7 @@ impl Statement {
             Became::Read { lines, .. } if lines.is_empty() => "goes with the rest".to_owned(),
             Became::Read { lines, .. } => lines.join("; "),
             Became::Background(reason) => reason.name().to_owned(),
-            Became::NotPlayed { why } => why.clone(),
+            Became::NotPlayed { why } => why.to_string(),
             Became::NotRead { rewording: Some(other) } => format!("would be read: `{other}`"),
             Became::NotRead { rewording: None } => "say it in other words, or as a form".to_owned(),
         }

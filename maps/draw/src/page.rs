@@ -107,7 +107,7 @@ impl Page<'_> {
             out.push_str(&format!("<dt>{name}</dt><dd class=\"said\">{}</dd>", escape(text.trim())));
         }
         if !self.reading.statements.is_empty() {
-            out.push_str(&format!("<dt>What became of it</dt><dd>{}</dd>", self.statements_html()));
+            out.push_str(&format!("<dt>Wishes</dt><dd>{}</dd>", self.statements_html()));
         }
         let notes: BTreeSet<&str> = self.reading.notes.iter().chain(&self.proposal.notes).map(String::as_str).collect();
         for note in notes {
@@ -128,7 +128,7 @@ impl Page<'_> {
             format!("<tr{class}><td><q>{quote}</q></td><td>{}</td><td>{told}</td></tr>", statement.fate())
         };
         let rows: String = self.reading.statements.iter().map(row).collect();
-        format!("<table class=\"statements\"><tr><th>words</th><th>are</th><th></th></tr>{rows}</table>")
+        format!("<table class=\"statements\"><tr><th>words</th><th></th><th></th></tr>{rows}</table>")
     }
 
     fn people_html(&self) -> String {

@@ -90,7 +90,7 @@ impl Scene<'_> {
             found = Some((found.map_or(now, |(first, _)| first), now));
         }
         // One moment alone is no span to take stills of.
-        found.filter(|(first, last)| last - first > 1.0).unwrap_or((0.0, self.end_s()))
+        found.filter(|(first, last)| last - first > 1.0).unwrap_or_else(|| (0.0, self.end_s()))
     }
 
     /// The way of somebody between two times, cut where they are not there.

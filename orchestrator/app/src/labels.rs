@@ -100,7 +100,7 @@ fn too_many(runs: usize) -> Complaint {
 fn texts(request: &Request) -> Vec<(&'static str, String)> {
     let form = form_lines(request);
     let rough = request.rough_scenario.as_deref().map(str::trim).filter(|text| !text.is_empty());
-    let asked = rough.unwrap_or_else(|| if form.is_empty() { "nothing in particular" } else { "" });
+    let asked = rough.unwrap_or(if form.is_empty() { "nothing in particular" } else { "" });
     [
         ("Social context", request.social_context.trim().to_owned()),
         ("Task of the robot", request.task.trim().to_owned()),

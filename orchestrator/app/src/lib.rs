@@ -82,5 +82,7 @@ mod variants;
 pub mod video;
 mod wanted;
 pub mod watch;
+#[cfg(test)]
+mod wishes_tests;
 mod words;
 mod work;

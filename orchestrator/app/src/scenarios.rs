@@ -177,7 +177,6 @@ mod tests {
                 "A worker blocks the robot. When it says excuse me, he waits 5 seconds and then steps aside.",
             ),
             ("hospital", "A nurse stands still. When the robot says follow me, she follows it."),
-            ("office", "A nurse looks at the robot when it says excuse me, for 4 seconds, and then steps aside."),
         ] {
             let place = socrates_maps::shipped::load(location).unwrap();
             let asked =

@@ -4,7 +4,7 @@ use socrates_model::{FactKind, Fault, FaultCode, HumanId, Location, PlaceClass, 
 
 use crate::clause::Found;
 use crate::cut::Stretch;
-use crate::lexicon::Act;
+use crate::lexicon::{Act, lexicon};
 use crate::place;
 use crate::story::{Story, Subject, Thread};
 use crate::words::{Piece, Word};
@@ -197,4 +197,20 @@ pub(crate) fn fact(
     }
     let place = again.place.filter(|class| through(*class));
     Some((quote.clone(), FactKind::MeetsTimes { human, times: 2, place }))
+}
+
+/// Notes of a sentence which words some rule read, and which content words none did.
+pub(crate) fn leftover(story: &mut Story, sentence: &[Stretch], text: &str) {
+    for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
+        if !word.unread() && word.to > word.from {
+            story.used.push(word.from..word.to);
+        }
+        let often = how_often(word, text);
+        let known = often.is_none()
+            && (lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot");
+        let said = often.unwrap_or(&word.text);
+        if word.unread() && !known && !story.ignored.iter().any(|word| word == said) {
+            story.ignored.push(said.to_owned());
+        }
+    }
 }

@@ -164,9 +164,9 @@ pub const NAME: &str = "offline/1";
 /// [`Reading::problems`]; what became of every clause in [`Reading::statements`]; assumptions in [`Reading::notes`].
 #[must_use]
 pub fn read(request: &Request, location: &Location) -> Reading {
-    let whole = understand::understand(request, location);
-    let statements = statements::statements(request, location, &whole);
-    Reading { statements, ..whole.reading }
+    let reading = understand::understand(request, location).reading;
+    let statements = statements::statements(request, location, &reading);
+    Reading { statements, ..reading }
 }
 
 /// The same without [`Reading::statements`], at a fiftieth of the time: for those who only need what was understood.

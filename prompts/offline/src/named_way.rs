@@ -163,7 +163,7 @@ mod tests {
             ),
             (
                 "Bring mail to the meeting room and do not enter the kitchen",
-                vec![one(WayPart::Goal, "meeting room"), one(WayPart::Avoid, "kitchen")],
+                vec![one(WayPart::Avoid, "kitchen"), one(WayPart::Goal, "meeting room")],
             ),
             (
                 "Drive to the reception past the kitchen",

@@ -1,10 +1,11 @@
 //! What the text says of the robot.
 
-use socrates_model::{PlaceClass, Relation};
+use socrates_model::{AgentId, HumanId, PlaceClass, Relation};
 
 use crate::clause::Found;
 use crate::deed::{self, Around};
 use crate::lexicon::Act;
+use crate::order;
 use crate::relation;
 use crate::story::Story;
 
@@ -23,6 +24,13 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
     };
     if matches!(act, Act::Walk | Act::Pass | Act::Toward | Act::Approach | Act::Cross) {
         story.on_its_way.push(act);
+    }
+    // `…, so that the robot goes first`
+    if matches!(act, Act::Walk | Act::GoOn | Act::Pass | Act::Cross)
+        && quote.to_lowercase().ends_with(" first")
+        && story.cast.people.len() == 1
+    {
+        order::state(&mut story.order, (AgentId::Robot, HumanId::new(1).into()), false, quote);
     }
     match act {
         // Who has the robot behind walks ahead of it.

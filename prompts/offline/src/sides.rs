@@ -131,11 +131,11 @@ fn said(stretch: &Stretch) -> Option<Said> {
             return Some(Said { side: found, words: (prep..=to).chain([next]).chain(what..=what).collect() });
         }
         // `the left door`, `the right moment`
-        let free = !open && text(next).is_empty()
-            || !open
-                && (lexicon().stop.contains(text(next))
-                    || lexicon().verbs.contains(stem(next))
-                    || stem(next) == "robot");
+        let free = !open
+            && (text(next).is_empty()
+                || lexicon().stop.contains(text(next))
+                || lexicon().verbs.contains(stem(next))
+                || stem(next) == "robot");
         if free {
             return Some(Said { side: found, words: (prep..=to).collect() });
         }

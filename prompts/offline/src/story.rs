@@ -104,18 +104,7 @@ pub(crate) fn read_on(mut story: Story, sentences: Vec<Vec<Stretch>>, text: &str
                 format!("`{quote}` says when, but no reaction that was read waits for it; say who does what then (stop, look, follow, give way, gesture)"),
             ).about([quote.as_str()]).with(Payload::TriggerAlone));
         }
-        for word in sentence.iter().flat_map(|stretch| stretch.words.iter().chain(&stretch.also)) {
-            if !word.unread() && word.to > word.from {
-                story.used.push(word.from..word.to);
-            }
-            let often = again::how_often(word, text);
-            let known = often.is_none()
-                && (lexicon().stop.contains(&word.text) || lexicon().stop.contains(&word.stem) || word.stem == "robot");
-            let said = often.unwrap_or(&word.text);
-            if word.unread() && !known && !story.ignored.iter().any(|word| word == said) {
-                story.ignored.push(said.to_owned());
-            }
-        }
+        again::leftover(&mut story, &sentence, text);
     }
     story
 }

@@ -7,6 +7,7 @@ use socrates_model::{
 };
 use socrates_prompts::Question;
 
+pub(crate) use crate::statements::loose;
 use crate::{Offline, read, summary};
 
 fn says(fault: &Fault, words: &str) -> bool {
@@ -33,22 +34,6 @@ fn blank(task: &str) -> Request {
         paths: None,
         behaviors: None,
     }
-}
-
-/// Words of the rough scenario of which nothing was made, in lower case and without those that only join others.
-pub(crate) fn loose(reading: &Reading) -> Vec<String> {
-    let made = |statement: &&socrates_model::Statement| {
-        !matches!(statement.became, socrates_model::statement::Became::Read { .. })
-            && statement.at == socrates_model::statement::TextKey::RoughScenario
-    };
-    let words = reading
-        .statements
-        .iter()
-        .filter(made)
-        .flat_map(|statement| statement.quote.split(|c: char| !c.is_alphanumeric()));
-    let words =
-        words.map(str::to_lowercase).filter(|word| !word.is_empty() && !crate::lexicon::lexicon().stop.contains(word));
-    words.collect()
 }
 
 pub(crate) fn map(name: &str) -> Location {

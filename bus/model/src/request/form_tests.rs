@@ -112,6 +112,19 @@ fn everything_that_is_wrong_with_a_form_is_said_at_once() {
             &format!("{human}reacts = [{{ when = \"always\", act = \"block\", until = \"robot_passed\" }}]\n"),
             "`human.reacts.until`: belongs to steps of `does`",
         ),
+    ] {
+        let problems = read(more).err().unwrap_or_else(|| panic!("{more} is taken"));
+        assert!(problems.iter().any(|problem| problem.contains(wanted)), "{wanted}\n{problems:#?}");
+    }
+    let all = read("[[human]]\nrelation = \"sideways\"\ncount = 0\n[expect]\nhumans = 0\n").unwrap_err();
+    assert_eq!(all.len(), 3, "{all:#?}");
+}
+
+#[test]
+fn what_else_is_wrong_with_a_form_is_said_too() {
+    let human = "[[human]]\nrelation = \"static\"\n";
+    for (more, wanted) in [
+        ("human = 3\n", "`human`: is a number (a table for each: [[human]])"),
         (
             &format!("{human}does = [{{ when = {{ did = [\"human_1\", 3] }}, act = \"block\" }}]\n"),
             "`human_1` has no step 3 (1 to 1)",
@@ -158,14 +171,11 @@ fn everything_that_is_wrong_with_a_form_is_said_at_once() {
         (&format!("{human}[robot]\ndoes = [{{ hold_s = 100 }}]\n"), "`robot.does.hold_s`: 100 s is out of range"),
         (&format!("{human}[robot]\ndoes = [{{ say = \"WAIT\", hold_s = 1 }}]\n"), "does several things at once"),
         (&format!("{human}[robot]\ndoes = [{{ follow = \"ghost\" }}]\n"), "`ghost` is nobody"),
-        ("human = 3\n", "`human`: is a number (a table for each: [[human]])"),
         ("[[human]]\nrelation = \"static\"\ndoes = 3\n", "`human.does`: is a number"),
     ] {
         let problems = read(more).err().unwrap_or_else(|| panic!("{more} is taken"));
         assert!(problems.iter().any(|problem| problem.contains(wanted)), "{wanted}\n{problems:#?}");
     }
-    let all = read("[[human]]\nrelation = \"sideways\"\ncount = 0\n[expect]\nhumans = 0\n").unwrap_err();
-    assert_eq!(all.len(), 3, "{all:#?}");
 }
 
 #[test]

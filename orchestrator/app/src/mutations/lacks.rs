@@ -33,7 +33,7 @@ const FURTHER: [(&str, &str, &str); 3] = [
     ),
 ];
 /// Forms for what no text shows surely: side, facing, steps, signs to somebody, ways by name.
-const FORMS: [(&str, &str); 5] = [
+const FORMS: [(&str, &str); 6] = [
     (
         "side",
         "location = \"office\"\ntask = \"Deliver a parcel\"\n[[human]]\nrelation = \"crossing\"\nside = \"left\"\n",
@@ -51,8 +51,13 @@ const FORMS: [(&str, &str); 5] = [
     ),
     (
         "turns back",
-        "location = \"office\"\ntask = \"Deliver a parcel\"\n[[human]]\nrelation = \"frontal\"\nplace = \"corridor\"\n\
-         does = [{ when = { robot_visible = 6.0 }, act = \"turn_back\" }]\n",
+        "location = \"hospital\"\ntask = \"Drive to the exit\"\n[[human]]\nrole = \"visitor\"\nrelation = \"frontal\"\nplace = \"corridor\"\n\
+         does = [{ when = { robot_near = 4.0 }, act = \"look_at_robot\", for_s = 2 }, { act = \"turn_back\" }]\n",
+    ),
+    (
+        "goes to a place",
+        "location = \"warehouse\"\ntask = \"Carry a box through the packing area\"\n[[human]]\nrole = \"picker\"\nrelation = \"frontal\"\n\
+         does = [{ when = { robot_visible = 4.0 }, act = { go_to = \"packing area\" } }]\n",
     ),
     (
         "ways by name",

@@ -1,7 +1,5 @@
 //! What was understood, as lines of a form: what a word of a text does shows in them, whichever rule read it.
 
-use std::fmt::Write as _;
-
 use socrates_model::{FactKind, HumanId, Location, Reading, Rule, Trigger};
 
 use super::written::inline;
@@ -141,18 +139,18 @@ fn rule_text(rule: &Rule, exact: bool) -> String {
     match timed.as_slice() {
         [] => {}
         [one] => {
-            let _ = write!(text, "when = {one}, ");
+            text.push_str(&format!("when = {one}, "));
         }
         all => {
-            let _ = write!(text, "when = [{}], ", all.join(", "));
+            text.push_str(&format!("when = [{}], ", all.join(", ")));
         }
     }
-    let _ = write!(text, "act = {}", inline(&rule.act));
+    text.push_str(&format!("act = {}", inline(&rule.act)));
     if let Some(secs) = rule.for_s {
-        let _ = write!(text, ", for_s = {secs}");
+        text.push_str(&format!(", for_s = {secs}"));
     }
     if let Some(gesture) = rule.gesture {
-        let _ = write!(text, ", say = \"{gesture}\"");
+        text.push_str(&format!(", say = \"{gesture}\""));
     }
     text
 }

@@ -17,7 +17,7 @@ mod text;
 mod words;
 mod written;
 
-use socrates_model::fault::Span;
+use socrates_model::fault::{Message, Span};
 use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{Fault, Location, Reading, Request};
 
@@ -51,19 +51,31 @@ enum Fate {
     Joins,
     Read,
     Background(Background),
-    NotPlayed(String),
+    NotPlayed(Message),
     NotRead,
 }
 
 /// Accounts for every text of a request.
-pub(crate) fn statements(request: &Request, location: &Location, whole: &Understood) -> Vec<Statement> {
+pub(crate) fn statements(request: &Request, location: &Location, reading: &Reading) -> Vec<Statement> {
+    // What `[expect]` and a form say wins over the text: only without them a text shows what was read of it.
+    let text_alone = Request {
+        expect: socrates_model::request::Expect::default(),
+        form: socrates_model::form::Form::default(),
+        ..request.clone()
+    };
+    let whole = &understood(&text_alone, location, true);
     let mut found = Vec::new();
     for key in TextKey::ALL {
         let text = text_of(request, key);
-        if key == TextKey::RoughScenario && !request.form.is_empty() {
-            found.extend(whole_text(key, text));
-        } else if !text.trim().is_empty() {
-            found.extend(Account::new(request, location, whole, key).statements());
+        if !text.trim().is_empty() {
+            found.extend(Account::new(&text_alone, location, (whole, reading), key).statements());
+        }
+    }
+    // What a form states takes the place of what was read of the text; what was not read, or is not played, is still missing.
+    let stated = !request.form.is_empty();
+    for statement in found.iter_mut().filter(|statement| stated && statement.at == TextKey::RoughScenario) {
+        if let Became::Read { lines, facts } = &mut statement.became {
+            (*lines, *facts) = (vec!["as the form states".to_owned()], Vec::new());
         }
     }
     for statement in &mut found {
@@ -71,16 +83,6 @@ pub(crate) fn statements(request: &Request, location: &Location, whole: &Underst
             statement.is_unplayed() && request.waive.iter().any(|quote| gives_up(quote, statement, request));
     }
     found
-}
-
-/// One statement for a text beside a form: what the form states is played, and where the text differs is noted elsewhere.
-fn whole_text(key: TextKey, text: &str) -> Option<Statement> {
-    let quote = text.trim();
-    let before = text.chars().take_while(|c| c.is_whitespace()).count();
-    let chars = |count: usize| u32::try_from(count).unwrap_or(u32::MAX);
-    let span = Span { from: chars(before), to: chars(before + quote.chars().count()) };
-    let became = Became::Read { lines: vec!["as the form states".to_owned()], facts: Vec::new() };
-    (!quote.is_empty()).then(|| Statement { at: key, span, quote: quote.to_owned(), became, waived: false })
 }
 
 /// A text of the request.
@@ -112,6 +114,8 @@ struct Account<'a> {
     request: &'a Request,
     location: &'a Location,
     whole: &'a Understood,
+    /// The reading, of which the facts are told.
+    reading: &'a Reading,
     key: TextKey,
     text: &'a str,
     tokens: Vec<Token>,
@@ -120,7 +124,12 @@ struct Account<'a> {
 }
 
 impl<'a> Account<'a> {
-    fn new(request: &'a Request, location: &'a Location, whole: &'a Understood, key: TextKey) -> Self {
+    fn new(
+        request: &'a Request,
+        location: &'a Location,
+        (whole, reading): (&'a Understood, &'a Reading),
+        key: TextKey,
+    ) -> Self {
         let text = text_of(request, key);
         let tokens = text::tokens(text);
         let kinds = words::kinds(&tokens, location);
@@ -128,7 +137,7 @@ impl<'a> Account<'a> {
         let used = tokens.iter().map(|token| key == TextKey::RoughScenario && touched(token, &whole.used)).collect();
         let again = influence::Text { text, tokens: &tokens, kinds: &kinds, used, whole: &whole.lines, read: &read };
         let influence = again.influence();
-        Self { request, location, whole, key, text, tokens, kinds, influence }
+        Self { request, location, whole, reading, key, text, tokens, kinds, influence }
     }
 
     fn reads(&self, text: &str) -> Vec<Line> {
@@ -159,7 +168,7 @@ impl<'a> Account<'a> {
             return if instructs {
                 Fate::Background(Background::Instruction)
             } else {
-                Fate::NotPlayed(problem.message.to_string())
+                Fate::NotPlayed(problem.message.clone())
             };
         }
         if self.kinds.get(place).is_none_or(|kind| *kind == Kind::Connective) {
@@ -177,7 +186,7 @@ impl<'a> Account<'a> {
         match around.reason(place) {
             Some(Background::Comment) => Fate::Background(Background::Comment),
             reason => match (self.unplayed(place), reason) {
-                (Some(unplayed), _) => Fate::NotPlayed(unplayed.why.clone()),
+                (Some(unplayed), _) => Fate::NotPlayed(unplayed.why.as_str().into()),
                 (None, Some(reason)) => Fate::Background(reason),
                 (None, None) => Fate::NotRead,
             },
@@ -264,7 +273,7 @@ impl<'a> Account<'a> {
         let own: Vec<&Line> = numbers.filter_map(|line| self.whole.lines.get(*line)).collect();
         let fact = |line: &&Line| {
             let kind = line.fact.as_ref()?;
-            self.whole.reading.facts.iter().find(|fact| fact.kind == *kind).map(|fact| fact.id.clone())
+            self.reading.facts.iter().find(|fact| fact.kind == *kind).map(|fact| fact.id.clone())
         };
         let facts = own.iter().filter_map(fact).collect();
         (own.iter().filter(|line| line.shown).map(|line| line.text.clone()).collect(), facts)
@@ -312,4 +321,21 @@ pub(crate) fn unread(reading: &Reading) -> Vec<&str> {
         }
     }
     words
+}
+
+/// Words of the rough scenario of which nothing was made, in lower case and without those that only join others.
+#[cfg(test)]
+pub(crate) fn loose(reading: &Reading) -> Vec<String> {
+    let made = |statement: &&socrates_model::Statement| {
+        !matches!(statement.became, socrates_model::statement::Became::Read { .. })
+            && statement.at == socrates_model::statement::TextKey::RoughScenario
+    };
+    let words = reading
+        .statements
+        .iter()
+        .filter(made)
+        .flat_map(|statement| statement.quote.split(|c: char| !c.is_alphanumeric()));
+    let words =
+        words.map(str::to_lowercase).filter(|word| !word.is_empty() && !crate::lexicon::lexicon().stop.contains(word));
+    words.collect()
 }

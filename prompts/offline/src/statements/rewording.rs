@@ -65,7 +65,7 @@ fn instead(account: &Account<'_>, clause: &[usize]) -> Option<String> {
         let says = tokens(&text);
         (account.reads(&text) != account.whole.lines && !says.is_empty()).then(|| format!("{subject} {deed}"))
     };
-    INSTEAD.iter().find_map(|deed| tried(&deed))
+    INSTEAD.iter().find_map(tried)
 }
 
 /// First and last byte of a clause.

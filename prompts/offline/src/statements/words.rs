@@ -127,6 +127,13 @@ fn kind(tokens: &[Token], place: usize, location: &Location) -> Kind {
     if word == "moment" && matches!(before, "the" | "this" | "that") || word == "soon" && before == "as" {
         return Kind::Connective;
     }
+    // Doors open by themselves for whoever comes near.
+    let door = |word: &str| matches!(word, "door" | "doors" | "elevator" | "lift");
+    let opens = |word: &str| matches!(word, "open" | "opens" | "opened" | "opening");
+    let next = place.checked_add(1).and_then(|k| tokens.get(k)).map_or("", |token| token.lower.as_str());
+    if opens(word) && door(before) || matches!(word, "door" | "doors") && opens(next) {
+        return Kind::Connective;
+    }
     // `the other one`, `the two`: those of whom was spoken.
     let definite = matches!(before, "the" | "these" | "those" | "all" | "both");
     let named = matches!(before, "other" | "this" | "that" | "each" | "every" | "which" | "same")

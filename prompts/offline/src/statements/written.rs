@@ -3,8 +3,6 @@
 //! Only what was read is written, and of how somebody stands to the robot's way what the author would choose, as a form has to say
 //! that. Whether a form says the same as the text that it comes of is not taken for granted: tests read it again.
 
-use std::fmt::Write as _;
-
 use socrates_model::rule::RobotDo;
 use socrates_model::{FactKind, Location, Reading, Relation, Request, RobotRule, Rule, Trigger};
 use socrates_prompts::Question;
@@ -29,11 +27,11 @@ pub(crate) fn form(request: &Request, location: &Location) -> String {
         let relation = human.relation.or_else(|| proposed.humans.get(at).map(|human| human.relation));
         let mut table = String::new();
         if human.role != "person" {
-            let _ = writeln!(table, "role = {}", quoted(&human.role));
+            table.push_str(&format!("role = {}\n", quoted(&human.role)));
         }
         table.push_str(&stands(reading, human.id, relation.unwrap_or(Relation::Frontal), &extra, place.as_deref()));
         if let Some(group) = human.group {
-            let _ = writeln!(table, "group = \"{group}\"");
+            table.push_str(&format!("group = \"{group}\"\n"));
         }
         table.push_str(&steps(&human.rules));
         match tables.last_mut() {
@@ -41,16 +39,27 @@ pub(crate) fn form(request: &Request, location: &Location) -> String {
             Some(_) | None => tables.push((table, 1)),
         }
     }
-    let mut text = String::new();
+    let mut text = missing(request, location);
     for (table, count) in tables {
         text.push_str("\n[[human]]\n");
         if count > 1 {
-            let _ = writeln!(text, "count = {count}");
+            text.push_str(&format!("count = {count}\n"));
         }
         text.push_str(&table);
     }
     orders(reading, &mut text);
     robot(reading, &proposed.robot.script, request, &mut text);
+    text
+}
+
+/// What of the text is not in the form, as comments: it is still missing in the run until it is stated, deleted or waived.
+fn missing(request: &Request, location: &Location) -> String {
+    let reading = crate::read(request, location);
+    let mut text = String::new();
+    for statement in reading.statements.iter().filter(|statement| statement.is_missing()) {
+        let quote = statement.quote.split_whitespace().collect::<Vec<_>>().join(" ");
+        text.push_str(&format!("\n# {}, so not in this form: \"{quote}\"\n", statement.fate()));
+    }
     text
 }
 
@@ -73,28 +82,29 @@ fn stands(
 ) -> String {
     let mut text = format!("relation = \"{}\"\n", relation.name());
     for fact in &reading.facts {
-        match &fact.kind {
-            FactKind::Side { human, side } if *human == id => {
-                let _ = writeln!(text, "side = {}", inline(side));
-            }
-            FactKind::Facing { human, facing } if *human == id => {
-                let _ = writeln!(text, "facing = {}", inline(facing));
-            }
-            _ => {}
+        if let FactKind::Side { human, side } = &fact.kind
+            && *human == id
+        {
+            text.push_str(&format!("side = {}\n", inline(side)));
+        }
+        if let FactKind::Facing { human, facing } = &fact.kind
+            && *human == id
+        {
+            text.push_str(&format!("facing = {}\n", inline(facing)));
         }
     }
     let indoors = matches!(relation, Relation::Leaving | Relation::Staying);
     if let Some(place) = place {
-        let _ = writeln!(text, "place = {}", quoted(place));
+        text.push_str(&format!("place = {}\n", quoted(place)));
     }
     if let Some(start) = extra.start.filter(|start| indoors && place != Some(start.name())) {
-        let _ = writeln!(text, "start = \"{}\"", start.name());
+        text.push_str(&format!("start = \"{}\"\n", start.name()));
     }
     if let Some(goal) = extra.goal {
-        let _ = writeln!(text, "goal = \"{}\"", goal.name());
+        text.push_str(&format!("goal = \"{}\"\n", goal.name()));
     }
     if let Some(mps) = extra.speed_mps {
-        let _ = writeln!(text, "pace = {mps:?}");
+        text.push_str(&format!("pace = {mps:?}\n"));
     }
     text
 }
@@ -143,10 +153,10 @@ fn step(rule: &Rule, standing: bool) -> String {
 fn orders(reading: &Reading, text: &mut String) {
     for fact in &reading.facts {
         let FactKind::Before { first, then, at_door } = &fact.kind else { continue };
-        let _ = write!(text, "\n[[order]]\nfirst = \"{first}\"\nthen = \"{then}\"\n");
+        text.push_str(&format!("\n[[order]]\nfirst = \"{first}\"\nthen = \"{then}\"\n"));
         if *at_door {
             let class = reading.place.map_or("room", |class| class.name());
-            let _ = writeln!(text, "at = \"{class}\"");
+            text.push_str(&format!("at = \"{class}\"\n"));
         }
     }
 }
@@ -168,9 +178,9 @@ fn robot(reading: &Reading, script: &[RobotRule], request: &Request, text: &mut 
     }
     let own = request.robot != socrates_model::request::RobotRequest::default();
     let mark = if own { "# " } else { "" };
-    let _ = write!(text, "\n{mark}[robot]\n");
+    text.push_str(&format!("\n{mark}[robot]\n"));
     for line in lines {
-        let _ = writeln!(text, "{mark}{line}");
+        text.push_str(&format!("{mark}{line}\n"));
     }
 }
 

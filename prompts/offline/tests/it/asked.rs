@@ -4,7 +4,7 @@
 use serde::Deserialize;
 use socrates_model::proposal::Facing;
 use socrates_model::reading::ReadHuman;
-use socrates_model::statement::TextKey;
+use socrates_model::statement::{Became, TextKey};
 use socrates_model::{Action, FactKind, Gesture, HumanId, PlaceClass, Reading, Relation, Request, Rule, Statement};
 
 use crate::corpus;
@@ -38,6 +38,8 @@ struct Look {
     right: usize,
     /// Not right, but words of its wish stand among what was not read, not played or contradicted.
     said: usize,
+    /// Not right, but every word of its wish stands beside what it became, which is something else.
+    otherwise: usize,
     /// Not right, and nothing was said.
     lost: usize,
     /// Right, though words of its wish are said not to be read or played.
@@ -99,21 +101,7 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
             gesture.parse::<Gesture>().ok()?;
             Some(corpus::holds(&format!("{who} says {gesture}"), reading))
         }
-        [who, "side", side] if number(who) => {
-            let (id, side) = (HumanId::new(who.parse().ok()?), serde_json::from_value(serde_json::json!(side)).ok()?);
-            Some(kinds().any(|kind| *kind == FactKind::Side { human: id, side }))
-        }
-        [who, "facing", what] if number(who) => {
-            let id = HumanId::new(who.parse().ok()?);
-            let facing = match what {
-                "robot" => Facing::Robot,
-                "away" => Facing::Away,
-                "left" => Facing::Left,
-                "right" => Facing::Right,
-                other => Facing::Human(HumanId::new(other.parse().ok()?)),
-            };
-            Some(kinds().any(|kind| *kind == FactKind::Facing { human: id, facing: facing.clone() }))
-        }
+        [who, "side" | "facing", _] if number(who) => stands(&words, reading),
         [who, "crosses"] => {
             let id = HumanId::new(who.parse().ok()?);
             let across = FactKind::Relates { human: id, relation: Relation::Crossing };
@@ -147,18 +135,7 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
             let wanted = FactKind::GesturesTo { human, gesture, to: HumanId::new(other).into() };
             Some(kinds().any(|kind| *kind == wanted))
         }
-        // From then on they walk at another pace, whichever.
-        [who, "change_pace", ..] if who.ends_with(':') => {
-            let waits = |rule: &Rule| match words[2..] {
-                [] => Some(true),
-                ["when", ..] if words[3] != "done" => Some(corpus::waits(&words[3..], rule)),
-                ["at", m] => m.parse().ok().map(|m: f64| rule.when.iter().any(|when| when.distance_m() == Some(m))),
-                _ => None,
-            };
-            waits(&Rule::default())?;
-            let changes = |rule: &Rule| matches!(rule.act, Action::ChangePace(_)) && waits(rule) == Some(true);
-            Some(human(who).is_some_and(|human| human.rules.iter().any(changes)))
-        }
+        [who, "change_pace", ..] if who.ends_with(':') => changes_pace(&words, human(who)),
         [_, "follow_human", other, ..] if !number(other) => None,
         [who, act, ..] if who.ends_with(':') => {
             const ACTS: [&str; 10] = [
@@ -181,15 +158,59 @@ fn holds(fact: &str, reading: &Reading) -> Option<bool> {
     }
 }
 
-/// Whether the reading says of any word of a quote that it was not read or is not played.
-fn is_said(quote: &str, text: &str, at: TextKey, reading: &Reading) -> bool {
+/// `1 side left`, `1 facing away`.
+fn stands(words: &[&str], reading: &Reading) -> Option<bool> {
+    let id = HumanId::new(words[0].parse().ok()?);
+    let wanted = if words[1] == "side" {
+        FactKind::Side { human: id, side: serde_json::from_value(serde_json::json!(words[2])).ok()? }
+    } else {
+        let facing = match words[2] {
+            "robot" => Facing::Robot,
+            "away" => Facing::Away,
+            "left" => Facing::Left,
+            "right" => Facing::Right,
+            other => Facing::Human(HumanId::new(other.parse().ok()?)),
+        };
+        FactKind::Facing { human: id, facing }
+    };
+    Some(reading.facts.iter().any(|fact| fact.kind == wanted))
+}
+
+/// From then on they walk at another pace, whichever: `1: change_pace when near`.
+fn changes_pace(words: &[&str], human: Option<&ReadHuman>) -> Option<bool> {
+    let waits = |rule: &Rule| match words[2..] {
+        [] => Some(true),
+        ["when", ..] if words[3] != "done" => Some(corpus::waits(&words[3..], rule)),
+        ["at", m] => m.parse().ok().map(|m: f64| rule.when.iter().any(|when| when.distance_m() == Some(m))),
+        _ => None,
+    };
+    waits(&Rule::default())?;
+    let changes = |rule: &Rule| matches!(rule.act, Action::ChangePace(_)) && waits(rule) == Some(true);
+    Some(human.is_some_and(|human| human.rules.iter().any(changes)))
+}
+
+/// The statements that have words of a quote.
+fn over<'a>(quote: &str, text: &str, at: TextKey, reading: &'a Reading) -> Vec<&'a Statement> {
     let from = text.find(quote).map(|from| text[..from].chars().count());
     let from = from.unwrap_or_else(|| panic!("`{quote}` stands in its text"));
     let (from, to) = (from, from + quote.chars().count());
     let over = |statement: &&Statement| {
         statement.at == at && (statement.span.from as usize) < to && from < statement.span.to as usize
     };
-    reading.statements.iter().filter(|statement| statement.is_unplayed()).any(|statement| over(&statement))
+    reading.statements.iter().filter(over).collect()
+}
+
+/// Whether the reading says of any word of a quote that it was not read or is not played.
+fn is_said(quote: &str, text: &str, at: TextKey, reading: &Reading) -> bool {
+    over(quote, text, at, reading).into_iter().any(Statement::is_unplayed)
+}
+
+/// Whether the reading shows of a quote what it became: lines, and no word of it is called background.
+fn is_shown(quote: &str, text: &str, at: TextKey, reading: &Reading) -> bool {
+    let statements = over(quote, text, at, reading);
+    let lines = |statement: &&Statement| matches!(&statement.became, Became::Read { lines, .. } if !lines.is_empty());
+    let background = |statement: &&Statement| matches!(statement.became, Became::Background(_));
+    statements.iter().any(lines) && !statements.iter().any(background)
 }
 
 fn look(text: &str) -> (Look, Look) {
@@ -200,7 +221,8 @@ fn look(text: &str) -> (Look, Look) {
         let wishes = case.wishes.iter().map(|wish| (wish.quote.as_str(), &wish.facts));
         let wishes = wishes.map(|(quote, facts)| (quote, facts, TextKey::RoughScenario));
         for (quote, facts, at) in wishes.chain([(case.task.as_str(), &case.task_facts, TextKey::Task)]) {
-            let said = is_said(quote, if at == TextKey::Task { &case.task } else { &case.text }, at, &reading);
+            let text = if at == TextKey::Task { &case.task } else { &case.text };
+            let said = is_said(quote, text, at, &reading);
             for fact in facts.iter().flat_map(|fact| each(fact)) {
                 let held = holds(&fact, &reading);
                 let look = if held.is_some() { &mut known } else { &mut unknown };
@@ -210,6 +232,8 @@ fn look(text: &str) -> (Look, Look) {
                     look.alarmed += usize::from(said);
                 } else if said {
                     look.said += 1;
+                } else if is_shown(quote, text, at, &reading) {
+                    look.otherwise += 1;
                 } else {
                     look.lost += 1;
                 }

@@ -94,9 +94,9 @@ rows! {
     REACTS "reacts" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAway), (Person, TowardsInstead)]), PERSON_TOO_LATE,
         PERSON_SWAPPED, Spoil(&[(Person, LogStands), (Person, LogWalks)]);
     STEP "step" Exempt("many steps are done standing"), PERSON_ABSENT, Exempt("a step may go either way"), PERSON_TOO_LATE,
-        PERSON_SWAPPED, PERSON_LOG_WALKS;
+        PERSON_SWAPPED, Exempt("the motion of a step is asked for by the clause of its act");
     GESTURES_TO "gestures_to" PERSON_STANDS, PERSON_ABSENT, Spoil(&[(Person, TurnedAbout)]), PERSON_TOO_LATE, PERSON_SWAPPED,
-        Spoil(&[(Person, LogAlone)]);
+        Exempt("a sign that only the log tells of is refused by `gestures`");
     TURNS_BACK "turns_back" PERSON_STANDS, PERSON_ABSENT, Exempt("a way there and back is the same walked backwards"),
         PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
     GOES_TO "goes_to" PERSON_STANDS, PERSON_ABSENT, EITHER_WAY, PERSON_TOO_LATE, PERSON_SWAPPED, PERSON_LOG_STANDS;
