@@ -10,6 +10,7 @@ use socrates_author::{Asking, AuthorContext, JobRefusal, Written};
 use socrates_kit::Failure;
 use socrates_model::fault::hard;
 use socrates_model::job::{Artifact, Stage};
+use socrates_model::statement::Became;
 use socrates_model::wire::{Acquire, Acquired, Grant, Outcome, Report, ScenarioSpec, Submit};
 use socrates_model::{
     Behaviors, Digest, Fault, Location, Paths, PlannerName, Proposal, Reading, Recording, Request, Role, RunId,
@@ -58,7 +59,13 @@ fn judged_facts(report: &impl Serialize) -> Digest {
 
 /// What was read, without notes and messages.
 pub(crate) fn read_facts(reading: &Reading) -> String {
-    let bare = Reading { notes: Vec::new(), problems: Vec::new(), ..reading.clone() };
+    let mut bare = Reading { notes: Vec::new(), problems: Vec::new(), ..reading.clone() };
+    // Why something is not played is for people to read, as the message of a problem is.
+    for statement in &mut bare.statements {
+        if let Became::NotPlayed { why } = &mut statement.became {
+            *why = "".into();
+        }
+    }
     // The same problem said twice is one.
     let mut problems = facts(&reading.problems);
     problems.dedup();

@@ -201,7 +201,7 @@ impl<'a> Account<'a> {
         // `small office`, where `small` tells which.
         let told = read(place.checked_sub(1)) || read(place.checked_add(1));
         // `the elevator`, into which the robot goes anyway.
-        let known = || self.whole.lines.iter().any(|line| line.text.contains(&format!("\"{}\"", token.lower)));
+        let known = || self.whole.lines.iter().any(|line| line.text.to_lowercase().contains(&token.lower));
         self.kinds.get(place) == Some(&Kind::Denial)
             || words::tells_place(&token.lower, self.location) && !told && !known()
     }

@@ -53,13 +53,13 @@ const CONNECTIVES: &str = "a an the this that these those there here it its itse
     has have had having will would shall should must may might can could let lets to of in on at into onto from for with by as off out \
     up down along through via about over and but or nor so then than also too very just only if while when whenever where because \
     since though although however therefore how why whether both each every any some such same other others own else even still yet \
-    way ways path paths already more most less rather quite please towards toward around within under during there's that's it's he's she's they're \
+    way ways path paths direction directions inside finally afterwards afterward meanwhile all already more most less rather quite please towards toward around within under during there's that's it's he's she's they're \
     i'd i'm we'd etc e.g i.e ok okay s ve ll d re m";
 
 const SIDES: &str = "left right side sides lefthand righthand left-hand right-hand leftmost rightmost middle center centre edge wall \
     opposite sideways back outside north south east west facing";
 const DIRECTIONS: &str = "behind ahead front backwards backward forward forwards beside near nearby next close closer away across past \
-    between inside apart abreast diagonally straight perpendicular parallel together";
+    between apart abreast diagonally straight perpendicular parallel together";
 const ORDERS: &str = "first second third last before after previously simultaneously again twice thrice repeatedly until till former \
     latter";
 const TIMES: &str = "seconds sec secs minute minutes moment moments time times immediately instantly briefly suddenly soon always \
