@@ -188,7 +188,8 @@ fn is_place(tokens: &[Token], place: usize, location: &Location) -> bool {
 
 /// Whether a word tells which place of this map is meant.
 pub(super) fn tells_place(word: &str, location: &Location) -> bool {
-    on_map(word, location) && !crate::named::telling(word).is_empty()
+    // `the office`, in an office
+    on_map(word, location) && !crate::named::telling(word).is_empty() && !location.name.contains(word)
 }
 
 /// Whether a word stands in the name of a place of this map.
