@@ -63,12 +63,16 @@ pub(crate) fn statements(request: &Request, location: &Location, reading: &Readi
         form: socrates_model::form::Form::default(),
         ..request.clone()
     };
-    let whole = &understood(&text_alone, location, true);
+    let without_expect = Request { form: request.form.clone(), ..text_alone.clone() };
+    let (alone, stated) = (understood(&text_alone, location, true), understood(&without_expect, location, true));
     let mut found = Vec::new();
     for key in TextKey::ALL {
         let text = text_of(request, key);
         if !text.trim().is_empty() {
-            found.extend(Account::new(&text_alone, location, (whole, reading), key).statements());
+            // A form takes the place of the rough scenario; the task and the context say the same beside it.
+            let (request, whole) =
+                if key == TextKey::RoughScenario { (&text_alone, &alone) } else { (&without_expect, &stated) };
+            found.extend(Account::new(request, location, (whole, reading), key).statements());
         }
     }
     // What a form states takes the place of what was read of the text; what was not read, or is not played, is still missing.

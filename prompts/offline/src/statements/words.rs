@@ -127,6 +127,10 @@ fn kind(tokens: &[Token], place: usize, location: &Location) -> Kind {
     if word == "moment" && matches!(before, "the" | "this" | "that") || word == "soon" && before == "as" {
         return Kind::Connective;
     }
+    let after = place.checked_add(1).and_then(|k| tokens.get(k)).map_or("", |token| token.lower.as_str());
+    if word == "front" && before == "in" && after == "of" {
+        return Kind::Connective;
+    }
     // Doors open by themselves for whoever comes near.
     let door = |word: &str| matches!(word, "door" | "doors" | "elevator" | "lift");
     let opens = |word: &str| matches!(word, "open" | "opens" | "opened" | "opening");

@@ -192,10 +192,10 @@ fn standing(evidence: &Evidence<'_>, group: &GroupProposal, add: &mut Add<'_>) {
                 .map(|(a, _)| time_of(run, a))
         })
         .min_by(f64::total_cmp);
-    if let Some(arrival) = arrival.filter(|t| *t > 6.0) {
+    if let Some(arrival) = arrival.filter(|t| *t > 3.0) {
         let mut gone = run.clone();
         for id in &group.members {
-            gone = walks_off(&gone, AgentId::Human(*id), &center, arrival - 5.0);
+            gone = walks_off(&gone, AgentId::Human(*id), &center, (arrival - 5.0).max(1.0));
         }
         add("N: dissolves before the robot comes", group.id.to_string(), gone);
     }
