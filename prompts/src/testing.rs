@@ -47,14 +47,7 @@ pub(crate) fn proposal() -> Proposal {
         relation: Relation::Crossing,
         side: None,
         facing: None,
-        rules: vec![Rule {
-            when: vec![Trigger::RobotNear(3.0)],
-            act,
-            gesture: None,
-            for_s: None,
-            latched: false,
-            ..Rule::default()
-        }],
+        rules: vec![Rule { when: vec![Trigger::RobotNear(3.0)], act, ..Rule::default() }],
         group: None,
         speed_mps: Some(1.1),
         start: None,

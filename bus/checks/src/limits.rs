@@ -99,7 +99,7 @@ fn limits(predicate: &Predicate, proposal: &Proposal) -> Vec<Limit> {
             vec![meters("within_m", *within_m, (0.1, 4.0))]
         }
         // Whoever stops on the way leaves a long gap.
-        // Whoever is let through is there long before a robot that waits for them.
+        // Somebody who is let through is there long before a robot that waits for them.
         Predicate::Crosses { human, gap_s } => {
             let most = if proposal.is_let_through(*human) { 40.0 } else { 12.0 };
             vec![secs("gap_s", *gap_s, (0.2, most))]

@@ -112,14 +112,8 @@ pub(crate) fn crossing_proposal() -> Proposal {
         start: None,
         goal: None,
     };
-    let look = Rule {
-        when: vec![Trigger::RobotVisible(4.0)],
-        act: Action::LookAtRobot,
-        gesture: None,
-        for_s: Some(3.0),
-        latched: false,
-        ..Rule::default()
-    };
+    let look =
+        Rule { when: vec![Trigger::RobotVisible(4.0)], act: Action::LookAtRobot, for_s: Some(3.0), ..Rule::default() };
     let (first, second) = (HumanId::new(1), HumanId::new(2));
     Proposal {
         format: FORMAT,

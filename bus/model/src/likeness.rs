@@ -227,7 +227,7 @@ fn act(rule: &Rule, near: &dyn Fn(&Trigger, f64) -> Time) -> (String, Vec<Time>)
             }
             // Ids are numbers: who it is, the gesture says.
             Trigger::HumanSays(_, gesture) => words.push(format!("a human says {gesture}")),
-            // Whose step it is and which, the order of the rules says.
+            // The order of the rules says whose step it is, and which.
             Trigger::Did(..) => words.push("once a step is over".to_owned()),
             Trigger::Done(_) => words.push("once somebody is done".to_owned()),
             Trigger::StoppedFor(s) => {

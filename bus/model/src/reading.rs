@@ -195,8 +195,8 @@ impl Reading {
 
     /// The wishes that are not in the run and were given up, in the words of the request.
     #[must_use]
-    pub fn waived(&self) -> Vec<&str> {
-        self.statements.iter().filter(|statement| statement.waived).map(|statement| &*statement.quote).collect()
+    pub fn waived(&self) -> Vec<String> {
+        self.statements.iter().filter(|statement| statement.waived).map(|statement| statement.quote.clone()).collect()
     }
 
     /// Whether a statement tells what became of the words of a problem.

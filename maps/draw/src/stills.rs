@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(span(&run(20.0)), (0.0, 10.0));
         let (from, to) = span(&run(12.0));
         assert!((from - 4.0).abs() < 0.11 && (to - 10.0).abs() < 1e-9, "{from} {to}");
-        // Who is not there is not near.
+        // Somebody who is not there is not near.
         assert_eq!(span(&away(run(12.0), 1, 0..1001)), (0.0, 10.0));
     }
 

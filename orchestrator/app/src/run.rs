@@ -56,7 +56,7 @@ fn write_form(talk: &Printer, file: &Path, prepared: &Prepared) -> Result<String
         let what = format!("the request `{shown}` names nobody of whom a form could be written");
         return Err(Complaint::input(what, "say in rough_scenario who is there; docs/form.md shows the tables"));
     }
-    let form = socrates_offline::form_of(&prepared.request, &prepared.location);
+    let form = socrates_offline::form_of(&prepared.request, &prepared.reading, &prepared.location);
     let text = crate::files::text(file, u64::MAX, "a request")?;
     let whole = format!("{}\n{form}", text.trim_end());
     // What is written must be a request, or it is not written.

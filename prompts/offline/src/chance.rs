@@ -183,14 +183,7 @@ pub(crate) fn stops(script: &mut Vec<RobotRule>, humans: &[HumanProposal]) {
 pub(crate) fn until_then(human: &mut HumanProposal) {
     if socrates_solver::walks_later(human) {
         let when = vec![Trigger::Always];
-        human.rules.push(Rule {
-            when,
-            act: Action::StandStill,
-            gesture: None,
-            for_s: None,
-            latched: false,
-            ..Rule::default()
-        });
+        human.rules.push(Rule { when, act: Action::StandStill, ..Rule::default() });
     }
 }
 

@@ -277,7 +277,7 @@ const STEP_S: f64 = 3.0;
 /// What must be seen of a step of a sequence: its own beginning and end, and what it does.
 fn of_step(list: &mut List, source: &str, human: &HumanProposal, (rule, number): (&Rule, u32)) {
     let id = human.id;
-    // Who walks on goes their way, as everybody does.
+    // Somebody who walks on goes their way, as everybody does.
     if rule.act == Action::Navigate
         && rule.gesture.is_none()
         && rule.when.iter().all(|when| matches!(when, Trigger::Always | Trigger::Did(..)))

@@ -164,9 +164,9 @@ pub const NAME: &str = "offline/1";
 /// [`Reading::problems`]; what became of every clause in [`Reading::statements`]; assumptions in [`Reading::notes`].
 #[must_use]
 pub fn read(request: &Request, location: &Location) -> Reading {
-    let reading = understand::understand(request, location).reading;
-    let statements = statements::statements(request, location, &reading);
-    Reading { statements, ..reading }
+    let read = understand::understand(request, location);
+    let statements = statements::statements(request, location, &read);
+    Reading { statements, ..read.reading }
 }
 
 /// The same without [`Reading::statements`], at a fiftieth of the time: for those who only need what was understood.
@@ -175,11 +175,11 @@ pub fn understood(request: &Request, location: &Location) -> Reading {
     understand::understand(request, location).reading
 }
 
-/// What a text was read as, as the tables of a form: it can stand under the text in the request, be corrected there, and then wins
+/// What a text was read as ([`read`]), as the tables of a form: it can stand under the text in the request, be corrected there, and then wins
 /// over it. How somebody stands to the robot's way, where the text leaves it open, is chosen as the author would.
 #[must_use]
-pub fn form_of(request: &Request, location: &Location) -> String {
-    statements::form(request, location)
+pub fn form_of(request: &Request, reading: &Reading, location: &Location) -> String {
+    statements::form(request, reading, location)
 }
 
 /// The keys of `[expect]` that would settle a problem of the reading for which nothing is made: found by setting them.

@@ -288,7 +288,7 @@ fn robot(
     let signs = || humans.iter().flat_map(|human| &human.rules).filter(told);
     let stops = signs().any(|rule| rule.gesture == Some(Gesture::Wait));
     if stops && !script.iter().any(|line| line.when == RobotWhen::HumanSays(Gesture::Wait)) {
-        // Whoever tells it to wait, and by a later step to go on, has it wait until then.
+        // Somebody who tells it to wait, and by a later step to go on, has it wait until then.
         let goes = signs().any(|rule| rule.gesture == Some(Gesture::Proceed) && rule.step.is_some_and(|step| step > 1));
         let until = RobotDo::HoldUntil(RobotWhen::HumanSays(Gesture::Proceed));
         let act = if goes { until } else { RobotDo::Hold(4.0) };

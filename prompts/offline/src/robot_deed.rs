@@ -1,6 +1,6 @@
 //! What the text says of the robot.
 
-use socrates_model::{AgentId, HumanId, PlaceClass, Relation};
+use socrates_model::{AgentId, PlaceClass, Relation};
 
 use crate::clause::Found;
 use crate::deed::{self, Around};
@@ -30,7 +30,7 @@ pub(crate) fn robot_deed(story: &mut Story, act: Act, found: &Found, object: &[u
         && quote.to_lowercase().ends_with(" first")
         && story.cast.people.len() == 1
     {
-        order::state(&mut story.order, (AgentId::Robot, HumanId::new(1).into()), false, quote);
+        order::state(&mut story.order, (AgentId::Robot, order::agent(0)), false, quote);
     }
     match act {
         // Who has the robot behind walks ahead of it.

@@ -19,16 +19,16 @@ struct Said {
 
 /// Words before a side.
 const AT: &[&str] = &["from", "on", "to", "at", "by", "along"];
-/// Whose left it is: the robot's, or nobody's.
+/// Words before a side that is the robot's, or nobody's own.
 const WHOSE: &[&str] = &["the", "its"];
 /// What has sides as the robot drives along it.
 const SIDED: &[&str] =
     &["it", "corridor", "hallway", "hall", "aisle", "passage", "passageway", "way", "path", "route", "lane", "walkway"];
-/// Who does this is where the words say.
+/// Acts of somebody who is where the words say.
 const STANDS: &[&str] = &["stand", "wait", "sit", "remain", "be", "chat", "talk", "lean"];
 /// Words that deny what stands after them in a clause.
 const DENIES: &[&str] = &["not", "never", "neither", "nor", "without", "no", "cannot", "instead", "rather"];
-/// Who does this to a side goes there by their own left and right.
+/// Acts by which somebody goes to their own left or right.
 const TURNS: &[&str] = &[
     "turn", "step", "move", "go", "walk", "look", "dodge", "swerve", "glance", "veer", "shift", "point", "keep", "lean",
 ];

@@ -54,8 +54,8 @@ pub(crate) fn understand(request: &Request, location: &Location) -> Understood {
     understood(request, location, true)
 }
 
-/// Reads a request; a text of which words are hidden is not held to be in another language.
-pub(crate) fn understood(request: &Request, location: &Location, tongues: bool) -> Understood {
+/// Reads a request. A text of which words are hidden is not `whole`: it is not held to be in another language, nor against a form.
+pub(crate) fn understood(request: &Request, location: &Location, whole: bool) -> Understood {
     let told = aside::split(request.rough_scenario.as_deref().unwrap_or_default());
     let rough = Some(told.story.trim()).filter(|text| !text.is_empty());
     let asked = aside::split(&request.task);
@@ -71,7 +71,7 @@ pub(crate) fn understood(request: &Request, location: &Location, tongues: bool) 
             Fault::new(FaultCode::PRead, at, message).about([sentence.as_str()])
         }));
     }
-    if tongues {
+    if whole {
         language(request, &mut reading);
     }
     expect::settle(request, &mut story, &mut reading);
@@ -132,7 +132,7 @@ pub(crate) fn understood(request: &Request, location: &Location, tongues: bool) 
     let lines = lines((&story, &task), &reading, &extras, location);
     leftovers(request, location, &mut story, &task, &mut reading);
     crate::spans::mark(request, &mut reading.problems);
-    if stated && rough.is_some() {
+    if whole && stated && rough.is_some() {
         let text = Request { form: socrates_model::form::Form::default(), ..request.clone() };
         reading.notes.extend(form::differs(&reading, &understand(&text, location).reading));
     }

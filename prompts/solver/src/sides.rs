@@ -8,7 +8,7 @@ use crate::graph::Net;
 use crate::robot_way::Route;
 use crate::{Miss, Problem, search};
 
-/// Who comes from a side comes at least at this sine to the robot's way.
+/// Least sine of the angle to the robot's way at which somebody comes from a side.
 const SINE: f64 = 0.5;
 /// The room that somebody comes out of lies so far beside the robot's way, m.
 const ROOM_M: f64 = 1.0;

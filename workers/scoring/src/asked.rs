@@ -20,14 +20,7 @@ fn found<'a>(report: &'a Report, id: &str) -> &'a socrates_model::ClauseResult {
 /// Somebody stands beside the robot's way; the robot asks to pass, and it is to step aside then.
 fn asked_to_give_way() -> Case {
     let when = vec![Trigger::RobotSays(Gesture::ExcuseMe)];
-    let rule = Rule {
-        when: when.clone(),
-        act: Action::GiveWay,
-        gesture: None,
-        for_s: Some(3.0),
-        latched: true,
-        ..Rule::default()
-    };
+    let rule = Rule { when: when.clone(), act: Action::GiveWay, for_s: Some(3.0), latched: true, ..Rule::default() };
     let reacts = Predicate::Reacts { human: H1, when, act: Action::GiveWay, within_s: 3.0 };
     let mut plan = proposal(
         1,
@@ -258,14 +251,7 @@ fn the_first_outcome_that_is_missing_and_what_came_late_are_told() {
 #[test]
 fn the_story_tells_when_somebody_goes_whom_it_follows_and_who_is_come_to() {
     let mut plan = proposal(3, vec![]);
-    plan.humans[1].rules = vec![Rule {
-        when: vec![Trigger::Always],
-        act: Action::FollowHuman(H1),
-        gesture: None,
-        for_s: None,
-        latched: false,
-        ..Rule::default()
-    }];
+    plan.humans[1].rules = vec![Rule { when: vec![Trigger::Always], act: Action::FollowHuman(H1), ..Rule::default() }];
     plan.humans[2].relation = Relation::Static;
     let ways = paths(&["a", "m", "b"], &[(&["b", "m", "a"], "m"), (&["b", "m", "a"], ""), (&["m"], "m")]);
     let case = Case { place: corridor(), plan, ways, reading: None };

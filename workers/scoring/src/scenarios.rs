@@ -203,14 +203,7 @@ fn tracks_alone_have_nothing_to_verify_but_their_metrics() {
 #[test]
 fn a_fact_without_a_clause_makes_the_run_unverifiable() {
     let mut case = frontal();
-    let rule = Rule {
-        when: vec![Trigger::RobotNear(3.0)],
-        act: Action::RunAway,
-        gesture: None,
-        for_s: None,
-        latched: false,
-        ..Rule::default()
-    };
+    let rule = Rule { when: vec![Trigger::RobotNear(3.0)], act: Action::RunAway, ..Rule::default() };
     let fact = Fact { id: "f1".into(), quote: "runs away".into(), kind: FactKind::Reacts { human: H1, rule } };
     case.reading = Some(Reading { format: FORMAT, facts: vec![fact], ..Reading::default() });
     let run = recording(&[robot(), Walk::human(1, 8., 0.5, -0.8, 0.)], 20.0, 0.01);
@@ -229,8 +222,7 @@ fn frightened(trigger_m: f64) -> Case {
         must("c2", Predicate::RunsAway { human: H1, by_m: 1.5 }),
         must("c3", Predicate::Meets { human: H1, within_m: 4.5 }),
     ];
-    case.plan.humans[0].rules =
-        vec![Rule { when, act: Action::RunAway, gesture: None, for_s: None, latched: true, ..Rule::default() }];
+    case.plan.humans[0].rules = vec![Rule { when, act: Action::RunAway, latched: true, ..Rule::default() }];
     case.ways = paths(&["a", "m", "b"], &[(&["b", "m", "a"], "")]);
     case
 }

@@ -363,7 +363,7 @@ impl Door<'_> {
         }
     }
 
-    /// Who faces several people, or themselves.
+    /// Finds people who face several others, or themselves.
     fn faced(&mut self, form: &Form, top: &Section<'_>) {
         for (index, human) in form.humans.iter().enumerate() {
             let Some(FacingWord::Name(name)) = &human.facing else { continue };

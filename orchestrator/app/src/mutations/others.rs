@@ -29,7 +29,7 @@ const SAME_M: f64 = 3.0;
 /// The same for their times, s.
 const SAME_SECS: f64 = 2.0;
 
-/// Whom another scenario was made about, and what was changed.
+/// The person about whom another scenario was made, and what was changed.
 pub(super) struct About {
     human: HumanId,
     /// What is said behind the human: ` at 8 m, asked for 2 m`.
@@ -108,7 +108,7 @@ pub(super) fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static
             matches!(&clause.predicate, Predicate::Reacts { human, .. } | Predicate::RunsAway { human, .. }
                 | Predicate::Blocks { human, .. } | Predicate::Looks { human, .. } if *human == id)
         };
-        // Who walks on without a word does so without its rule too: that is no other scenario.
+        // Somebody who walks on without a word does so without their rule too: that is no other scenario.
         let shows = human.rules.iter().any(|rule| rule.act != Action::Navigate || rule.gesture.is_some());
         if shows && musts(&made.proposal).any(reacts) {
             found.extend(with_rules(made, id, |_| None).map(|other| ("reaction muted", About::of(id), other)));
@@ -130,7 +130,7 @@ pub(super) fn other_scenarios(prepared: &Prepared, made: &Made) -> Vec<(&'static
     for encounter in &made.paths.encounters {
         let nth = *met.entry(encounter.human).and_modify(|nth| *nth += 1).or_insert(1);
         let Some(human) = made.proposal.human(encounter.human) else { continue };
-        // Who goes with the robot meets it everywhere.
+        // Somebody who goes with the robot meets it everywhere.
         if matches!(human.relation, Relation::Behind | Relation::Ahead | Relation::Abreast) {
             continue;
         }
@@ -255,7 +255,7 @@ fn once(made: &Made, id: HumanId, group: Option<GroupId>) -> Option<Made> {
     Some(other)
 }
 
-/// Who stays goes out like the one who leaves.
+/// The one who stays goes out like the one who leaves.
 fn leaving(made: &Made, who: HumanId, leaver: HumanId) -> Option<Made> {
     let mut other = with_rules(made, who, |_| None)?;
     let human = other.proposal.humans.iter_mut().find(|human| human.id == who)?;

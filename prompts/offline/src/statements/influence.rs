@@ -19,6 +19,19 @@ pub(super) struct Influence {
     pub(super) read: Vec<bool>,
 }
 
+impl Influence {
+    /// Whether a word was read.
+    pub(super) fn is_read(&self, place: usize) -> bool {
+        self.read.get(place).copied().unwrap_or(false)
+    }
+
+    fn mark(&mut self, place: usize) {
+        if let Some(read) = self.read.get_mut(place) {
+            *read = true;
+        }
+    }
+}
+
 /// A text, and how it is read again.
 pub(super) struct Text<'a> {
     pub(super) text: &'a str,
@@ -83,7 +96,8 @@ impl Text<'_> {
                 continue;
             }
             let other = self.without(&|n| words.contains(&n));
-            if other == self.whole {
+            let is_idle = other == self.whole;
+            if is_idle {
                 idle.push(clause);
             }
             let lost = |n: &usize| self.whole.get(*n).is_some_and(|line| !other.contains(line));
@@ -91,15 +105,14 @@ impl Text<'_> {
                 *lines = (0..self.whole.len()).filter(lost).collect();
             }
             for place in words {
-                let idle = other == self.whole;
                 let read = if self.goes_along(place) {
-                    !idle
+                    !is_idle
                 } else {
                     // Without a number the usual one is taken: only another number shows whether it was read.
-                    (!idle || self.kind(place) == Kind::Number) && self.changes(place)
+                    (!is_idle || self.kind(place) == Kind::Number) && self.changes(place)
                 };
-                if let Some(flag) = found.read.get_mut(place) {
-                    *flag = read;
+                if read {
+                    found.mark(place);
                 }
             }
         }
@@ -118,11 +131,9 @@ impl Text<'_> {
         };
         for place in (0..self.tokens.len()).filter(|place| joins(*place)) {
             let ends = [place - 1, place + 1];
-            let read = ends.iter().any(|end| found.read.get(*end).copied().unwrap_or(false));
+            let read = ends.iter().any(|end| found.is_read(*end));
             for end in ends.into_iter().filter(|_| read) {
-                if let Some(flag) = found.read.get_mut(end) {
-                    *flag = true;
-                }
+                found.mark(end);
             }
         }
     }
@@ -137,9 +148,7 @@ impl Text<'_> {
             let more: Vec<&Line> = alone.iter().filter(|line| !none.contains(line)).collect();
             let same = !more.is_empty() && more.iter().all(|line| !line.shown || self.whole.contains(line));
             for place in own.into_iter().filter(|place| same && self.goes_along(*place)) {
-                if let Some(flag) = found.read.get_mut(place) {
-                    *flag = true;
-                }
+                found.mark(place);
             }
         }
     }
@@ -155,9 +164,7 @@ impl Text<'_> {
             let own = self.of_clause(*clause);
             let alone = self.without(&|n| all.contains(&n) && !own.contains(&n));
             for place in own.into_iter().filter(|place| alone != none && self.goes_along(*place)) {
-                if let Some(flag) = found.read.get_mut(place) {
-                    *flag = true;
-                }
+                found.mark(place);
             }
         }
     }

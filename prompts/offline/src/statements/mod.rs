@@ -17,10 +17,15 @@ mod text;
 mod words;
 mod written;
 
-use socrates_model::fault::{Message, Span};
+use std::ops::Range;
+
+use socrates_model::fault::Message;
+use socrates_model::form::Form;
+use socrates_model::request::Expect;
 use socrates_model::statement::{Background, Became, Statement, TextKey};
 use socrates_model::{Fault, Location, Reading, Request};
 
+use crate::spans::{covers, span, text_of};
 use crate::understand::{Understood, understood};
 use background::Around;
 use influence::Influence;
@@ -55,24 +60,22 @@ enum Fate {
     NotRead,
 }
 
-/// Accounts for every text of a request.
-pub(crate) fn statements(request: &Request, location: &Location, reading: &Reading) -> Vec<Statement> {
+/// Accounts for every text of a request that was understood so.
+pub(crate) fn statements(request: &Request, location: &Location, read: &Understood) -> Vec<Statement> {
     // What `[expect]` and a form say wins over the text: only without them a text shows what was read of it.
-    let text_alone = Request {
-        expect: socrates_model::request::Expect::default(),
-        form: socrates_model::form::Form::default(),
-        ..request.clone()
-    };
-    let without_expect = Request { form: request.form.clone(), ..text_alone.clone() };
-    let (alone, stated) = (understood(&text_alone, location, true), understood(&without_expect, location, true));
+    let without_expect = Request { expect: Expect::default(), ..request.clone() };
+    let text_alone = Request { form: Form::default(), ..without_expect.clone() };
+    let again = |other: &Request| (other != request).then(|| understood(other, location, true));
+    let (alone, beside) = (again(&text_alone), again(&without_expect));
+    let (alone, beside) = (alone.as_ref().unwrap_or(read), beside.as_ref().unwrap_or(read));
     let mut found = Vec::new();
     for key in TextKey::ALL {
         let text = text_of(request, key);
         if !text.trim().is_empty() {
             // A form takes the place of the rough scenario; the task and the context say the same beside it.
             let (request, whole) =
-                if key == TextKey::RoughScenario { (&text_alone, &alone) } else { (&without_expect, &stated) };
-            found.extend(Account::new(request, location, (whole, reading), key).statements());
+                if key == TextKey::RoughScenario { (&text_alone, alone) } else { (&without_expect, beside) };
+            found.extend(Account::new(request, location, (whole, &read.reading), key).statements());
         }
     }
     // What a form states takes the place of what was read of the text; what was not read, or is not played, is still missing.
@@ -82,36 +85,7 @@ pub(crate) fn statements(request: &Request, location: &Location, reading: &Readi
             (*lines, *facts) = (vec!["as the form states".to_owned()], Vec::new());
         }
     }
-    for statement in &mut found {
-        statement.waived =
-            statement.is_unplayed() && request.waive.iter().any(|quote| gives_up(quote, statement, request));
-    }
     found
-}
-
-/// A text of the request.
-pub(crate) fn text_of(request: &Request, key: TextKey) -> &str {
-    match key {
-        TextKey::RoughScenario => request.rough_scenario.as_deref().unwrap_or_default(),
-        TextKey::Task => &request.task,
-        TextKey::SocialContext => &request.social_context,
-    }
-}
-
-/// Whether a quote of `waive` stands in the text of the statement and has all of its words.
-fn gives_up(quote: &str, statement: &Statement, request: &Request) -> bool {
-    let text = text_of(request, statement.at);
-    let Some(own) = bytes(text, statement.span) else { return false };
-    text.match_indices(quote).any(|(from, _)| from <= own.start && own.end <= from + quote.len())
-}
-
-/// The bytes of a span in characters.
-fn bytes(text: &str, span: Span) -> Option<std::ops::Range<usize>> {
-    let place = |chars: u32| {
-        let chars = usize::try_from(chars).ok()?;
-        text.char_indices().map(|(at, _)| at).chain([text.len()]).nth(chars)
-    };
-    Some(place(span.from)?..place(span.to)?)
 }
 
 struct Account<'a> {
@@ -156,7 +130,7 @@ impl<'a> Account<'a> {
             let places: Vec<usize> = (0..self.tokens.len())
                 .filter(|k| self.tokens.get(*k).is_some_and(|token| token.clause == clause))
                 .collect();
-            self.of_clause(&places, &fates, &mut found);
+            self.of_clause(clause, &places, &fates, &mut found);
         }
         found
     }
@@ -178,7 +152,7 @@ impl<'a> Account<'a> {
         if self.kinds.get(place).is_none_or(|kind| *kind == Kind::Connective) {
             return Fate::Joins;
         }
-        if self.influence.read.get(place).copied().unwrap_or(false) {
+        if self.influence.is_read(place) {
             return Fate::Read;
         }
         match self.key {
@@ -200,8 +174,7 @@ impl<'a> Account<'a> {
     /// Whether a word of the task asks for something all the same: a place that this map has, or that something is not to be.
     fn binds(&self, place: usize) -> bool {
         let Some(token) = self.tokens.get(place) else { return false };
-        let read =
-            |place: Option<usize>| place.and_then(|place| self.influence.read.get(place)).copied().unwrap_or(false);
+        let read = |place: Option<usize>| place.is_some_and(|place| self.influence.is_read(place));
         // `small office`, where `small` tells which.
         let told = read(place.checked_sub(1)) || read(place.checked_add(1));
         // `the elevator`, into which the robot goes anyway.
@@ -225,16 +198,12 @@ impl<'a> Account<'a> {
 
     /// Whether a word stands in a quote of the text.
     fn quoted(&self, quote: &str, place: usize) -> bool {
-        let Some(at) = self.tokens.get(place).map(|token| &token.at) else { return false };
-        !quote.is_empty()
-            && self.text.match_indices(quote).any(|(from, _)| from <= at.start && at.end <= from + quote.len())
+        self.tokens.get(place).is_some_and(|token| covers(self.text, quote, &token.at))
     }
 
     /// The statements of one clause: what was read of it, and every run of words that became something else.
-    fn of_clause(&self, places: &[usize], fates: &[Fate], found: &mut Vec<Statement>) {
+    fn of_clause(&self, clause: usize, places: &[usize], fates: &[Fate], found: &mut Vec<Statement>) {
         let fate = |place: &usize| fates.get(*place).cloned().unwrap_or(Fate::Joins);
-        let clause =
-            places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.clause).next().unwrap_or(0);
         if places.iter().any(|place| fate(place) == Fate::Read) {
             let (lines, facts) = self.became(clause);
             found.extend(self.statement(places, Became::Read { lines, facts }));
@@ -284,24 +253,22 @@ impl<'a> Account<'a> {
     }
 
     fn statement(&self, places: &[usize], became: Became) -> Option<Statement> {
-        let first = places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.at.start).min()?;
-        let last = places.iter().filter_map(|place| self.tokens.get(*place)).map(|token| token.at.end).max()?;
-        let chars = |bytes: usize| {
-            u32::try_from(self.text.get(..bytes).unwrap_or_default().chars().count()).unwrap_or(u32::MAX)
-        };
-        let quote = self.text.get(first..last)?.to_owned();
-        Some(Statement {
-            at: self.key,
-            span: Span { from: chars(first), to: chars(last) },
-            quote,
-            became,
-            waived: false,
-        })
+        let at = self.bounds(places)?;
+        let quote = self.text.get(at.clone())?.to_owned();
+        let statement = Statement { at: self.key, span: span(self.text, &at)?, quote, became, waived: false };
+        let waived = statement.is_unplayed() && self.request.waive.iter().any(|quote| covers(self.text, quote, &at));
+        Some(Statement { waived, ..statement })
+    }
+
+    /// The bytes from the first of some words to the last.
+    fn bounds(&self, places: &[usize]) -> Option<Range<usize>> {
+        let all = || places.iter().filter_map(|place| self.tokens.get(*place));
+        Some(all().map(|token| token.at.start).min()?..all().map(|token| token.at.end).max()?)
     }
 }
 
 /// Whether a rule took any part of a word.
-fn touched(token: &Token, used: &[std::ops::Range<usize>]) -> bool {
+fn touched(token: &Token, used: &[Range<usize>]) -> bool {
     used.iter().any(|at| at.start < token.at.end && token.at.start < at.end)
 }
 

@@ -1,9 +1,11 @@
 //! For words that were not read: the clause in other words that would be, found by trying.
 
+use std::ops::Range;
+
 use crate::lexicon::lexicon;
 
 use super::Account;
-use super::text::{masked, tokens};
+use super::text::{exchanged, masked};
 use super::words::is_person;
 
 /// Slips of the pen that are tried, in letters.
@@ -36,20 +38,19 @@ fn misspelled(account: &Account<'_>, run: &[usize], clause: &[usize]) -> Option<
         .collect();
     near.sort_unstable();
     let hidden = account.reads(&masked(account.text, &account.tokens, &|n| n == place));
-    let (before, after) = (account.text.get(..token.at.start)?, account.text.get(token.at.end..)?);
     let word = near
         .iter()
         .take(3)
         .map(|(_, word)| *word)
-        .find(|word| account.reads(&format!("{before}{word}{after}")) != hidden)?;
-    let (from, to) = bounds(account, clause)?;
+        .find(|word| account.reads(&exchanged(account.text, token, word)) != hidden)?;
+    let Range { start: from, end: to } = account.bounds(clause)?;
     Some(format!("{}{word}{}", account.text.get(from..token.at.start)?, account.text.get(token.at.end..to)?))
 }
 
 /// The clause without the words, where something of it was read.
 fn without(account: &Account<'_>, run: &[usize], clause: &[usize]) -> Option<String> {
     let rest = |place: &&usize| !run.contains(*place);
-    clause.iter().filter(rest).find(|place| account.influence.read.get(**place).copied().unwrap_or(false))?;
+    clause.iter().filter(rest).find(|place| account.influence.is_read(**place))?;
     let words = clause.iter().filter(rest).filter_map(|place| account.text.get(account.tokens.get(*place)?.at.clone()));
     Some(words.collect::<Vec<_>>().join(" "))
 }
@@ -58,18 +59,11 @@ fn without(account: &Account<'_>, run: &[usize], clause: &[usize]) -> Option<Str
 fn instead(account: &Account<'_>, clause: &[usize]) -> Option<String> {
     let who = clause.iter().filter_map(|place| account.tokens.get(*place)).find(|token| is_person(token))?;
     let subject = account.text.get(who.at.clone())?;
-    let (from, to) = bounds(account, clause)?;
+    let Range { start: from, end: to } = account.bounds(clause)?;
     let tried = |deed: &&str| {
         let (before, after) = (account.text.get(..from)?, account.text.get(to..)?);
         let text = format!("{before}{subject} {deed}{after}");
-        let says = tokens(&text);
-        (account.reads(&text) != account.whole.lines && !says.is_empty()).then(|| format!("{subject} {deed}"))
+        (account.reads(&text) != account.whole.lines).then(|| format!("{subject} {deed}"))
     };
     INSTEAD.iter().find_map(tried)
-}
-
-/// First and last byte of a clause.
-fn bounds(account: &Account<'_>, clause: &[usize]) -> Option<(usize, usize)> {
-    let all = || clause.iter().filter_map(|place| account.tokens.get(*place));
-    Some((all().map(|token| token.at.start).min()?, all().map(|token| token.at.end).max()?))
 }

@@ -53,7 +53,8 @@ const CONNECTIVES: &str = "a an the this that these those there here it its itse
     has have had having will would shall should must may might can could let lets to of in on at into onto from for with by as off out \
     up down along through via about over and but or nor so then than also too very just only if while when whenever where because \
     since though although however therefore how why whether both each every any some such same other others own else even still yet \
-    way ways path paths direction directions inside finally afterwards afterward meanwhile all already more most less rather quite please towards toward around within under during there's that's it's he's she's they're \
+    way ways path paths direction directions inside finally afterwards afterward meanwhile all already more most less rather quite \
+    please towards toward around within under during there's that's it's he's she's they're \
     i'd i'm we'd etc e.g i.e ok okay s ve ll d re m";
 
 const SIDES: &str = "left right side sides lefthand righthand left-hand right-hand leftmost rightmost middle center centre edge wall \
@@ -127,14 +128,13 @@ fn kind(tokens: &[Token], place: usize, location: &Location) -> Kind {
     if word == "moment" && matches!(before, "the" | "this" | "that") || word == "soon" && before == "as" {
         return Kind::Connective;
     }
-    let after = place.checked_add(1).and_then(|k| tokens.get(k)).map_or("", |token| token.lower.as_str());
-    if word == "front" && before == "in" && after == "of" {
+    let next = place.checked_add(1).and_then(|k| tokens.get(k)).map_or("", |token| token.lower.as_str());
+    if word == "front" && before == "in" && next == "of" {
         return Kind::Connective;
     }
     // Doors open by themselves for whoever comes near.
     let door = |word: &str| matches!(word, "door" | "doors" | "elevator" | "lift");
     let opens = |word: &str| matches!(word, "open" | "opens" | "opened" | "opening");
-    let next = place.checked_add(1).and_then(|k| tokens.get(k)).map_or("", |token| token.lower.as_str());
     if opens(word) && door(before) || matches!(word, "door" | "doors") && opens(next) {
         return Kind::Connective;
     }

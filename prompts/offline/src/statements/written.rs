@@ -15,15 +15,14 @@ use crate::understand::{Extra, understand};
 const SEED: u64 = 1;
 
 /// The tables of the form: `[[human]]`, `[[order]]`, and what the robot does.
-pub(crate) fn form(request: &Request, location: &Location) -> String {
-    let understood = understand(request, location);
-    let reading = &understood.reading;
+pub(crate) fn form(request: &Request, reading: &Reading, location: &Location) -> String {
+    let extras = understand(request, location).extras;
     let question = Question::first(request.clone(), reading.clone(), location.clone(), SEED);
     let proposed = proposal::propose(&question);
     let place = place(reading, location);
     let mut tables: Vec<(String, u32)> = Vec::new();
     for (at, human) in reading.humans.iter().enumerate() {
-        let extra = understood.extras.get(at).cloned().unwrap_or_default();
+        let extra = extras.get(at).cloned().unwrap_or_default();
         let relation = human.relation.or_else(|| proposed.humans.get(at).map(|human| human.relation));
         let mut table = String::new();
         if human.role != "person" {
@@ -39,7 +38,7 @@ pub(crate) fn form(request: &Request, location: &Location) -> String {
             Some(_) | None => tables.push((table, 1)),
         }
     }
-    let mut text = missing(request, location);
+    let mut text = missing(reading);
     for (table, count) in tables {
         text.push_str("\n[[human]]\n");
         if count > 1 {
@@ -53,8 +52,7 @@ pub(crate) fn form(request: &Request, location: &Location) -> String {
 }
 
 /// What of the text is not in the form, as comments: it is still missing in the run until it is stated, deleted or waived.
-fn missing(request: &Request, location: &Location) -> String {
-    let reading = crate::read(request, location);
+fn missing(reading: &Reading) -> String {
     let mut text = String::new();
     for statement in reading.statements.iter().filter(|statement| statement.is_missing()) {
         let quote = statement.quote.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -1,6 +1,6 @@
 //! `EndStep`: the end of a step of this human's sequence, once and for all.
 
-use crate::nodes::{halt_children, memory, remembered};
+use crate::nodes::{halt_children, latch, remembered};
 use crate::sheet::{Arity, Kind, Library, NodeSheet, PortKind, PortSheet, Role};
 use crate::status::Status;
 use crate::tick::Ticker;
@@ -19,18 +19,12 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
     halt: halt_children,
 };
 
-/// Word 0 is the memory: see [`remembered`].
+/// Remembers as a [`latch`] does; the step ends in the tick in which its child first succeeds.
 fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
-    if remembered(t.word(node, 0)) == Some(Status::Success) {
-        return Status::Success;
-    }
-    t.set(node, Status::Running);
-    let outcome = t.tick_child(node, 0);
-    if outcome.is_finished() {
-        t.set_word(node, 0, memory(outcome));
-        t.reset_child(node, 0);
-    }
+    let has_ended = remembered(t.word(node, 0)) == Some(Status::Success);
+    let outcome = latch::tick(t, node);
     if outcome == Status::Success
+        && !has_ended
         && let Some(step) = t.ports(node).whole(1).and_then(|step| u32::try_from(step).ok())
     {
         t.world.end_step(step);

@@ -23,7 +23,7 @@ pub(super) const SHEET: NodeSheet = NodeSheet {
 };
 
 /// Word 0 is the memory: see [`remembered`].
-fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
+pub(super) fn tick(t: &mut Ticker<'_>, node: usize) -> Status {
     if remembered(t.word(node, 0)) == Some(Status::Success) {
         return Status::Success;
     }

@@ -7,22 +7,22 @@ use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::{Moment, Signals};
 use crate::tracks::{MOVING_MPS, Sample};
 
-/// Who comes from a side is so far beside the robot's way before they come to it, m.
+/// Least distance beside the robot's way of somebody who comes from a side, before they come to it, m.
 const COMES_M: f64 = 0.8;
 /// And has come so far nearer by then, or by when they are nearest, m.
 const CAME_M: f64 = 0.5;
 /// So near to its middle they are on the robot's way, m.
 const ON_WAY_M: f64 = 0.4;
-/// Who stands is so far beside the robot's way, m, as it is nearest, at most so far away, m.
+/// Least distance beside the robot's way of somebody who stands, m, as it is nearest, and the largest at which that counts, m.
 const STANDS_M: f64 = 0.3;
 const PASSED_M: f64 = 3.5;
-/// Who walks is so far beside it, m, for all of the time but this part.
+/// Least distance beside it of somebody who walks, m, and the part of the time for which it need not be kept.
 const WALKS_M: f64 = 0.2;
 const FIFTH: usize = 5;
 /// Two are level where the one is no more ahead of the other than this, m, and no farther apart than this, m.
 const LEVEL_M: f64 = 0.7;
 const BESIDE_M: f64 = 4.0;
-/// Who is never level is judged within this distance, m, where that lasts so long, s.
+/// Distance within which somebody who is never level is judged, m, and how long that has to last, s.
 const NEAR_M: f64 = 6.0;
 const LASTS_S: f64 = 1.0;
 /// A time between two moments, s, and how long both are level at least.

@@ -121,9 +121,7 @@ fn missing(evidence: &Evidence<'_>) -> Vec<String> {
 
 /// The wishes that were given up: said beside every verdict, so that none is taken for more than it is.
 fn waived(evidence: &Evidence<'_>) -> String {
-    let quotes: Vec<String> =
-        evidence.reading.map_or_else(Vec::new, |reading| reading.waived().into_iter().map(str::to_owned).collect());
-    after(" · waived: ", &quotes)
+    after(" · waived: ", &evidence.reading.map_or_else(Vec::new, socrates_model::Reading::waived))
 }
 
 /// The first quotes after an introduction; nothing where there are none.

@@ -88,7 +88,7 @@ mod tests {
             }
         }
         assert_ne!(standing(Facing::Robot, &run), Standing::Holds);
-        // Who never comes within sight of a moving robot faces nothing.
+        // Somebody who never comes within sight of a moving robot faces nothing.
         let far =
             recording(&[Walk::robot(-18.0, 0.0, 0.1, 0.0), Walk::human(1, 0.0, 0.5, 0.0, 0.0).facing(PI)], 16.0, 0.02);
         assert_eq!(standing(Facing::Robot, &far), Standing::NotTriggered);

@@ -133,7 +133,7 @@ mod tests {
             (Relation::Ahead, Walk::human(1, -4.0, 0.0, 0.5, 0.0)),
             // Coming towards the robot is coming from no side.
             (Relation::Crossing, Walk::human(1, 8.0, 0.2, -1.0, 0.0)),
-            // Who stands beside its way does not come from there.
+            // Somebody who stands beside its way does not come from there.
             (Relation::Leaving, Walk::human(1, 0.0, 3.0, 0.0, 0.0)),
         ] {
             let run = recording(&[Walk::robot(-8.0, 0.0, 0.8, 0.0), walk], 20.0, 0.02);

@@ -11,7 +11,7 @@ use crate::tracks::Tracks;
 const LATE_SECS: f64 = 8.0;
 /// Somebody who walks on instead of standing does so at this speed, m/s.
 const WALKS_MPS: f64 = 0.4;
-/// Who does not do what they should stand still so soon after it began, s.
+/// Time after the beginning of a step at which somebody who does not do it stands still, s.
 const STEPS_SECS: f64 = 0.2;
 /// A step that lasts less is no test, s.
 const LEAST_SECS: f64 = 2.5;

@@ -232,7 +232,7 @@ impl Engine {
     }
 }
 
-/// Whom somebody follows or looks at.
+/// The human whom somebody follows or looks at.
 const fn watched(human: &Human) -> Option<HumanId> {
     if let Action::FollowHuman(id) | Action::LookAt(id) = human.action { Some(id) } else { None }
 }

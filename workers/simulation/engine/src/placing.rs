@@ -156,7 +156,7 @@ fn spot(
     Some((at, facing(human, &at, door)))
 }
 
-/// Who stands on a side of the robot's way is at least so far beside it as it is planned, m.
+/// Least distance beside the robot's way as planned of somebody who stands on a side of it, m.
 const BESIDE_LEAST_M: f64 = 0.4;
 /// The direction of the way at a place is taken over so much of it before and behind, m.
 const ALONG_M: f64 = 1.0;

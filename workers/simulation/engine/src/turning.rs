@@ -12,7 +12,7 @@ const NEAR_M: f64 = 0.3;
 /// Room that a way has beside somebody's body, m; in an aisle as narrow as the body the way is still a way.
 const WIDE_M: f64 = 0.04;
 const NARROW_M: f64 = 0.06;
-/// So many of the nodes of a place are tried, the nearest.
+/// Most nodes of a place that are tried, the nearest first.
 const MOST_TRIED: usize = 6;
 /// What lies behind somebody is so far along their way, m: before its beginning.
 const BEHIND_M: f64 = -1.0;
@@ -55,7 +55,7 @@ fn turn(human: &mut Human) {
     let doors = std::mem::take(&mut human.doors);
     let doors = doors.into_iter().rev().filter(|on_way| on_way.s < gone);
     human.doors = doors.map(|on_way| DoorOnWay { door: on_way.door, s: gone - on_way.s }).collect();
-    // Whom they have not met by now they meet nowhere else.
+    // A robot that they have not met by now they meet nowhere else.
     let meetings = std::mem::take(&mut human.meetings);
     human.meetings = meetings.into_iter().map(|meeting| Meeting { human_s: BEHIND_M, ..meeting }).collect();
     human.lane_m = -human.lane_m;

@@ -58,7 +58,7 @@ impl Lack {
     }
 }
 
-/// Whom an edit changes.
+/// The agents that an edit changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Whose {
     /// The one whom the clause is about; the last human where it counts them.
@@ -188,7 +188,7 @@ impl Row {
 pub struct Lacking {
     /// What it lacks.
     pub lack: Lack,
-    /// Who, and how, in words.
+    /// The agent and the change, in words.
     pub about: String,
     /// The recording.
     pub recording: Recording,
