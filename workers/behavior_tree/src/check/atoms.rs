@@ -3,14 +3,15 @@
 use socrates_model::Trigger;
 use socrates_model::seeds::SplitMix64;
 
-use crate::check::below;
-use crate::sheet::{Kind, Role};
-use crate::tree::Tree;
+use crate::check::aim::aimed;
+use crate::sheet::Role;
+use crate::tree::{Node, Tree};
 
 /// Most conditions for which every case is ticked.
 pub(super) const MAX_EXACT: usize = 12;
 /// Cases of the sample beyond that.
 const SAMPLE: u64 = 4096;
+
 /// One thing that can be so or not.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Atom {
@@ -27,6 +28,20 @@ pub(super) enum Atom {
 }
 
 impl Atom {
+    /// What a condition asks, and whether it succeeds where that holds; nothing where its ports name nothing.
+    pub(super) fn asked(node: &Node, means: Option<Trigger>) -> Option<(Self, bool)> {
+        if node.sheet.tag == "IsGoalReached" {
+            return Some((Self::GoalHere, true));
+        }
+        means.map(|trigger| {
+            if trigger == Trigger::RobotStopped {
+                (Self::World(Trigger::RobotMoving), false)
+            } else {
+                (Self::World(trigger), true)
+            }
+        })
+    }
+
     /// Whether it is about the tree's own past.
     pub(super) const fn is_memory(&self) -> bool {
         matches!(self, Self::Timer(..) | Self::Memory(_))
@@ -58,10 +73,7 @@ pub(super) fn atoms(tree: &Tree) -> Vec<Atom> {
     for (index, node) in tree.nodes.iter().enumerate() {
         let ports = tree.ports(node);
         let atom = match node.sheet.role {
-            Role::Asks(_) if node.sheet.tag == "IsGoalReached" => Some(Atom::GoalHere),
-            Role::Asks(means) => means(&ports).map(|trigger| {
-                Atom::World(if trigger == Trigger::RobotStopped { Trigger::RobotMoving } else { trigger })
-            }),
+            Role::Asks(means) => Atom::asked(node, means(&ports)).map(|(atom, _)| atom),
             Role::Timer => ports.real(0).map(|secs| Atom::Timer(index, secs)),
             Role::Flow if matches!(node.sheet.tag, "Latch" | "RunOnce" | "EndStep") => Some(Atom::Memory(index)),
             Role::World | Role::Foreign => Some(Atom::Answer(node.leaf)),
@@ -151,7 +163,8 @@ fn close(atoms: &[Atom], mut truth: Vec<bool>) -> Vec<bool> {
     truth
 }
 
-fn forces(a: &Atom, b: &Atom) -> bool {
+/// Whether the first atom's truth forces the second's.
+pub(super) fn forces(a: &Atom, b: &Atom) -> bool {
     match (a, b) {
         (Atom::World(Trigger::GoalReached), Atom::GoalHere) => true,
         (Atom::World(a), Atom::World(b)) => implies(a, b),
@@ -159,30 +172,7 @@ fn forces(a: &Atom, b: &Atom) -> bool {
     }
 }
 
-/// For every sequence the case in which just its own conditions hold.
-fn aimed(tree: &Tree, atoms: &[Atom]) -> Vec<Vec<bool>> {
-    let mut found = Vec::new();
-    for (index, node) in tree.nodes.iter().enumerate() {
-        if node.sheet.kind != Kind::Control {
-            continue;
-        }
-        let leaves = below(tree, index);
-        let truth: Vec<bool> = atoms
-            .iter()
-            .map(|atom| {
-                leaves.iter().filter_map(|leaf| tree.nodes.get(*leaf)).any(|leaf| match (atom, leaf.sheet.role) {
-                    (Atom::World(trigger), Role::Asks(means)) => {
-                        let inverted = leaf
-                            .parent
-                            .and_then(|parent| tree.nodes.get(parent))
-                            .is_some_and(|parent| parent.sheet.tag == "Inverter");
-                        !inverted && means(&tree.ports(leaf)).as_ref() == Some(trigger)
-                    }
-                    _ => false,
-                })
-            })
-            .collect();
-        found.push(truth);
-    }
-    found
+/// Whether both atoms cannot hold at once.
+pub(super) fn excludes_atom(a: &Atom, b: &Atom) -> bool {
+    matches!((a, b), (Atom::World(a), Atom::World(b)) if excludes(a, b))
 }

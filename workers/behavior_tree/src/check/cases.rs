@@ -6,7 +6,7 @@
 
 use socrates_model::{Action, Fault, FaultCode, Gesture, Where};
 
-use crate::check::atoms::{Atom, MAX_EXACT, atoms, truths};
+use crate::check::atoms::{Atom, atoms, truths};
 use crate::check::case_world::CaseWorld;
 use crate::check::{CheckContext, below, has_foreign, place};
 use crate::nodes::{memory, remembered};
@@ -194,10 +194,7 @@ impl<'a> Cases<'a> {
     pub(super) fn check(&self, ctx: &CheckContext<'_>) -> Vec<Fault> {
         let mut faults = Vec::new();
         let at = Where::agent(ctx.human);
-        // Of a sample it is not known whether a case that it lacks comes there.
-        if self.atoms.len() <= MAX_EXACT {
-            self.dead(ctx.rules.iter().any(is_endless), &|node| place(ctx, node), &mut faults);
-        }
+        self.dead(ctx.rules.iter().any(is_endless), &|node| place(ctx, node), &mut faults);
         let foreign = has_foreign(self.tree);
         let acts = |case: &Case, tick: usize| case.acts.get(tick).cloned().unwrap_or_default();
         if let Some((case, tick)) = self.simplest(|case, tick| acts(case, tick).len() > 1) {

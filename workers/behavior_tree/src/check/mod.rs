@@ -1,5 +1,6 @@
 //! Checks of a tree without a simulator: form, every case of its conditions, and what was asked.
 
+mod aim;
 mod analysis;
 mod atoms;
 mod case_world;
