@@ -1,6 +1,8 @@
 //! Where and in which order a human meets the robot: from the paths to lengths along the ways, and which meeting is on.
 
-use socrates_model::{AgentId, Clause, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Visit};
+use socrates_model::{
+    Action, AgentId, Clause, HumanId, HumanProposal, NodeId, Point, Polyline, Predicate, Relation, Rule, Trigger, Visit,
+};
 
 use crate::human::{Human, Meeting};
 use crate::recorder::Recorder;
@@ -40,7 +42,13 @@ pub(crate) fn of(
         });
         let lead_s = if made.is_empty() {
             let usual_s = rendezvous::lead_s(proposal.relation, several_toward(setup, proposal, visit.node));
-            ordered_s(setup, proposal.id).unwrap_or(usual_s)
+            let stops_s = stops_s(proposal, robot_mps);
+            match (ordered_s(setup, proposal.id), stops_s) {
+                (None, stops_s) => usual_s + stops_s,
+                // Whoever lets the robot go first stands short of the place meanwhile.
+                (Some(order_s), stops_s) if order_s < 0.0 && stops_s > 0.0 => stops_s - SHORT_M / pace(proposal),
+                (Some(order_s), _) => order_s,
+            }
         } else {
             let course = |way: &Polyline, s: f64| way.direction((s - AROUND_M).max(0.0));
             rendezvous::lead_by_ways_s(&course(way, human_s), &course(robot_way, robot_s))
@@ -48,6 +56,37 @@ pub(crate) fn of(
         made.push(Meeting { node: visit.node.clone(), at, human_s, robot_s, lead_s });
     }
     made
+}
+
+/// Pace of somebody of whom none is stated, m/s.
+const PACE_MPS: f64 = 1.2;
+/// Somebody who lets the robot go first stands so far before the place, m.
+const SHORT_M: f64 = 1.8;
+
+fn pace(proposal: &HumanProposal) -> f64 {
+    proposal.speed_mps.unwrap_or(PACE_MPS)
+}
+
+/// How much sooner than they would walk there somebody has to aim at being at the meeting whose first steps have them stand while
+/// the robot is still farther away, s: so that the robot finds them there, and not as far before it.
+fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
+    let mut steps: Vec<_> = proposal.rules.iter().filter(|rule| rule.step.is_some()).collect();
+    steps.sort_by_key(|rule| rule.step);
+    let stands = |rule: &&&Rule| matches!(rule.act, Action::StandStill | Action::LookAtRobot | Action::LookAt(_));
+    let at_m = steps.first().filter(stands).and_then(|first| {
+        let [Trigger::RobotVisible(m) | Trigger::RobotNear(m)] = first.when.as_slice() else { return None };
+        Some(*m)
+    });
+    let Some(apart_m) = at_m.filter(|_| proposal.relation == Relation::Frontal) else { return 0.0 };
+    let goes_on =
+        |rule: &&&Rule| rule.when.iter().all(|when| matches!(when, Trigger::Did(..) | Trigger::RobotVisible(_)));
+    let rest = steps.iter().skip(1).take_while(stands).take_while(goes_on);
+    let stands_s: f64 = steps.iter().take(1).chain(rest).map(|rule| rule.for_s.unwrap_or(f64::INFINITY)).sum();
+    // The robot comes on meanwhile; what is left of the way both walk.
+    let left_m = (apart_m - robot_mps * stands_s).max(0.0);
+    let walks_s = left_m / (robot_mps + pace(proposal));
+    let own_m = walks_s * pace(proposal);
+    (apart_m - own_m) / robot_mps - walks_s
 }
 
 /// Who is to be there before or after somebody else, or the robot: how long before the robot it aims at being there, s.
@@ -59,11 +98,7 @@ fn ordered_s(setup: &Setup, human: HumanId) -> Option<f64> {
         .expected_events
         .iter()
         .filter_map(|clause| {
-            if let Predicate::Before { first, then, at_door: false } = &clause.predicate {
-                Some((*first, *then))
-            } else {
-                None
-            }
+            if let Predicate::Before { first, then, .. } = &clause.predicate { Some((*first, *then)) } else { None }
         })
         .collect();
     let own = AgentId::Human(human);

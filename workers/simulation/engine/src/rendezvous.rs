@@ -6,7 +6,7 @@
 //! where the robot comes up from behind), and is held (at most 10 s in all) only where the robot cannot see it: nobody freezes in
 //! the robot's view.
 
-use socrates_model::{Point, Relation, Vector};
+use socrates_model::{HumanId, Point, Relation, Vector};
 
 use crate::human::{DoorOnWay, Human};
 use crate::robot::Robot;
@@ -24,6 +24,8 @@ const HOLD_MAX_S: f64 = 10.0;
 const VIEW_M: f64 = 9.0;
 /// Somebody who has not started sets off when the robot sees it from nearer than this, m: it would stand in its way.
 const SET_OFF_M: f64 = 2.5;
+/// Nobody waits longer for a robot that stands, s: it may have been told to wait for them.
+const SET_OFF_S: f64 = 8.0;
 /// Nobody starts before this, s: the first moments show where everybody is.
 const FIRST_START_S: f64 = 0.5;
 /// Pause between an opened door and the first leaver, s.
@@ -146,7 +148,7 @@ pub(crate) fn pace(human: &Human, timing: &mut Timing, robot: Option<&Robot>, mo
     if !human.started {
         // Early: somebody who stands there, and sets off in time. Late or just right: go.
         let early = needed < 0.97 * human.speed_mps;
-        if early && !(moment.sight && apart < SET_OFF_M) {
+        if early && robot.stood_s < SET_OFF_S && !(moment.sight && apart < SET_OFF_M) {
             return hold;
         }
     } else if needed < 0.9 * slowest && !in_view && timing.held_s < HOLD_MAX_S {
@@ -199,16 +201,17 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
     // A robot that waits before the door is near, however deep the room is.
     let at_door = human.doors.first().is_some_and(|door| near_along(robot, &human.route.point(door.s), AT_DOOR_M));
-    let since = match moment.door {
-        Some((_, true)) if !moment.stands_open => true,
-        // A door that opens for those who come near would wait for who waits for it.
-        Some((_, false)) => timing.opens_door && (at_door || near_along(robot, &human.at, LEAVE_AT_M + DOOR_M)),
-        // Nothing opens: the robot's coming tells when to go.
-        Some((_, true)) | None => {
-            let seen = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
-            seen || at_door || near_along(robot, &human.at, LEAVE_AT_M)
-        }
-    };
+    let since = robot.stood_s >= SET_OFF_S && moment.door.is_none_or(|(_, open)| open || timing.opens_door)
+        || match moment.door {
+            Some((_, true)) if !moment.stands_open => true,
+            // A door that opens for those who come near would wait for who waits for it.
+            Some((_, false)) => timing.opens_door && (at_door || near_along(robot, &human.at, LEAVE_AT_M + DOOR_M)),
+            // Nothing opens: the robot's coming tells when to go.
+            Some((_, true)) | None => {
+                let seen = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
+                seen || at_door || near_along(robot, &human.at, LEAVE_AT_M)
+            }
+        };
     if !since {
         timing.open_since_s = None;
         return Pace { speed_mps: 0.0 };
@@ -264,12 +267,13 @@ fn beside(human: &Human, robot: &Robot) -> f64 {
 }
 
 /// The controller's memory at the start: who leaves a place that the robot enters, and in which order.
-/// `by_nearness` tells the doors that open for whoever comes near.
+/// `by_nearness` tells the doors that open for whoever comes near, `before` of two people whether the one is to be first.
 pub(crate) fn timings(
     humans: &[Human],
     robot: Option<&Robot>,
     robot_doors: &[DoorOnWay],
     by_nearness: &dyn Fn(usize) -> bool,
+    before: &dyn Fn(HumanId, HumanId) -> bool,
 ) -> Vec<Timing> {
     let enters = |human: &Human| {
         let Some(robot) = robot else { return false };
@@ -286,7 +290,16 @@ pub(crate) fn timings(
             out.push(((human.route.point(way) - human.at).norm(), place));
         }
         out.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        out
+        // Whoever is to be first goes first, however far they have to the door.
+        let first = |one: usize, other: usize| {
+            humans.get(one).zip(humans.get(other)).is_some_and(|(one, other)| before(one.id, other.id))
+        };
+        let mut ordered: Vec<(f64, usize)> = Vec::new();
+        for one in out {
+            let at = ordered.iter().position(|other| first(one.1, other.1)).unwrap_or(ordered.len());
+            ordered.insert(at, one);
+        }
+        ordered
     };
     let (out, into) = (through(Relation::Leaving), through(Relation::Static));
     humans

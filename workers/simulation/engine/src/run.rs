@@ -4,7 +4,8 @@ use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Event, EventKind, Fault, Recording, RecordingHeader, RobotDriver, SimTime,
+    Action, AgentId, AgentState, Clause, Event, EventKind, Fault, HumanId, Predicate, Recording, RecordingHeader,
+    RobotDriver, SimTime,
 };
 
 use crate::advance::Desk;
@@ -78,7 +79,11 @@ impl Engine {
         let by_nearness = |door: usize| {
             setup.location.doors.get(door).is_some_and(|door| matches!(door.opens, socrates_model::DoorOpens::Near(_)))
         };
-        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors, &by_nearness);
+        let before = |one: HumanId, other: HumanId| {
+            let ahead = |clause: &Clause| matches!(&clause.predicate, Predicate::Before { first, then, .. } if *first == one.into() && *then == other.into());
+            setup.proposal.expected_events.iter().any(ahead)
+        };
+        let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors, &by_nearness, &before);
         let header = start::header(&setup, &humans, robot.as_ref());
         let script = Script::new(&setup.proposal.robot.script);
         let ending = Ending::new(setup.duration_s);
