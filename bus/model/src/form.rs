@@ -90,7 +90,8 @@ pub struct FormGroup {
     /// Its name, as people say it in `group`.
     pub id: String,
     /// Its shape. Default: a circle where they stand, side by side where they walk.
-    pub formation: Formation,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub formation: Option<Formation>,
 }
 
 /// Shape of a group.

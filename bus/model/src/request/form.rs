@@ -199,12 +199,9 @@ impl Door<'_> {
             self.bad("group.id", node.at, "is missing", "the name that people have in `group`");
         }
         let formations = "circle, queue, side_by_side";
-        if section.get("formation").is_none() && matches!(node.kind, Kind::Table(_)) {
-            self.bad("group.formation", node.at, "is missing", formations);
-        }
         let id = self.word(&section, "id");
         let formation = self.maybe::<Formation>(&section, "formation", formations);
-        Some(FormGroup { id: id?, formation: formation? })
+        Some(FormGroup { id: id?, formation })
     }
 
     fn order<'n>(&mut self, node: &'n Node, names: &mut Names<'n>) -> Option<FormOrder> {
