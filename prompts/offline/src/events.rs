@@ -271,6 +271,8 @@ fn of_group(list: &mut List, source: &str, group: socrates_model::GroupId, propo
 
 /// Largest difference of arrival where the robot waits for whoever crosses, s.
 const THROUGH_GAP_S: f64 = 40.0;
+/// Somebody comes to a stand and turns in so much time, s.
+const TURNS_S: f64 = 0.5;
 /// A step begins so long after its reason at most, s.
 const STEP_S: f64 = 3.0;
 
@@ -295,7 +297,9 @@ fn of_rule(list: &mut List, source: &str, human: &HumanProposal, rule: &Rule, st
         of_step(list, source, human, (rule, number));
     }
     let text = format!("{id} {}", done(&rule.act));
-    let lasts = |most: f64| rule.for_s.map_or(most, |secs| (secs * 0.6).min(most));
+    // To stop and turn for a step takes a part of its time.
+    let takes_s = if rule.step.is_some() { TURNS_S } else { 0.0 };
+    let lasts = |most: f64| rule.for_s.map_or(most, |secs| ((secs - takes_s).max(0.2) * 0.6).min(most));
     let seen = match &rule.act {
         Action::FollowRobot => Some(follows(id, AgentId::Robot)),
         Action::FollowHuman(leader) => Some(follows(id, (*leader).into())),

@@ -38,7 +38,8 @@ pub(crate) fn bound(place: &PlaceWord, location: &Location) -> Option<Bound> {
         PlaceWord::Class(class) => place::has(location, *class).then(|| Bound { class: *class, nodes: Vec::new() }),
         PlaceWord::Name(name) => {
             // `ward 9` of a map with two wards is no place of it.
-            let found = named::find(location, name).filter(|found| found.exact)?;
+            let found = named::find(location, name).filter(|found| found.exact);
+            let found = found.or_else(|| named::called(location, name))?;
             Some(Bound { class: found.class, nodes: found.nodes })
         }
     }
@@ -199,7 +200,8 @@ fn groups(request: &Request, story: &mut Story) {
         let of_group = |person: &Person| person.group == Some(id);
         let members: Vec<usize> =
             (0..story.cast.people.len()).filter(|who| story.cast.people.get(*who).is_some_and(of_group)).collect();
-        let queue = request.form.groups.iter().any(|group| group.id == name && group.formation == Formation::Queue);
+        let queue =
+            request.form.groups.iter().any(|group| group.id == name && group.formation == Some(Formation::Queue));
         for person in story.cast.people.iter_mut().filter(|person| queue && of_group(person)) {
             person.doings = vec![QUEUES.to_owned()];
         }
@@ -273,6 +275,12 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
     for place in &request.robot.avoid {
         end("robot.avoid", &Some(place.clone()));
     }
+    let inside = waits_inside(request, location);
+    let goal = goal.or_else(|| behind_the_door(request, location, inside.clone()));
+    // Whoever waits inside is met there, unless a place is stated.
+    if story.place.is_none() {
+        story.place = goal.clone().filter(|goal| inside.as_ref() == Some(goal));
+    }
     (story.robot_leaves, story.robot_enters) = (start, goal);
     let script = request.form.script(&request.robot.does);
     for line in script {
@@ -280,6 +288,34 @@ fn robot(request: &Request, location: &Location, story: &mut Story) {
             story.robot_says.push((gesture, format!("robot.does: say = \"{gesture}\"")));
         }
     }
+}
+
+/// Where the robot goes, unless stated, of which somebody gets through a door before or after it, or waits inside.
+fn behind_the_door(
+    request: &Request,
+    location: &Location,
+    inside: Option<(PlaceClass, String)>,
+) -> Option<(PlaceClass, String)> {
+    let task = crate::task::read(&request.task, location);
+    if task.goal.is_some() || !task.goals.is_empty() {
+        return None;
+    }
+    let robot = |name: &str| name == "robot";
+    let order = request.form.orders.iter().find(|order| robot(&order.first) || robot(&order.then));
+    // A doorway is that of a room.
+    let behind = |at: PlaceClass| if at == PlaceClass::Elevator { at } else { PlaceClass::Room };
+    let door = order.and_then(|order| order.at).map(|at| (behind(at), "order: at".to_owned()));
+    door.or(inside).filter(|(class, _)| place::has(location, *class))
+}
+
+/// The room or car in which somebody waits; nothing where another place is stated for the meeting.
+fn waits_inside(request: &Request, location: &Location) -> Option<(PlaceClass, String)> {
+    let stays = request.form.humans.iter().find(|human| human.relation == Relation::Staying)?;
+    let class = |place: &PlaceWord| bound(place, location).map(|bound| bound.class);
+    let inside = stays.start.as_ref().or(stays.place.as_ref()).map_or(Some(PlaceClass::Room), class)?;
+    let met = request.form.humans.iter().filter_map(|human| human.place.as_ref()).find_map(class);
+    let holds = matches!(inside, PlaceClass::Room | PlaceClass::Elevator) && met.is_none_or(|met| met == inside);
+    holds.then(|| (inside, "relation = \"staying\"".to_owned()))
 }
 
 /// The nodes of the place where people meet the robot, where it is stated by name; the class has to be the scenario's.

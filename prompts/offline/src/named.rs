@@ -110,6 +110,15 @@ pub(crate) fn find(location: &Location, name: &str) -> Option<Found> {
     })
 }
 
+/// The nodes of a map whose type has all the words of a name that tells only what kind of place it is: `narrow aisle`.
+pub(crate) fn called(location: &Location, name: &str) -> Option<Found> {
+    let wanted = tokens(name);
+    let all = |node: &&GraphNode| !wanted.is_empty() && wanted.iter().all(|word| tokens(&node.kind).contains(word));
+    let found: Vec<&GraphNode> = location.graph.nodes().iter().filter(all).collect();
+    let class = PlaceClass::of_type(&found.first()?.kind);
+    Some(Found { class, nodes: found.into_iter().map(|node| node.id.clone()).collect(), exact: true })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -82,7 +82,7 @@ fn the_way_begins_and_ends_where_the_task_says_by_name() {
         let (first, last) = ends(&paths);
         assert!(start.is_none_or(|start| start == first), "{task}: {:?}", paths.robot);
         assert!(goal.is_none_or(|goal| goal.contains(&last.as_str())), "{task}: {:?}", paths.robot);
-        assert!(!reading.notes.iter().any(|note| note.starts_with("the robot's")), "{:?}", reading.notes);
+        assert_eq!(reading.problems, [], "{task}");
     }
 }
 
@@ -90,7 +90,8 @@ fn the_way_begins_and_ends_where_the_task_says_by_name() {
 fn another_end_than_the_task_says_is_never_silent() {
     let note = |on: &str, task: &str, rough: &str| {
         let (reading, ..) = planned(on, task, rough);
-        reading.notes.into_iter().filter(|note| note.starts_with("the robot's")).collect::<Vec<_>>()
+        let messages = reading.problems.into_iter().map(|fault| fault.message.to_string());
+        messages.filter(|message| message.starts_with("the robot's")).collect::<Vec<_>>()
     };
     let meets = "A person comes towards the robot.";
     assert_eq!(

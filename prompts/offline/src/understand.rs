@@ -62,6 +62,10 @@ pub(crate) fn understood(request: &Request, location: &Location, whole: bool) ->
     let stated = !request.form.is_empty();
     let mut story = if stated { form::story(request, location) } else { rough.map(story::read).unwrap_or_default() };
     let mut task = task::read(&asked.story, location);
+    // The ends that a form states take the place of those of the task.
+    for (slot, stated) in [(&mut task.start, &request.robot.start), (&mut task.goal, &request.robot.goal)] {
+        *slot = slot.take().filter(|_| stated.is_none());
+    }
     let mut reading = Reading { format: FORMAT, task: shortened(&asked.story), ..Reading::default() };
     let context = aside::split(&request.social_context);
     for (at, found) in [("rough_scenario", &told), ("task", &asked), ("social_context", &context)] {
@@ -192,6 +196,7 @@ fn language(request: &Request, reading: &mut Reading) {
 
 /// Places by name that this map does not have: a fault, and the next best place.
 fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading: &mut Reading) {
+    let task_ends: Vec<End> = task.starts.iter().chain(&task.goals).cloned().collect();
     let mut absent = |slot: &mut Option<(PlaceClass, String)>, at: &'static str| {
         let Some((class, quote)) = slot.clone().filter(|(class, _)| !place::has(location, *class)) else { return };
         *slot = None;
@@ -200,7 +205,10 @@ fn unplaceable(location: &Location, story: &mut Story, task: &mut Task, reading:
             place::an(class),
             place::listed(location)
         );
-        reading.problems.push(Fault::new(FaultCode::PPlace, at, message));
+        // Of a task the name alone is not played: what the robot carries is its errand.
+        let mut ends = task_ends.iter().filter(|end| at == "task" && end.nodes.is_empty() && end.class == Some(class));
+        let name = ends.next().map_or(quote, |end| end.name.clone());
+        reading.problems.push(Fault::new(FaultCode::PPlace, at, message).about([name]));
     };
     // The reading keeps the place as it was said; the fault says that the map has none.
     let said = story.place.as_ref().map(|(class, _)| *class);
@@ -389,7 +397,7 @@ fn errand(task: &Task, location: &Location, reading: &mut Reading) {
 }
 
 /// Says where the robot's way begins or ends otherwise than its task says by name.
-fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) {
+fn ends((story, task): (&Story, &Task), request: &Request, location: &Location, reading: &mut Reading) {
     let ends_of = reading.pattern.as_deref().and_then(crate::card::card);
     let car = story.cast.people.iter().any(|person| {
         let inside = person
@@ -405,9 +413,17 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
     let stays = ends_of.is_some_and(|card| card.ends == Ends::With);
     let leaves_people = ends_of.is_some_and(|card| card.ends == Ends::From);
     let mut played: Vec<(WayPart, &End)> = Vec::new();
-    for (what, named, other, people) in
-        [("start", &task.starts, leaves.or(starts), leaves_people), ("goal", &task.goals, enters, stays)]
-    {
+    let stated = [&request.robot.start, &request.robot.goal];
+    let ends = [("start", &task.starts, leaves.or(starts), leaves_people), ("goal", &task.goals, enters, stays)];
+    for ((what, named, other, people), stated) in ends.into_iter().zip(stated) {
+        if let Some(place) = stated {
+            // What a form states wins.
+            let others = named.iter().filter(|end| !end.name.eq_ignore_ascii_case(&place.to_string()));
+            reading.notes.extend(
+                others.map(|end| format!("the robot's {what} is `{place}` as the form states, not `{}`", end.name)),
+            );
+            continue;
+        }
         let known = named.iter().find(|end| !end.nodes.is_empty());
         for end in named {
             let missing = end.nodes.is_empty();
@@ -435,7 +451,8 @@ fn ends(story: &Story, task: &Task, location: &Location, reading: &mut Reading) 
                 }
                 continue;
             };
-            reading.notes.push(format!("the robot's {what} `{}`: {instead}", end.name));
+            let message = format!("the robot's {what} `{}`: {instead}", end.name);
+            reading.problems.push(Fault::new(FaultCode::PRead, "task", message).about([end.name.as_str()]));
         }
     }
     // The story's own ends win over the task's.
@@ -502,15 +519,17 @@ fn again_and_again(rough: &str, story: &mut Story) {
 
 /// Says where the map has no place of a name, so that another of its kind is taken.
 fn other_places(location: &Location, reading: &mut Reading) {
-    let mut notes = Vec::new();
+    let mut problems = Vec::new();
     for fact in &reading.facts {
         let FactKind::Place(class) = fact.kind else { continue };
         let unknown = spot::named_in(location, &fact.quote, class).filter(|meant| meant.nodes.is_empty());
-        notes.extend(unknown.filter(|_| place::has(location, class)).map(|meant| {
-            format!("`{}`: this map has no place of that name; {} is taken instead", meant.name, place::an(class))
+        problems.extend(unknown.filter(|_| place::has(location, class)).map(|meant| {
+            let instead = place::an(class);
+            let message = format!("`{}`: this map has no place of that name; {instead} is taken instead", meant.name);
+            Fault::new(FaultCode::PRead, "rough_scenario", message).about([meant.name])
         }));
     }
-    reading.notes.append(&mut notes);
+    reading.problems.append(&mut problems);
 }
 
 /// Says of doors that people open how they open.
@@ -526,7 +545,7 @@ fn doors(story: &Story, location: &Location, reading: &mut Reading) {
 fn leftovers(request: &Request, location: &Location, story: &mut Story, task: &Task, reading: &mut Reading) {
     named_way::rest(task, request, location, reading);
     errand(task, location, reading);
-    ends(story, task, location, reading);
+    ends((story, task), request, location, reading);
     other_places(location, reading);
     doors(story, location, reading);
     reading.problems.append(&mut story.problems);
