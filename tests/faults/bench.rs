@@ -63,7 +63,7 @@ pub(crate) fn read_facts(reading: &Reading) -> String {
     // Why something is not played is for people to read, as the message of a problem is.
     for statement in &mut bare.statements {
         if let Became::NotPlayed { why } = &mut statement.became {
-            *why = "".into();
+            *why = "x".into();
         }
     }
     // The same problem said twice is one.

@@ -1,5 +1,6 @@
 //! `dev mutations`: does the judge refuse what is wrong and let pass what is right? Measured on real runs.
 
+mod further;
 pub(crate) mod lacks;
 mod others;
 

@@ -2,36 +2,35 @@
 
 use socrates_model::{Request, Verdict};
 
-use crate::in_process::play;
+use crate::config::Config;
+use crate::mutations::realised;
+use crate::prepare::Prepared;
 
 /// What nobody can play.
 const SONG: &str = "And then somebody sings.";
 
 /// The shipped requests that have a text, with their names.
-fn told() -> Vec<(String, Request)> {
-    let mut found = Vec::new();
-    for place in socrates_maps::shipped::names() {
-        for (name, text) in socrates_maps::shipped::requests(place) {
-            let request = Request::of_toml(text, None).unwrap();
-            if request.rough_scenario.is_some() {
-                found.push((format!("{place}-{name}"), request));
-            }
-        }
-    }
-    found
+fn told() -> Vec<(String, Prepared)> {
+    let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
+    let named = all.into_iter().map(|prepared| (prepared.name.clone(), prepared));
+    named.filter(|(_, prepared)| prepared.request.rough_scenario.is_some()).collect()
+}
+
+/// What is said of a request, asked again as often as the program does.
+async fn verdict(prepared: &Prepared, request: &Request, seed: u64) -> (Verdict, String) {
+    let reading = socrates_offline::read(request, &prepared.location);
+    let asked = Prepared { request: request.clone(), reading, ..prepared.clone() };
+    let report = realised(asked, seed).await.unwrap().report;
+    (report.verdict, report.verdict_text)
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_song_in_a_shipped_request_is_quoted_and_can_be_waived() {
     let all = told();
     assert!(all.len() >= 10, "{}", all.len());
-    for (name, request) in all {
-        let location = socrates_maps::shipped::load(&request.location).unwrap();
-        let verdict = async |request: &Request, seed: u64| {
-            let report = play(request, &location, seed).await.unwrap().report;
-            (report.verdict, report.verdict_text)
-        };
-        // The first answer of the author, without the checks that would ask again.
+    for (name, prepared) in all {
+        let request = prepared.request.clone();
+        let verdict = async |request: &Request, seed: u64| verdict(&prepared, request, seed).await;
         let mut seed = 1;
         while verdict(&request, seed).await.0 != Verdict::Realised {
             seed += 1;

@@ -22,30 +22,8 @@ use crate::in_process::{Played, play};
 use crate::output::Printer;
 use crate::prepare::{Prepared, prepare_text};
 
-/// Requests for what no card and no shipped request shows.
-const FURTHER: [(&str, &str, &str); 3] = [
-    ("meets twice", "office", "A nurse comes towards the robot in the corridor and they meet again at the other end"),
-    ("gives way", "office", "A person comes towards the robot in the corridor and steps aside to let it pass"),
-    (
-        "stops",
-        "warehouse",
-        "A worker comes towards the robot in the aisle, stops for 4 seconds when the robot is near and walks on",
-    ),
-];
-/// Predicates whose spoiled runs are made by hand, in files of their own in `socrates_scoring::mutants`: of what they lack in real runs
-/// it is told what was tried, and not yet asked that everything is.
-const BY_HAND: [&str; 10] = [
-    "on_side",
-    "faces",
-    "step",
-    "gestures_to",
-    "turns_back",
-    "goes_to",
-    "changes_pace",
-    "robot_way",
-    "robot_starts",
-    "robot_avoids",
-];
+use super::further::FURTHER;
+
 /// Two things this near in time are in no order, s.
 const APART_SECS: f64 = 0.5;
 /// Somebody who ends this near to a node has reached it, m.
@@ -126,7 +104,7 @@ impl Table {
     /// Predicates that no real run shows, and lacks that are neither exempt nor made.
     pub(crate) fn missing(&self) -> Vec<String> {
         let mut found = Vec::new();
-        for row in ROWS.iter().filter(|row| !BY_HAND.contains(&row.name)) {
+        for row in ROWS {
             if !self.held.contains_key(row.name) {
                 found.push(format!("{}: no run", row.name));
             }
@@ -232,11 +210,8 @@ pub(crate) async fn bases(asked: &[Asked], seed: u64) -> Vec<Base> {
 
 fn further(config: &Config) -> Result<Vec<Prepared>, Complaint> {
     let mut found = Vec::new();
-    for (name, place, rough) in FURTHER {
-        let text = format!(
-            "location = \"{place}\"\nsocial_context = \"An ordinary day\"\ntask = \"Deliver a parcel\"\nrough_scenario = \"{rough}\"\n"
-        );
-        found.push(prepare_text(name, &text, name, Path::new("."), None, config)?);
+    for (name, text) in FURTHER {
+        found.push(prepare_text(name, text, name, Path::new("."), None, config)?);
     }
     Ok(found)
 }

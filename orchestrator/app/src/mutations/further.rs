@@ -1,0 +1,143 @@
+//! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
+
+/// Every one.
+pub(super) const FURTHER: [(&str, &str); 10] = [
+    (
+        "meets twice",
+        r#"location = "office"
+social_context = "An ordinary day"
+task = "Deliver a parcel"
+rough_scenario = "A nurse comes towards the robot in the corridor and they meet again at the other end"
+"#,
+    ),
+    (
+        "gives way",
+        r#"location = "office"
+social_context = "An ordinary day"
+task = "Deliver a parcel"
+rough_scenario = "A person comes towards the robot in the corridor and steps aside to let it pass"
+"#,
+    ),
+    (
+        "stops",
+        r#"location = "warehouse"
+social_context = "An ordinary day"
+task = "Deliver a parcel"
+rough_scenario = "A worker comes towards the robot in the aisle, stops for 4 seconds when the robot is near and walks on"
+"#,
+    ),
+    (
+        "comes from the left",
+        r#"location = "office"
+task = "Deliver mail"
+
+[[human]]
+relation = "crossing"
+side = "left"
+
+[[human]]
+relation = "frontal"
+"#,
+    ),
+    (
+        "stands on the right, and signs to the robot",
+        r#"location = "hospital"
+task = "Deliver mail"
+
+[[human]]
+relation = "static"
+place = "corridor"
+side = "right"
+facing = "away"
+does = [{ when = { robot_near = 3.0 }, say = "WAIT", to = "robot", for_s = 3 }]
+
+[[human]]
+relation = "crossing"
+"#,
+    ),
+    (
+        "walks on the right, stops, and walks on slower",
+        r#"location = "warehouse"
+task = "Carry a box"
+
+[[human]]
+relation = "frontal"
+side = "right"
+does = [{ when = { robot_near = 5.0 }, act = "stand_still", for_s = 3 }, { act = "change_pace", pace = "slow" }]
+
+[[human]]
+relation = "crossing"
+"#,
+    ),
+    (
+        "turns back",
+        r#"location = "warehouse"
+task = "Bring a box"
+
+[[human]]
+relation = "frontal"
+does = [{ when = { robot_near = 4.0 }, act = "turn_back" }]
+
+[[human]]
+relation = "crossing"
+"#,
+    ),
+    (
+        "goes to a ward",
+        r#"location = "hospital"
+task = "Bring medicine"
+
+[[human]]
+role = "nurse"
+relation = "static"
+place = "corridor"
+does = [{ when = { robot_near = 4.0 }, act = { go_to = "ward 1" } }]
+
+[[human]]
+relation = "crossing"
+
+[robot]
+start = "pharmacy"
+goal = "ward 2"
+"#,
+    ),
+    (
+        "a way by name",
+        r#"location = "office"
+task = "Bring the mail"
+
+[[human]]
+relation = "frontal"
+
+[[human]]
+relation = "crossing"
+
+[robot]
+start = "reception"
+via = "corridor"
+goal = "meeting room"
+avoid = "kitchen"
+"#,
+    ),
+    (
+        "signs to another",
+        r#"location = "hospital"
+task = "Bring the mail"
+
+[[human]]
+id = "nurse"
+role = "nurse"
+relation = "static"
+place = "corridor"
+does = [
+  { when = { robot_near = 4.0 }, say = "FOLLOW_ME", to = "visitor", for_s = 3 },
+  { act = { look_at = "visitor" }, for_s = 4 },
+]
+
+[[human]]
+id = "visitor"
+relation = "static"
+place = "corridor"
+"#,
+    ),
+];
