@@ -11,6 +11,8 @@ use crate::tracks::{Sample, Track};
 
 /// How near to the encounter node a meeting counts, m.
 pub(super) const MEET_NODE_M: f64 = 3.0;
+/// Somebody whom the robot never comes nearer to than this has nothing to do with it, m: nobody notices a robot from farther away.
+const PRESENT_M: f64 = 15.0;
 /// Distance from which two who approach are judged, m.
 const APPROACH_M: f64 = 6.0;
 /// Distance within which somebody passes or overtakes, m.
@@ -26,15 +28,21 @@ const CONFLICT_M: f64 = 1.5;
 /// A time limit missed by at most this factor is late; by more it is not what was asked.
 pub(super) const LATE_FACTOR: f64 = 2.0;
 
-/// The evidence when a human or the robot is missing from the recording.
+/// The evidence when a human or the robot is missing from the recording, or the human never comes so near that the robot could have
+/// to do with them.
 pub(super) fn absent(signals: &Signals<'_>, human: HumanId) -> Option<Finding> {
     if signals.tracks.human(human).is_none() {
-        Some(Finding::fails(-1.0, vec![], format!("{human} is not in the recording")))
-    } else if signals.tracks.robot.is_none() {
-        Some(Finding::not_applicable("there is no robot in the recording"))
-    } else {
-        None
+        return Some(Finding::fails(-1.0, vec![], format!("{human} is not in the recording")));
     }
+    if signals.tracks.robot.is_none() {
+        return Some(Finding::not_applicable("there is no robot in the recording"));
+    }
+    let nearest = closest(signals.of(human)).filter(|nearest| nearest.distance_m > PRESENT_M)?;
+    let text = format!(
+        "{human} is {:.1} m from the robot at their nearest, at {:.1} s (at most {PRESENT_M:.0} m)",
+        nearest.distance_m, nearest.t
+    );
+    Some(Finding::never(PRESENT_M - nearest.distance_m, vec![nearest.t], text))
 }
 
 fn closest(moments: &[Moment]) -> Option<&Moment> {

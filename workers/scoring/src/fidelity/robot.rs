@@ -7,7 +7,7 @@ use crate::fidelity::acts::timely;
 use crate::fidelity::finding::Finding;
 use crate::fidelity::signals::Signals;
 use crate::temporal::{Signal, Within};
-use crate::tracks::MOVING_MPS;
+use crate::tracks::{MOVING_MPS, Track};
 
 /// The robot is at its goal from this near, m.
 pub const GOAL_M: f64 = 0.5;
@@ -16,6 +16,8 @@ pub const GOAL_M: f64 = 0.5;
 const ARRIVED_M: f64 = 1.5;
 /// A robot that has stood for longer than this before a gesture does not stop because of it, s.
 const MOVED_SECS: f64 = 5.0;
+/// A robot that was told to wait has set off where it has gone farther than this since it stood, m.
+const CREEPS_M: f64 = 0.5;
 
 /// The robot's goal: the last node of its path.
 pub fn goal(signals: &Signals<'_>) -> Option<Point> {
@@ -144,6 +146,22 @@ pub(super) fn held_on_request_s(signals: &Signals<'_>, from_s: f64, to_s: f64) -
     stands.map(|(now, next)| next.t - now.t).sum()
 }
 
+/// When the robot was told to wait and when it drove on all the same, before it was told to go.
+fn sets_off_sooner(signals: &Signals<'_>, robot: &Track, (gesture, made_s): (Gesture, f64)) -> Option<(f64, f64)> {
+    let told_s =
+        said(signals, Gesture::Wait).into_iter().map(|(t, _)| t).filter(|t| *t < made_s).max_by(f64::total_cmp);
+    let told_s = told_s.filter(|_| gesture == Gesture::Proceed)?;
+    let between = || robot.samples.iter().filter(|sample| sample.t >= told_s && sample.t <= made_s);
+    let stands_s = between().find(|sample| sample.speed() <= MOVING_MPS)?.t;
+    let mut went_m = 0.0;
+    let steps = between().zip(between().skip(1)).filter(|(now, _)| now.t >= stands_s);
+    let mut steps = steps.map(|(now, next)| {
+        went_m += (next.at - now.at).norm();
+        (next.t, went_m)
+    });
+    steps.find(|(_, went_m)| *went_m > CREEPS_M).map(|(t, _)| (told_s, t))
+}
+
 /// The robot does what the gesture asks in time: it goes for PROCEED and `FOLLOW_ME`, else it stops.
 pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> Finding {
     let Some(robot) = &signals.tracks.robot else {
@@ -162,6 +180,12 @@ pub(super) fn obeys(signals: &Signals<'_>, gesture: Gesture, within_s: f64) -> F
         let text =
             format!("{who} says {gesture} at {made:.1} s to a robot that has stood for {MOVED_SECS:.0} s and more");
         return Finding::never(-within_s, vec![made], text);
+    }
+    if let Some((told_s, t)) = sets_off_sooner(signals, robot, (gesture, made)) {
+        let text = format!(
+            "the robot is told to wait at {told_s:.1} s and sets off at {t:.1} s, before {who} says {gesture} at {made:.1} s"
+        );
+        return Finding::fails(t - made, vec![t, made], text);
     }
     let done = robot.samples.iter().find(|s| s.t >= made && (s.speed() > MOVING_MPS) == goes);
     let verb = if goes { "goes" } else { "stops" };

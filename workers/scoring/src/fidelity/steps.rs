@@ -191,11 +191,12 @@ fn others<'a>(signals: &Signals<'a>, human: HumanId, rule: &'a Rule) -> impl Ite
 
 /// Whether an act is done for as long as it should be, and no longer: the margin and the words where it is not.
 fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Result<String, (f64, String)> {
-    let own = matches!(
+    // The end of the way is that of the way they walk then, not of the one they were given.
+    let to_the_end = matches!(
         (&rule.act, rule.until.as_slice()),
-        (Action::GiveWay, [Trigger::RobotPassed])
-            | (Action::Navigate | Action::TurnBack | Action::GoTo { .. }, [Trigger::GoalReached])
+        (Action::Navigate | Action::TurnBack | Action::GoTo { .. }, [Trigger::GoalReached])
     );
+    let own = to_the_end || matches!((&rule.act, rule.until.as_slice()), (Action::GiveWay, [Trigger::RobotPassed]));
     let (until_s, over_s) = over(signals, human, rule, begun_s);
     if !rule.until.is_empty() && until_s.is_none() && rule.for_s.is_none() && !own {
         let until = rule.until.iter().map(Trigger::clause).collect::<Vec<_>>().join(" and ");
@@ -211,7 +212,8 @@ fn lasts(signals: &Signals<'_>, human: HumanId, rule: &Rule, begun_s: f64) -> Re
         return Err((kept_s - asked_s, text));
     }
     let alone = !others(signals, human, rule).any(|other| other.act == rule.act);
-    if let Some(until_s) = until_s.filter(|until_s| alone && *until_s <= by_time_s && rule.act != Action::Navigate) {
+    let judged = alone && rule.act != Action::Navigate && !to_the_end;
+    if let Some(until_s) = until_s.filter(|until_s| judged && *until_s <= by_time_s) {
         let late_s = until_s + END_SECS;
         let goes_on = |span: &&crate::fidelity::leaves::LeafSpan| {
             rule.act.is_leaf(&span.name) && span.from_s < late_s && span.to_s > late_s && span.to_s > begun_s

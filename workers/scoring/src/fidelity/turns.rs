@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use socrates_model::{Action, HumanId, NodeId, Point, Rule};
 
 use crate::fidelity::finding::Finding;
+use crate::fidelity::meeting::absent;
 use crate::fidelity::signals::Signals;
 use crate::fidelity::since::{since, since_act};
 use crate::tracks::{Sample, Track};
@@ -40,9 +41,10 @@ fn step_s(track: &Track) -> f64 {
 
 /// The human walks back the way they came.
 pub(super) fn turns_back(signals: &Signals<'_>, human: HumanId) -> Finding {
-    let Some(track) = signals.tracks.human(human) else {
-        return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
-    };
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
     let since = match since_act(signals, human, &Action::TurnBack) {
         Ok(since) => since,
         Err(never) => return never,
@@ -86,9 +88,10 @@ pub(super) fn turns_back(signals: &Signals<'_>, human: HumanId) -> Finding {
 
 /// The human goes to a place.
 pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -> Finding {
-    let Some(track) = signals.tracks.human(human) else {
-        return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
-    };
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
     let places: Vec<Point> = nodes.iter().filter_map(|node| signals.node(node)).collect();
     if places.is_empty() {
         return Finding::not_applicable("there is no map with the nodes of the place");
@@ -124,9 +127,10 @@ pub(super) fn goes_to(signals: &Signals<'_>, human: HumanId, nodes: &[NodeId]) -
 
 /// The human walks at another pace from a time on.
 pub(super) fn changes_pace(signals: &Signals<'_>, human: HumanId, mps: f64) -> Finding {
-    let Some(track) = signals.tracks.human(human) else {
-        return Finding::fails(-1.0, vec![], format!("{human} is not in the recording"));
-    };
+    if let Some(found) = absent(signals, human) {
+        return found;
+    }
+    let Some(track) = signals.tracks.human(human) else { return Finding::not_applicable("nobody is recorded") };
     let act = Action::ChangePace(mps);
     let since = match since_act(signals, human, &act) {
         Ok(since) => since,
@@ -158,5 +162,7 @@ pub(super) fn changes_pace(signals: &Signals<'_>, human: HumanId, mps: f64) -> F
         change * 100.0,
         DIFFERS * 100.0
     );
-    since.told(Finding::by_margin(asked * change - DIFFERS, vec![begun_s], text))
+    // Past the pace asked for is not toward it.
+    let nearer = ((before - mps).abs() - (after - mps).abs()) / before.max(1e-9);
+    since.told(Finding::by_margin((asked * change - DIFFERS).min(nearer), vec![begun_s], text))
 }

@@ -22,10 +22,22 @@ const OTHER_M: f64 = 4.0;
 /// So long before and after the evidence it counts where others are, s.
 const AROUND_SECS: f64 = 6.0;
 
+/// Whether the clause tells on which side somebody stands: to stand there all the time is the thing itself.
+fn stands_beside(scene: &Scene<'_>) -> bool {
+    let Predicate::OnSide { human, .. } = scene.predicate else { return false };
+    let proposal = scene.evidence.proposal.and_then(|proposal| proposal.human(*human));
+    proposal.is_some_and(|human| human.relation == Relation::Static)
+}
+
 /// Whether the edit of the agents takes the thing away.
 #[expect(clippy::wildcard_enum_match_arm, reason = "few are told apart here; the table has a row for each")]
 pub(super) fn bites(scene: &Scene<'_>, edit: Edit, agents: &[AgentId]) -> bool {
     let Some(person) = agents.first().copied() else { return false };
+    if stands_beside(scene)
+        && matches!(edit, Edit::StandsFromStart | Edit::OutOfTime | Edit::Backwards | Edit::LogStands)
+    {
+        return false;
+    }
     match edit {
         Edit::StandsFromStart | Edit::OutOfTime => start_is_no_place(scene, agents),
         Edit::StandsFromEvidence => scene.from_s > 0.5,
