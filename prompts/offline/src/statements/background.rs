@@ -8,7 +8,7 @@ use super::words::{Kind, is_person};
 /// Words of the asker.
 const ASKERS: &[&str] = &["we", "i", "our", "us", "my", "i'd", "we'd", "i'm", "we're"];
 /// What is spoken of where a study is, after an article.
-const STUDIES: &[&str] = &[
+pub(super) const STUDIES: &[&str] = &[
     "study",
     "experiment",
     "test",

@@ -117,6 +117,7 @@ impl Text<'_> {
             }
         }
         self.ranges(&mut found);
+        self.from_to(&mut found);
         self.said_twice(&idle, &mut found);
         self.said_before(&idle, &mut found);
         found
@@ -134,6 +135,22 @@ impl Text<'_> {
             let read = ends.iter().any(|end| found.is_read(*end));
             for end in ends.into_iter().filter(|_| read) {
                 found.mark(end);
+            }
+        }
+    }
+
+    /// `from its right to its left`: the one side follows from the other.
+    fn from_to(&self, found: &mut Influence) {
+        let is = |place: usize, word: &str| self.tokens.get(place).is_some_and(|token| token.lower == word);
+        let side = |place: usize, table: &[&str]| table.iter().any(|word| is(place, word));
+        for to in (0..self.tokens.len()).filter(|place| is(*place, "to")) {
+            let near = |range: std::ops::Range<usize>| range.into_iter().find(|place| side(*place, &["left", "right"]));
+            let (Some(first), Some(then)) = (near(to.saturating_sub(2)..to), near(to + 1..to + 4)) else { continue };
+            let opposite = side(first, &["left"]) != side(then, &["left"]);
+            let from = (first.saturating_sub(2)..first).any(|place| is(place, "from"));
+            if opposite && from && (found.is_read(first) || found.is_read(then)) {
+                found.mark(first);
+                found.mark(then);
             }
         }
     }

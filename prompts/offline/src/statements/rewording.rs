@@ -6,7 +6,7 @@ use crate::lexicon::lexicon;
 
 use super::Account;
 use super::text::{exchanged, masked};
-use super::words::is_person;
+use super::words::{Kind, is_person};
 
 /// Slips of the pen that are tried, in letters.
 const SLIPS: usize = 2;
@@ -28,6 +28,8 @@ fn misspelled(account: &Account<'_>, run: &[usize], clause: &[usize]) -> Option<
     else {
         return None;
     };
+    // A word of a closed table is no slip of the pen.
+    account.kinds.get(place).filter(|kind| matches!(kind, Kind::Act | Kind::Manner | Kind::Place | Kind::Other))?;
     let token = account.tokens.get(place)?;
     let mut near: Vec<(usize, &String)> = lexicon()
         .telling

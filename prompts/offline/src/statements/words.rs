@@ -2,6 +2,7 @@
 
 use socrates_model::Location;
 
+use super::background::STUDIES;
 use super::text::Token;
 use crate::lexicon::lexicon;
 
@@ -187,7 +188,9 @@ fn is_place(tokens: &[Token], place: usize, location: &Location) -> bool {
     let first =
         before.map(|token| token.lower.as_str()).find(|word| !FILL.contains(word) && !lex.adjectives.contains(*word));
     let sort = |word: &str| lex.verbs.contains(&lex.stem(word)) || word.ends_with("ing") && !among(NOUNS, word);
-    first.is_some_and(|word| AT.contains(&word)) && !sort(word) && !lex.goods.contains(word)
+    // `in the scenario`
+    let said = sort(word) || lex.goods.contains(word) || STUDIES.contains(&word);
+    first.is_some_and(|word| AT.contains(&word)) && !said
 }
 
 /// Whether a word tells which place of this map is meant.
