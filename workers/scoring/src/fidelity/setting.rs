@@ -7,7 +7,7 @@ use crate::fidelity::gaps::ARRIVED_M;
 use crate::fidelity::meeting::{LATE_FACTOR, MEET_NODE_M, absent};
 use crate::fidelity::robot::held_on_request_s;
 use crate::fidelity::signals::{Moment, Signals};
-use crate::tracks::{Sample, Track};
+use crate::tracks::{MOVING_MPS, Sample, Track};
 
 /// Who is there less than this before another is there at the same time, s.
 pub(super) const BEFORE_S: f64 = 0.3;
@@ -163,10 +163,10 @@ fn arrival(track: &Track, at: Point, until_s: f64) -> Option<f64> {
     near().find(|s| off(s) <= ARRIVED_M).or_else(|| near().min_by(|a, b| off(a).total_cmp(&off(b)))).map(|s| s.t)
 }
 
-/// Until when a track that is at a place at a time stays there, s.
-fn stays_until(track: &Track, at: Point, from_s: f64) -> f64 {
+/// Until when a track that is at a place at a time stands there, s.
+fn stands_until(track: &Track, at: Point, from_s: f64) -> f64 {
     let there = track.present().skip_while(|s| s.t < from_s).take_while(|s| (s.at - at).norm() <= ARRIVED_M);
-    there.last().map_or(from_s, |sample| sample.t)
+    there.filter(|s| s.speed() <= MOVING_MPS).last().map_or(from_s, |sample| sample.t)
 }
 
 /// Human and robot get to the encounter at about the same time; how long the robot waits in between because it is asked to does
@@ -185,8 +185,9 @@ pub(super) fn on_time(signals: &Signals<'_>, human: HumanId, gap_s: f64) -> Find
     let (Some(first), Some(second)) = (arrival(robot, at, until_s), arrival(person, at, until_s)) else {
         return Finding::never(-gap_s, vec![], format!("not both of {human} and the robot get to `{id}`"));
     };
-    // Somebody who came sooner and is still there when the robot comes is on time.
-    let second = if second < first { stays_until(person, at, second).min(first) } else { second };
+    // Somebody who came sooner and whose steps have them stand there until the robot comes is on time.
+    let steps = signals.evidence.proposal.and_then(|proposal| proposal.human(human)).map_or(0, |human| human.steps());
+    let second = if second < first && steps > 0 { stands_until(person, at, second).min(first) } else { second };
     // A robot that stands because somebody asked it to is kept waiting by the scenario, not late.
     let apart_s = (second - first).abs();
     let waits_s = held_on_request_s(signals, first.min(second), first.max(second)).min(apart_s);
