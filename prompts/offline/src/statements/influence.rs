@@ -117,7 +117,7 @@ impl Text<'_> {
             }
         }
         self.ranges(&mut found);
-        self.from_to(&mut found);
+        self.sides_of_a_way(&mut found);
         self.said_twice(&idle, &mut found);
         self.said_before(&idle, &mut found);
         found
@@ -140,7 +140,7 @@ impl Text<'_> {
     }
 
     /// `from its right to its left`: the one side follows from the other.
-    fn from_to(&self, found: &mut Influence) {
+    fn sides_of_a_way(&self, found: &mut Influence) {
         let is = |place: usize, word: &str| self.tokens.get(place).is_some_and(|token| token.lower == word);
         let side = |place: usize, table: &[&str]| table.iter().any(|word| is(place, word));
         for to in (0..self.tokens.len()).filter(|place| is(*place, "to")) {
