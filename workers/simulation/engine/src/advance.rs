@@ -21,7 +21,7 @@ const AT_ONCE: usize = 32;
 /// People line up at the end of their way over so much of it, m; whose ends are nearer to each other than this share it, m.
 const LINE_M: f64 = 4.0;
 const SAME_END_M: f64 = 1.0;
-/// Who stands in that line moves slower than this, m/s, and has somebody this near before it, m.
+/// Somebody who stands in that line moves slower than this, m/s, and has somebody this near before them, m.
 const LINED_UP_MPS: f64 = 0.12;
 const NEXT_M: f64 = 1.15;
 /// Between people of a group who go one behind the other, m.
@@ -79,7 +79,7 @@ impl Engine {
                 if looks {
                     self.near.look(human, &self.floor);
                 }
-                // Who gets on goes by what it made of the others at its last look.
+                // Somebody who gets on goes by what it made of the others at its last look.
                 let gets_on = human.gets_on() && now_s >= human.yields_until_s && !is_held_up(human);
                 around.clear();
                 if looks || !gets_on {

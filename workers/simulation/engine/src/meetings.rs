@@ -16,7 +16,7 @@ pub(crate) type Marks = [(NodeId, f64)];
 
 /// A node or two around a meeting tells from where and to where the ways lead there, m.
 const AROUND_M: f64 = 0.5;
-/// Who is to be there after another comes so much later, s.
+/// Time between two who are to be there one after the other, s.
 const APART_S: f64 = 2.2;
 
 /// The meetings of a human in order. With one, the visits of its node are chosen so that nobody is too late; with
@@ -89,18 +89,18 @@ fn stops_s(proposal: &HumanProposal, robot_mps: f64) -> f64 {
     (apart_m - own_m) / robot_mps - walks_s
 }
 
-/// Who is to be there before or after somebody else, or the robot: how long before the robot it aims at being there, s.
+/// Every two of whom the one is to be first, there or through a door.
+pub(crate) fn orders(setup: &Setup) -> impl Iterator<Item = (AgentId, AgentId)> + '_ {
+    setup.proposal.expected_events.iter().filter_map(|clause| {
+        if let Predicate::Before { first, then, .. } = &clause.predicate { Some((*first, *then)) } else { None }
+    })
+}
+
+/// How long before the robot somebody aims at being there of whom an order tells, s; nothing where none does.
 ///
 /// Those of one order come `APART_S` after each other, the robot in their middle or in its own place among them.
 fn ordered_s(setup: &Setup, human: HumanId) -> Option<f64> {
-    let order: Vec<(AgentId, AgentId)> = setup
-        .proposal
-        .expected_events
-        .iter()
-        .filter_map(|clause| {
-            if let Predicate::Before { first, then, .. } = &clause.predicate { Some((*first, *then)) } else { None }
-        })
-        .collect();
+    let order: Vec<(AgentId, AgentId)> = orders(setup).collect();
     let own = AgentId::Human(human);
     if !order.iter().any(|(first, then)| [*first, *then].contains(&own)) {
         return None;
@@ -168,7 +168,7 @@ fn in_time(node: &NodeId, own: &Marks, robot: &Marks, robot_mps: f64) -> Option<
     let pairs = mine.iter().flat_map(|human_s| robots.iter().map(move |robot_s| (*human_s, *robot_s)));
     let cost = |(human_s, robot_s): &(f64, f64)| {
         let due_s = robot_s / robot_mps;
-        // Who stands there from the start goes away before the robot comes, unless it stays.
+        // Somebody who stands there from the start goes away before the robot comes, unless it stays.
         let starts = if *human_s < 1.0 && mine.len() > 1 { 1000.0 } else { 0.0 };
         starts + 10.0 * (human_s / HURRY_MPS - due_s).max(0.0) + due_s
     };

@@ -201,17 +201,17 @@ fn leave(human: &Human, timing: &mut Timing, robot: &Robot, moment: &Moment) -> 
     let pause = f64::from(timing.leaving_order) * BETWEEN_LEAVERS_S;
     // A robot that waits before the door is near, however deep the room is.
     let at_door = human.doors.first().is_some_and(|door| near_along(robot, &human.route.point(door.s), AT_DOOR_M));
-    let since = robot.stood_s >= SET_OFF_S && moment.door.is_none_or(|(_, open)| open || timing.opens_door)
-        || match moment.door {
-            Some((_, true)) if !moment.stands_open => true,
-            // A door that opens for those who come near would wait for who waits for it.
-            Some((_, false)) => timing.opens_door && (at_door || near_along(robot, &human.at, LEAVE_AT_M + DOOR_M)),
-            // Nothing opens: the robot's coming tells when to go.
-            Some((_, true)) | None => {
-                let seen = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
-                seen || at_door || near_along(robot, &human.at, LEAVE_AT_M)
-            }
-        };
+    let waits = at_door || robot.stood_s >= SET_OFF_S;
+    let since = match moment.door {
+        Some((_, true)) if !moment.stands_open => true,
+        // A door that opens for those who come near would wait for who waits for it.
+        Some((_, false)) => timing.opens_door && (waits || near_along(robot, &human.at, LEAVE_AT_M + DOOR_M)),
+        // Nothing opens: the robot's coming tells when to go.
+        Some((_, true)) | None => {
+            let seen = (robot.at() - human.at).norm() <= LEAVE_AT_M && moment.sight;
+            seen || waits || near_along(robot, &human.at, LEAVE_AT_M)
+        }
+    };
     if !since {
         timing.open_since_s = None;
         return Pace { speed_mps: 0.0 };

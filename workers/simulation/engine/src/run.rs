@@ -4,8 +4,7 @@ use socrates_crowd::Params;
 use socrates_maps::openings::Enclosures;
 use socrates_model::time::STEP_SECS;
 use socrates_model::{
-    Action, AgentId, AgentState, Clause, Event, EventKind, Fault, HumanId, Predicate, Recording, RecordingHeader,
-    RobotDriver, SimTime,
+    Action, AgentId, AgentState, Event, EventKind, Fault, HumanId, Recording, RecordingHeader, RobotDriver, SimTime,
 };
 
 use crate::advance::Desk;
@@ -80,8 +79,7 @@ impl Engine {
             setup.location.doors.get(door).is_some_and(|door| matches!(door.opens, socrates_model::DoorOpens::Near(_)))
         };
         let before = |one: HumanId, other: HumanId| {
-            let ahead = |clause: &Clause| matches!(&clause.predicate, Predicate::Before { first, then, .. } if *first == one.into() && *then == other.into());
-            setup.proposal.expected_events.iter().any(ahead)
+            meetings::orders(&setup).any(|(first, then)| first == one.into() && then == other.into())
         };
         let timings = rendezvous::timings(&humans, robot.as_ref(), &robot_doors, &by_nearness, &before);
         let header = start::header(&setup, &humans, robot.as_ref());
