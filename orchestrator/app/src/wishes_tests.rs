@@ -9,11 +9,10 @@ use crate::prepare::Prepared;
 /// What nobody can play.
 const SONG: &str = "And then somebody sings.";
 
-/// The shipped requests that have a text, with their names.
-fn told() -> Vec<(String, Prepared)> {
+/// The shipped requests that have a text.
+fn told() -> Vec<Prepared> {
     let all = crate::mutations::shipped(&Config::load(None, std::iter::empty(), &[]).unwrap()).unwrap();
-    let named = all.into_iter().map(|prepared| (prepared.name.clone(), prepared));
-    named.filter(|(_, prepared)| prepared.request.rough_scenario.is_some()).collect()
+    all.into_iter().filter(|prepared| prepared.request.rough_scenario.is_some()).collect()
 }
 
 /// What is said of a request, asked again as often as the program does.
@@ -28,8 +27,8 @@ async fn verdict(prepared: &Prepared, request: &Request, seed: u64) -> (Verdict,
 async fn a_song_in_a_shipped_request_is_quoted_and_can_be_waived() {
     let all = told();
     assert!(all.len() >= 10, "{}", all.len());
-    for (name, prepared) in all {
-        let request = prepared.request.clone();
+    for prepared in all {
+        let (name, request) = (prepared.name.as_str(), prepared.request.clone());
         let verdict = async |request: &Request, seed: u64| verdict(&prepared, request, seed).await;
         let mut seed = 1;
         while verdict(&request, seed).await.0 != Verdict::Realised {

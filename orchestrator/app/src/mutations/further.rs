@@ -1,7 +1,7 @@
 //! Requests for what no card and no shipped request shows: names and texts. Names of places are those of the shipped maps.
 
 /// Every one.
-pub(super) const FURTHER: [(&str, &str); 10] = [
+pub(super) const FURTHER: [(&str, &str); 15] = [
     (
         "meets twice",
         r#"location = "office"
@@ -136,6 +136,74 @@ does = [
 
 [[human]]
 id = "visitor"
+relation = "static"
+place = "corridor"
+"#,
+    ),
+    (
+        "side",
+        r#"location = "office"
+task = "Deliver a parcel"
+
+[[human]]
+relation = "crossing"
+side = "left"
+"#,
+    ),
+    (
+        "facing",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+relation = "static"
+place = "corridor"
+facing = "robot"
+
+[[human]]
+relation = "frontal"
+does = [{ when = { robot_near = 5.0 }, act = "change_pace", pace = "slow" }]
+"#,
+    ),
+    (
+        "sign to somebody",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[[human]]
+id = "guard"
+relation = "static"
+place = "corridor"
+does = [{ when = { robot_near = 6.0 }, say = "WAIT", to = "visitor" }]
+
+[[human]]
+id = "visitor"
+relation = "frontal"
+place = "corridor"
+"#,
+    ),
+    (
+        "goes to a place",
+        r#"location = "warehouse"
+task = "Carry a box through the packing area"
+
+[[human]]
+role = "picker"
+relation = "frontal"
+does = [{ when = { robot_visible = 4.0 }, act = { go_to = "packing area" } }]
+"#,
+    ),
+    (
+        "ways by name",
+        r#"location = "hospital"
+task = "Deliver a parcel"
+
+[robot]
+start = "pharmacy"
+goal = "ward 2"
+avoid = "ward 1"
+
+[[human]]
 relation = "static"
 place = "corridor"
 "#,
